@@ -1,0 +1,3 @@
+//! Smoothed-particle hydrodynamics on any GPU: scenes, solvers and the surface of the fluid.
+
+pub mod scene;

@@ -1,0 +1,128 @@
+//! What a reader of a scene file is told: every problem at once, each with its place, the value given and what is allowed.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// Problems printed in full; a broken file may have thousands.
+const MOST_SHOWN: usize = 40;
+
+/// One thing wrong with a scene file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct SceneProblem {
+    /// The file, as given to [`crate::scene::Scene::load`] or [`crate::scene::Scene::parse`].
+    pub file: String,
+    /// Line, from 1; `None` if the file as a whole is meant.
+    pub line: Option<usize>,
+    /// Column in characters, from 1.
+    pub column: Option<usize>,
+    /// The key with its path, for example `fluid.block[1].size`; empty if no key is meant.
+    pub key: String,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// The value as written, shortened.
+    pub given: Option<String>,
+    /// What is allowed instead.
+    pub allowed: Option<String>,
+    /// What to do.
+    pub hint: Option<String>,
+    /// The line of the file, shortened.
+    pub text: Option<String>,
+    /// How many characters the marker under the line is long.
+    #[serde(skip)]
+    pub(crate) marked: usize,
+}
+
+/// Something repaired, or legal but probably not meant.
+pub type SceneWarning = SceneProblem;
+
+impl SceneProblem {
+    /// A problem of the file as a whole.
+    pub(crate) fn of_file(file: &str, message: impl Into<String>, hint: &str) -> Self {
+        Self {
+            file: file.to_owned(),
+            line: None,
+            column: None,
+            key: String::new(),
+            message: message.into(),
+            given: None,
+            allowed: None,
+            hint: (!hint.is_empty()).then(|| hint.to_owned()),
+            text: None,
+            marked: 0,
+        }
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, severity: &str) -> fmt::Result {
+        write!(f, "{severity}: {}", self.message)?;
+        match (self.line, self.column, &self.text) {
+            (Some(line), Some(column), Some(text)) => {
+                let gutter = line.to_string().len();
+                write!(f, "\n{:gutter$}--> {}:{line}:{column}", "", self.file)?;
+                write!(f, "\n{line} | {text}")?;
+                let before = column - 1;
+                if before < text.chars().count() {
+                    let marks = "^".repeat(self.marked.clamp(1, text.chars().count() - before));
+                    write!(f, "\n{:gutter$} | {:before$}{marks}", "", "")?;
+                }
+                if let Some(allowed) = &self.allowed {
+                    write!(f, "\n{:gutter$} = allowed: {allowed}", "")?;
+                }
+                if let Some(hint) = &self.hint {
+                    write!(f, "\n{:gutter$} = help: {hint}", "")?;
+                }
+            }
+            _ => {
+                write!(f, "\n --> {}", self.file)?;
+                if let Some(allowed) = &self.allowed {
+                    write!(f, "\n  = allowed: {allowed}")?;
+                }
+                if let Some(hint) = &self.hint {
+                    write!(f, "\n  = help: {hint}")?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// As a warning; errors are displayed by [`SceneErrors`].
+impl fmt::Display for SceneProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, "warning")
+    }
+}
+
+/// Everything that is wrong with a scene file, in the order of its lines; never empty.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct SceneErrors {
+    /// The file, as given.
+    pub file: String,
+    /// The problems.
+    pub errors: Vec<SceneProblem>,
+}
+
+impl SceneErrors {
+    pub(crate) fn one(problem: SceneProblem) -> Self {
+        Self { file: problem.file.clone(), errors: vec![problem] }
+    }
+}
+
+impl fmt::Display for SceneErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for problem in self.errors.iter().take(MOST_SHOWN) {
+            problem.write(f, "error")?;
+            f.write_str("\n\n")?;
+        }
+        let count = self.errors.len();
+        if count > MOST_SHOWN {
+            writeln!(f, "... and {} more", count - MOST_SHOWN)?;
+        }
+        let word = if count == 1 { "error" } else { "errors" };
+        write!(f, "{count} {word} in {}", self.file)
+    }
+}
+
+impl std::error::Error for SceneErrors {}
