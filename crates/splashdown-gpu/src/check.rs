@@ -1,0 +1,133 @@
+//! The gate: compares a pass's declaration with its WGSL, without a GPU.
+//!
+//! It parses and validates the WGSL with `naga` and compares entry point, workgroup size, override constants and, for
+//! every binding, number, name, access, element type as spelled, size, and a struct's members with their offsets.
+//! Its own tests hold one mutation for each of these, which it must catch.
+
+use naga::{AddressSpace, Handle, Module, StorageAccess, Type, TypeInner};
+
+use crate::{Access, Binding, PassDesc, wgsl};
+
+/// Most storage buffers of a pass, so that it runs in every browser.
+pub const MAX_STORAGE_BUFFERS: usize = 8;
+/// Most invocations of a workgroup, so that it runs in every browser.
+pub const MAX_INVOCATIONS: u32 = 256;
+
+/// Compares a pass with its own WGSL.
+///
+/// # Errors
+/// The first difference, in words.
+pub fn check(pass: &PassDesc) -> Result<(), String> {
+    check_source(pass, &wgsl::expand(pass.wgsl, pass.imports)?)
+}
+
+/// Compares a pass with this WGSL, imports already expanded.
+///
+/// # Errors
+/// The first difference, in words.
+pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
+        .validate(&module)
+        .map_err(|error| error.emit_to_string(source))?;
+    let [entry] = module.entry_points.as_slice() else {
+        return Err(format!("{} entry points; a pass has one", module.entry_points.len()));
+    };
+    if entry.name != pass.entry {
+        return Err(format!("entry point `{}` in WGSL, `{}` in Rust", entry.name, pass.entry));
+    }
+    if entry.workgroup_size != pass.workgroup_size {
+        return Err(format!("workgroup {:?} in WGSL, {:?} in Rust", entry.workgroup_size, pass.workgroup_size));
+    }
+    if pass.invocations() > MAX_INVOCATIONS {
+        return Err(format!("{} invocations; browsers grant {MAX_INVOCATIONS}", pass.invocations()));
+    }
+    let storage = pass.bindings.iter().filter(|b| b.access != Access::Uniform).count();
+    if storage > MAX_STORAGE_BUFFERS {
+        return Err(format!("{storage} storage buffers; browsers grant {MAX_STORAGE_BUFFERS}"));
+    }
+    for (name, _) in pass.constants {
+        if !module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name)) {
+            return Err(format!("no `override {name}` in the WGSL"));
+        }
+    }
+    check_bindings(pass, &module)
+}
+
+fn check_bindings(pass: &PassDesc, module: &Module) -> Result<(), String> {
+    let mut layouter = naga::proc::Layouter::default();
+    layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
+    let mut found = 0;
+    for (_, variable) in module.global_variables.iter() {
+        let Some(place) = &variable.binding else { continue };
+        let name = variable.name.as_deref().unwrap_or_default();
+        if place.group != 0 {
+            return Err(format!("`{name}` is in group {}; passes use group 0", place.group));
+        }
+        let declared = pass
+            .bindings
+            .get(place.binding as usize)
+            .ok_or_else(|| format!("`{name}` has binding {}, which Rust does not declare", place.binding))?;
+        if name != declared.name {
+            return Err(format!("binding {}: `{name}` in WGSL, `{}` in Rust", place.binding, declared.name));
+        }
+        let access = match variable.space {
+            AddressSpace::Uniform => Access::Uniform,
+            AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => Access::ReadWrite,
+            _ => Access::Read,
+        };
+        if access != declared.access {
+            return Err(format!("`{name}`: {access:?} in WGSL, {:?} in Rust", declared.access));
+        }
+        let (element, size) = match module.types[variable.ty].inner {
+            TypeInner::Array { base, stride, .. } => (base, stride as usize),
+            _ => (variable.ty, layouter[variable.ty].size as usize),
+        };
+        check_element(declared, module, element, size)?;
+        found += 1;
+    }
+    if found != pass.bindings.len() {
+        return Err(format!("{found} bindings in WGSL, {} in Rust", pass.bindings.len()));
+    }
+    Ok(())
+}
+
+fn check_element(
+    declared: &Binding,
+    module: &Module,
+    element: Handle<Type>,
+    size: usize,
+) -> Result<(), String> {
+    let name = declared.name;
+    let spelled = spell(module, element);
+    if spelled != declared.element {
+        return Err(format!("`{name}`: {spelled} in WGSL, {} in Rust", declared.element));
+    }
+    if size != declared.size {
+        return Err(format!("`{name}`: {size} bytes in WGSL, {} in Rust", declared.size));
+    }
+    if let TypeInner::Struct { members, .. } = &module.types[element].inner {
+        let in_wgsl: Vec<_> =
+            members.iter().map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize)).collect();
+        if in_wgsl != declared.fields {
+            return Err(format!("struct {spelled}: {in_wgsl:?} in WGSL, {:?} in Rust", declared.fields));
+        }
+    }
+    Ok(())
+}
+
+/// A type as WGSL spells it; atomics count as their integer.
+fn spell(module: &Module, ty: Handle<Type>) -> String {
+    use naga::ScalarKind::{Float, Sint, Uint};
+    let scalar = |s: naga::Scalar| match (s.kind, s.width) {
+        (Float, 4) => "f32".to_owned(),
+        (Uint, 4) => "u32".to_owned(),
+        (Sint, 4) => "i32".to_owned(),
+        other => format!("{other:?}"),
+    };
+    match &module.types[ty].inner {
+        TypeInner::Scalar(s) | TypeInner::Atomic(s) => scalar(*s),
+        TypeInner::Vector { size, scalar: s } => format!("vec{}<{}>", *size as u8, scalar(*s)),
+        _ => module.types[ty].name.clone().unwrap_or_default(),
+    }
+}

@@ -1,0 +1,213 @@
+//! Adapters: which there are, what they can do, and opening one.
+
+use std::sync::{Arc, Mutex};
+
+use crate::GpuError;
+
+/// How to get a driver where there is none.
+pub const MISSING_DRIVER_HINT: &str = "install your graphics card's Vulkan driver or, for drawing without a GPU, \
+     a software one: on Debian and Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`, on Fedora \
+     `dnf install mesa-vulkan-drivers vulkan-loader`; Windows and macOS bring theirs";
+
+/// Which device to use.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum DeviceRequest {
+    /// The best real GPU, else a software driver.
+    #[default]
+    Auto,
+    /// The best real GPU; software drivers do not count.
+    Hardware,
+    /// A software driver, even where there is a GPU.
+    Software,
+    /// The adapter whose name or backend contains this, whatever the case.
+    Named(String),
+}
+
+/// An open device.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What it calls itself.
+    pub info: wgpu::AdapterInfo,
+    /// What it allows.
+    pub limits: wgpu::Limits,
+    trouble: Arc<Mutex<Option<Trouble>>>,
+}
+
+/// What the device reported outside of any call.
+#[derive(Clone, Debug)]
+enum Trouble {
+    Lost(String),
+    Refused(String),
+}
+
+/// What [`list_adapters`] tells of an adapter.
+#[derive(Clone, Debug)]
+pub struct AdapterReport {
+    /// What it calls itself.
+    pub info: wgpu::AdapterInfo,
+    /// What it allows.
+    pub limits: wgpu::Limits,
+    /// True if it runs on the CPU.
+    pub software: bool,
+    /// True if passes can be timed on it.
+    pub timestamps: bool,
+}
+
+impl AdapterReport {
+    /// The largest number of bytes one buffer may have.
+    pub fn largest_buffer(&self) -> u64 {
+        largest_buffer(&self.limits)
+    }
+}
+
+fn largest_buffer(limits: &wgpu::Limits) -> u64 {
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
+fn instance() -> wgpu::Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // OpenGL's compute shaders lack what the passes need; where it is the only API, the CPU does better.
+    descriptor.backends.remove(wgpu::Backends::GL);
+    wgpu::Instance::new(descriptor)
+}
+
+fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
+}
+
+/// Adapters, the best first.
+async fn adapters() -> Vec<wgpu::Adapter> {
+    use wgpu::DeviceType as D;
+    let mut found = instance().enumerate_adapters(wgpu::Backends::all()).await;
+    found.sort_by_key(|adapter| match adapter.get_info().device_type {
+        D::DiscreteGpu => 0,
+        D::IntegratedGpu => 1,
+        D::VirtualGpu => 2,
+        D::Other => 3,
+        D::Cpu => 4,
+    });
+    found
+}
+
+/// Every adapter of this machine, the best first.
+pub fn list_adapters() -> Vec<AdapterReport> {
+    let report = |adapter: &wgpu::Adapter| {
+        let info = adapter.get_info();
+        AdapterReport {
+            software: is_software(&info),
+            limits: adapter.limits(),
+            timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            info,
+        }
+    };
+    pollster::block_on(adapters()).iter().map(report).collect()
+}
+
+impl Gpu {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::UnknownDevice`], [`GpuError::OpenFailed`].
+    pub fn open(request: &DeviceRequest) -> Result<Self, GpuError> {
+        pollster::block_on(Self::open_async(request))
+    }
+
+    /// [`open`](Self::open) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub async fn open_async(request: &DeviceRequest) -> Result<Self, GpuError> {
+        let found = adapters().await;
+        let fits = |adapter: &&wgpu::Adapter| {
+            let info = adapter.get_info();
+            match request {
+                DeviceRequest::Auto => true,
+                DeviceRequest::Hardware => !is_software(&info),
+                DeviceRequest::Software => is_software(&info),
+                DeviceRequest::Named(name) => describe(&info).to_lowercase().contains(&name.to_lowercase()),
+            }
+        };
+        let adapter = found.iter().find(fits).ok_or_else(|| match request {
+            DeviceRequest::Named(name) => GpuError::UnknownDevice {
+                name: name.clone(),
+                available: if found.is_empty() {
+                    "none (only the CPU)".into()
+                } else {
+                    found.iter().map(|a| describe(&a.get_info())).collect::<Vec<_>>().join("; ")
+                },
+            },
+            _ => GpuError::NoAdapter { hint: MISSING_DRIVER_HINT },
+        })?;
+        Self::from_adapter(adapter).await
+    }
+
+    async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let wanted = wgpu::Features::TIMESTAMP_QUERY;
+        // The adapter's own limits, not WebGPU's smallest: a buffer may then be as large as the memory allows.
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("splashdown"),
+                required_features: adapter.features() & wanted,
+                required_limits: adapter.limits(),
+                ..Default::default()
+            })
+            .await
+            .map_err(|error| GpuError::OpenFailed { adapter: info.name.clone(), reason: error.to_string() })?;
+        let trouble = Arc::new(Mutex::new(None));
+        let report = Arc::clone(&trouble);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            note(&report, Trouble::Refused(error.to_string()));
+        }));
+        let report = Arc::clone(&trouble);
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&report, Trouble::Lost(format!("{reason:?}: {message}")));
+            }
+        });
+        Ok(Self { limits: device.limits(), device, queue, info, trouble })
+    }
+
+    /// The name and the API behind it, e.g. "NVIDIA H200 (Vulkan)".
+    pub fn name(&self) -> String {
+        describe(&self.info)
+    }
+
+    /// True if the device is a driver that computes on the CPU.
+    pub fn is_software(&self) -> bool {
+        is_software(&self.info)
+    }
+
+    /// The largest number of bytes one buffer may have.
+    pub fn largest_buffer(&self) -> u64 {
+        largest_buffer(&self.limits)
+    }
+
+    /// What the device has reported since, outside of any call.
+    ///
+    /// # Errors
+    /// [`GpuError::DeviceLost`], [`GpuError::Refused`].
+    pub fn health(&self, what: &str) -> Result<(), GpuError> {
+        let trouble = self.trouble.lock().map(|trouble| trouble.clone()).unwrap_or(None);
+        match trouble {
+            None => Ok(()),
+            Some(Trouble::Lost(reason)) => Err(GpuError::DeviceLost { reason }),
+            Some(Trouble::Refused(reason)) => Err(GpuError::Refused { what: what.into(), reason }),
+        }
+    }
+}
+
+/// Keeps the first report: what follows is mostly its consequence.
+fn note(trouble: &Mutex<Option<Trouble>>, new: Trouble) {
+    if let Ok(mut trouble) = trouble.lock() {
+        trouble.get_or_insert(new);
+    }
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    format!("{} ({:?})", info.name, info.backend)
+}

@@ -1,0 +1,365 @@
+//! Runs recordings on a device: one submission each, bind groups and pipelines made once.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::pipeline::{self, Pipeline};
+use super::table::{Meta, Table};
+use super::{Readback, readback};
+use crate::{BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings};
+
+/// Most workgroups in one dimension of a dispatch, on every adapter.
+const MAX_GROUPS: u32 = 65_535;
+/// Dispatches timed per submission; those beyond go untimed.
+const TIMED_DISPATCHES: u32 = 2048;
+
+/// Buffers on a device; passes run by their WGSL.
+pub struct GpuExecutor {
+    gpu: Arc<Gpu>,
+    buffers: Vec<wgpu::Buffer>,
+    table: Table,
+    pipelines: HashMap<usize, Pipeline>,
+    bind_groups: HashMap<(usize, Vec<BufferId>), wgpu::BindGroup>,
+    timer: Option<Timer>,
+}
+
+struct Timer {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    timings: Timings,
+}
+
+/// The address of a declaration names its pipeline: declarations are statics.
+fn key(pass: &'static PassDesc) -> usize {
+    std::ptr::from_ref(pass) as usize
+}
+
+impl GpuExecutor {
+    /// An executor without buffers.
+    pub fn new(gpu: Arc<Gpu>) -> Self {
+        Self {
+            gpu,
+            buffers: Vec::new(),
+            table: Table::default(),
+            pipelines: HashMap::new(),
+            bind_groups: HashMap::new(),
+            timer: None,
+        }
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    pub(super) fn wgpu_buffer(&self, id: BufferId) -> &wgpu::Buffer {
+        &self.buffers[id.0 as usize]
+    }
+
+    pub(super) fn table(&mut self) -> &mut Table {
+        &mut self.table
+    }
+
+    pub(super) fn table_ref(&self) -> &Table {
+        &self.table
+    }
+
+    pub(super) fn create(&mut self, meta: Meta) -> Result<BufferId, GpuError> {
+        let buffer = self.allocate(&meta)?;
+        self.buffers.push(buffer);
+        Ok(self.table.add(meta))
+    }
+
+    pub(super) fn resize(&mut self, id: BufferId, len: usize) -> Result<(), GpuError> {
+        let meta = Meta { len, ..self.table.get(id).clone() };
+        self.buffers[id.0 as usize] = self.allocate(&meta)?;
+        *self.table.get_mut(id) = meta;
+        self.bind_groups.retain(|(_, ids), _| !ids.contains(&id));
+        Ok(())
+    }
+
+    fn allocate(&self, meta: &Meta) -> Result<wgpu::Buffer, GpuError> {
+        use wgpu::BufferUsages as Use;
+        let bytes = meta.bytes() as u64;
+        let limit = self.gpu.largest_buffer();
+        if bytes > limit {
+            return Err(GpuError::TooLarge {
+                label: meta.label.clone(),
+                len: meta.len as u64,
+                bytes,
+                limit,
+                fits: limit / meta.size as u64,
+            });
+        }
+        let kind = if meta.uniform {
+            Use::UNIFORM
+        } else {
+            Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX
+        };
+        let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(&meta.label),
+            size: bytes.next_multiple_of(4),
+            usage: kind | Use::COPY_SRC | Use::COPY_DST,
+            mapped_at_creation: false,
+        });
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(GpuError::OutOfMemory { label: meta.label.clone(), bytes });
+        }
+        if self.table.poison && !meta.uniform {
+            self.gpu.queue.write_buffer(&buffer, 0, &vec![self.table.fill(); bytes.next_multiple_of(4) as usize]);
+        }
+        Ok(buffer)
+    }
+
+    pub(super) fn write(&mut self, id: BufferId, bytes: &[u8]) -> Result<(), GpuError> {
+        self.gpu.queue.write_buffer(&self.buffers[id.0 as usize], 0, bytes);
+        self.gpu.health("an upload")
+    }
+
+    pub(super) fn request<T: GpuElement>(&mut self, id: BufferId, len: usize) -> Result<Readback<T>, GpuError> {
+        if len == 0 {
+            return Ok(readback::ready(Vec::new()));
+        }
+        let bytes = (len * size_of::<T>()) as u64;
+        let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read-back"),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.buffers[id.0 as usize], 0, &staging, 0, bytes);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.health("a read-back")?;
+        Ok(readback::mapping(staging))
+    }
+
+    /// Lets finished work report itself, without waiting.
+    pub(super) fn poll(&mut self) -> Result<(), GpuError> {
+        // An error of `poll` says that nothing was finished; a lost device shows in `health`.
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        self.gpu.health("work on the device")
+    }
+
+    pub(super) fn wait(&mut self) -> Result<(), GpuError> {
+        let outcome = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        self.gpu.health("work on the device")?;
+        outcome.map(drop).map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
+    }
+
+    pub(super) fn enable_timing(&mut self) -> bool {
+        if !self.gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+            return false;
+        }
+        let device = &self.gpu.device;
+        self.timer.get_or_insert_with(|| Timer {
+            queries: device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("pass times"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2 * TIMED_DISPATCHES,
+            }),
+            resolved: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pass times"),
+                size: u64::from(2 * TIMED_DISPATCHES) * 8,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            timings: Timings::default(),
+        });
+        true
+    }
+
+    pub(super) fn take_timings(&mut self) -> Timings {
+        self.timer.as_mut().map(|timer| std::mem::take(&mut timer.timings)).unwrap_or_default()
+    }
+
+    pub(super) fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
+        self.prepare(&recording.commands)?;
+        let mut encoder = self
+            .gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(&recording.label) });
+        let mut timed = Vec::new();
+        {
+            let mut target = Target { encoder: &mut encoder, pass: None };
+            self.encode(&recording.commands, &mut target, &mut timed);
+        }
+        self.finish_timing(encoder, &timed)?;
+        self.gpu.health(&recording.label)
+    }
+
+    /// Makes the pipelines and bind groups that are missing.
+    fn prepare(&mut self, commands: &[Command]) -> Result<(), GpuError> {
+        for command in commands {
+            match command {
+                Command::Dispatch { pass, buffers, .. } => {
+                    if self.bind_groups.contains_key(&(key(pass), buffers.clone())) {
+                        continue;
+                    }
+                    self.table.check(pass, buffers)?;
+                    if !self.pipelines.contains_key(&key(pass)) {
+                        self.pipelines.insert(key(pass), pipeline::build(&self.gpu, pass)?);
+                    }
+                    let entries: Vec<_> = buffers
+                        .iter()
+                        .enumerate()
+                        .map(|(i, id)| wgpu::BindGroupEntry {
+                            binding: i as u32,
+                            resource: self.buffers[id.0 as usize].as_entire_binding(),
+                        })
+                        .collect();
+                    let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        label: Some(pass.label),
+                        layout: &self.pipelines[&key(pass)].layout,
+                        entries: &entries,
+                    });
+                    self.bind_groups.insert((key(pass), buffers.clone()), group);
+                }
+                Command::Repeat { body, .. } => self.prepare(body)?,
+                Command::Copy { .. } | Command::Clear { .. } => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn encode(&self, commands: &[Command], target: &mut Target<'_>, timed: &mut Vec<&'static str>) {
+        for command in commands {
+            match command {
+                Command::Dispatch { pass, grid, buffers } => {
+                    let groups = match *grid {
+                        Grid::Items(items) => items.div_ceil(pass.invocations()),
+                        Grid::Groups(groups) => groups,
+                        Grid::Indirect { .. } => 1,
+                    };
+                    if groups == 0 {
+                        continue;
+                    }
+                    let compute = target.compute(pass.label, self.timer.as_ref(), timed);
+                    compute.set_pipeline(&self.pipelines[&key(pass)].pipeline);
+                    compute.set_bind_group(0, &self.bind_groups[&(key(pass), buffers.clone())], &[]);
+                    if let Grid::Indirect { buffer, word } = *grid {
+                        compute.dispatch_workgroups_indirect(
+                            &self.buffers[buffer.0 as usize],
+                            u64::from(word) * 4,
+                        );
+                    } else {
+                        let (x, y) = two_dimensions(groups);
+                        compute.dispatch_workgroups(x, y, 1);
+                    }
+                }
+                Command::Copy { from, to } => {
+                    let (from, to) = (&self.buffers[from.0 as usize], &self.buffers[to.0 as usize]);
+                    target.encoder().copy_buffer_to_buffer(from, 0, to, 0, from.size());
+                }
+                Command::Clear { buffer } => {
+                    target.encoder().clear_buffer(&self.buffers[buffer.0 as usize], 0, None);
+                }
+                Command::Repeat { body, most, .. } => {
+                    for _ in 0..*most {
+                        self.encode(body, target, timed);
+                    }
+                }
+            }
+        }
+    }
+
+    fn finish_timing(
+        &mut self,
+        mut encoder: wgpu::CommandEncoder,
+        timed: &[&'static str],
+    ) -> Result<(), GpuError> {
+        let Some(timer) = self.timer.as_ref().filter(|_| !timed.is_empty()) else {
+            self.gpu.queue.submit([encoder.finish()]);
+            return Ok(());
+        };
+        let stamps = 2 * timed.len() as u32;
+        encoder.resolve_query_set(&timer.queries, 0..stamps, &timer.resolved, 0);
+        let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("pass times"),
+            size: u64::from(stamps) * 8,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        encoder.copy_buffer_to_buffer(&timer.resolved, 0, &staging, 0, staging.size());
+        self.gpu.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        self.wait()?;
+        let lost = |_| GpuError::DeviceLost { reason: "the pass times could not be read".into() };
+        let view = staging.get_mapped_range(..).map_err(lost)?;
+        let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&view);
+        let period = f64::from(self.gpu.queue.get_timestamp_period());
+        if let Some(timer) = &mut self.timer {
+            for (label, pair) in timed.iter().zip(stamps.chunks_exact(2)) {
+                let nanoseconds = pair[1].saturating_sub(pair[0]) as f64 * period;
+                timer.timings.add(label, Duration::from_nanos(nanoseconds as u64));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Splits a number of workgroups so that neither dimension is past the limit; the last row may be longer than needed.
+fn two_dimensions(groups: u32) -> (u32, u32) {
+    if groups <= MAX_GROUPS {
+        return (groups, 1);
+    }
+    let rows = groups.div_ceil(MAX_GROUPS);
+    (groups.div_ceil(rows), rows)
+}
+
+/// The encoder and, while dispatches follow one another, the compute pass they share.
+struct Target<'a> {
+    encoder: &'a mut wgpu::CommandEncoder,
+    pass: Option<wgpu::ComputePass<'static>>,
+}
+
+impl Target<'_> {
+    /// The open compute pass; one of its own per dispatch while timing.
+    fn compute(
+        &mut self,
+        label: &'static str,
+        timer: Option<&Timer>,
+        timed: &mut Vec<&'static str>,
+    ) -> &mut wgpu::ComputePass<'static> {
+        let timer = timer.filter(|_| timed.len() < TIMED_DISPATCHES as usize);
+        if timer.is_some() {
+            self.pass = None;
+        }
+        let encoder = &mut *self.encoder;
+        self.pass.get_or_insert_with(|| {
+            let timestamp_writes = timer.map(|timer| {
+                let first = 2 * timed.len() as u32;
+                timed.push(label);
+                wgpu::ComputePassTimestampWrites {
+                    query_set: &timer.queries,
+                    beginning_of_pass_write_index: Some(first),
+                    end_of_pass_write_index: Some(first + 1),
+                }
+            });
+            encoder
+                .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes })
+                .forget_lifetime()
+        })
+    }
+
+    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        self.pass = None;
+        self.encoder
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::two_dimensions;
+
+    #[test]
+    fn no_dimension_is_past_the_limit_and_none_is_missing() {
+        for groups in [1, 65_535, 65_536, 131_070, 131_071, 1 << 24, 3_000_000_000] {
+            let (x, y) = two_dimensions(groups);
+            assert!(x <= 65_535 && y <= 65_535, "{groups}: {x} x {y}");
+            assert!(u64::from(x) * u64::from(y) >= u64::from(groups));
+        }
+        assert_eq!(two_dimensions(65_535), (65_535, 1));
+    }
+}

@@ -1,0 +1,200 @@
+//! The two executors of one list of commands.
+
+mod cpu;
+mod gpu;
+mod pipeline;
+mod readback;
+mod table;
+
+pub use cpu::CpuExecutor;
+pub use gpu::GpuExecutor;
+pub use readback::Readback;
+
+use std::marker::PhantomData;
+
+use crate::{Buffer, BufferId, GpuElement, GpuError, GpuStruct, Recording, Timings};
+
+/// Owns buffers and runs [`Recording`]s over them, on a GPU or on the CPU.
+///
+/// The same recording runs on both; see the crate's page for an example.
+pub enum Executor {
+    /// In host memory, on the cores.
+    Cpu(CpuExecutor),
+    /// On a device.
+    Gpu(GpuExecutor),
+}
+
+impl From<CpuExecutor> for Executor {
+    fn from(executor: CpuExecutor) -> Self {
+        Self::Cpu(executor)
+    }
+}
+
+impl From<GpuExecutor> for Executor {
+    fn from(executor: GpuExecutor) -> Self {
+        Self::Gpu(executor)
+    }
+}
+
+macro_rules! either {
+    ($self:expr, $executor:ident => $body:expr) => {
+        match $self {
+            Executor::Cpu($executor) => $body,
+            Executor::Gpu($executor) => $body,
+        }
+    };
+}
+
+impl Executor {
+    /// Makes a storage buffer of `len` elements, all bytes zero (all bits one after [`poison`](Self::poison)).
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
+    pub fn create<T: GpuElement>(&mut self, label: &str, len: usize) -> Result<Buffer<T>, GpuError> {
+        let id = either!(self, e => e.create(table::Meta::new::<T>(label, len, false))?);
+        Ok(Buffer { id, len: len as u32, element: PhantomData })
+    }
+
+    /// Makes a storage buffer with this content.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn create_from<T: GpuElement>(&mut self, label: &str, data: &[T]) -> Result<Buffer<T>, GpuError> {
+        let buffer = self.create(label, data.len())?;
+        self.write(buffer, data)?;
+        Ok(buffer)
+    }
+
+    /// Makes a uniform with this content.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn create_uniform<T: GpuStruct>(&mut self, label: &str, value: &T) -> Result<Buffer<T>, GpuError> {
+        let id = either!(self, e => e.create(table::Meta::new::<T>(label, 1, true))?);
+        let buffer = Buffer { id, len: 1, element: PhantomData };
+        self.write(buffer, std::slice::from_ref(value))?;
+        Ok(buffer)
+    }
+
+    /// Replaces a buffer by one of another length under the same name. The content is lost; recordings that name the
+    /// buffer stay valid.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn resize<T: GpuElement>(&mut self, buffer: &mut Buffer<T>, len: usize) -> Result<(), GpuError> {
+        either!(self, e => e.resize(buffer.id, len)?);
+        buffer.len = len as u32;
+        Ok(())
+    }
+
+    /// Overwrites the beginning of a buffer.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    ///
+    /// # Panics
+    /// If `data` is longer than the buffer.
+    pub fn write<T: GpuElement>(&mut self, buffer: Buffer<T>, data: &[T]) -> Result<(), GpuError> {
+        assert!(data.len() <= buffer.len as usize, "{} elements do not fit into {buffer:?}", data.len());
+        either!(self, e => e.write(buffer.id, bytemuck::cast_slice(data)))
+    }
+
+    /// Reads a whole buffer, waiting for all work before it. For set-up, tests and the end of a frame.
+    ///
+    /// # Errors
+    /// If the device was lost or refused earlier work.
+    pub fn read<T: GpuElement>(&mut self, buffer: Buffer<T>) -> Result<Vec<T>, GpuError> {
+        self.read_first(buffer, buffer.len as usize)
+    }
+
+    /// Reads the first `len` elements, waiting for all work before it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_first<T: GpuElement>(&mut self, buffer: Buffer<T>, len: usize) -> Result<Vec<T>, GpuError> {
+        self.request(buffer, len)?.wait(self)
+    }
+
+    /// Asks for the first `len` elements as they are after all work submitted so far, without waiting.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn request<T: GpuElement>(&mut self, buffer: Buffer<T>, len: usize) -> Result<Readback<T>, GpuError> {
+        assert!(len <= buffer.len as usize, "{len} elements are more than {buffer:?} has");
+        either!(self, e => e.request(buffer.id, len))
+    }
+
+    /// Runs a recording: at once on the CPU, as one submission on a GPU.
+    ///
+    /// # Errors
+    /// [`GpuError::BadBinding`] if a dispatch names buffers that do not fit its pass; [`GpuError::DeviceLost`].
+    pub fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
+        either!(self, e => e.run(recording))
+    }
+
+    /// Waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// If the device was lost or refused earlier work.
+    pub fn wait(&mut self) -> Result<(), GpuError> {
+        match self {
+            Self::Cpu(_) => Ok(()),
+            Self::Gpu(e) => e.wait(),
+        }
+    }
+
+    /// From now on new buffers are filled with ones (NaN, or 4,294,967,295) instead of zeros. For tests: it shows
+    /// passes that rely on memory nobody wrote.
+    pub fn poison(&mut self) {
+        either!(self, e => e.table().poison = true);
+    }
+
+    /// From now on every dispatch is timed; on a GPU this separates dispatches and waits after every submission.
+    ///
+    /// Returns false where the device has no timestamps.
+    pub fn enable_timing(&mut self) -> bool {
+        either!(self, e => e.enable_timing())
+    }
+
+    /// The times since the last call.
+    pub fn take_timings(&mut self) -> Timings {
+        either!(self, e => e.take_timings())
+    }
+
+    /// Bytes in buffers.
+    pub fn bytes(&self) -> u64 {
+        either!(self, e => e.table_ref().bytes())
+    }
+
+    /// The largest number of bytes one buffer may have.
+    pub fn largest_buffer(&self) -> u64 {
+        match self {
+            Self::Cpu(_) => u64::from(u32::MAX),
+            Self::Gpu(e) => e.gpu().largest_buffer(),
+        }
+    }
+
+    /// The device, if this is not the CPU.
+    pub fn gpu(&self) -> Option<&std::sync::Arc<crate::Gpu>> {
+        match self {
+            Self::Cpu(_) => None,
+            Self::Gpu(e) => Some(e.gpu()),
+        }
+    }
+
+    /// The wgpu buffer behind a name, for drawing straight from where the simulation left it; `None` on the CPU.
+    pub fn wgpu_buffer(&self, id: BufferId) -> Option<&wgpu::Buffer> {
+        match self {
+            Self::Cpu(_) => None,
+            Self::Gpu(e) => Some(e.wgpu_buffer(id)),
+        }
+    }
+
+    /// Runs a closure over a buffer in host memory without copying it; `None` on a GPU.
+    pub fn with_host<T: GpuElement, R>(&self, buffer: Buffer<T>, f: impl FnOnce(&[T]) -> R) -> Option<R> {
+        match self {
+            Self::Cpu(e) => Some(f(&e.view(buffer.id))),
+            Self::Gpu(_) => None,
+        }
+    }
+}

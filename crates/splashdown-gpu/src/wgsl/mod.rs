@@ -1,0 +1,65 @@
+//! Shared pieces of WGSL: `#import name` on a line of its own pastes a module once.
+
+use std::collections::HashSet;
+
+/// A named piece of WGSL that passes may import.
+#[derive(Clone, Copy, Debug)]
+pub struct WgslModule {
+    /// The name, e.g. `"gpu/index"`.
+    pub name: &'static str,
+    /// Its text, which may import in turn.
+    pub source: &'static str,
+}
+
+/// `linear_index` and `linear_group`: one-dimensional numbers in a two-dimensional dispatch.
+pub const INDEX: WgslModule = WgslModule { name: "gpu/index", source: include_str!("index.wgsl") };
+
+/// Replaces `#import` lines by the modules they name, each pasted once.
+///
+/// # Errors
+/// The name of a module that is not in `modules`.
+pub fn expand(source: &str, modules: &[WgslModule]) -> Result<String, String> {
+    let mut out = String::new();
+    expand_into(source, modules, &mut HashSet::new(), &mut out)?;
+    Ok(out)
+}
+
+fn expand_into<'a>(
+    source: &'a str,
+    modules: &[WgslModule],
+    seen: &mut HashSet<&'a str>,
+    out: &mut String,
+) -> Result<(), String> {
+    for line in source.lines() {
+        if let Some(name) = line.strip_prefix("#import ").map(str::trim) {
+            if seen.insert(name) {
+                let module = modules
+                    .iter()
+                    .find(|module| module.name == name)
+                    .ok_or_else(|| format!("it imports {name:?}, which is not among its modules"))?;
+                expand_into(module.source, modules, seen, out)?;
+            }
+        } else {
+            out.push_str(line);
+        }
+        out.push('\n');
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_module_is_pasted_once_and_an_unknown_one_is_named() {
+        let modules = [
+            WgslModule { name: "a", source: "#import b\nconst A = 1;" },
+            WgslModule { name: "b", source: "const B = 2;" },
+        ];
+        let text = expand("#import a\n#import b\nfn f() {}", &modules).unwrap();
+        assert_eq!(text.matches("const B").count(), 1);
+        assert!(text.find("const B").unwrap() < text.find("const A").unwrap());
+        assert!(expand("#import c", &modules).unwrap_err().contains("\"c\""));
+    }
+}
