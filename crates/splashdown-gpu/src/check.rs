@@ -37,7 +37,10 @@ pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
         return Err(format!("entry point `{}` in WGSL, `{}` in Rust", entry.name, pass.entry));
     }
     if entry.workgroup_size != pass.workgroup_size {
-        return Err(format!("workgroup {:?} in WGSL, {:?} in Rust", entry.workgroup_size, pass.workgroup_size));
+        return Err(format!(
+            "workgroup {:?} in WGSL, {:?} in Rust",
+            entry.workgroup_size, pass.workgroup_size
+        ));
     }
     if pass.invocations() > MAX_INVOCATIONS {
         return Err(format!("{} invocations; browsers grant {MAX_INVOCATIONS}", pass.invocations()));

@@ -157,7 +157,10 @@ impl Gpu {
                 ..Default::default()
             })
             .await
-            .map_err(|error| GpuError::OpenFailed { adapter: info.name.clone(), reason: error.to_string() })?;
+            .map_err(|error| GpuError::OpenFailed {
+                adapter: info.name.clone(),
+                reason: error.to_string(),
+            })?;
         let trouble = Arc::new(Mutex::new(None));
         let report = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {

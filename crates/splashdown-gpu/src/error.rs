@@ -11,7 +11,9 @@ pub enum GpuError {
         hint: &'static str,
     },
     /// Adapters there are, but not the one asked for.
-    #[error("no device is called {name:?}; available are: {available}. Use auto, gpu, cpu or a part of one of these names")]
+    #[error(
+        "no device is called {name:?}; available are: {available}. Use auto, gpu, cpu or a part of one of these names"
+    )]
     UnknownDevice {
         /// The name given.
         name: String,
@@ -43,7 +45,9 @@ pub enum GpuError {
         fits: u64,
     },
     /// The device ran out of memory.
-    #[error("the device has not enough memory for buffer {label:?} of {bytes} bytes; use fewer particles or another device")]
+    #[error(
+        "the device has not enough memory for buffer {label:?} of {bytes} bytes; use fewer particles or another device"
+    )]
     OutOfMemory {
         /// The buffer's name.
         label: String,
@@ -51,7 +55,9 @@ pub enum GpuError {
         bytes: u64,
     },
     /// The device went away: unplugged, reset by the system, or hung.
-    #[error("the device was lost ({reason}); what was written before stays valid. Start again, or use --device cpu")]
+    #[error(
+        "the device was lost ({reason}); what was written before stays valid. Start again, or use --device cpu"
+    )]
     DeviceLost {
         /// The driver's words.
         reason: String,

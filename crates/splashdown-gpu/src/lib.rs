@@ -33,6 +33,8 @@ mod exec;
 mod host;
 mod pass;
 mod record;
+pub mod scan;
+pub mod testing;
 mod timing;
 pub mod wgsl;
 
@@ -45,6 +47,11 @@ pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, write};
 pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording};
 pub use timing::{PassTime, Timings};
 pub use wgsl::WgslModule;
+
+/// Every pass of this crate, for the gate and the tests.
+pub fn passes() -> Vec<&'static PassDesc> {
+    scan::PASSES.to_vec()
+}
 
 #[doc(hidden)]
 pub use {bytemuck, glam};

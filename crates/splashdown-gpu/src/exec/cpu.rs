@@ -8,7 +8,9 @@ use bytemuck::Pod;
 use super::table::{Meta, Table};
 use super::{Readback, readback};
 use crate::host::HostBuffer;
-use crate::{Access, BufferId, Command, CpuWork, GpuElement, GpuError, Grid, PassDesc, Recording, Slot, Timings};
+use crate::{
+    Access, BufferId, Command, CpuWork, GpuElement, GpuError, Grid, PassDesc, Recording, Slot, Timings,
+};
 
 /// Buffers in host memory; passes run by their Rust functions, parallel over rayon's threads.
 ///
@@ -71,7 +73,11 @@ impl CpuExecutor {
         self.buffers[id.0 as usize].read()
     }
 
-    pub(super) fn request<T: GpuElement>(&mut self, id: BufferId, len: usize) -> Result<Readback<T>, GpuError> {
+    pub(super) fn request<T: GpuElement>(
+        &mut self,
+        id: BufferId,
+        len: usize,
+    ) -> Result<Readback<T>, GpuError> {
         Ok(readback::ready(self.view::<T>(id)[..len].to_vec()))
     }
 

@@ -91,11 +91,8 @@ impl GpuExecutor {
                 fits: limit / meta.size as u64,
             });
         }
-        let kind = if meta.uniform {
-            Use::UNIFORM
-        } else {
-            Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX
-        };
+        let kind =
+            if meta.uniform { Use::UNIFORM } else { Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX };
         let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(&meta.label),
@@ -107,7 +104,11 @@ impl GpuExecutor {
             return Err(GpuError::OutOfMemory { label: meta.label.clone(), bytes });
         }
         if self.table.poison && !meta.uniform {
-            self.gpu.queue.write_buffer(&buffer, 0, &vec![self.table.fill(); bytes.next_multiple_of(4) as usize]);
+            self.gpu.queue.write_buffer(
+                &buffer,
+                0,
+                &vec![self.table.fill(); bytes.next_multiple_of(4) as usize],
+            );
         }
         Ok(buffer)
     }
@@ -117,7 +118,11 @@ impl GpuExecutor {
         self.gpu.health("an upload")
     }
 
-    pub(super) fn request<T: GpuElement>(&mut self, id: BufferId, len: usize) -> Result<Readback<T>, GpuError> {
+    pub(super) fn request<T: GpuElement>(
+        &mut self,
+        id: BufferId,
+        len: usize,
+    ) -> Result<Readback<T>, GpuError> {
         if len == 0 {
             return Ok(readback::ready(Vec::new()));
         }

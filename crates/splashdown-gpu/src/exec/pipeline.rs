@@ -35,8 +35,10 @@ pub(super) fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Pipeline, GpuE
             count: None,
         })
         .collect();
-    let layout = device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(pass.label), entries: &entries });
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(pass.label),
+        entries: &entries,
+    });
     let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(pass.label),
         bind_group_layouts: &[Some(&layout)],
@@ -51,7 +53,6 @@ pub(super) fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Pipeline, GpuE
             constants: pass.constants,
             // Every pass writes its workgroup memory before it reads it; the tests run with poisoned buffers.
             zero_initialize_workgroup_memory: false,
-            ..Default::default()
         },
         cache: None,
     });

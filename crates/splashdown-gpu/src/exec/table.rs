@@ -67,7 +67,10 @@ impl Table {
                 ));
             }
             if (binding.access == Access::Uniform) != meta.uniform {
-                return bad(format!("binding {:?} and buffer {:?}: one is a uniform", binding.name, meta.label));
+                return bad(format!(
+                    "binding {:?} and buffer {:?}: one is a uniform",
+                    binding.name, meta.label
+                ));
             }
             let twice = buffers[..i].iter().zip(pass.bindings).any(|(other, other_binding)| {
                 other == id && [binding.access, other_binding.access].contains(&Access::ReadWrite)

@@ -14,6 +14,10 @@ pub struct WgslModule {
 /// `linear_index` and `linear_group`: one-dimensional numbers in a two-dimensional dispatch.
 pub const INDEX: WgslModule = WgslModule { name: "gpu/index", source: include_str!("index.wgsl") };
 
+/// `workgroup_prefix`: prefix sums over the 256 invocations of a workgroup with two barriers. It declares workgroup memory.
+pub const WORKGROUP_PREFIX: WgslModule =
+    WgslModule { name: "gpu/workgroup_prefix", source: include_str!("workgroup_prefix.wgsl") };
+
 /// Replaces `#import` lines by the modules they name, each pasted once.
 ///
 /// # Errors

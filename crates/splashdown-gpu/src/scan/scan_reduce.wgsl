@@ -1,0 +1,35 @@
+#import gpu/index
+#import gpu/workgroup_prefix
+
+struct ScanParams {
+    len: u32,
+    blocks: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: ScanParams;
+@group(0) @binding(1) var<storage, read> counts: array<u32>;
+@group(0) @binding(2) var<storage, read_write> sums: array<u32>;
+
+override RUN: u32 = 16u;
+
+@compute @workgroup_size(256)
+fn scan_reduce(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let block = linear_group(group, groups);
+    let first = block * 256u * RUN + lane;
+    var sum = 0u;
+    // Neighbouring invocations read neighbouring words: the order of a whole block's sum is free.
+    for (var i = 0u; i < RUN; i++) {
+        let at = first + i * 256u;
+        if (at < params.len) {
+            sum += counts[at];
+        }
+    }
+    let prefix = workgroup_prefix(sum, lane, 0u);
+    if (lane == 0u && block < params.blocks) {
+        sums[block] = prefix.total;
+    }
+}

@@ -1,0 +1,36 @@
+#import gpu/workgroup_prefix
+
+struct ScanParams {
+    len: u32,
+    blocks: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: ScanParams;
+@group(0) @binding(1) var<storage, read> counts: array<u32>;
+@group(0) @binding(2) var<storage, read_write> starts: array<u32>;
+
+const RUN: u32 = 16u;
+
+@compute @workgroup_size(256)
+fn scan_single(@builtin(local_invocation_index) lane: u32) {
+    var carry = 0u;
+    let rounds = (params.len + 256u * RUN - 1u) / (256u * RUN);
+    for (var round = 0u; round < rounds; round++) {
+        let first = (round * 256u + lane) * RUN;
+        let end = min(first + RUN, params.len);
+        var sum = 0u;
+        for (var i = first; i < end; i++) {
+            sum += counts[i];
+        }
+        let prefix = workgroup_prefix(sum, lane, round & 1u);
+        var start = carry + prefix.before;
+        for (var i = first; i < end; i++) {
+            starts[i] = start;
+            start += counts[i];
+        }
+        carry += prefix.total;
+    }
+    if (lane == 0u) {
+        starts[params.len] = carry;
+    }
+}

@@ -1,0 +1,35 @@
+// The prefix sums of one value per invocation over a workgroup of 256, with two barriers.
+//
+// Sixteen invocations sum sixteen rows of sixteen; the usual tree would need eight barriers, and barriers are what
+// software drivers are slow at. `half` is 0 or 1, in turn where a loop calls this: that saves a third barrier.
+var<workgroup> prefix_values: array<u32, 512>;
+var<workgroup> prefix_rows: array<u32, 32>;
+
+struct Prefix {
+    before: u32, // sum over the invocations before this one
+    total: u32,  // sum over all
+}
+
+fn workgroup_prefix(value: u32, lane: u32, half: u32) -> Prefix {
+    let place = half * 256u + lane;
+    prefix_values[place] = value;
+    workgroupBarrier();
+    if (lane < 16u) {
+        let begin = half * 256u + lane * 16u;
+        var sum = 0u;
+        for (var i = begin; i < begin + 16u; i++) {
+            let next = prefix_values[i];
+            prefix_values[i] = sum;
+            sum += next;
+        }
+        prefix_rows[half * 16u + lane] = sum;
+    }
+    workgroupBarrier();
+    var prefix = Prefix(prefix_values[place], 0u);
+    for (var row = 0u; row < 16u; row++) {
+        let sum = prefix_rows[half * 16u + row];
+        prefix.before += select(0u, sum, row < lane / 16u);
+        prefix.total += sum;
+    }
+    return prefix;
+}
