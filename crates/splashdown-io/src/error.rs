@@ -73,7 +73,9 @@ pub enum IoError {
     },
 
     /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} uses vertex {index}, but the mesh has {vertices} vertices (numbered from 0)")]
+    #[error(
+        "triangle {triangle} uses vertex {index}, but the mesh has {vertices} vertices (numbered from 0)"
+    )]
     IndexOutOfRange {
         /// Number of the triangle, from 0.
         triangle: usize,
@@ -83,13 +85,15 @@ pub enum IoError {
         vertices: usize,
     },
 
-    /// More particles, vertices or triangles than the formats' signed 32-bit numbers can count.
-    #[error("{given} {what} are too many for one file: at most {} fit; write them in parts", i32::MAX)]
+    /// More particles, vertices or triangles than the 32-bit numbers of the formats can count.
+    #[error("{given} {what} are too many: at most {limit} can be counted; split them")]
     TooMany {
         /// `particles`, `vertices` or `triangles`.
         what: &'static str,
         /// How many were given.
         given: usize,
+        /// The most that are allowed.
+        limit: usize,
     },
 
     /// A picture's bytes do not fit its size.
@@ -173,7 +177,9 @@ impl WriteCause {
             }
             Self::Permission => "choose an output folder you may write to, or change its permissions",
             Self::ReadOnly => "choose an output folder on another file system",
-            Self::MissingFolder => "create the folder, or check whether it was removed or unplugged meanwhile",
+            Self::MissingFolder => {
+                "create the folder, or check whether it was removed or unplugged meanwhile"
+            }
             Self::NotAFolder => "choose another output folder, or move the file out of the way",
             Self::IsAFolder => "move the folder out of the way, or choose another name",
             Self::TooLarge => "choose an output folder on another file system, or write fewer particles",

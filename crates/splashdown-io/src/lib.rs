@@ -1,1 +1,93 @@
-//! Placeholder.
+//! Splashdown's files: particles and meshes in, frames out.
+//!
+//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y up; the
+//! modules write and read them:
+//!
+//! | data | formats | opens in |
+//! |---|---|---|
+//! | [`Particles`] | PLY ([`ply`], also read), VTU ([`vtu`]) with an index of the series ([`pvd`]) | ParaView, Blender, Houdini, MeshLab |
+//! | [`Mesh`] | PLY ([`ply`], also read), OBJ ([`obj`]) | every 3-D program |
+//! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
+//! | positions | NPY ([`npy`], read) | numpy |
+//!
+//! ```
+//! # fn main() -> Result<(), splashdown_io::IoError> {
+//! use splashdown_io::{Mesh, mesh};
+//!
+//! let tetrahedron = Mesh {
+//!     vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+//!     normals: vec![],
+//!     triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+//! };
+//! assert!(tetrahedron.topology()?.is_watertight());
+//! assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-12);
+//!
+//! let path = std::env::temp_dir().join(format!("tetrahedron-{}.ply", std::process::id()));
+//! mesh::write(&path, &tetrahedron)?;
+//! assert_eq!(splashdown_io::ply::read_mesh(&path)?, tetrahedron);
+//! # std::fs::remove_file(&path).ok();
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # A series of frames
+//!
+//! [`prepare_folder`] finds out before the first step whether the output folder can be written. [`FrameWriter`] then
+//! writes frames on a thread of its own, beside the simulation, and [`film::Film`] makes the film:
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use splashdown_io::{FrameWriter, Job, Particles, prepare_folder};
+//! use std::sync::Arc;
+//!
+//! let folder = std::env::temp_dir().join(format!("splashdown-frames-{}", std::process::id()));
+//! prepare_folder(&folder)?;
+//! let writer = FrameWriter::start()?;
+//! for frame in 0..3 {
+//!     let particles = Arc::new(Particles { positions: vec![[0.0; 3]; 10], ..Particles::default() });
+//!     writer.submit(vec![
+//!         Job::Particles(folder.join(format!("particles_{frame:04}.ply")), Arc::clone(&particles)),
+//!         Job::Particles(folder.join(format!("particles_{frame:04}.vtu")), particles),
+//!     ])?;
+//! }
+//! let files = writer.finish()?;
+//! assert_eq!(files.len(), 6);
+//! # std::fs::remove_dir_all(&folder).ok();
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What is promised
+//!
+//! * A file is complete or absent ([`atomic`]): it gets its name when everything is in it. Whatever goes wrong later,
+//!   files written before stay valid.
+//! * An error names the file, the cause and what to do ([`IoError`]). Nothing panics on what a file or user contains.
+//! * Readers refuse a file that promises more than it holds before they ask for memory.
+
+#[cfg(target_endian = "big")]
+compile_error!(
+    "the binary writers hand memory to the file as it is, which is right on little-endian machines only"
+);
+
+pub mod atomic;
+pub mod error;
+pub mod film;
+pub mod mesh;
+pub mod npy;
+pub mod obj;
+pub mod particles;
+pub mod picture;
+pub mod ply;
+pub mod pvd;
+pub mod topology;
+pub mod vtu;
+pub mod writer;
+
+pub use atomic::prepare_folder;
+pub use error::{IoError, WriteCause};
+pub use film::{Film, FilmError, FilmOptions};
+pub use mesh::Mesh;
+pub use particles::Particles;
+pub use picture::Picture;
+pub use topology::Topology;
+pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

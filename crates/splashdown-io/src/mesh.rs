@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::IoError;
 use crate::particles::{check_count, extension};
-use crate::topology::Topology;
+use crate::topology::{MAX_TRIANGLES, Topology};
 use crate::{obj, ply};
 
 /// A triangle mesh with shared vertices. Seen from outside, the corners of a triangle run counter-clockwise.
@@ -65,7 +65,8 @@ impl Mesh {
     #[must_use]
     pub fn volume(&self) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_default().map(f64::from);
-        let six_fold: f64 = self.corners().map(|c| dot(sub(c[0], origin), cross(sub(c[1], origin), sub(c[2], origin)))).sum();
+        let six_fold: f64 =
+            self.corners().map(|c| dot(sub(c[0], origin), cross(sub(c[1], origin), sub(c[2], origin)))).sum();
         six_fold / 6.0
     }
 
@@ -85,9 +86,12 @@ impl Mesh {
     /// How the triangles hang together: closed, manifold, oriented, components, Euler characteristic.
     ///
     /// # Errors
-    /// Those of [`Mesh::check`].
+    /// Those of [`Mesh::check`]; [`IoError::TooMany`] beyond 2^32 / 3 triangles.
     pub fn topology(&self) -> Result<Topology, IoError> {
         self.check()?;
+        if self.len() > MAX_TRIANGLES {
+            return Err(IoError::TooMany { what: "triangles", given: self.len(), limit: MAX_TRIANGLES });
+        }
         Ok(Topology::of(self.vertices.len(), &self.triangles))
     }
 

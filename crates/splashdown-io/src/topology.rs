@@ -31,8 +31,7 @@ pub struct Topology {
     pub non_manifold_edges: usize,
     /// Edges used by two triangles in the same direction: one of the two is turned over.
     pub flipped_edges: usize,
-    /// Vertices at which two or more fans of triangles touch. A flipped triangle also tears its fans apart, so this
-    /// count says something only where `flipped_edges` is zero.
+    /// Vertices at which two or more fans of triangles touch, the ends of non-manifold edges among them.
     pub non_manifold_vertices: usize,
     /// Connected pieces (connected through vertices).
     pub components: usize,
@@ -65,8 +64,8 @@ impl Topology {
         self.is_closed() && self.is_manifold() && self.is_oriented()
     }
 
-    /// Counts for `triangles` over `vertex_count` vertices. Indices are in range and both counts below 2^31: the
-    /// caller has run [`crate::Mesh::check`].
+    /// Counts for `triangles` over `vertex_count` vertices. The caller has seen to it that indices are in range, that
+    /// there are fewer than 2^31 vertices and at most [`MAX_TRIANGLES`].
     pub(crate) fn of(vertex_count: usize, triangles: &[[u32; 3]]) -> Self {
         let mut report = Self { triangles: triangles.len(), ..Self::default() };
         let edges = sorted_edges(vertex_count, triangles);
@@ -74,7 +73,7 @@ impl Topology {
         for bucket in edges.offsets.windows(2) {
             let bucket = &edges.half_edges[bucket[0] as usize..bucket[1] as usize];
             for edge in bucket.chunk_by(|a, b| a >> 33 == b >> 33) {
-                report.count_edge(edge, triangles, &mut corners);
+                report.count_edge(edge, &mut corners);
             }
         }
         report.count_vertices(vertex_count, triangles, &mut corners);
@@ -84,17 +83,18 @@ impl Topology {
     }
 
     /// Sorts one edge (all its half-edges) into its kind and joins the corners of triangles that meet properly.
-    fn count_edge(&mut self, edge: &[u64], triangles: &[[u32; 3]], corners: &mut DisjointSets) {
+    fn count_edge(&mut self, edge: &[u64], corners: &mut DisjointSets) {
         self.edges += 1;
         match *edge {
             [_] => self.boundary_edges += 1,
-            [first, second] if (first ^ second) & DIRECTION == 0 => self.flipped_edges += 1,
             [first, second] => {
-                // The half-edges run against each other: the end of one is at the start of the other.
+                let flipped = (first ^ second) & DIRECTION == 0;
                 let (first, second) = (first as u32, second as u32);
-                corners.join(first, next(second));
-                corners.join(next(first), second);
-                debug_assert_eq!(vertex_at(triangles, first), vertex_at(triangles, next(second)));
+                // As a rule the half-edges run against each other, so the end of one is at the start of the other.
+                let (start, end) = if flipped { (second, next(second)) } else { (next(second), second) };
+                corners.join(first, start);
+                corners.join(next(first), end);
+                self.flipped_edges += usize::from(flipped);
             }
             _ => self.non_manifold_edges += 1,
         }
@@ -153,9 +153,16 @@ impl fmt::Display for Topology {
             }
         }
         let (pieces, euler) = (self.components, self.euler_characteristic);
-        write!(f, "; {} vertices, {} triangles, pieces: {pieces}, Euler characteristic {euler}", self.vertices, self.triangles)
+        write!(
+            f,
+            "; {} vertices, {} triangles, pieces: {pieces}, Euler characteristic {euler}",
+            self.vertices, self.triangles
+        )
     }
 }
+
+/// Half-edges are numbered with 32 bits.
+pub(crate) const MAX_TRIANGLES: usize = (u32::MAX / 3) as usize;
 
 /// Bit 32 of a packed half-edge: set where it runs from the larger vertex to the smaller.
 const DIRECTION: u64 = 1 << 32;
@@ -203,10 +210,6 @@ fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
 /// The corner after this one in the same triangle; half-edge `n` runs from corner `n` to corner `next(n)`.
 fn next(corner: u32) -> u32 {
     if corner % 3 == 2 { corner - 2 } else { corner + 1 }
-}
-
-fn vertex_at(triangles: &[[u32; 3]], corner: u32) -> u32 {
-    triangles[corner as usize / 3][corner as usize % 3]
 }
 
 /// Union-find; the smallest member is the root, and paths are halved on the way.

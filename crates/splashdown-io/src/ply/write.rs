@@ -1,0 +1,125 @@
+//! The writers: a header, then rows gathered into a small buffer.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::atomic;
+use crate::error::IoError;
+use crate::mesh::Mesh;
+use crate::particles::Particles;
+
+/// Rows gathered before each write; the buffer stays well inside the cache.
+const ROWS: usize = 2048;
+
+/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
+///
+/// # Errors
+/// Those of [`Particles::check`]; [`IoError::Write`].
+pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
+    particles.check()?;
+    atomic::write(path, |out| write_particles_to(out, particles))
+}
+
+/// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes.
+///
+/// # Errors
+/// Those of [`Mesh::check`]; [`IoError::Write`].
+pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
+    mesh.check()?;
+    atomic::write(path, |out| write_mesh_to(out, mesh))
+}
+
+/// Writes particles that pass [`Particles::check`] into any writer.
+///
+/// # Errors
+/// The writer's own; `InvalidInput` where the check fails.
+pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
+    particles.check().map_err(invalid)?;
+    let mut columns: Vec<(&[u8], usize, &str)> = vec![(bytes(&particles.positions), 12, "float x y z")];
+    let optional = [
+        (bytes(&particles.velocities), 12, "float vx vy vz"),
+        (bytes(&particles.densities), 4, "float density"),
+        (bytes(&particles.pressures), 4, "float pressure"),
+        (bytes(&particles.ids), 4, "uint id"),
+    ];
+    columns.extend(optional.into_iter().filter(|column| !column.0.is_empty()));
+
+    begin(out)?;
+    element(out, "vertex", particles.len(), &columns)?;
+    writeln!(out, "end_header")?;
+    rows(out, particles.len(), &columns)
+}
+
+/// Writes a mesh that passes [`Mesh::check`] into any writer.
+///
+/// # Errors
+/// The writer's own; `InvalidInput` where the check fails.
+pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
+    mesh.check().map_err(invalid)?;
+    let mut columns: Vec<(&[u8], usize, &str)> = vec![(bytes(&mesh.vertices), 12, "float x y z")];
+    if !mesh.normals.is_empty() {
+        columns.push((bytes(&mesh.normals), 12, "float nx ny nz"));
+    }
+
+    begin(out)?;
+    element(out, "vertex", mesh.vertices.len(), &columns)?;
+    writeln!(out, "element face {}\nproperty list uchar int vertex_indices\nend_header", mesh.len())?;
+    rows(out, mesh.vertices.len(), &columns)?;
+
+    let mut buffer = Vec::with_capacity(ROWS * 13);
+    for chunk in mesh.triangles.chunks(ROWS) {
+        buffer.clear();
+        for triangle in chunk {
+            let mut row = [3; 13];
+            row[1..].copy_from_slice(bytemuck::bytes_of(triangle));
+            buffer.extend_from_slice(&row);
+        }
+        out.write_all(&buffer)?;
+    }
+    Ok(())
+}
+
+fn invalid(error: IoError) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, error)
+}
+
+fn bytes<T: bytemuck::NoUninit>(values: &[T]) -> &[u8] {
+    bytemuck::cast_slice(values)
+}
+
+fn begin(out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment written by Splashdown; SI units, y is up")
+}
+
+/// The header lines of one element; a column is its bytes, the bytes of one row, and its type and names.
+fn element(
+    out: &mut dyn Write,
+    name: &str,
+    count: usize,
+    columns: &[(&[u8], usize, &str)],
+) -> io::Result<()> {
+    writeln!(out, "element {name} {count}")?;
+    for (_, _, names) in columns {
+        let mut words = names.split(' ');
+        let kind = words.next().unwrap_or_default();
+        for word in words {
+            writeln!(out, "property {kind} {word}")?;
+        }
+    }
+    Ok(())
+}
+
+/// Row by row, the columns side by side.
+fn rows(out: &mut dyn Write, count: usize, columns: &[(&[u8], usize, &str)]) -> io::Result<()> {
+    let mut buffer = Vec::with_capacity(ROWS * columns.iter().map(|column| column.1).sum::<usize>());
+    for first in (0..count).step_by(ROWS) {
+        buffer.clear();
+        for row in first..(first + ROWS).min(count) {
+            for &(data, size, _) in columns {
+                buffer.extend_from_slice(&data[row * size..(row + 1) * size]);
+            }
+        }
+        out.write_all(&buffer)?;
+    }
+    Ok(())
+}

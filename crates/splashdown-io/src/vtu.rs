@@ -1,0 +1,152 @@
+//! VTU, VTK's XML format for unstructured grids, as ParaView, VisIt and `pyvista` open it.
+//!
+//! Each particle is one `VTK_VERTEX` cell (not one `VTK_POLY_VERTEX` for all: thresholds and selections work on
+//! cells). Arrays follow the XML as raw little-endian bytes, each behind its length as UInt64, uncompressed:
+//! compression would take longer than the disk.
+//!
+//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) last moved in March 2025, wants its own copy of every
+//! array and offers much that is not needed; the need is these lines. Format: VTK User's Guide, "XML File Formats".
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::atomic;
+use crate::error::IoError;
+use crate::particles::Particles;
+
+/// Numbers handed to the writer in one piece while connectivity is generated.
+const CHUNK: usize = 4096;
+
+/// `VTK_VERTEX` in VTK's list of cell types.
+const VTK_VERTEX: u8 = 1;
+
+/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
+///
+/// Attributes that are present become the point arrays `velocity`, `density`, `pressure` and `id`.
+///
+/// # Errors
+/// Those of [`Particles::check`]; [`IoError::Write`].
+pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
+    particles.check()?;
+    atomic::write(path, |out| write_particles_to(out, particles))
+}
+
+/// Writes particles that pass [`Particles::check`] into any writer.
+///
+/// # Errors
+/// The writer's own; `InvalidInput` where the check fails.
+pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
+    particles.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    let count = particles.len();
+    let point_data = [
+        Array::of("velocity", "Float32", 3, &particles.velocities),
+        Array::of("density", "Float32", 1, &particles.densities),
+        Array::of("pressure", "Float32", 1, &particles.pressures),
+        Array::of("id", "UInt32", 1, &particles.ids),
+    ];
+    let point_data = point_data.iter().filter(|array| array.bytes() > 0);
+    let points = Array::of("Points", "Float32", 3, &particles.positions);
+    let cells = [
+        Array { name: "connectivity", kind: "Int32", components: 1, data: Data::Range { first: 0, count } },
+        Array { name: "offsets", kind: "Int32", components: 1, data: Data::Range { first: 1, count } },
+        Array {
+            name: "types",
+            kind: "UInt8",
+            components: 1,
+            data: Data::Repeat { value: VTK_VERTEX, count },
+        },
+    ];
+
+    let mut offset = 0;
+    writeln!(
+        out,
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">"
+    )?;
+    writeln!(out, "<PointData>")?;
+    for array in point_data.clone() {
+        array.declare(out, &mut offset)?;
+    }
+    writeln!(out, "</PointData>\n<Points>")?;
+    points.declare(out, &mut offset)?;
+    writeln!(out, "</Points>\n<Cells>")?;
+    for array in &cells {
+        array.declare(out, &mut offset)?;
+    }
+    // The underscore marks the byte from which the offsets count.
+    write!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
+    for array in point_data.chain([&points]).chain(&cells) {
+        array.append(out)?;
+    }
+    writeln!(out, "\n</AppendedData>\n</VTKFile>")
+}
+
+/// An array of the file: declared in the XML, appended behind it.
+struct Array<'a> {
+    name: &'static str,
+    kind: &'static str,
+    components: u32,
+    data: Data<'a>,
+}
+
+/// The bytes of an array, or how to make them: a cell array is never held in memory.
+enum Data<'a> {
+    Bytes(&'a [u8]),
+    Range { first: i32, count: usize },
+    Repeat { value: u8, count: usize },
+}
+
+impl<'a> Array<'a> {
+    fn of<T: bytemuck::NoUninit>(
+        name: &'static str,
+        kind: &'static str,
+        components: u32,
+        values: &'a [T],
+    ) -> Self {
+        Self { name, kind, components, data: Data::Bytes(bytemuck::cast_slice(values)) }
+    }
+
+    fn bytes(&self) -> u64 {
+        match self.data {
+            Data::Bytes(data) => data.len() as u64,
+            Data::Range { count, .. } => 4 * count as u64,
+            Data::Repeat { count, .. } => count as u64,
+        }
+    }
+
+    fn declare(&self, out: &mut dyn Write, offset: &mut u64) -> io::Result<()> {
+        let Self { name, kind, components, .. } = self;
+        writeln!(
+            out,
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" \
+             offset=\"{offset}\"/>"
+        )?;
+        *offset += size_of::<u64>() as u64 + self.bytes();
+        Ok(())
+    }
+
+    fn append(&self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(&self.bytes().to_le_bytes())?;
+        match self.data {
+            Data::Bytes(data) => out.write_all(data),
+            Data::Range { first, count } => {
+                let mut chunk = [0_i32; CHUNK];
+                for start in (0..count).step_by(CHUNK) {
+                    let length = CHUNK.min(count - start);
+                    for (i, value) in chunk[..length].iter_mut().enumerate() {
+                        *value = first + (start + i) as i32;
+                    }
+                    out.write_all(bytemuck::cast_slice(&chunk[..length]))?;
+                }
+                Ok(())
+            }
+            Data::Repeat { value, count } => {
+                let chunk = [value; CHUNK];
+                for start in (0..count).step_by(CHUNK) {
+                    out.write_all(&chunk[..CHUNK.min(count - start)])?;
+                }
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! PLY: round trips, foreign files, broken files.
+
+mod common;
+
+use std::fs;
+use std::path::PathBuf;
+
+use proptest::prelude::*;
+use splashdown_io::{Mesh, Particles, ply};
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Bits, because NaN differs from itself.
+fn bits<const N: usize>(rows: &[[f32; N]]) -> Vec<[u32; N]> {
+    rows.iter().map(|row| row.map(f32::to_bits)).collect()
+}
+
+fn scalar_bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+fn assert_same_bits(a: &Particles, b: &Particles) {
+    assert_eq!(a.ids, b.ids);
+    assert_eq!(bits(&a.positions), bits(&b.positions));
+    assert_eq!(bits(&a.velocities), bits(&b.velocities));
+    assert_eq!(scalar_bits(&a.densities), scalar_bits(&b.densities));
+    assert_eq!(scalar_bits(&a.pressures), scalar_bits(&b.pressures));
+}
+
+fn vector() -> impl Strategy<Value = [f32; 3]> {
+    // Every kind of float but signalling NaN, whose bits no one promises to keep.
+    prop::array::uniform3(prop::num::f32::ANY)
+}
+
+prop_compose! {
+    /// Any values, any attributes absent; lengths around the writer's chunk among them.
+    fn some_particles()(count in prop_oneof![0..40_usize, 2047..2050_usize], has in any::<[bool; 4]>())
+        (count in Just(count),
+         rows in prop::collection::vec((vector(), vector(), prop::num::f32::ANY, prop::num::f32::ANY, any::<u32>()), count),
+         has in Just(has)) -> Particles {
+        let keep = |wanted: bool| if wanted { count } else { 0 };
+        Particles {
+            positions: rows.iter().map(|row| row.0).collect(),
+            velocities: rows.iter().take(keep(has[0])).map(|row| row.1).collect(),
+            densities: rows.iter().take(keep(has[1])).map(|row| row.2).collect(),
+            pressures: rows.iter().take(keep(has[2])).map(|row| row.3).collect(),
+            ids: rows.iter().take(keep(has[3])).map(|row| row.4).collect(),
+        }
+    }
+}
+
+prop_compose! {
+    fn some_mesh()(vertices in prop::collection::vec((vector(), vector()), 1..60), normals in any::<bool>())
+        (triangles in prop::collection::vec(prop::array::uniform3(0..vertices.len() as u32), 0..120),
+         vertices in Just(vertices), normals in Just(normals)) -> Mesh {
+        Mesh {
+            vertices: vertices.iter().map(|v| v.0).collect(),
+            normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
+            triangles,
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn particles_come_back_bit_by_bit(particles in some_particles()) {
+        let folder = folder();
+        let path = folder.path().join("particles.ply");
+        let bytes = ply::write_particles(&path, &particles).unwrap();
+        prop_assert_eq!(bytes, fs::metadata(&path).unwrap().len());
+        assert_same_bits(&ply::read_particles(&path).unwrap(), &particles);
+    }
+
+    #[test]
+    fn meshes_come_back_bit_by_bit(mesh in some_mesh()) {
+        let folder = folder();
+        let path = folder.path().join("mesh.ply");
+        ply::write_mesh(&path, &mesh).unwrap();
+        let read = ply::read_mesh(&path).unwrap();
+        prop_assert_eq!(bits(&read.vertices), bits(&mesh.vertices));
+        prop_assert_eq!(bits(&read.normals), bits(&mesh.normals));
+        prop_assert_eq!(read.triangles, mesh.triangles);
+    }
+
+    #[test]
+    fn a_file_cut_anywhere_is_refused_and_never_a_panic(particles in some_particles(), at in 0.0..1.0_f64) {
+        prop_assume!(!particles.is_empty());
+        let folder = folder();
+        let path = folder.path().join("cut.ply");
+        ply::write_particles(&path, &particles).unwrap();
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, &whole[..(whole.len() as f64 * at) as usize]).unwrap();
+        let message = ply::read_particles(&path).unwrap_err().to_string();
+        prop_assert!(message.contains("cut.ply"), "{}", message);
+    }
+
+    #[test]
+    fn a_file_with_a_changed_byte_is_never_a_panic(mesh in some_mesh(), at in any::<prop::sample::Index>(), to in any::<u8>()) {
+        let folder = folder();
+        let path = folder.path().join("changed.ply");
+        ply::write_mesh(&path, &mesh).unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        let at = at.index(bytes.len());
+        bytes[at] = to;
+        fs::write(&path, bytes).unwrap();
+        // Either outcome is right; what comes back holds together.
+        if let Ok(read) = ply::read_mesh(&path) {
+            prop_assert!(read.check().is_ok());
+        }
+    }
+}
+
+#[test]
+fn the_round_trip_test_would_see_one_changed_bit() {
+    let folder = folder();
+    let path = folder.path().join("particles.ply");
+    let particles = common::particles(100);
+    ply::write_particles(&path, &particles).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let last = bytes.len() - 36 * 7 - 20;
+    bytes[last] ^= 1;
+    fs::write(&path, bytes).unwrap();
+    let read = ply::read_particles(&path).unwrap();
+    assert_ne!(read, particles);
+    assert_eq!(read.len(), particles.len());
+}
+
+/// Writes `contents` and returns its place with the folder that keeps it alive.
+fn file(contents: &[u8]) -> (TempDir, PathBuf) {
+    let folder = folder();
+    let path = folder.path().join("given.ply");
+    fs::write(&path, contents).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_foreign_text_file_with_other_types_and_quads_is_read() {
+    let text = "ply\r\nformat ascii 1.0\r\ncomment made elsewhere\r\nobj_info scanned\r\nelement camera 1\r\nproperty float focal\r\n\
+        element vertex 4\r\nproperty double z\r\nproperty uchar red\r\nproperty double x\r\nproperty int y\r\n\
+        property list uchar float weights\r\nelement face 1\r\nproperty list uint8 uint16 vertex_index\r\nend_header\r\n\
+        35\r\n0.5 255 0 0 0\r\n0.5 0 1 0 2 1e-1 0.5\r\n0.5 0 1 1 0\r\n0.5 9 0 1 1 1.0\r\n4 0 1 2 3";
+    let (_keep, path) = file(text.as_bytes());
+    let mesh = ply::read_mesh(&path).unwrap();
+    assert_eq!(mesh.vertices, [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [1.0, 1.0, 0.5], [0.0, 1.0, 0.5]]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert!(mesh.normals.is_empty());
+
+    let particles = ply::read_particles(&path).unwrap();
+    assert_eq!(particles.positions, mesh.vertices);
+    assert!(particles.ids.is_empty() && particles.velocities.is_empty());
+}
+
+#[test]
+fn a_foreign_big_endian_file_is_read() {
+    let mut bytes =
+        b"ply\nformat binary_big_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
+        property float z\nproperty double id\nproperty float rho\nproperty float vx\nend_header\n"
+            .to_vec();
+    for (row, id) in [([1.0_f32, 2.0, 3.0], 7.0_f64), ([-1.0, -2.0, -3.0], 16_777_217.0)] {
+        row.iter().for_each(|value| bytes.extend(value.to_be_bytes()));
+        bytes.extend(id.to_be_bytes());
+        [998.2_f32, 5.0].iter().for_each(|value| bytes.extend(value.to_be_bytes()));
+    }
+    let (_keep, path) = file(&bytes);
+    let particles = ply::read_particles(&path).unwrap();
+    assert_eq!(particles.positions, [[1.0, 2.0, 3.0], [-1.0, -2.0, -3.0]]);
+    assert_eq!(particles.ids, [7, 16_777_217]);
+    assert_eq!(particles.densities, [998.2; 2]);
+    assert!(particles.velocities.is_empty(), "a velocity with one component only is none");
+}
+
+#[test]
+fn broken_files_say_what_is_wrong() {
+    let xyz = "property float x\nproperty float y\nproperty float z\n";
+    let header = |body: &str| format!("ply\nformat ascii 1.0\n{body}end_header\n");
+    let triangle =
+        "element vertex 3\n".to_owned() + xyz + "element face 1\nproperty list uchar int vertex_indices\n";
+    let corners = "0 0 0\n1 0 0\n0 1 0\n";
+    let cases = [
+        (String::new(), "does not begin with the line `ply`"),
+        ("solid cube\n".to_owned(), "does not begin with the line `ply`"),
+        ("ply\nformat ascii 1.0\nelement vertex 3\n".to_owned(), "end_header"),
+        (header(&format!("element point 1\n{xyz}")) + "0 0 0\n", "no element `face`, only: point"),
+        (
+            header("element vertex 1\nproperty float x\nproperty float y\nelement face 0\n") + "0 0\n",
+            "no property `z`",
+        ),
+        (
+            header(&format!("element vertex 999999999999\n{xyz}element face 0\n")),
+            "promises 999999999999 `vertex`",
+        ),
+        (header("element vertex 99999999999\nelement face 0\n"), "without any property"),
+        (header(&triangle) + "0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n", "zero"),
+        (header(&triangle) + corners, "in element `face`"),
+        (header(&triangle) + corners + "3 0 1 3\n", "triangle 0 uses vertex 3, but the mesh has 3 vertices"),
+        (header(&triangle) + corners + "3 0 1 -1\n", "vertex_indices"),
+        (header(&triangle) + corners + "2 0 1\n", "face 0 has 2 corners"),
+        (header(&triangle) + corners + "0\n", "face 0 has no corners"),
+        (header(&triangle) + corners + "99999999999 0 1\n", "in element `face`"),
+    ];
+    for (text, reason) in cases {
+        let (_keep, path) = file(text.as_bytes());
+        let message = ply::read_mesh(&path).unwrap_err().to_string();
+        assert!(
+            message.contains(reason) && message.contains("given.ply"),
+            "wanted `{reason}`, got: {message}"
+        );
+        assert!(!message.contains('\n'), "{message}");
+    }
+    // The control: with everything in place it is read.
+    let (_keep, path) = file((header(&triangle) + corners + "3 0 1 2\n").as_bytes());
+    assert_eq!(ply::read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let path = folder().path().join("absent.ply");
+    let message = ply::read_particles(&path).unwrap_err().to_string();
+    assert!(message.contains("absent.ply"), "{message}");
+}

@@ -1,0 +1,21 @@
+//! The shared particle files: read, written in every format, and read again.
+
+mod common;
+
+use splashdown_io::{Particles, npy, particles, ply};
+
+#[test]
+fn the_particle_files_are_read_and_survive_a_round_trip() {
+    for name in ["particles/mid64k.npy", "particles/settled64k_t6.npy"] {
+        let Some(path) = common::shared_data(name) else { continue };
+        let positions = npy::read_positions(&path).unwrap();
+        assert_eq!(positions.len(), 64_000);
+        assert!(positions.iter().flatten().all(|value| value.is_finite()));
+
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("particles.ply");
+        let particles = Particles { positions, ..Particles::default() };
+        particles::write(&file, &particles).unwrap();
+        assert_eq!(ply::read_particles(&file).unwrap(), particles);
+    }
+}
