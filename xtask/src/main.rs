@@ -1,2 +1,58 @@
-//! x
-fn main(){}
+//! Every habit of this repository as one word: `cargo xtask WORD`. Nothing but the standard library and `anyhow`, so that
+//! it builds in a second on a machine that has only Rust.
+
+mod bench;
+mod demo;
+mod layers;
+mod process;
+mod setup;
+mod suite;
+mod test_output;
+mod validate;
+
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Usage: cargo xtask <WORD> [OPTIONS]
+
+  demo [ARGUMENTS]  check or install what is needed, build, and run the dam break into out/dam-break;
+                    further arguments go to `splashdown run` (for example --frames 20)
+  test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
+  bench [--quick]   the numbers of docs/performance.md as Markdown tables (--quick: small sizes only)
+  validate          the checks against measurements at full resolution, in release mode
+  setup             check what demo and test need and install it where that is possible
+  help              this text
+
+Environment: CI=true makes a missing Vulkan driver an error.
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (word, rest) = match arguments.split_first() {
+        Some((word, rest)) => (word.as_str(), rest),
+        None => ("help", &[][..]),
+    };
+    let outcome = match word {
+        "demo" => demo::run(rest),
+        "test" => suite::run(rest),
+        "bench" => bench::run(rest),
+        "validate" => validate::run(rest),
+        "setup" => setup::run(rest),
+        "help" | "--help" | "-h" => {
+            process::say(HELP.trim_end());
+            Ok(())
+        }
+        other => {
+            eprintln!("error: there is no word `{other}`\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    process::clean_up();
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

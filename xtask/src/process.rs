@@ -1,0 +1,106 @@
+//! Starting other programs: always from the repository's root, always with a runtime folder that Vulkan's loader accepts.
+
+use std::ffi::OsStr;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use anyhow::{Context, Result, ensure};
+
+/// Prints a line. A closed pipe (`cargo xtask help | head -1`) is no reason to panic.
+pub fn say(text: impl AsRef<str>) {
+    let _ = writeln!(std::io::stdout().lock(), "{}", text.as_ref());
+}
+
+/// The folder that holds the workspace.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+}
+
+/// A command that starts in the repository's root.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(root());
+    if let Some(folder) = runtime_folder() {
+        command.env("XDG_RUNTIME_DIR", folder);
+    }
+    command
+}
+
+/// Cargo itself, the one that runs this program.
+pub fn cargo<I: IntoIterator<Item = S>, S: AsRef<OsStr>>(arguments: I) -> Command {
+    let mut command = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments);
+    command
+}
+
+/// Builds the command line in release mode and returns the path of the binary.
+pub fn build_release() -> Result<PathBuf> {
+    say("Building (release) ...");
+    run(&mut cargo(["build", "--release", "--package", "splashdown-cli"]))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    let binary =
+        root().join(target).join("release").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
+    ensure!(binary.exists(), "the build went well, but {} is not there", binary.display());
+    Ok(binary)
+}
+
+/// Runs a command to its end; an error if it cannot start or fails.
+pub fn run(command: &mut Command) -> Result<()> {
+    let words = line(command);
+    let status = command.status().with_context(|| format!("cannot start `{words}`"))?;
+    ensure!(status.success(), "`{words}` failed ({status})");
+    Ok(())
+}
+
+/// The command as one would type it.
+pub fn line(command: &Command) -> String {
+    let name = Path::new(command.get_program()).file_stem().unwrap_or_default();
+    let words = std::iter::once(name).chain(command.get_args());
+    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
+/// True if a program can be started at all.
+pub fn exists(program: &str, argument: &str) -> bool {
+    let mut command = Command::new(program);
+    command.arg(argument).stdin(std::process::Stdio::null());
+    command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+/// True where nothing may be skipped for want of a driver.
+pub fn is_ci() -> bool {
+    std::env::var("CI").is_ok_and(|value| value == "true" || value == "1")
+}
+
+/// A private folder for `XDG_RUNTIME_DIR` where the system gave none: without it software Vulkan fills stderr.
+#[cfg(target_os = "linux")]
+fn runtime_folder() -> Option<&'static Path> {
+    use std::os::unix::fs::DirBuilderExt;
+    static FOLDER: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let make = || {
+        if std::env::var_os("XDG_RUNTIME_DIR").is_some() {
+            return None;
+        }
+        let folder = std::env::temp_dir().join(format!("splashdown-runtime-{}", std::process::id()));
+        std::fs::DirBuilder::new().mode(0o700).create(&folder).ok()?;
+        Some(folder)
+    };
+    FOLDER.get_or_init(make).as_deref()
+}
+
+/// Other systems know no such folder.
+#[cfg(not(target_os = "linux"))]
+fn runtime_folder() -> Option<&'static Path> {
+    static NONE: OnceLock<Option<PathBuf>> = OnceLock::new();
+    NONE.get_or_init(|| None).as_deref()
+}
+
+/// Removes what this run left in the system's temporary folder.
+pub fn clean_up() {
+    if let Some(folder) = runtime_folder() {
+        // An empty or foreign folder in a temporary place does no harm if it stays.
+        let _ = std::fs::remove_dir_all(folder);
+    }
+}

@@ -1,0 +1,150 @@
+//! What the project needs from the system beside Rust: a Vulkan driver for the pictures (a software one will do) and
+//! ffmpeg for the film. Neither is needed to simulate or to write particles and meshes.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail, ensure};
+
+use crate::process::{self, say};
+
+const PACKAGES: [&str; 3] = ["mesa-vulkan-drivers", "libvulkan1", "ffmpeg"];
+
+/// What is missing.
+#[derive(Debug, Default)]
+pub struct Missing {
+    driver: bool,
+    ffmpeg: bool,
+}
+
+impl Missing {
+    /// Looks at the system.
+    pub fn find() -> Self {
+        Self { driver: !has_vulkan_driver(), ffmpeg: !process::exists("ffmpeg", "-version") }
+    }
+
+    fn nothing(&self) -> bool {
+        !self.driver && !self.ffmpeg
+    }
+
+    fn names(&self) -> String {
+        let driver = self.driver.then_some("a Vulkan driver (for pictures and for tests of the GPU code)");
+        let ffmpeg = self.ffmpeg.then_some("ffmpeg (for the film)");
+        [driver, ffmpeg].into_iter().flatten().collect::<Vec<_>>().join(" and ")
+    }
+}
+
+/// The word `setup`.
+pub fn run(arguments: &[String]) -> Result<()> {
+    ensure!(arguments.is_empty(), "setup takes no arguments, got {}", arguments.join(" "));
+    ensure_requirements()
+}
+
+/// Checks, installs where that can be done without asking, and says what is left. Only with `CI=true` is a driver that
+/// stays missing an error: everywhere else the simulation goes on without pictures.
+pub fn ensure_requirements() -> Result<()> {
+    let mut missing = Missing::find();
+    if missing.nothing() {
+        say("Requirements: a Vulkan driver and ffmpeg are there.");
+        return Ok(());
+    }
+    say(format!("Requirements: missing {}.", missing.names()));
+    if can_install() {
+        say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
+        if let Err(error) = install() {
+            say(format!("WARNING: the installation failed: {error:#}. Is there a network?"));
+        }
+        missing = Missing::find();
+    }
+    if missing.nothing() {
+        say("Requirements: all there now.");
+        return Ok(());
+    }
+    say(format!("WARNING: {} is still missing.", missing.names()));
+    say(format!("  To get it: {}", advice()));
+    if missing.driver && process::is_ci() {
+        bail!("CI=true, and there is no Vulkan driver: the tests of the GPU code could not run");
+    }
+    say("  Going on without: particles and meshes are written all the same.");
+    Ok(())
+}
+
+/// Debian or Ubuntu, and allowed to install.
+fn can_install() -> bool {
+    cfg!(target_os = "linux") && is_root() && process::exists("apt-get", "--version")
+}
+
+fn is_root() -> bool {
+    let output = process::command("id").arg("-u").output();
+    output.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}
+
+fn install() -> Result<()> {
+    process::run(process::command("apt-get").args(["update", "-qq"]))?;
+    let mut install = process::command("apt-get");
+    install.env("DEBIAN_FRONTEND", "noninteractive");
+    install.args(["install", "-y", "-qq", "--no-install-recommends"]).args(PACKAGES);
+    // The list of unpacked packages is long and tells nobody anything; errors go to stderr.
+    install.stdout(std::process::Stdio::null());
+    process::run(&mut install)
+}
+
+fn advice() -> &'static str {
+    if cfg!(target_os = "windows") {
+        "install your graphics card's driver; `winget install ffmpeg`"
+    } else if cfg!(target_os = "macos") {
+        "`brew install ffmpeg` (Metal is part of the system)"
+    } else {
+        "on Debian and Ubuntu `sudo apt-get install mesa-vulkan-drivers libvulkan1 ffmpeg`, on Fedora `sudo dnf install \
+         mesa-vulkan-drivers vulkan-loader ffmpeg-free`, on Arch `sudo pacman -S vulkan-swrast vulkan-icd-loader ffmpeg`; \
+         with a graphics card, its own Vulkan driver"
+    }
+}
+
+/// True if a driver is installed that will find a device: a software one, or any other where there is a card.
+fn has_vulkan_driver() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true; // Direct3D 12 and Metal come with the system.
+    }
+    let manifests = manifests();
+    let software =
+        |path: &PathBuf| file_name(path).starts_with("lvp_icd") || file_name(path).contains("swiftshader");
+    has_loader() && (manifests.iter().any(software) || (!manifests.is_empty() && has_graphics_card()))
+}
+
+fn file_name(path: &Path) -> std::borrow::Cow<'_, str> {
+    path.file_name().unwrap_or_default().to_string_lossy()
+}
+
+/// The driver manifests that Vulkan's loader would read.
+fn manifests() -> Vec<PathBuf> {
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        if let Some(files) = std::env::var_os(variable) {
+            return std::env::split_paths(&files).filter(|file| file.exists()).collect();
+        }
+    }
+    let folders = ["/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    let entries = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
+    entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|end| end == "json"))
+        .collect()
+}
+
+fn has_loader() -> bool {
+    let listed = process::command("ldconfig").arg("-p").output().or_else(|_| {
+        // Outside of root's PATH on some systems.
+        process::command("/sbin/ldconfig").arg("-p").output()
+    });
+    let listed =
+        listed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("libvulkan.so.1"));
+    listed
+        || ["/usr/lib/libvulkan.so.1", "/usr/lib64/libvulkan.so.1"]
+            .iter()
+            .any(|path| Path::new(path).exists())
+}
+
+fn has_graphics_card() -> bool {
+    let render_node = |entry: std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with("renderD");
+    let nodes = std::fs::read_dir("/dev/dri").is_ok_and(|entries| entries.flatten().any(render_node));
+    nodes || Path::new("/dev/nvidia0").exists() || Path::new("/dev/dxg").exists()
+}
