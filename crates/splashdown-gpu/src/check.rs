@@ -1,12 +1,14 @@
 //! The gate: compares a pass's declaration with its WGSL, without a GPU.
 //!
 //! It parses and validates the WGSL with `naga` and compares entry point, workgroup size, override constants and, for
-//! every binding, number, name, access, element type as spelled, size, and a struct's members with their offsets.
+//! every binding, number, name, access, element type as spelled, size, and a struct's members with their offsets, sizes and
+//! scalars.
 //! Its own tests hold one mutation for each of these, which it must catch.
 
-use naga::{AddressSpace, Handle, Module, StorageAccess, Type, TypeInner};
+use naga::proc::Layouter;
+use naga::{AddressSpace, Handle, Module, StorageAccess, StructMember, Type, TypeInner};
 
-use crate::{Access, Binding, PassDesc, wgsl};
+use crate::{Access, Binding, Field, PassDesc, wgsl};
 
 /// Most storage buffers of a pass, so that it runs in every browser.
 pub const MAX_STORAGE_BUFFERS: usize = 8;
@@ -33,6 +35,9 @@ pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
     let [entry] = module.entry_points.as_slice() else {
         return Err(format!("{} entry points; a pass has one", module.entry_points.len()));
     };
+    if entry.stage != naga::ShaderStage::Compute {
+        return Err(format!("`{}` is no compute shader", entry.name));
+    }
     if entry.name != pass.entry {
         return Err(format!("entry point `{}` in WGSL, `{}` in Rust", entry.name, pass.entry));
     }
@@ -54,11 +59,17 @@ pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
             return Err(format!("no `override {name}` in the WGSL"));
         }
     }
+    for (_, constant) in module.overrides.iter().filter(|(_, constant)| constant.init.is_none()) {
+        let name = constant.name.as_deref().unwrap_or_default();
+        if !pass.constants.iter().any(|(given, _)| *given == name) {
+            return Err(format!("`override {name}` has no value, in WGSL or in Rust"));
+        }
+    }
     check_bindings(pass, &module)
 }
 
 fn check_bindings(pass: &PassDesc, module: &Module) -> Result<(), String> {
-    let mut layouter = naga::proc::Layouter::default();
+    let mut layouter = Layouter::default();
     layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
     let mut found = 0;
     for (_, variable) in module.global_variables.iter() {
@@ -86,7 +97,7 @@ fn check_bindings(pass: &PassDesc, module: &Module) -> Result<(), String> {
             TypeInner::Array { base, stride, .. } => (base, stride as usize),
             _ => (variable.ty, layouter[variable.ty].size as usize),
         };
-        check_element(declared, module, element, size)?;
+        check_element(declared, module, element, size, &layouter)?;
         found += 1;
     }
     if found != pass.bindings.len() {
@@ -100,6 +111,7 @@ fn check_element(
     module: &Module,
     element: Handle<Type>,
     size: usize,
+    layouter: &Layouter,
 ) -> Result<(), String> {
     let name = declared.name;
     let spelled = spell(module, element);
@@ -110,27 +122,65 @@ fn check_element(
         return Err(format!("`{name}`: {size} bytes in WGSL, {} in Rust", declared.size));
     }
     if let TypeInner::Struct { members, .. } = &module.types[element].inner {
-        let in_wgsl: Vec<_> =
-            members.iter().map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize)).collect();
-        if in_wgsl != declared.fields {
-            return Err(format!("struct {spelled}: {in_wgsl:?} in WGSL, {:?} in Rust", declared.fields));
-        }
+        check_members(&spelled, declared.fields, members, module, layouter)?;
     }
     Ok(())
 }
 
+fn check_members(
+    name: &str,
+    declared: &[Field],
+    members: &[StructMember],
+    module: &Module,
+    layouter: &Layouter,
+) -> Result<(), String> {
+    let in_wgsl: Vec<String> = members
+        .iter()
+        .map(|m| {
+            let (offset, size) = (m.offset, layouter[m.ty].size);
+            line(m.name.as_deref().unwrap_or_default(), offset as usize, size as usize, &scalar(module, m.ty))
+        })
+        .collect();
+    let in_rust: Vec<String> = declared.iter().map(|f| line(f.name, f.offset, f.size, f.scalar)).collect();
+    if in_wgsl != in_rust {
+        return Err(format!(
+            "struct {name} is\n  {}\nin WGSL, and\n  {}\nin Rust",
+            in_wgsl.join("\n  "),
+            in_rust.join("\n  ")
+        ));
+    }
+    Ok(())
+}
+
+/// A member in words, to compare and to show.
+fn line(name: &str, offset: usize, size: usize, scalar: &str) -> String {
+    format!("{name}: {size} bytes of {scalar} at {offset}")
+}
+
+/// What a member is made of, as [`Field::scalar`] has it.
+fn scalar(module: &Module, ty: Handle<Type>) -> String {
+    match &module.types[ty].inner {
+        TypeInner::Vector { scalar, .. } | TypeInner::Matrix { scalar, .. } => spell_scalar(*scalar),
+        TypeInner::Array { base, .. } => scalar(module, *base),
+        _ => spell(module, ty),
+    }
+}
+
 /// A type as WGSL spells it; atomics count as their integer.
 fn spell(module: &Module, ty: Handle<Type>) -> String {
+    match &module.types[ty].inner {
+        TypeInner::Scalar(s) | TypeInner::Atomic(s) => spell_scalar(*s),
+        TypeInner::Vector { size, scalar: s } => format!("vec{}<{}>", *size as u8, spell_scalar(*s)),
+        _ => module.types[ty].name.clone().unwrap_or_default(),
+    }
+}
+
+fn spell_scalar(scalar: naga::Scalar) -> String {
     use naga::ScalarKind::{Float, Sint, Uint};
-    let scalar = |s: naga::Scalar| match (s.kind, s.width) {
+    match (scalar.kind, scalar.width) {
         (Float, 4) => "f32".to_owned(),
         (Uint, 4) => "u32".to_owned(),
         (Sint, 4) => "i32".to_owned(),
         other => format!("{other:?}"),
-    };
-    match &module.types[ty].inner {
-        TypeInner::Scalar(s) | TypeInner::Atomic(s) => scalar(*s),
-        TypeInner::Vector { size, scalar: s } => format!("vec{}<{}>", *size as u8, scalar(*s)),
-        _ => module.types[ty].name.clone().unwrap_or_default(),
     }
 }

@@ -1,4 +1,8 @@
 //! Adapters: which there are, what they can do, and opening one.
+//!
+//! On Linux, Mesa's layer that chooses a device asks for a Wayland display whenever adapters are listed, and prints
+//! "XDG_RUNTIME_DIR is invalid or not set" to the standard error where there is none. It is harmless. A program that
+//! wants silence sets that variable to any directory before its first thread starts; a library must not.
 
 use std::sync::{Arc, Mutex};
 
@@ -111,7 +115,7 @@ impl Gpu {
     /// Opens a device.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`], [`GpuError::UnknownDevice`], [`GpuError::OpenFailed`].
+    /// [`GpuError::NoAdapter`], [`GpuError::NoneOfKind`], [`GpuError::UnknownDevice`], [`GpuError::OpenFailed`].
     pub fn open(request: &DeviceRequest) -> Result<Self, GpuError> {
         pollster::block_on(Self::open_async(request))
     }
@@ -128,19 +132,24 @@ impl Gpu {
                 DeviceRequest::Auto => true,
                 DeviceRequest::Hardware => !is_software(&info),
                 DeviceRequest::Software => is_software(&info),
-                DeviceRequest::Named(name) => describe(&info).to_lowercase().contains(&name.to_lowercase()),
+                DeviceRequest::Named(name) => {
+                    !name.is_empty() && describe(&info).to_lowercase().contains(&name.to_lowercase())
+                }
             }
         };
-        let adapter = found.iter().find(fits).ok_or_else(|| match request {
-            DeviceRequest::Named(name) => GpuError::UnknownDevice {
-                name: name.clone(),
-                available: if found.is_empty() {
-                    "none (only the CPU)".into()
-                } else {
-                    found.iter().map(|a| describe(&a.get_info())).collect::<Vec<_>>().join("; ")
+        let adapter = found.iter().find(fits).ok_or_else(|| {
+            let available = || found.iter().map(|a| describe(&a.get_info())).collect::<Vec<_>>().join("; ");
+            match request {
+                DeviceRequest::Named(name) => GpuError::UnknownDevice {
+                    name: name.clone(),
+                    available: if found.is_empty() { "none (only the CPU)".into() } else { available() },
                 },
-            },
-            _ => GpuError::NoAdapter { hint: MISSING_DRIVER_HINT },
+                _ if found.is_empty() => GpuError::NoAdapter { hint: MISSING_DRIVER_HINT },
+                DeviceRequest::Software => {
+                    GpuError::NoneOfKind { wanted: "software driver", available: available() }
+                }
+                _ => GpuError::NoneOfKind { wanted: "GPU", available: available() },
+            }
         })?;
         Self::from_adapter(adapter).await
     }

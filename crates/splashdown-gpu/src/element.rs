@@ -10,8 +10,36 @@ pub trait GpuElement: bytemuck::Pod + Send + Sync {
     const FIELDS: &'static [Field] = &[];
 }
 
-/// One member of a struct: its name and its offset in bytes.
-pub type Field = (&'static str, usize);
+/// One member of a struct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// Its offset in bytes.
+    pub offset: usize,
+    /// Its size in bytes.
+    pub size: usize,
+    /// What it is made of: `f32` for `f32`, `vec3<f32>`, `mat4x4<f32>` and arrays of them; a struct's name.
+    pub scalar: &'static str,
+}
+
+/// A type that may be a member of a [`gpu_struct!`](crate::gpu_struct).
+///
+/// The scalar tells `count: u32` from `count: f32`, which name, offset and size cannot.
+pub trait GpuMember: bytemuck::Pod {
+    /// What it is made of, see [`Field::scalar`].
+    const SCALAR: &'static str;
+}
+
+macro_rules! members {
+    ($scalar:literal: $($ty:ty),*) => { $(impl GpuMember for $ty { const SCALAR: &'static str = $scalar; })* };
+}
+members!("f32": f32, glam::Vec2, glam::Vec3, glam::Vec4, glam::Mat4);
+members!("u32": u32, glam::UVec2, glam::UVec3, glam::UVec4);
+members!("i32": i32, glam::IVec2, glam::IVec3, glam::IVec4);
+impl<T: GpuMember, const N: usize> GpuMember for [T; N] {
+    const SCALAR: &'static str = T::SCALAR;
+}
 
 /// A Rust struct that mirrors a WGSL struct; made by [`gpu_struct!`](crate::gpu_struct).
 pub trait GpuStruct: GpuElement {}
@@ -41,7 +69,7 @@ impl GpuElement for glam::UVec4 {
 /// Declares a struct that is laid out equally in Rust and in WGSL, with the table that the gate compares.
 ///
 /// Give fields in WGSL's order and fill the padding that WGSL inserts with fields of your own: the gate reports any
-/// difference in names, order and offsets.
+/// difference in names, order, offsets, sizes and scalars.
 ///
 /// ```
 /// splashdown_gpu::gpu_struct! {
@@ -60,7 +88,15 @@ macro_rules! gpu_struct {
         impl $crate::GpuElement for $name {
             const WGSL: &'static str = stringify!($name);
             const FIELDS: &'static [$crate::Field] =
-                &[$((stringify!($field), core::mem::offset_of!($name, $field))),*];
+                &[$($crate::Field {
+                    name: stringify!($field),
+                    offset: core::mem::offset_of!($name, $field),
+                    size: size_of::<$ty>(),
+                    scalar: <$ty as $crate::GpuMember>::SCALAR,
+                }),*];
+        }
+        impl $crate::GpuMember for $name {
+            const SCALAR: &'static str = stringify!($name);
         }
         impl $crate::GpuStruct for $name {}
     };

@@ -10,6 +10,16 @@ pub enum GpuError {
         /// How to get one.
         hint: &'static str,
     },
+    /// Adapters there are, but not of the kind asked for.
+    #[error(
+        "no {wanted} was found; available are: {available}. Use auto, cpu or a part of one of these names"
+    )]
+    NoneOfKind {
+        /// The kind asked for.
+        wanted: &'static str,
+        /// The names there are.
+        available: String,
+    },
     /// Adapters there are, but not the one asked for.
     #[error(
         "no device is called {name:?}; available are: {available}. Use auto, gpu, cpu or a part of one of these names"
@@ -76,6 +86,14 @@ pub enum GpuError {
         /// The pass's label.
         pass: &'static str,
         /// What differs.
+        reason: String,
+    },
+    /// A command does not fit its buffers; a bug in whoever recorded it.
+    #[error("recording {recording:?}: {reason}")]
+    BadCommand {
+        /// The recording's label.
+        recording: String,
+        /// What does not fit.
         reason: String,
     },
     /// A WGSL text could not be put together.

@@ -19,8 +19,14 @@ pub(crate) struct HostBuffer {
 }
 
 impl HostBuffer {
-    pub(crate) fn new(bytes: usize, fill: u8) -> Self {
-        Self { chunks: RefCell::new(vec![Chunk([fill; 16]); bytes.div_ceil(16)]), bytes }
+    /// `None` if the memory cannot be had. Zeros come from the system, which gives real memory on first use.
+    pub(crate) fn new(bytes: u64, fill: u8) -> Option<Self> {
+        let bytes = usize::try_from(bytes).ok()?;
+        let mut chunks: Vec<Chunk> = bytemuck::try_zeroed_vec(bytes.div_ceil(16)).ok()?;
+        if fill != 0 {
+            chunks.fill(Chunk([fill; 16]));
+        }
+        Some(Self { chunks: RefCell::new(chunks), bytes })
     }
 
     pub(crate) fn read<T: Pod>(&self) -> Ref<'_, [T]> {

@@ -39,7 +39,7 @@ mod timing;
 pub mod wgsl;
 
 pub use device::{AdapterReport, DeviceRequest, Gpu, MISSING_DRIVER_HINT, list_adapters};
-pub use element::{Field, GpuElement, GpuStruct};
+pub use element::{Field, GpuElement, GpuMember, GpuStruct};
 pub use error::GpuError;
 pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback};
 pub use host::{Slot, as_atomic};

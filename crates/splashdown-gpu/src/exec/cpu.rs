@@ -37,31 +37,21 @@ impl CpuExecutor {
     }
 
     pub(super) fn create(&mut self, meta: Meta) -> Result<BufferId, GpuError> {
-        Self::check_size(&meta)?;
-        self.buffers.push(HostBuffer::new(meta.size * meta.len, self.table.fill()));
+        self.buffers.push(self.allocate(&meta)?);
         Ok(self.table.add(meta))
     }
 
     pub(super) fn resize(&mut self, id: BufferId, len: usize) -> Result<(), GpuError> {
         let meta = Meta { len, ..self.table.get(id).clone() };
-        Self::check_size(&meta)?;
-        self.buffers[id.0 as usize] = HostBuffer::new(meta.size * len, self.table.fill());
+        self.buffers[id.0 as usize] = self.allocate(&meta)?;
         *self.table.get_mut(id) = meta;
         Ok(())
     }
 
-    /// Element numbers are 32-bit in every pass.
-    fn check_size(meta: &Meta) -> Result<(), GpuError> {
-        if u32::try_from(meta.len).is_ok() {
-            return Ok(());
-        }
-        Err(GpuError::TooLarge {
-            label: meta.label.clone(),
-            len: meta.len as u64,
-            bytes: meta.bytes() as u64,
-            limit: u64::from(u32::MAX) * meta.size as u64,
-            fits: u64::from(u32::MAX),
-        })
+    fn allocate(&self, meta: &Meta) -> Result<HostBuffer, GpuError> {
+        meta.check_len()?;
+        HostBuffer::new(meta.size as u64 * meta.len as u64, self.table.fill())
+            .ok_or_else(|| GpuError::OutOfMemory { label: meta.label.clone(), bytes: meta.bytes() })
     }
 
     pub(super) fn write(&mut self, id: BufferId, bytes: &[u8]) -> Result<(), GpuError> {
@@ -91,13 +81,15 @@ impl CpuExecutor {
     }
 
     pub(super) fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
-        self.commands(&recording.commands)
+        self.table.check(recording)?;
+        self.commands(&recording.commands);
+        Ok(())
     }
 
-    fn commands(&mut self, commands: &[Command]) -> Result<(), GpuError> {
+    fn commands(&mut self, commands: &[Command]) {
         for command in commands {
             match command {
-                Command::Dispatch { pass, grid, buffers } => self.dispatch(pass, *grid, buffers)?,
+                Command::Dispatch { pass, grid, buffers } => self.dispatch(pass, *grid, buffers),
                 Command::Copy { from, to } => {
                     let from = self.buffers[from.0 as usize].read::<u8>();
                     self.buffers[to.0 as usize].write::<u8>()[..from.len()].copy_from_slice(&from);
@@ -108,20 +100,18 @@ impl CpuExecutor {
                         if self.word(until.buffer, until.word) != 0 {
                             break;
                         }
-                        self.commands(body)?;
+                        self.commands(body);
                     }
                 }
             }
         }
-        Ok(())
     }
 
     fn word(&self, buffer: BufferId, word: u32) -> u32 {
         self.buffers[buffer.0 as usize].read::<u32>()[word as usize]
     }
 
-    fn dispatch(&mut self, pass: &'static PassDesc, grid: Grid, ids: &[BufferId]) -> Result<(), GpuError> {
-        self.table.check(pass, ids)?;
+    fn dispatch(&mut self, pass: &'static PassDesc, grid: Grid, ids: &[BufferId]) {
         let work = match grid {
             Grid::Items(items) => CpuWork { items, groups: items.div_ceil(pass.invocations()) },
             Grid::Groups(groups) => CpuWork { items: groups.saturating_mul(pass.invocations()), groups },
@@ -131,7 +121,7 @@ impl CpuExecutor {
             }
         };
         if work.groups == 0 {
-            return Ok(());
+            return;
         }
         let started = Instant::now();
         let mut slots: Vec<Slot<'_>> = ids
@@ -148,6 +138,5 @@ impl CpuExecutor {
         if let Some(timings) = &mut self.timings {
             timings.add(pass.label, started.elapsed());
         }
-        Ok(())
     }
 }

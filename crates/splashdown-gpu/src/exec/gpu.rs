@@ -1,10 +1,11 @@
 //! Runs recordings on a device: one submission each, bind groups and pipelines made once.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::pipeline::{self, Pipeline};
+use super::pipeline::Pipeline;
 use super::table::{Meta, Table};
 use super::{Readback, readback};
 use crate::{BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings};
@@ -20,7 +21,6 @@ pub struct GpuExecutor {
     buffers: Vec<wgpu::Buffer>,
     table: Table,
     pipelines: HashMap<usize, Pipeline>,
-    bind_groups: HashMap<(usize, Vec<BufferId>), wgpu::BindGroup>,
     timer: Option<Timer>,
 }
 
@@ -38,14 +38,7 @@ fn key(pass: &'static PassDesc) -> usize {
 impl GpuExecutor {
     /// An executor without buffers.
     pub fn new(gpu: Arc<Gpu>) -> Self {
-        Self {
-            gpu,
-            buffers: Vec::new(),
-            table: Table::default(),
-            pipelines: HashMap::new(),
-            bind_groups: HashMap::new(),
-            timer: None,
-        }
+        Self { gpu, buffers: Vec::new(), table: Table::default(), pipelines: HashMap::new(), timer: None }
     }
 
     pub(super) fn gpu(&self) -> &Arc<Gpu> {
@@ -74,13 +67,16 @@ impl GpuExecutor {
         let meta = Meta { len, ..self.table.get(id).clone() };
         self.buffers[id.0 as usize] = self.allocate(&meta)?;
         *self.table.get_mut(id) = meta;
-        self.bind_groups.retain(|(_, ids), _| !ids.contains(&id));
+        for pipeline in self.pipelines.values_mut() {
+            pipeline.bind_groups.retain(|ids, _| !ids.contains(&id));
+        }
         Ok(())
     }
 
     fn allocate(&self, meta: &Meta) -> Result<wgpu::Buffer, GpuError> {
         use wgpu::BufferUsages as Use;
-        let bytes = meta.bytes() as u64;
+        meta.check_len()?;
+        let bytes = meta.bytes();
         let limit = self.gpu.largest_buffer();
         if bytes > limit {
             return Err(GpuError::TooLarge {
@@ -135,9 +131,9 @@ impl GpuExecutor {
         });
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.buffers[id.0 as usize], 0, &staging, 0, bytes);
-        self.gpu.queue.submit([encoder.finish()]);
+        let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.health("a read-back")?;
-        Ok(readback::mapping(staging))
+        Ok(readback::mapping(staging, submission))
     }
 
     /// Lets finished work report itself, without waiting.
@@ -148,7 +144,15 @@ impl GpuExecutor {
     }
 
     pub(super) fn wait(&mut self) -> Result<(), GpuError> {
-        let outcome = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        self.wait_for(None)
+    }
+
+    /// Waits for this submission and those before it, or for all.
+    pub(super) fn wait_for(
+        &mut self,
+        submission_index: Option<wgpu::SubmissionIndex>,
+    ) -> Result<(), GpuError> {
+        let outcome = self.gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
         self.gpu.health("work on the device")?;
         outcome.map(drop).map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
     }
@@ -180,6 +184,7 @@ impl GpuExecutor {
     }
 
     pub(super) fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
+        self.table.check(recording)?;
         self.prepare(&recording.commands)?;
         let mut encoder = self
             .gpu
@@ -199,12 +204,12 @@ impl GpuExecutor {
         for command in commands {
             match command {
                 Command::Dispatch { pass, buffers, .. } => {
-                    if self.bind_groups.contains_key(&(key(pass), buffers.clone())) {
+                    let pipeline = match self.pipelines.entry(key(pass)) {
+                        Entry::Occupied(entry) => entry.into_mut(),
+                        Entry::Vacant(entry) => entry.insert(Pipeline::build(&self.gpu, pass)?),
+                    };
+                    if pipeline.bind_groups.contains_key(buffers.as_slice()) {
                         continue;
-                    }
-                    self.table.check(pass, buffers)?;
-                    if !self.pipelines.contains_key(&key(pass)) {
-                        self.pipelines.insert(key(pass), pipeline::build(&self.gpu, pass)?);
                     }
                     let entries: Vec<_> = buffers
                         .iter()
@@ -216,10 +221,10 @@ impl GpuExecutor {
                         .collect();
                     let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                         label: Some(pass.label),
-                        layout: &self.pipelines[&key(pass)].layout,
+                        layout: &pipeline.layout,
                         entries: &entries,
                     });
-                    self.bind_groups.insert((key(pass), buffers.clone()), group);
+                    pipeline.bind_groups.insert(buffers.clone(), group);
                 }
                 Command::Repeat { body, .. } => self.prepare(body)?,
                 Command::Copy { .. } | Command::Clear { .. } => {}
@@ -241,8 +246,9 @@ impl GpuExecutor {
                         continue;
                     }
                     let compute = target.compute(pass.label, self.timer.as_ref(), timed);
-                    compute.set_pipeline(&self.pipelines[&key(pass)].pipeline);
-                    compute.set_bind_group(0, &self.bind_groups[&(key(pass), buffers.clone())], &[]);
+                    let pipeline = &self.pipelines[&key(pass)];
+                    compute.set_pipeline(&pipeline.pipeline);
+                    compute.set_bind_group(0, &pipeline.bind_groups[buffers.as_slice()], &[]);
                     if let Grid::Indirect { buffer, word } = *grid {
                         compute.dispatch_workgroups_indirect(
                             &self.buffers[buffer.0 as usize],
@@ -254,8 +260,10 @@ impl GpuExecutor {
                     }
                 }
                 Command::Copy { from, to } => {
+                    let meta = self.table.get(*from);
+                    let bytes = if meta.len == 0 { 0 } else { meta.bytes() };
                     let (from, to) = (&self.buffers[from.0 as usize], &self.buffers[to.0 as usize]);
-                    target.encoder().copy_buffer_to_buffer(from, 0, to, 0, from.size());
+                    target.encoder().copy_buffer_to_buffer(from, 0, to, 0, bytes);
                 }
                 Command::Clear { buffer } => {
                     target.encoder().clear_buffer(&self.buffers[buffer.0 as usize], 0, None);
@@ -327,10 +335,10 @@ impl Target<'_> {
         timer: Option<&Timer>,
         timed: &mut Vec<&'static str>,
     ) -> &mut wgpu::ComputePass<'static> {
-        let timer = timer.filter(|_| timed.len() < TIMED_DISPATCHES as usize);
         if timer.is_some() {
             self.pass = None;
         }
+        let timer = timer.filter(|_| timed.len() < TIMED_DISPATCHES as usize);
         let encoder = &mut *self.encoder;
         self.pass.get_or_insert_with(|| {
             let timestamp_writes = timer.map(|timer| {

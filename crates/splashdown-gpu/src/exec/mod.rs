@@ -87,6 +87,11 @@ impl Executor {
         Ok(())
     }
 
+    /// The number of elements now; a handle copied before a [`resize`](Self::resize) does not know it.
+    fn len<T>(&self, buffer: Buffer<T>) -> usize {
+        either!(self, e => e.table_ref().get(buffer.id).len)
+    }
+
     /// Overwrites the beginning of a buffer.
     ///
     /// # Errors
@@ -95,7 +100,8 @@ impl Executor {
     /// # Panics
     /// If `data` is longer than the buffer.
     pub fn write<T: GpuElement>(&mut self, buffer: Buffer<T>, data: &[T]) -> Result<(), GpuError> {
-        assert!(data.len() <= buffer.len as usize, "{} elements do not fit into {buffer:?}", data.len());
+        let len = self.len(buffer);
+        assert!(data.len() <= len, "{} elements do not fit into the {len} of {buffer:?}", data.len());
         either!(self, e => e.write(buffer.id, bytemuck::cast_slice(data)))
     }
 
@@ -104,7 +110,7 @@ impl Executor {
     /// # Errors
     /// If the device was lost or refused earlier work.
     pub fn read<T: GpuElement>(&mut self, buffer: Buffer<T>) -> Result<Vec<T>, GpuError> {
-        self.read_first(buffer, buffer.len as usize)
+        self.read_first(buffer, self.len(buffer))
     }
 
     /// Reads the first `len` elements, waiting for all work before it.
@@ -119,15 +125,20 @@ impl Executor {
     ///
     /// # Errors
     /// As [`read`](Self::read).
+    ///
+    /// # Panics
+    /// If the buffer has fewer elements.
     pub fn request<T: GpuElement>(&mut self, buffer: Buffer<T>, len: usize) -> Result<Readback<T>, GpuError> {
-        assert!(len <= buffer.len as usize, "{len} elements are more than {buffer:?} has");
+        let has = self.len(buffer);
+        assert!(len <= has, "{len} elements are more than the {has} of {buffer:?}");
         either!(self, e => e.request(buffer.id, len))
     }
 
     /// Runs a recording: at once on the CPU, as one submission on a GPU.
     ///
     /// # Errors
-    /// [`GpuError::BadBinding`] if a dispatch names buffers that do not fit its pass; [`GpuError::DeviceLost`].
+    /// [`GpuError::BadBinding`] and [`GpuError::BadCommand`] if a command names buffers that do not fit it: nothing has
+    /// run then. [`GpuError::BadShader`] if the device does not compile a pass. [`GpuError::DeviceLost`].
     pub fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
         either!(self, e => e.run(recording))
     }

@@ -1,63 +1,70 @@
 //! From a declaration to a pipeline.
 
-use crate::{Access, Gpu, GpuError, PassDesc, wgsl};
+use std::collections::HashMap;
 
+use crate::{Access, BufferId, Gpu, GpuError, PassDesc, wgsl};
+
+/// A pass on a device, and the sets of buffers it has been run with.
 pub(super) struct Pipeline {
     pub pipeline: wgpu::ComputePipeline,
     pub layout: wgpu::BindGroupLayout,
+    pub bind_groups: HashMap<Vec<BufferId>, wgpu::BindGroup>,
 }
 
-pub(super) fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Pipeline, GpuError> {
-    let source = wgsl::expand(pass.wgsl, pass.imports)
-        .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
-    let device = &gpu.device;
-    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(pass.label),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let entries: Vec<_> = pass
-        .bindings
-        .iter()
-        .enumerate()
-        .map(|(i, binding)| wgpu::BindGroupLayoutEntry {
-            binding: i as u32,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: match binding.access {
-                    Access::Uniform => wgpu::BufferBindingType::Uniform,
-                    Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                    Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+impl Pipeline {
+    /// Compiles a pass.
+    pub fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Self, GpuError> {
+        let source = wgsl::expand(pass.wgsl, pass.imports)
+            .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
+        let device = &gpu.device;
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(pass.label),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let entries: Vec<_> = pass
+            .bindings
+            .iter()
+            .enumerate()
+            .map(|(i, binding)| wgpu::BindGroupLayoutEntry {
+                binding: i as u32,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: match binding.access {
+                        Access::Uniform => wgpu::BufferBindingType::Uniform,
+                        Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                        Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+                    },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
                 },
-                has_dynamic_offset: false,
-                min_binding_size: None,
+                count: None,
+            })
+            .collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(pass.label),
+            entries: &entries,
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(pass.label),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(pass.label),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some(pass.entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: pass.constants,
+                // Every pass writes its workgroup memory before it reads it; the tests run with poisoned buffers.
+                zero_initialize_workgroup_memory: false,
             },
-            count: None,
-        })
-        .collect();
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(pass.label),
-        entries: &entries,
-    });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(pass.label),
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(pass.label),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some(pass.entry),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants: pass.constants,
-            // Every pass writes its workgroup memory before it reads it; the tests run with poisoned buffers.
-            zero_initialize_workgroup_memory: false,
-        },
-        cache: None,
-    });
-    if let Some(error) = pollster::block_on(scope.pop()) {
-        return Err(GpuError::BadShader { pass: pass.label, reason: error.to_string() });
+            cache: None,
+        });
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(GpuError::BadShader { pass: pass.label, reason: error.to_string() });
+        }
+        Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
     }
-    Ok(Pipeline { pipeline, layout })
 }

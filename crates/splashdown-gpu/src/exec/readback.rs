@@ -15,7 +15,7 @@ pub struct Readback<T> {
 
 enum State {
     Ready(Vec<u8>),
-    Mapping { staging: wgpu::Buffer, status: Arc<AtomicU8> },
+    Mapping { staging: wgpu::Buffer, submission: wgpu::SubmissionIndex, status: Arc<AtomicU8> },
 }
 
 const PENDING: u8 = 0;
@@ -26,14 +26,14 @@ pub(super) fn ready<T: GpuElement>(data: Vec<T>) -> Readback<T> {
     Readback { state: State::Ready(bytemuck::cast_slice(&data).to_vec()), element: PhantomData }
 }
 
-/// Starts to map a staging buffer that a submission has filled.
-pub(super) fn mapping<T>(staging: wgpu::Buffer) -> Readback<T> {
+/// Starts to map a staging buffer that a submission fills.
+pub(super) fn mapping<T>(staging: wgpu::Buffer, submission: wgpu::SubmissionIndex) -> Readback<T> {
     let status = Arc::new(AtomicU8::new(PENDING));
     let report = Arc::clone(&status);
     staging.map_async(wgpu::MapMode::Read, .., move |result| {
         report.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
     });
-    Readback { state: State::Mapping { staging, status }, element: PhantomData }
+    Readback { state: State::Mapping { staging, submission, status }, element: PhantomData }
 }
 
 impl<T: GpuElement> Readback<T> {
@@ -51,16 +51,16 @@ impl<T: GpuElement> Readback<T> {
         }
     }
 
-    /// The data, waiting for it if need be.
+    /// The data, waiting for it if need be, but not for work submitted after the request.
     ///
     /// # Errors
     /// If the device was lost.
     pub fn wait(self, executor: &mut Executor) -> Result<Vec<T>, GpuError> {
         match self.state {
             State::Ready(bytes) => Ok(bytemuck::pod_collect_to_vec(&bytes)),
-            State::Mapping { staging, status } => {
-                if status.load(Ordering::Acquire) == PENDING {
-                    executor.wait()?;
+            State::Mapping { staging, submission, status } => {
+                if let (PENDING, Executor::Gpu(gpu)) = (status.load(Ordering::Acquire), executor) {
+                    gpu.wait_for(Some(submission))?;
                 }
                 let lost = || GpuError::DeviceLost { reason: "a read-back failed".into() };
                 if status.load(Ordering::Acquire) != MAPPED {

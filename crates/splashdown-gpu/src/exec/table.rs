@@ -1,6 +1,6 @@
 //! What both executors know about their buffers, and the check of a dispatch against it.
 
-use crate::{Access, BufferId, GpuElement, GpuError, PassDesc};
+use crate::{Access, BufferId, Command, Flag, GpuElement, GpuError, Grid, PassDesc, Recording};
 
 /// A buffer's name, type and length.
 #[derive(Clone, Debug)]
@@ -18,8 +18,22 @@ impl Meta {
     }
 
     /// WebGPU binds no empty buffers, so the smallest has room for one element.
-    pub fn bytes(&self) -> usize {
-        self.size * self.len.max(1)
+    pub fn bytes(&self) -> u64 {
+        self.size as u64 * self.len.max(1) as u64
+    }
+
+    /// Refuses more elements than 32-bit numbers can tell apart: passes have no others.
+    pub fn check_len(&self) -> Result<(), GpuError> {
+        if u32::try_from(self.len).is_ok() {
+            return Ok(());
+        }
+        Err(GpuError::TooLarge {
+            label: self.label.clone(),
+            len: self.len as u64,
+            bytes: self.bytes(),
+            limit: u64::from(u32::MAX) * self.size as u64,
+            fits: u64::from(u32::MAX),
+        })
     }
 }
 
@@ -44,7 +58,7 @@ impl Table {
     }
 
     pub fn bytes(&self) -> u64 {
-        self.metas.iter().map(|meta| meta.bytes() as u64).sum()
+        self.metas.iter().map(Meta::bytes).sum()
     }
 
     /// The byte that new buffers are filled with.
@@ -52,33 +66,94 @@ impl Table {
         if self.poison { 0xff } else { 0 }
     }
 
-    /// Compares a dispatch's buffers with the pass's declaration.
-    pub fn check(&self, pass: &'static PassDesc, buffers: &[BufferId]) -> Result<(), GpuError> {
-        let bad = |reason| Err(GpuError::BadBinding { pass: pass.label, reason });
+    /// Compares every command with the buffers it names, so that an executor need not look again.
+    pub fn check(&self, recording: &Recording) -> Result<(), GpuError> {
+        let bad = |reason| GpuError::BadCommand { recording: recording.label.clone(), reason };
+        self.check_commands(&recording.commands, &bad)
+    }
+
+    fn check_commands(
+        &self,
+        commands: &[Command],
+        bad: &impl Fn(String) -> GpuError,
+    ) -> Result<(), GpuError> {
+        for command in commands {
+            match command {
+                Command::Dispatch { pass, grid, buffers } => {
+                    self.check_dispatch(pass, buffers)?;
+                    if let Grid::Indirect { buffer, word } = *grid {
+                        self.check_words(buffer, word, 3).map_err(bad)?;
+                        let written = buffers
+                            .iter()
+                            .zip(pass.bindings)
+                            .any(|(id, binding)| *id == buffer && binding.access == Access::ReadWrite);
+                        if written {
+                            return Err(bad(format!(
+                                "pass {} writes to its own indirect arguments",
+                                pass.label
+                            )));
+                        }
+                    }
+                }
+                Command::Copy { from, to } => {
+                    let (source, target) = (self.known(*from).map_err(bad)?, self.known(*to).map_err(bad)?);
+                    if from == to || source.element != target.element || source.len > target.len {
+                        return Err(bad(format!("{source} cannot be copied to {target}")));
+                    }
+                }
+                Command::Clear { buffer } => {
+                    self.known(*buffer).map_err(bad)?;
+                }
+                Command::Repeat { body, until: Flag { buffer, word }, .. } => {
+                    self.check_words(*buffer, *word, 1).map_err(bad)?;
+                    self.check_commands(body, bad)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn known(&self, id: BufferId) -> Result<&Meta, String> {
+        self.metas.get(id.0 as usize).ok_or_else(|| format!("buffer #{} is not of this executor", id.0))
+    }
+
+    fn check_words(&self, id: BufferId, word: u32, count: u64) -> Result<(), String> {
+        let meta = self.known(id)?;
+        if (u64::from(word) + count) * 4 > meta.size as u64 * meta.len as u64 {
+            return Err(format!("{meta} has no {count} words from word {word} on"));
+        }
+        Ok(())
+    }
+
+    fn check_dispatch(&self, pass: &'static PassDesc, buffers: &[BufferId]) -> Result<(), GpuError> {
+        let bad = |reason| GpuError::BadBinding { pass: pass.label, reason };
         if buffers.len() != pass.bindings.len() {
-            return bad(format!("{} buffers given, {} declared", buffers.len(), pass.bindings.len()));
+            return Err(bad(format!("{} buffers given, {} declared", buffers.len(), pass.bindings.len())));
         }
         for (i, (binding, id)) in pass.bindings.iter().zip(buffers).enumerate() {
-            let meta = self.get(*id);
+            let meta = self.known(*id).map_err(bad)?;
             if binding.element != meta.element || binding.size != meta.size {
-                return bad(format!(
-                    "binding {:?} is of {}, buffer {:?} of {}",
-                    binding.name, binding.element, meta.label, meta.element
-                ));
+                return Err(bad(format!(
+                    "binding {:?} is of {}, and given is {meta}",
+                    binding.name, binding.element
+                )));
             }
             if (binding.access == Access::Uniform) != meta.uniform {
-                return bad(format!(
-                    "binding {:?} and buffer {:?}: one is a uniform",
-                    binding.name, meta.label
-                ));
+                return Err(bad(format!("binding {:?} and {meta}: one is a uniform", binding.name)));
             }
             let twice = buffers[..i].iter().zip(pass.bindings).any(|(other, other_binding)| {
                 other == id && [binding.access, other_binding.access].contains(&Access::ReadWrite)
             });
             if twice {
-                return bad(format!("buffer {:?} is bound twice and written", meta.label));
+                return Err(bad(format!("{meta} is bound twice and written")));
             }
         }
         Ok(())
+    }
+}
+
+impl std::fmt::Display for Meta {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "buffer {:?} of {} {}", self.label, self.len, self.element)
     }
 }
