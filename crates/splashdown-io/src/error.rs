@@ -172,9 +172,7 @@ impl WriteCause {
     #[must_use]
     pub fn advice(self) -> &'static str {
         match self {
-            Self::DiskFull => {
-                "free some space or choose another output folder; the files written before are complete"
-            }
+            Self::DiskFull => "free some space or choose another output folder",
             Self::Permission => "choose an output folder you may write to, or change its permissions",
             Self::ReadOnly => "choose an output folder on another file system",
             Self::MissingFolder => {

@@ -18,7 +18,7 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// File name endings that [`write`] understands.
+/// File name endings that [`write()`] understands.
 pub const FORMATS: &[&str] = &[".ply", ".obj"];
 
 impl Mesh {

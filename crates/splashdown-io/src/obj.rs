@@ -2,8 +2,8 @@
 //!
 //! Floats are written with the fewest digits that give the same f32 back. *Why own code:* the format is three kinds
 //! of lines; the known crates read OBJ only, or build the text through `core::fmt`. Numbers are formatted by `zmij`
-//! and `itoa` straight into a buffer: 300,000 triangles with normals take 46 ms instead of 190 ms with `core::fmt`
-//! (one core of the machine the tests run on).
+//! and `itoa` straight into a buffer: 300,000 triangles with normals (23 MB) take 23 ms on one core instead of 67 ms
+//! with `core::fmt`.
 
 use std::io::{self, Write};
 use std::path::Path;

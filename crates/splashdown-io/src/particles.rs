@@ -24,7 +24,7 @@ pub struct Particles {
     pub pressures: Vec<f32>,
 }
 
-/// File name endings that [`write`] understands.
+/// File name endings that [`write()`] understands.
 pub const FORMATS: &[&str] = &[".ply", ".vtu"];
 
 impl Particles {

@@ -115,12 +115,13 @@ impl<'a> Array<'a> {
     }
 
     fn declare(&self, out: &mut dyn Write, offset: &mut u64) -> io::Result<()> {
-        let Self { name, kind, components, .. } = self;
-        writeln!(
-            out,
-            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" \
-             offset=\"{offset}\"/>"
-        )?;
+        let Self { name, kind, .. } = self;
+        write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
+        // As VTK itself does: `meshio` takes an explicit 1 for a matrix of one column.
+        if self.components > 1 {
+            write!(out, " NumberOfComponents=\"{}\"", self.components)?;
+        }
+        writeln!(out, " format=\"appended\" offset=\"{offset}\"/>")?;
         *offset += size_of::<u64>() as u64 + self.bytes();
         Ok(())
     }

@@ -45,7 +45,7 @@ pub struct WrittenFile {
 
 /// The failure of a writer, with what was written before it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{error} ({} files were written before, {lost} were not)", written.len())]
+#[error("{error} ({} files are complete, {lost} were not written)", written.len())]
 pub struct WriteFailure {
     /// The first failure.
     pub error: IoError,

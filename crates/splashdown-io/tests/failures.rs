@@ -4,7 +4,6 @@ mod common;
 
 use std::fs::{self, File};
 use std::io::{self, Write};
-use std::path::Path;
 
 use common::names;
 use splashdown_io::{IoError, WriteCause, atomic, mesh, obj, particles, ply, prepare_folder, vtu};
@@ -120,8 +119,8 @@ fn a_folder_without_permission_is_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_system_that_takes_no_files_is_refused() {
-    if Path::new("/proc/self").exists() {
-        let message = prepare_folder(Path::new("/proc/splashdown")).unwrap_err().to_string();
+    if std::path::Path::new("/proc/self").exists() {
+        let message = prepare_folder(std::path::Path::new("/proc/splashdown")).unwrap_err().to_string();
         assert!(message.contains("/proc/splashdown"), "{message}");
     }
 }

@@ -2,10 +2,9 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
-use std::time::Duration;
 
 use common::names;
 use splashdown_io::{Film, FilmError, FilmOptions, FrameWriter, Job, Picture};
@@ -149,75 +148,85 @@ fn a_film_that_cannot_be_written_carries_the_programs_words() {
     assert!(message.contains("No such file or directory") && message.contains("frame_%04d.png"), "{message}");
 }
 
-/// A program that says it knows H.264 and otherwise does what the test wants.
+/// Children that misbehave, played by shell scripts.
 #[cfg(unix)]
-fn impostor(folder: &Path, body: &str) -> PathBuf {
+mod impostors {
     use std::os::unix::fs::PermissionsExt;
-    let path = folder.join("ffmpeg");
-    let script = format!(
-        "#!/bin/sh\ncase \"$*\" in *-encoders*) echo ' V....D libx264 H.264'; exit 0;; esac\n{body}\n"
-    );
-    std::fs::write(&path, script).unwrap();
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-    path
-}
+    use std::path::PathBuf;
+    use std::time::Duration;
 
-#[cfg(unix)]
-#[test]
-fn a_child_that_dies_midway_is_an_error_with_its_last_words() {
-    let folder = tempfile::tempdir().unwrap();
-    // Takes a little, talks more than a pipe holds, and goes.
-    let body = "head -c 100000 > /dev/null; yes 'so much to say' | head -c 300000 >&2; echo 'the very end' >&2; exit 3";
-    let program = impostor(folder.path(), body);
-    let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
-    for _ in 0..10 {
-        film.push(&picture(640, 480, [0; 4]));
+    use super::*;
+
+    /// A program that says it knows H.264 and otherwise does what the test wants.
+    fn impostor(folder: &Path, body: &str) -> PathBuf {
+        let path = folder.join("ffmpeg");
+        let script = format!(
+            "#!/bin/sh\ncase \"$*\" in *-encoders*) echo ' V....D libx264 H.264'; exit 0;; esac\n{body}\n"
+        );
+        std::fs::write(&path, script).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        path
     }
-    let error = film.finish().unwrap_err();
-    let FilmError::Died { status, log, .. } = &error else { panic!("{error}") };
-    assert!(status.contains('3') && log.ends_with("the very end") && log.len() <= 2000, "{error}");
-    assert_eq!(names(folder.path()), ["ffmpeg"]);
-}
 
-#[cfg(unix)]
-#[test]
-fn a_child_that_leaves_early_with_success_is_an_error_too() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = impostor(folder.path(), "head -c 1000 > /dev/null; exit 0");
-    let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
-    for _ in 0..3 {
-        film.push(&picture(640, 480, [0; 4]));
-    }
-    assert!(matches!(film.finish(), Err(FilmError::Died { .. })));
-}
-
-#[cfg(unix)]
-#[test]
-fn a_child_that_stands_still_is_stopped() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = impostor(folder.path(), "echo 'busy with nothing' >&2; exec sleep 600");
-    let stuck =
-        FilmOptions { program, stall_limit: Duration::from_millis(200), ..options(folder.path(), 640, 480) };
-    // While it is fed, and when it should end.
-    for pictures in [5, 1] {
-        let film = Film::start(stuck.clone()).unwrap();
-        for _ in 0..pictures {
+    #[test]
+    fn a_child_that_dies_midway_is_an_error_with_its_last_words() {
+        let folder = tempfile::tempdir().unwrap();
+        // Takes a little, talks more than a pipe holds, and goes.
+        let body = "head -c 100000 > /dev/null; yes 'so much to say' | head -c 300000 >&2; echo 'the very end' >&2; exit 3";
+        let program = impostor(folder.path(), body);
+        let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
+        for _ in 0..10 {
             film.push(&picture(640, 480, [0; 4]));
         }
         let error = film.finish().unwrap_err();
+        let FilmError::Died { status, log, .. } = &error else { panic!("{error}") };
+        assert!(status.contains('3') && log.ends_with("the very end") && log.len() <= 2000, "{error}");
+        assert_eq!(names(folder.path()), ["ffmpeg"]);
+    }
+
+    #[test]
+    fn a_child_that_leaves_early_with_success_is_an_error_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = impostor(folder.path(), "head -c 1000 > /dev/null; exit 0");
+        let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
+        for _ in 0..3 {
+            film.push(&picture(640, 480, [0; 4]));
+        }
+        assert!(matches!(film.finish(), Err(FilmError::Died { .. })));
+    }
+
+    #[test]
+    fn a_child_that_stands_still_is_stopped() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = impostor(folder.path(), "echo 'busy with nothing' >&2; exec sleep 600");
+        let stuck = FilmOptions {
+            program,
+            stall_limit: Duration::from_millis(200),
+            ..options(folder.path(), 640, 480)
+        };
+        // While it is fed, and when it should end.
+        for pictures in [5, 1] {
+            let film = Film::start(stuck.clone()).unwrap();
+            for _ in 0..pictures {
+                film.push(&picture(640, 480, [0; 4]));
+            }
+            let error = film.finish().unwrap_err();
+            assert!(
+                matches!(&error, FilmError::Stalled { log, .. } if log.contains("busy with nothing")),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_program_without_h264_is_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = impostor(folder.path(), "");
+        std::fs::write(&program, "#!/bin/sh\necho ' V....D mpeg4 MPEG-4'\n").unwrap();
+        let error = Film::start(FilmOptions { program, ..options(folder.path(), 64, 48) }).unwrap_err();
         assert!(
-            matches!(&error, FilmError::Stalled { log, .. } if log.contains("busy with nothing")),
+            matches!(error, FilmError::NoH264 { .. }) && error.to_string().contains("libx264"),
             "{error}"
         );
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn a_program_without_h264_is_told_apart() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = impostor(folder.path(), "");
-    std::fs::write(&program, "#!/bin/sh\necho ' V....D mpeg4 MPEG-4'\n").unwrap();
-    let error = Film::start(FilmOptions { program, ..options(folder.path(), 64, 48) }).unwrap_err();
-    assert!(matches!(error, FilmError::NoH264 { .. }) && error.to_string().contains("libx264"), "{error}");
 }

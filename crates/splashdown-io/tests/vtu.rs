@@ -49,7 +49,7 @@ fn take_apart(file: &[u8]) -> Result<(usize, BTreeMap<String, Found>), String> {
                 let found = Found {
                     section: section.clone(),
                     kind: attribute(line, "type")?,
-                    components: number(attribute(line, "NumberOfComponents")?)?,
+                    components: attribute(line, "NumberOfComponents").map_or(Ok(1), number)?,
                     bytes: data.get(8..8 + length).ok_or("an array reaches past the end")?.to_vec(),
                 };
                 arrays.insert(attribute(line, "Name")?, found);

@@ -84,7 +84,7 @@ fn after_a_failure_earlier_files_stay_and_every_call_says_so() {
     assert_eq!(failure.error, error);
     assert_eq!(failure.written.len(), 2);
     assert!(failure.lost >= 6 && failure.lost.is_multiple_of(2), "{failure}");
-    assert!(failure.to_string().contains("2 files were written before"), "{failure}");
+    assert!(failure.to_string().contains("2 files are complete"), "{failure}");
     assert_eq!(names(&series), ["particles_0000.ply", "particles_0000.vtu"]);
     assert_eq!(ply::read_particles(&series.join("particles_0000.ply")).unwrap(), *particles);
 }
