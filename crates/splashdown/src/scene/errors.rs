@@ -29,9 +29,9 @@ pub struct SceneProblem {
     pub hint: Option<String>,
     /// The line of the file, shortened.
     pub text: Option<String>,
-    /// How many characters the marker under the line is long.
+    /// Where in `text` the marker starts and how long it is, in characters.
     #[serde(skip)]
-    pub(crate) marked: usize,
+    pub(crate) mark: (usize, usize),
 }
 
 /// Something repaired, or legal but probably not meant.
@@ -50,38 +50,31 @@ impl SceneProblem {
             allowed: None,
             hint: (!hint.is_empty()).then(|| hint.to_owned()),
             text: None,
-            marked: 0,
+            mark: (0, 0),
         }
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>, severity: &str) -> fmt::Result {
         write!(f, "{severity}: {}", self.message)?;
-        match (self.line, self.column, &self.text) {
-            (Some(line), Some(column), Some(text)) => {
-                let gutter = line.to_string().len();
-                write!(f, "\n{:gutter$}--> {}:{line}:{column}", "", self.file)?;
-                write!(f, "\n{line} | {text}")?;
-                let before = column - 1;
-                if before < text.chars().count() {
-                    let marks = "^".repeat(self.marked.clamp(1, text.chars().count() - before));
-                    write!(f, "\n{:gutter$} | {:before$}{marks}", "", "")?;
-                }
-                if let Some(allowed) = &self.allowed {
-                    write!(f, "\n{:gutter$} = allowed: {allowed}", "")?;
-                }
-                if let Some(hint) = &self.hint {
-                    write!(f, "\n{:gutter$} = help: {hint}", "")?;
-                }
-            }
-            _ => {
-                write!(f, "\n --> {}", self.file)?;
-                if let Some(allowed) = &self.allowed {
-                    write!(f, "\n  = allowed: {allowed}")?;
-                }
-                if let Some(hint) = &self.hint {
-                    write!(f, "\n  = help: {hint}")?;
-                }
-            }
+        let (Some(line), Some(column), Some(text)) = (self.line, self.column, &self.text) else {
+            write!(f, "\n --> {}", self.file)?;
+            return self.write_advice(f, 1);
+        };
+        let gutter = line.to_string().len();
+        write!(f, "\n{:gutter$}--> {}:{line}:{column}", "", self.file)?;
+        write!(f, "\n{line} | {text}")?;
+        let (start, marked) = self.mark;
+        let rest = text.chars().count().saturating_sub(start);
+        write!(f, "\n{:gutter$} | {:start$}{}", "", "", "^".repeat(marked.clamp(1, rest.max(1))))?;
+        self.write_advice(f, gutter)
+    }
+
+    fn write_advice(&self, f: &mut fmt::Formatter<'_>, gutter: usize) -> fmt::Result {
+        if let Some(allowed) = &self.allowed {
+            write!(f, "\n{:gutter$} = allowed: {allowed}", "")?;
+        }
+        if let Some(hint) = &self.hint {
+            write!(f, "\n{:gutter$} = help: {hint}", "")?;
         }
         Ok(())
     }

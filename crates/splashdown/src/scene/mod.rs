@@ -1,11 +1,56 @@
-//! The scene file: its types, its keys, its errors.
+//! The scene file: from TOML to checked values.
+//!
+//! `keys.rs` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along that table and collects every
+//! problem with its line; `parse.rs` puts the values together; `geometry.rs` and `warnings.rs` compare them with each other. `schema.rs`
+//! writes the same table as a JSON schema and as a page of documentation, so parser, schema and docs cannot disagree.
+//!
+//! ```
+//! let text = r#"
+//!     [scene]
+//!     name = "cube"
+//!     duration = 1.0
+//!     [domain]
+//!     min = [0, 0, 0]
+//!     max = [1, 1, 1]
+//!     [fluid]
+//!     particle_spacing = 0.05
+//!     [[fluid.block]]
+//!     position = [0, 0, 0]
+//!     size = [0.5, 0.5, 0.5]
+//! "#;
+//! let scene = splashdown::scene::Scene::parse(text, "cube.toml")?;
+//! assert_eq!(splashdown::sample::count(&scene), 1000);
+//!
+//! let errors = splashdown::scene::Scene::parse(&text.replace("0.05", "-1"), "cube.toml").unwrap_err();
+//! assert!(errors.to_string().contains("fluid.particle_spacing is -1"));
+//! # Ok::<(), splashdown::scene::SceneErrors>(())
+//! ```
 
 mod choice;
+mod derived;
 mod errors;
+mod framing;
+mod geometry;
+mod keys;
+mod load;
+mod materials;
+mod parse;
+mod presets;
+mod reader;
+mod schema;
+mod source;
+mod spec;
+mod suggest;
 mod types;
+mod values;
+mod warnings;
 
 pub use choice::Choice;
+pub use derived::{Derived, lattice_sum};
 pub use errors::{SceneErrors, SceneProblem, SceneWarning};
+pub use materials::{KnownMaterial, MATERIALS};
+pub use presets::presets;
+pub use schema::{reference, schema};
 pub use types::{
     Block, Camera, ColourBy, DensityMode, Domain, Fluid, Format, KernelKind, Material, Method,
     NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort, SurfaceSettings,

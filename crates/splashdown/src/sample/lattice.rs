@@ -1,0 +1,175 @@
+//! The lattice of one block.
+
+use crate::scene::{Domain, Fluid, Shape};
+
+/// How near a block's face must be to a wall to touch it, in spacings: positions in f32 are not exact.
+const TOUCH: f64 = 0.02;
+/// A particle this near to an earlier block, in spacings, would be pressed against that block's particles. Those stand half a spacing
+/// inside, so three quarters of a spacing is the smallest distance that remains.
+const CROWDED: f64 = 0.25;
+
+/// A shape in f64.
+#[derive(Debug, Clone, Copy)]
+enum Solid {
+    Box { min: [f64; 3], max: [f64; 3] },
+    Sphere { center: [f64; 3], radius: f64 },
+}
+
+impl Solid {
+    fn new(shape: &Shape) -> Self {
+        match *shape {
+            Shape::Box { min, size } => {
+                let min = min.to_array().map(f64::from);
+                Self::Box { min, max: std::array::from_fn(|a| min[a] + f64::from(size[a])) }
+            }
+            Shape::Sphere { center, radius } => {
+                Self::Sphere { center: center.to_array().map(f64::from), radius: f64::from(radius) }
+            }
+        }
+    }
+
+    fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        match *self {
+            Self::Box { min, max } => (min, max),
+            Self::Sphere { center, radius } => (center.map(|x| x - radius), center.map(|x| x + radius)),
+        }
+    }
+
+    /// Whether a point is inside, or no further than `margin` outside.
+    fn holds(&self, point: [f64; 3], margin: f64) -> bool {
+        match self {
+            Self::Box { min, max } => {
+                (0..3).all(|a| point[a] > min[a] - margin && point[a] < max[a] + margin)
+            }
+            Self::Sphere { center, radius } => {
+                let squared: f64 = (0..3).map(|a| (point[a] - center[a]).powi(2)).sum();
+                squared <= (radius + margin).powi(2)
+            }
+        }
+    }
+}
+
+/// Particles of a shape by its volume.
+pub(super) fn estimate(shape: &Shape, spacing: f64) -> f64 {
+    let cells = |length: f32| (f64::from(length) / spacing).max(0.0);
+    match *shape {
+        Shape::Box { size, .. } => size.to_array().map(|length| cells(length).round()).into_iter().product(),
+        Shape::Sphere { radius, .. } => cells(radius).powi(3) * (4.0 / 3.0 * std::f64::consts::PI),
+    }
+}
+
+/// Makes the particles of one block.
+#[derive(Debug)]
+pub(crate) struct Sampler {
+    solid: Solid,
+    first: [f64; 3],
+    counts: [u64; 3],
+    spacing: f64,
+    /// Earlier blocks that may overlap this one.
+    earlier: Vec<Solid>,
+    /// Half a spacing inside the closed walls, without limit at open sides.
+    room: ([f64; 3], [f64; 3]),
+}
+
+impl Sampler {
+    /// One for each block of the fluid.
+    pub fn all(domain: &Domain, fluid: &Fluid) -> Vec<Self> {
+        let spacing = f64::from(fluid.particle_spacing);
+        let solids: Vec<Solid> = fluid.blocks.iter().map(|block| Solid::new(&block.shape)).collect();
+        (0..solids.len()).map(|index| Self::new(domain, spacing, &solids[..=index])).collect()
+    }
+
+    fn new(domain: &Domain, spacing: f64, solids: &[Solid]) -> Self {
+        let (solid, before) = (solids[solids.len() - 1], &solids[..solids.len() - 1]);
+        let (low, high) = solid.bounds();
+        let walls = |axis: usize| {
+            let place = [domain.min[axis], domain.max[axis]].map(f64::from);
+            (domain.closed[axis], place)
+        };
+        let mut first = [0.0; 3];
+        let mut counts = [0; 3];
+        for axis in 0..3 {
+            let length = (high[axis] - low[axis]) / spacing;
+            let (closed, place) = walls(axis);
+            let touches_low = closed[0] && (low[axis] - place[0]).abs() <= TOUCH * spacing;
+            let touches_high = closed[1] && (place[1] - high[axis]).abs() <= TOUCH * spacing;
+            let (count, start) = match (&solid, touches_low, touches_high) {
+                (Solid::Sphere { .. }, ..) => {
+                    let half = (length * 0.5).ceil();
+                    (half * 2.0, (length * 0.5 - half + 0.5) * spacing)
+                }
+                // From wall to wall nothing may be squeezed in.
+                (_, true, true) => centred((length + TOUCH).floor(), length, spacing),
+                (_, true, false) => (length.round(), 0.5 * spacing),
+                (_, false, true) => (length.round(), (length - length.round() + 0.5) * spacing),
+                (_, false, false) => centred(length.round(), length, spacing),
+            };
+            counts[axis] = count as u64;
+            first[axis] = low[axis] + start;
+        }
+        let near = |other: &&Solid| {
+            let (other_low, other_high) = other.bounds();
+            let reach = CROWDED * spacing;
+            (0..3).all(|a| other_low[a] - reach < high[a] && other_high[a] + reach > low[a])
+        };
+        let room = |axis: usize, side: usize| {
+            let (closed, place) = walls(axis);
+            match (closed[side], side) {
+                (true, 0) => place[0] + (0.5 - TOUCH) * spacing,
+                (true, _) => place[1] - (0.5 - TOUCH) * spacing,
+                (false, 0) => f64::NEG_INFINITY,
+                (false, _) => f64::INFINITY,
+            }
+        };
+        Self {
+            solid,
+            first,
+            counts,
+            spacing,
+            earlier: before.iter().filter(near).copied().collect(),
+            room: (std::array::from_fn(|a| room(a, 0)), std::array::from_fn(|a| room(a, 1))),
+        }
+    }
+
+    /// Calls `visit(position, free)` for each particle, x fastest; `free` is false where an earlier block already is.
+    pub fn for_each(&self, mut visit: impl FnMut([f64; 3], bool)) {
+        let at = |axis: usize, index: u64| self.first[axis] + index as f64 * self.spacing;
+        for k in 0..self.counts[2] {
+            for j in 0..self.counts[1] {
+                for i in 0..self.counts[0] {
+                    let point = [at(0, i), at(1, j), at(2, k)];
+                    if self.is_filled(point) {
+                        let crowded = |solid: &Solid| solid.holds(point, CROWDED * self.spacing);
+                        visit(point, !self.earlier.iter().any(crowded));
+                    }
+                }
+            }
+        }
+    }
+
+    /// How many particles it makes, and how many it leaves out because an earlier block is there.
+    pub fn counts(&self) -> (u64, u64) {
+        if let (Solid::Box { .. }, true) = (&self.solid, self.earlier.is_empty()) {
+            return (self.counts.into_iter().fold(1, u64::saturating_mul), 0);
+        }
+        let (mut made, mut left_out) = (0, 0);
+        self.for_each(|_, free| if free { made += 1 } else { left_out += 1 });
+        (made, left_out)
+    }
+
+    /// A box is filled whole; a ball keeps away from walls, which it would otherwise touch with a few particles.
+    fn is_filled(&self, point: [f64; 3]) -> bool {
+        match &self.solid {
+            Solid::Box { .. } => true,
+            ball => {
+                let in_room = (0..3).all(|a| point[a] >= self.room.0[a] && point[a] <= self.room.1[a]);
+                in_room && ball.holds(point, 0.0)
+            }
+        }
+    }
+}
+
+/// `count` particles in the middle of a length given in spacings.
+fn centred(count: f64, length: f64, spacing: f64) -> (f64, f64) {
+    (count, (length - count + 1.0) * 0.5 * spacing)
+}

@@ -1,0 +1,291 @@
+//! Every key of the scene file, declared once: the reader, the JSON schema, the reference and the messages come from here.
+
+use super::choice::{Choice, choices};
+use super::materials::MATERIALS;
+use super::spec::{Kind, Table, Word, a_number, a_vector, key, range, words};
+use super::types::{
+    ColourBy, DensityMode, Format, KernelKind, Method, NegativePressure, PictureKind, Sort, SurfaceTension,
+};
+
+/// Coordinates beyond this many metres are surely a mistake.
+const FAR: f64 = 10_000.0;
+/// Most blocks in a scene.
+const MAX_BLOCKS: usize = 256;
+
+choices! {
+    /// A side of the domain.
+    Side {
+        /// The side at min x.
+        XMin = "x_min",
+        /// The side at max x.
+        XMax = "x_max",
+        /// The floor.
+        YMin = "y_min",
+        /// The lid.
+        YMax = "y_max",
+        /// The side at min z.
+        ZMin = "z_min",
+        /// The side at max z.
+        ZMax = "z_max",
+    }
+    /// The word for a block's shape.
+    ShapeWord {
+        /// An axis-aligned box: needs `position` and `size`.
+        Box = "box",
+        /// A ball: needs `center` and `radius`.
+        Sphere = "sphere",
+    }
+}
+
+impl Side {
+    /// Its place in [`super::Domain::closed`]: axis and side.
+    pub fn place(self) -> (usize, usize) {
+        let index = Self::ALL.iter().position(|(side, ..)| *side == self).unwrap_or(0);
+        (index / 2, index % 2)
+    }
+}
+
+fn materials() -> Vec<Word> {
+    MATERIALS.iter().map(|known| (known.name, known.about)).collect()
+}
+
+pub(crate) static ROOT: Table = Table {
+    about: "A scene for Splashdown: SI units, y is up.",
+    keys: &[
+        key("scene", Kind::Table(&SCENE), "What the scene is called and how long it runs.").required(),
+        key("domain", Kind::Table(&DOMAIN), "The box that holds the fluid.").required(),
+        key("fluid", Kind::Table(&FLUID), "The fluid and where it starts.").required(),
+        key("solver", Kind::Table(&SOLVER), "How the fluid is computed."),
+        key("surface", Kind::Table(&SURFACE), "How the fluid's surface is extracted."),
+        key(
+            "camera",
+            Kind::Table(&CAMERA),
+            "From where the fluid is seen; without it the whole domain is in view.",
+        ),
+        key("output", Kind::Table(&OUTPUT), "What is written."),
+    ],
+};
+
+static SCENE: Table = Table {
+    about: "What the scene is called and how long it runs.",
+    keys: &[
+        key("name", Kind::Name, "Short name; also the name of the output folder.")
+            .required()
+            .also(&["title"]),
+        key("duration", a_number(1e-4, 3600.0, "s"), "Simulated time.")
+            .required()
+            .also(&["time", "end_time", "t_end"]),
+        key("frame_rate", a_number(0.1, 10_000.0, "1/s"), "Frames per simulated second.")
+            .default("50.0")
+            .also(&["fps", "rate"]),
+        key("gravity", a_vector(1000.0, "m/s^2"), "Gravity.").default("[0.0, -9.81, 0.0]").also(&["g"]),
+    ],
+};
+
+static DOMAIN: Table = Table {
+    about: "The box that holds the fluid.",
+    keys: &[
+        key("min", a_vector(FAR, "m"), "Lower corner.").required().also(&["lower", "origin"]),
+        key("max", a_vector(FAR, "m"), "Upper corner.").required().also(&["upper"]),
+        key("open", Kind::Words(words::<Side>), "Sides without a wall.").default("[]"),
+        key("shake", Kind::Table(&SHAKE), "Moves the whole tank by amplitude * sin(2 pi t / period)."),
+    ],
+};
+
+static SHAKE: Table = Table {
+    about: "A harmonic motion of the tank.",
+    keys: &[
+        key("amplitude", a_vector(100.0, "m"), "Amplitude along each axis.").required(),
+        key("period", a_number(1e-3, 3600.0, "s"), "Period.").required(),
+    ],
+};
+
+static FLUID: Table = Table {
+    about: "The fluid and where it starts.",
+    keys: &[
+        key(
+            "particle_spacing",
+            a_number(1e-5, 10.0, "m"),
+            "Distance of neighbouring particles: the resolution.",
+        )
+        .required()
+        .also(&["spacing", "dx", "dp", "resolution", "particle_radius", "particle_size"]),
+        key("material", Kind::Word(materials), "A liquid with its measured properties at 20 °C.")
+            .default("\"water\""),
+        key("density", a_number(1.0, 30_000.0, "kg/m^3"), "Density at rest, in place of the material's.")
+            .also(&["rest_density", "rho", "rho0", "density0"]),
+        key("viscosity", a_number(0.0, 100.0, "m^2/s"), "Kinematic viscosity, in place of the material's.")
+            .also(&["nu", "kinematic_viscosity", "mu"]),
+        key("surface_tension", a_number(0.0, 10.0, "N/m"), "Surface tension, in place of the material's.")
+            .also(&["sigma"]),
+        key("block", Kind::Tables(&BLOCK, MAX_BLOCKS), "Pieces of fluid at the start.")
+            .required()
+            .also(&["blocks"]),
+    ],
+};
+
+static BLOCK: Table = Table {
+    about: "A piece of fluid at the start.",
+    keys: &[
+        key("shape", Kind::Word(words::<ShapeWord>), "A box (position, size) or a sphere (center, radius).")
+            .default("\"box\""),
+        key("position", a_vector(FAR, "m"), "Lower corner of a box.").also(&["min", "corner", "origin"]),
+        key("size", Kind::Numbers(3, range(1e-5, FAR, "m")), "Edge lengths of a box.")
+            .also(&["max", "extent"]),
+        key("center", a_vector(FAR, "m"), "Centre of a sphere.").also(&["centre"]),
+        key("radius", a_number(1e-5, FAR, "m"), "Radius of a sphere."),
+        key("velocity", a_vector(1000.0, "m/s"), "Velocity at the start.").default("[0.0, 0.0, 0.0]"),
+    ],
+};
+
+static SOLVER: Table = Table {
+    about: "How the fluid is computed.",
+    keys: &[
+        key("method", Kind::Word(words::<Method>), "The method.")
+            .default("\"wcsph\"")
+            .also(&["type", "name"]),
+        key("kernel", Kind::Word(words::<KernelKind>), "The kernel of wcsph.").default("\"wendland_c2\""),
+        key(
+            "support_ratio",
+            a_number(1.5, 4.0, ""),
+            "Support radius of the kernel over the particle spacing.",
+        )
+        .default("2.0")
+        .also(&["support_radius", "smoothing_length", "h"]),
+        key(
+            "density",
+            Kind::Word(words::<DensityMode>),
+            "How the density is found; continuity is for wcsph.",
+        )
+        .default("\"summation\""),
+        key(
+            "negative_pressure",
+            Kind::Word(words::<NegativePressure>),
+            "What happens to pressures below zero. Default: clamp with summation, keep with continuity.",
+        ),
+        key(
+            "sound_speed",
+            a_number(1e-3, 10_000.0, "m/s"),
+            "Speed of sound. Default: ten times the largest speed to expect.",
+        )
+        .also(&["c0", "c", "speed_of_sound"]),
+        key(
+            "stiffness",
+            a_number(1e-6, 1e12, ""),
+            "Instead of sound_speed: Tait's constant in Pa (wcsph) or k in m^2/s^2 (mueller2003).",
+        )
+        .also(&["k"]),
+        key(
+            "exponent",
+            a_number(1.0, 10.0, ""),
+            "Exponent of the equation of state. Default: 7 for wcsph, 1 for mueller2003.",
+        )
+        .also(&["gamma"]),
+        key("artificial_viscosity", a_number(0.0, 2.0, ""), "Monaghan's factor alpha; wcsph.")
+            .default("0.05")
+            .also(&["alpha"]),
+        key("density_diffusion", a_number(0.0, 1.0, ""), "The factor delta of delta-SPH; with continuity.")
+            .default("0.1")
+            .also(&["delta"]),
+        key(
+            "surface_tension",
+            Kind::Word(words::<SurfaceTension>),
+            "The model of surface tension: akinci2013 for wcsph, mueller2003 for mueller2003.",
+        )
+        .default("\"none\""),
+        key("wall_friction", a_number(0.0, 1.0, ""), "0: the fluid slips along walls; 1: it sticks.")
+            .default("0.0"),
+        key(
+            "cfl_factor",
+            a_number(0.01, 1.0, ""),
+            "Time step as a part of half the support radius over the speed of sound.",
+        )
+        .default("0.3")
+        .also(&["cfl", "courant"]),
+        key("max_dt", a_number(1e-9, 1.0, "s"), "Longest time step.").default("0.005").also(&[
+            "dt",
+            "time_step",
+            "timestep",
+        ]),
+        key("min_dt", a_number(1e-12, 1.0, "s"), "Shortest time step.").default("1e-7"),
+        key("sort", Kind::Word(words::<Sort>), "How particles are sorted into cells.")
+            .default("\"counting\""),
+    ],
+};
+
+static SURFACE: Table = Table {
+    about: "How the fluid's surface is extracted.",
+    keys: &[
+        key("enabled", Kind::Boolean, "Whether it is extracted.").default("true"),
+        key(
+            "cell_size",
+            a_number(1e-6, 10.0, "m"),
+            "Edge of a marching-cubes cell. Default: half the particle spacing.",
+        )
+        .also(&["resolution", "cube_size"]),
+        key("iso_level", a_number(0.05, 0.95, ""), "Where the surface lies, as a part of the inner density.")
+            .default("0.6")
+            .also(&["threshold", "iso", "isovalue"]),
+        key("smoothing_iterations", Kind::Integer(range(0.0, 100.0, "")), "Rounds of smoothing.")
+            .default("5")
+            .also(&["smoothing"]),
+        key(
+            "support_ratio",
+            a_number(1.0, 6.0, ""),
+            "Support radius of the field over the particle spacing.",
+        )
+        .default("2.0"),
+    ],
+};
+
+static CAMERA: Table = Table {
+    about: "From where the fluid is seen.",
+    keys: &[
+        key("target", a_vector(FAR, "m"), "The point in the middle. Default: the middle of the domain.")
+            .also(&["look_at", "center"]),
+        key(
+            "distance",
+            a_number(1e-4, FAR, "m"),
+            "Distance of the eye from the target. Default: the whole domain is in view.",
+        ),
+        key("azimuth", a_number(-360.0, 360.0, "degrees"), "Angle around y: 0 looks from +z, 90 from +x.")
+            .default("25.0")
+            .also(&["yaw", "angle"]),
+        key("elevation", a_number(-89.0, 89.0, "degrees"), "Angle above the horizon.")
+            .default("20.0")
+            .also(&["pitch"]),
+        key("field_of_view", a_number(5.0, 120.0, "degrees"), "Vertical angle of view.")
+            .default("35.0")
+            .also(&["fov"]),
+        key("orbit_speed", a_number(-3600.0, 3600.0, "degrees/s"), "How fast the azimuth grows.")
+            .default("0.0"),
+    ],
+};
+
+static OUTPUT: Table = Table {
+    about: "What is written.",
+    keys: &[
+        key("formats", Kind::Words(words::<Format>), "File formats of the frames.")
+            .default("[\"ply\"]")
+            .also(&["format"]),
+        key("pictures", Kind::Words(words::<PictureKind>), "Pictures of each frame.")
+            .default("[\"particles\", \"surface\"]")
+            .also(&["picture", "images"]),
+        key(
+            "picture_size",
+            Kind::Integers(2, range(16.0, 8192.0, "pixels")),
+            "Width and height of a picture; even numbers for a film.",
+        )
+        .default("[1280, 720]")
+        .also(&["resolution", "size"]),
+        key("colour_by", Kind::Word(words::<ColourBy>), "What colours the particles.").default("\"speed\""),
+        key("film", Kind::Boolean, "Whether the pictures become a film.")
+            .default("true")
+            .also(&["video", "movie"]),
+        key(
+            "colour_range",
+            Kind::Numbers(2, range(-1e12, 1e12, "")),
+            "The quantity at both ends of the colour bar. Default: chosen from the scene.",
+        ),
+    ],
+};

@@ -1,0 +1,86 @@
+//! From a path or a text to a scene.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::errors::{SceneErrors, SceneProblem};
+use super::parse;
+use super::types::Scene;
+
+/// Longest scene file in bytes; a larger file is surely not one.
+const MAX_BYTES: u64 = 4 << 20;
+
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, at once: unreadable, too large, not text, not TOML, unknown or missing keys, values out of range,
+    /// values that contradict one another.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneErrors> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let refuse =
+            |message: String, hint: &str| SceneErrors::one(SceneProblem::of_file(&file, message, hint));
+        if path.is_dir() {
+            return Err(refuse(
+                "this is a folder, not a scene file".into(),
+                "name a file that ends in .toml",
+            ));
+        }
+        let opened = File::open(path).map_err(|error| {
+            let hint = match error.kind() {
+                std::io::ErrorKind::NotFound => {
+                    "`splashdown scenes` lists the scenes that come with the program"
+                }
+                _ => "",
+            };
+            refuse(format!("cannot open the scene file: {error}"), hint)
+        })?;
+        let mut bytes = Vec::new();
+        opened
+            .take(MAX_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| refuse(format!("cannot read the scene file: {error}"), ""))?;
+        if bytes.len() as u64 > MAX_BYTES {
+            let message =
+                format!("the file is larger than {} MiB: this is not a scene file", MAX_BYTES >> 20);
+            return Err(refuse(message, "scene files are short texts in TOML"));
+        }
+        Self::from_bytes(&bytes, &file).map(|scene| Self { source: Some(path.to_owned()), ..scene })
+    }
+
+    /// Checks the text of a scene file; `file_name` is for messages.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneErrors> {
+        Self::from_bytes(text.as_bytes(), file_name)
+    }
+
+    fn from_bytes(bytes: &[u8], file: &str) -> Result<Self, SceneErrors> {
+        let refuse = |message: String| {
+            SceneErrors::one(SceneProblem::of_file(
+                file,
+                message,
+                "scene files are texts in TOML, encoded as UTF-8",
+            ))
+        };
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(refuse(format!(
+                "the text is larger than {} MiB: this is not a scene",
+                MAX_BYTES >> 20
+            )));
+        }
+        if bytes.contains(&0) {
+            return Err(refuse("this is a binary file, not a scene".into()));
+        }
+        match std::str::from_utf8(bytes) {
+            Ok(text) => parse::parse(text.strip_prefix('\u{feff}').unwrap_or(text), file),
+            Err(error) => {
+                let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
+                Err(refuse(format!("line {line} is not UTF-8 text")))
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The sections `[fluid]` and `[[fluid.block]]`.
+
+use glam::Vec3;
+
+use super::{Part, needed};
+use crate::scene::keys::ShapeWord;
+use crate::scene::reader::Section;
+use crate::scene::types::{Block, Material, Shape};
+
+pub(super) fn read_material(section: &Section<'_>) -> Part<Material> {
+    let name = section.word("material");
+    let density = section.number("density");
+    let viscosity = section.number("viscosity");
+    let surface_tension = section.number("surface_tension");
+    let known = name?.and_then(|name| Material::named(&name)).unwrap_or_else(Material::water);
+    Ok(Material {
+        name: known.name,
+        rest_density: density?.unwrap_or(known.rest_density),
+        viscosity: viscosity?.unwrap_or(known.viscosity),
+        surface_tension: surface_tension?.unwrap_or(known.surface_tension),
+    })
+}
+
+pub(super) fn read_block(section: &Section<'_>) -> Part<Block> {
+    let shape = section.choice::<ShapeWord>("shape");
+    let velocity = section.numbers("velocity");
+    let position = section.numbers::<3>("position");
+    let size = section.numbers::<3>("size");
+    let center = section.numbers::<3>("center");
+    let radius = section.number("radius");
+    let word = shape?.unwrap_or(ShapeWord::Box);
+    let (needs, refuses) = match word {
+        ShapeWord::Box => (["position", "size"], ["center", "radius"]),
+        ShapeWord::Sphere => (["center", "radius"], ["position", "size"]),
+    };
+    let mut fits = Ok(());
+    for name in needs.into_iter().filter(|name| !section.has(name)) {
+        let message =
+            format!("{} is missing: a {word} needs {} and {}", section.key_path(name), needs[0], needs[1]);
+        fits = Err(section.complain(name, message, "", ""));
+    }
+    for name in refuses.into_iter().filter(|name| section.has(name)) {
+        let message = format!("{} does not belong to a {word}", section.key_path(name));
+        let hint = format!("a {word} needs {} and {}", needs[0], needs[1]);
+        fits = Err(section.complain(name, message, "", &hint));
+    }
+    fits?;
+    let shape = match word {
+        ShapeWord::Box => Shape::Box { min: needed(position)?.into(), size: needed(size)?.into() },
+        ShapeWord::Sphere => Shape::Sphere { center: needed(center)?.into(), radius: needed(radius)? },
+    };
+    Ok(Block { shape, velocity: velocity?.map_or(Vec3::ZERO, Vec3::from) })
+}

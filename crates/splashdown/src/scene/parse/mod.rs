@@ -1,0 +1,172 @@
+//! From text to [`Scene`]: each section is read on its own, so that one mistake does not hide another.
+
+mod fluid;
+mod solver;
+mod view;
+
+use glam::Vec3;
+use toml::de::DeTable;
+
+use super::errors::{SceneErrors, SceneProblem};
+use super::keys::{ROOT, Side};
+use super::reader::{Read, Reader, Reported, Section};
+use super::source::Source;
+use super::types::{Domain, Fluid, Scene, Shake};
+use super::{geometry, warnings};
+
+/// Most frames of a run.
+const MAX_FRAMES: f64 = 100_000.0;
+
+/// A section's value, or a problem that is in the list.
+type Part<T> = Result<T, Reported>;
+
+pub(crate) fn parse(text: &str, file: &str) -> Result<Scene, SceneErrors> {
+    if text.trim().is_empty() {
+        let message = "the scene file is empty";
+        return Err(SceneErrors::one(SceneProblem::of_file(
+            file,
+            message,
+            "`splashdown scenes` lists scenes to start from",
+        )));
+    }
+    let reader = Reader::new(Source::new(file, text));
+    let (table, mistakes) = DeTable::parse_recoverable(text);
+    for mistake in &mistakes {
+        let span = mistake.span().unwrap_or(0..0);
+        reader.report(reader.source.problem(
+            span,
+            String::new(),
+            format!("not valid TOML: {}", mistake.message().trim()),
+        ));
+    }
+    // After a mistake of grammar the tree is a guess; complaints about it would mislead.
+    let scene = if mistakes.is_empty() {
+        read(&Section::root(&reader, table.get_ref(), &ROOT))
+    } else {
+        Err(Reported)
+    };
+    let (errors, warnings) = reader.finish();
+    match scene {
+        Ok(scene) if errors.is_empty() => Ok(Scene { warnings, ..scene }),
+        _ => Err(SceneErrors { file: file.to_owned(), errors }),
+    }
+}
+
+fn read(root: &Section<'_>) -> Part<Scene> {
+    let header = root.section("scene").and_then(|section| read_header(&section));
+    let domain_section = root.section("domain");
+    let fluid_section = root.section("fluid");
+    let solver_section = root.section("solver");
+    let domain = domain_section.as_ref().map_err(|r| *r).and_then(read_domain);
+    let fluid = fluid_section.as_ref().map_err(|r| *r).and_then(|section| {
+        let spacing = section.number("particle_spacing");
+        let blocks = section
+            .sections("block")
+            .map(|list| list.into_iter().map(|s| (fluid::read_block(&s), s)).collect());
+        let material = fluid::read_material(section);
+        // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block outside the tank.
+        let sound = geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
+        let blocks: Vec<geometry::ReadBlock<'_>> = blocks?;
+        let blocks = blocks.into_iter().map(|(block, _)| block).collect::<Part<Vec<_>>>()?;
+        let fluid = Fluid { particle_spacing: spacing?.ok_or(Reported)?, material: material?, blocks };
+        sound.map(|()| fluid)
+    });
+    let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
+    let surface =
+        root.section("surface").and_then(|section| view::read_surface(&section, fluid.as_ref().ok()));
+    let output =
+        root.section("output").and_then(|section| view::read_output(&section, surface.as_ref().ok()));
+    let camera = root.section("camera").and_then(|section| {
+        let picture = output.as_ref().map_or([16, 9], |output| output.picture_size);
+        let duration = header.as_ref().map_or(0.0, |header| header.duration);
+        view::read_camera(&section, domain.as_ref().ok(), picture, duration)
+    });
+    let header = header?;
+    let scene = Scene {
+        name: header.name,
+        duration: header.duration,
+        frame_rate: header.frame_rate,
+        gravity: header.gravity,
+        domain: domain?,
+        fluid: fluid?,
+        solver: solver?,
+        surface: surface?,
+        camera: camera?,
+        output: output?,
+        warnings: Vec::new(),
+        source: None,
+    };
+    warnings::check(&scene, &fluid_section?, &solver_section?);
+    Ok(scene)
+}
+
+struct Header {
+    name: String,
+    duration: f32,
+    frame_rate: f32,
+    gravity: Vec3,
+}
+
+fn read_header(section: &Section<'_>) -> Part<Header> {
+    let name = section.name("name");
+    let duration = section.number("duration");
+    let frame_rate = section.number("frame_rate");
+    let gravity = section.numbers("gravity");
+    let header = Header {
+        name: needed(name)?,
+        duration: needed(duration)?,
+        frame_rate: frame_rate?.unwrap_or(50.0),
+        gravity: gravity?.map_or(Vec3::new(0.0, -9.81, 0.0), Vec3::from),
+    };
+    let frames = f64::from(header.duration) * f64::from(header.frame_rate);
+    if frames > MAX_FRAMES {
+        let message = format!(
+            "{} s at {} frames per second are {frames:.0} frames",
+            header.duration, header.frame_rate
+        );
+        return Err(section.complain(
+            "duration",
+            message,
+            &format!("{MAX_FRAMES} frames"),
+            "lower duration or frame_rate",
+        ));
+    }
+    Ok(header)
+}
+
+fn read_domain(section: &Section<'_>) -> Part<Domain> {
+    let min = section.numbers("min");
+    let max = section.numbers("max");
+    let open = section.choices::<Side>("open");
+    let shake = section
+        .section("shake")
+        .and_then(|shake| if shake.exists() { read_shake(&shake).map(Some) } else { Ok(None) });
+    let (min, max): (Vec3, Vec3) = (needed(min)?.into(), needed(max)?.into());
+    let mut closed = [[true; 2]; 3];
+    for (axis, side) in open?.unwrap_or_default().into_iter().map(Side::place) {
+        closed[axis][side] = false;
+    }
+    if let Some(axis) = (0..3).find(|axis| max[*axis] <= min[*axis]) {
+        let axis_name = ["x", "y", "z"][axis];
+        let message =
+            format!("domain.max is not above domain.min along {axis_name}: {} <= {}", max[axis], min[axis]);
+        return Err(section.complain(
+            "max",
+            message,
+            &format!("{axis_name} above {}", min[axis]),
+            "max is a corner, not a size",
+        ));
+    }
+    Ok(Domain { min, max, closed, shake: shake? })
+}
+
+fn read_shake(section: &Section<'_>) -> Part<Shake> {
+    let amplitude = section.numbers("amplitude");
+    let period = section.number("period");
+    Ok(Shake { amplitude: needed(amplitude)?.into(), period: needed(period)? })
+}
+
+/// The value of a required key; its absence has been reported with the section.
+fn needed<T>(value: Read<T>) -> Part<T> {
+    value?.ok_or(Reported)
+}

@@ -1,0 +1,102 @@
+//! The section `[solver]`.
+
+use super::Part;
+use crate::scene::reader::Section;
+use crate::scene::types::{DensityMode, Method, NegativePressure, Solver, SurfaceTension};
+
+pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
+    let standard = Solver::default();
+    let method = section.choice("method");
+    let kernel = section.choice("kernel");
+    let support_ratio = section.number("support_ratio");
+    let density = section.choice("density");
+    let negative_pressure = section.choice("negative_pressure");
+    let sound_speed = section.number("sound_speed");
+    let stiffness = section.number("stiffness");
+    let exponent = section.number("exponent");
+    let artificial_viscosity = section.number("artificial_viscosity");
+    let density_diffusion = section.number("density_diffusion");
+    let surface_tension = section.choice("surface_tension");
+    let wall_friction = section.number("wall_friction");
+    let cfl_factor = section.number("cfl_factor");
+    let max_dt = section.number("max_dt");
+    let min_dt = section.number("min_dt");
+    let sort = section.choice("sort");
+    let method = method?.unwrap_or(standard.method);
+    let density = density?.unwrap_or(standard.density);
+    let solver = Solver {
+        method,
+        kernel: kernel?.unwrap_or(standard.kernel),
+        support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
+        density,
+        negative_pressure: negative_pressure?.unwrap_or(match density {
+            DensityMode::Summation => NegativePressure::Clamp,
+            DensityMode::Continuity => NegativePressure::Keep,
+        }),
+        sound_speed: sound_speed?,
+        stiffness: stiffness?,
+        exponent: exponent?.unwrap_or(match method {
+            Method::Wcsph => 7.0,
+            Method::Mueller2003 => 1.0,
+        }),
+        artificial_viscosity: artificial_viscosity?.unwrap_or(standard.artificial_viscosity),
+        density_diffusion: density_diffusion?.unwrap_or(standard.density_diffusion),
+        surface_tension: surface_tension?.unwrap_or(standard.surface_tension),
+        wall_friction: wall_friction?.unwrap_or(standard.wall_friction),
+        cfl_factor: cfl_factor?.unwrap_or(standard.cfl_factor),
+        max_dt: max_dt?.unwrap_or(standard.max_dt),
+        min_dt: min_dt?.unwrap_or(standard.min_dt),
+        sort: sort?.unwrap_or(standard.sort),
+    };
+    check_solver(section, &solver).map(|()| solver)
+}
+
+/// Refuses choices that contradict or ignore one another.
+fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
+    let mut sound = Ok(());
+    if solver.min_dt > solver.max_dt {
+        let message =
+            format!("solver.min_dt = {} s is above solver.max_dt = {} s", solver.min_dt, solver.max_dt);
+        sound = Err(section.complain("min_dt", message, &format!("at most {} s", solver.max_dt), ""));
+    }
+    if section.has("sound_speed") && section.has("stiffness") {
+        let message = "solver.sound_speed and solver.stiffness say the same thing twice".to_owned();
+        sound = Err(section.complain("stiffness", message, "", "keep one of them"));
+    }
+    match (solver.method, solver.surface_tension) {
+        (Method::Mueller2003, SurfaceTension::Akinci2013) | (Method::Wcsph, SurfaceTension::ColourField) => {
+            let (method, tension) = (solver.method, solver.surface_tension);
+            let message =
+                format!("solver.surface_tension = \"{tension}\" does not work with method = \"{method}\"");
+            let allowed = match method {
+                Method::Wcsph => "\"none\", \"akinci2013\"",
+                Method::Mueller2003 => "\"none\", \"mueller2003\"",
+            };
+            sound = Err(section.complain("surface_tension", message, allowed, ""));
+        }
+        _ => {}
+    }
+    if solver.method == Method::Mueller2003 {
+        if solver.density == DensityMode::Continuity {
+            let message =
+                "solver.density = \"continuity\" does not work with method = \"mueller2003\"".to_owned();
+            sound = Err(section.complain("density", message, "\"summation\"", ""));
+        }
+        for name in ["kernel", "artificial_viscosity", "density_diffusion"]
+            .into_iter()
+            .filter(|name| section.has(name))
+        {
+            let message = format!("solver.{name} has no effect with method = \"mueller2003\"");
+            sound = Err(section.complain(name, message, "", "leave it out, or use method = \"wcsph\""));
+        }
+    } else if solver.density == DensityMode::Summation && section.has("density_diffusion") {
+        let message = "solver.density_diffusion has no effect with density = \"summation\"".to_owned();
+        sound = Err(section.complain(
+            "density_diffusion",
+            message,
+            "",
+            "leave it out, or use density = \"continuity\"",
+        ));
+    }
+    sound
+}

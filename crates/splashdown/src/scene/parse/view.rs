@@ -1,0 +1,133 @@
+//! The sections `[surface]`, `[camera]` and `[output]`.
+
+use glam::Vec3;
+
+use super::Part;
+use crate::scene::framing;
+use crate::scene::reader::{Reported, Section};
+use crate::scene::spec::rounded;
+use crate::scene::types::{Camera, Domain, Fluid, Format, Output, PictureKind, SurfaceSettings};
+
+pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part<SurfaceSettings> {
+    let enabled = section.boolean("enabled");
+    let cell_size = section.number("cell_size");
+    let iso_level = section.number("iso_level");
+    let smoothing_iterations = section.integer("smoothing_iterations");
+    let support_ratio = section.number("support_ratio");
+    let spacing = fluid.map(|fluid| fluid.particle_spacing);
+    let standard = SurfaceSettings::for_spacing(spacing.unwrap_or(1.0));
+    let surface = SurfaceSettings {
+        enabled: enabled?.unwrap_or(standard.enabled),
+        cell_size: cell_size?.unwrap_or(standard.cell_size),
+        iso_level: iso_level?.unwrap_or(standard.iso_level),
+        smoothing_iterations: smoothing_iterations?.unwrap_or(standard.smoothing_iterations),
+        support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
+    };
+    let Some(spacing) = spacing else { return Ok(surface) };
+    // Finer cells only repeat the particles' bumps; coarser ones miss the gaps between them.
+    let (least, most) = (0.1 * spacing, 2.0 * spacing);
+    if !(least * 0.999..=most * 1.001).contains(&surface.cell_size) {
+        let message = format!(
+            "surface.cell_size = {} m does not suit a particle spacing of {spacing} m",
+            surface.cell_size
+        );
+        let hint = format!("half the spacing is a good choice: {}", rounded(spacing * 0.5));
+        return Err(section.complain(
+            "cell_size",
+            message,
+            &format!("{} to {} m", rounded(least), rounded(most)),
+            &hint,
+        ));
+    }
+    Ok(surface)
+}
+
+pub(super) fn read_camera(
+    section: &Section<'_>,
+    domain: Option<&Domain>,
+    picture: [u32; 2],
+    duration: f32,
+) -> Part<Camera> {
+    let target = section.numbers("target");
+    let distance = section.number("distance");
+    let azimuth = section.number("azimuth");
+    let elevation = section.number("elevation");
+    let field_of_view = section.number("field_of_view");
+    let orbit_speed = section.number("orbit_speed");
+    let camera = Camera {
+        target: Vec3::ZERO,
+        distance: 1.0,
+        azimuth: azimuth?.unwrap_or(25.0),
+        elevation: elevation?.unwrap_or(20.0),
+        field_of_view: field_of_view?.unwrap_or(35.0),
+        orbit_speed: orbit_speed?.unwrap_or(0.0),
+    };
+    let (target, distance) = (target?.map(Vec3::from), distance?);
+    let domain = domain.ok_or(Reported)?;
+    let aimed = Camera { target: target.unwrap_or_else(|| domain.center()), ..camera };
+    let fitting = || framing::fitting_distance(&aimed, domain, picture, duration);
+    Ok(Camera { distance: distance.unwrap_or_else(fitting), ..aimed })
+}
+
+pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSettings>) -> Part<Output> {
+    let standard = Output::default();
+    let formats = section.choices("formats");
+    let pictures = section.choices("pictures");
+    let picture_size = section.integers("picture_size");
+    let colour_by = section.choice("colour_by");
+    let film = section.boolean("film");
+    let colour_range = section.numbers::<2>("colour_range");
+    let with_surface = surface.is_none_or(|surface| surface.enabled);
+    let pictures = pictures?.unwrap_or_else(|| {
+        standard
+            .pictures
+            .iter()
+            .copied()
+            .filter(|kind| with_surface || *kind == PictureKind::Particles)
+            .collect()
+    });
+    let film_wanted = film?;
+    let output = Output {
+        formats: formats?.unwrap_or(standard.formats),
+        film: film_wanted.unwrap_or(standard.film && !pictures.is_empty()),
+        pictures,
+        picture_size: picture_size?.unwrap_or(standard.picture_size),
+        colour_by: colour_by?.unwrap_or(standard.colour_by),
+        colour_range: colour_range?,
+    };
+    let mut sound = Ok(());
+    if !with_surface && output.pictures.contains(&PictureKind::Surface) {
+        let message = "output.pictures asks for the surface, but surface.enabled is false".to_owned();
+        sound = Err(section.complain(
+            "pictures",
+            message,
+            "\"particles\"",
+            "enable the surface, or leave that picture out",
+        ));
+    }
+    if !with_surface && output.formats.contains(&Format::Obj) {
+        let message =
+            "output.formats asks for \"obj\", which holds the surface, but surface.enabled is false"
+                .to_owned();
+        sound = Err(section.complain(
+            "formats",
+            message,
+            "\"ply\", \"vtu\"",
+            "enable the surface, or leave that format out",
+        ));
+    }
+    if film_wanted == Some(true) && output.pictures.is_empty() {
+        let message = "output.film needs pictures, but output.pictures is empty".to_owned();
+        sound =
+            Err(section.complain("film", message, "false", "add \"particles\" or \"surface\" to pictures"));
+    }
+    if output.film && output.picture_size.iter().any(|side| side % 2 == 1) {
+        let message = "a film needs an even picture_size".to_owned();
+        sound = Err(section.complain("picture_size", message, "even numbers", "or set film = false"));
+    }
+    if output.colour_range.is_some_and(|[low, high]| low >= high) {
+        let message = "output.colour_range must rise".to_owned();
+        sound = Err(section.complain("colour_range", message, "[low, high] with low < high", ""));
+    }
+    sound.map(|()| output)
+}

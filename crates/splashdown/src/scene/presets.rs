@@ -1,0 +1,23 @@
+//! The scenes that come with the program.
+
+macro_rules! presets {
+    ($($name:literal),+ $(,)?) => {
+        /// Name and text of every scene that comes with the program, the demo first.
+        pub fn presets() -> &'static [(&'static str, &'static str)] {
+            &[$(($name, include_str!(concat!("../../../../scenes/", $name, ".toml")))),+]
+        }
+    };
+}
+
+presets![
+    "dam-break",
+    "dam-break-small",
+    "double-dam-break",
+    "falling-drop",
+    "sloshing-tank",
+    "honey",
+    "thesis-8k",
+    "thesis-16k",
+    "thesis-32k",
+    "thesis-64k",
+];

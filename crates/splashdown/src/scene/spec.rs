@@ -1,0 +1,129 @@
+//! The vocabulary in which `keys.rs` declares the scene file: kinds of values, keys, tables of keys.
+
+use super::choice::Choice;
+
+/// A word and its explanation.
+pub(crate) type Word = (&'static str, &'static str);
+
+/// What a key may hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    /// A finite number.
+    Number(Range),
+    /// That many finite numbers, each in the range.
+    Numbers(usize, Range),
+    /// A whole number.
+    Integer(Range),
+    /// That many whole numbers, each in the range.
+    Integers(usize, Range),
+    /// `true` or `false`.
+    Boolean,
+    /// A short name that is safe as a folder's name.
+    Name,
+    /// One of some words.
+    Word(fn() -> Vec<Word>),
+    /// A list of words, each at most once.
+    Words(fn() -> Vec<Word>),
+    /// A table of keys.
+    Table(&'static Table),
+    /// A list of tables, of this many at most.
+    Tables(&'static Table, usize),
+}
+
+/// Both ends are allowed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range {
+    pub least: f64,
+    pub most: f64,
+    /// Unit for messages; empty for a pure number.
+    pub unit: &'static str,
+}
+
+impl Range {
+    pub fn holds(&self, value: f64) -> bool {
+        (self.least..=self.most).contains(&value)
+    }
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} to {}", number(self.least), number(self.most))?;
+        if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
+    }
+}
+
+/// A key of a table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Key {
+    pub name: &'static str,
+    pub kind: Kind,
+    pub required: bool,
+    /// The default as it would be written in the file; empty if it is derived from other values.
+    pub default: &'static str,
+    /// One sentence for the schema and the reference.
+    pub about: &'static str,
+    /// Names that people try for it.
+    pub also: &'static [&'static str],
+}
+
+impl Key {
+    pub const fn required(mut self) -> Self {
+        self.required = true;
+        self
+    }
+
+    pub const fn default(mut self, text: &'static str) -> Self {
+        self.default = text;
+        self
+    }
+
+    pub const fn also(mut self, names: &'static [&'static str]) -> Self {
+        self.also = names;
+        self
+    }
+}
+
+/// A section of the file.
+#[derive(Debug)]
+pub(crate) struct Table {
+    pub about: &'static str,
+    pub keys: &'static [Key],
+}
+
+impl Table {
+    pub fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+pub(crate) const fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
+    Key { name, kind, required: false, default: "", about, also: &[] }
+}
+
+pub(crate) const fn range(least: f64, most: f64, unit: &'static str) -> Range {
+    Range { least, most, unit }
+}
+
+pub(crate) const fn a_number(least: f64, most: f64, unit: &'static str) -> Kind {
+    Kind::Number(range(least, most, unit))
+}
+
+pub(crate) const fn a_vector(most: f64, unit: &'static str) -> Kind {
+    Kind::Numbers(3, range(-most, most, unit))
+}
+
+/// The words of a [`Choice`].
+pub(crate) fn words<C: Choice>() -> Vec<Word> {
+    C::ALL.iter().map(|&(_, word, about)| (word, about.trim())).collect()
+}
+
+/// A number computed in f32 with the digits that mean something.
+pub(crate) fn rounded(value: f32) -> String {
+    number(format!("{value:.3e}").parse().unwrap_or(f64::from(value)))
+}
+
+/// A number as people write it: no long rows of zeros.
+pub(crate) fn number(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { format!("{value}") }
+}

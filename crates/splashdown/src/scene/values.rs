@@ -1,0 +1,157 @@
+//! From a TOML value to a checked Rust value, or to the words that say what is wrong with it.
+
+use toml::de::DeValue;
+
+use super::spec::{Key, Kind, Range, Word, number};
+use super::suggest;
+
+/// What is wrong with one value.
+pub(crate) struct Wrong {
+    pub message: String,
+    pub allowed: String,
+    pub hint: Option<String>,
+    /// The item of a list that is meant, and its place in the text.
+    pub item: Option<(usize, std::ops::Range<usize>)>,
+}
+
+pub(crate) fn kind_of(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+pub(crate) fn wrong_type(value: &DeValue<'_>, wanted: &str, allowed: String) -> Wrong {
+    Wrong { message: format!("must be {wanted}, not {}", kind_of(value)), allowed, hint: None, item: None }
+}
+
+pub(crate) fn one_number(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong> {
+    let given = match value {
+        DeValue::Integer(whole) => {
+            i128::from_str_radix(whole.as_str(), whole.radix()).ok().map(|whole| whole as f64)
+        }
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        other => {
+            let mut wrong = wrong_type(other, "a number", range.to_string());
+            wrong.hint = match other {
+                DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                    Some("write it without quotes".into())
+                }
+                DeValue::String(text) if text.trim_start().starts_with(|c: char| c.is_ascii_digit()) => {
+                    Some(number_alone(range.unit))
+                }
+                _ => None,
+            };
+            return Err(wrong);
+        }
+    };
+    let given = given.unwrap_or(f64::INFINITY);
+    if !given.is_finite() {
+        return Err(Wrong {
+            message: "is not a finite number".into(),
+            allowed: range.to_string(),
+            hint: None,
+            item: None,
+        });
+    }
+    in_range(given, range)
+}
+
+fn number_alone(unit: &str) -> String {
+    if unit.is_empty() {
+        "write the number alone".to_owned()
+    } else {
+        format!("write the number alone, in {unit}")
+    }
+}
+
+pub(crate) fn one_integer(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong> {
+    match value {
+        DeValue::Integer(_) => one_number(value, range),
+        other => Err(wrong_type(other, "a whole number", range.to_string()).float_is(other)),
+    }
+}
+
+impl Wrong {
+    /// A float is a number too; say what is wrong with it.
+    fn float_is(mut self, value: &DeValue<'_>) -> Self {
+        if let DeValue::Float(_) = value {
+            self.message = "must be a whole number".into();
+        }
+        self
+    }
+}
+
+fn in_range(given: f64, range: Range) -> Result<f64, Wrong> {
+    if range.holds(given) {
+        return Ok(given);
+    }
+    let message = format!("is {}, which is out of range", number(given));
+    Err(Wrong { message, allowed: range.to_string(), hint: None, item: None })
+}
+
+pub(crate) fn several(
+    value: &DeValue<'_>,
+    count: usize,
+    range: Range,
+    one: fn(&DeValue<'_>, Range) -> Result<f64, Wrong>,
+) -> Result<Vec<f64>, Wrong> {
+    let allowed = format!("{count} numbers, each {range}");
+    let DeValue::Array(list) = value else {
+        return Err(wrong_type(value, &format!("a list of {count} numbers"), allowed));
+    };
+    if list.len() != count {
+        return Err(Wrong {
+            message: format!("has {} numbers", list.len()),
+            allowed,
+            hint: None,
+            item: None,
+        });
+    }
+    let mut numbers = Vec::with_capacity(count);
+    for (index, item) in list.iter().enumerate() {
+        let number = one(item.get_ref(), range).map_err(|wrong| Wrong {
+            allowed: allowed.clone(),
+            item: Some((index, item.span())),
+            ..wrong
+        })?;
+        numbers.push(number);
+    }
+    Ok(numbers)
+}
+
+pub(crate) fn one_word(value: &DeValue<'_>, words: &[Word]) -> Result<&'static str, Wrong> {
+    let DeValue::String(given) = value else { return Err(wrong_type(value, "a text", list_words(words))) };
+    if let Some((word, _)) = words.iter().find(|(word, _)| word == given) {
+        return Ok(word);
+    }
+    let names: Vec<_> = words.iter().map(|(word, _)| *word).collect();
+    let spelled = given.to_ascii_lowercase().replace(['-', ' '], "_");
+    let hint = suggest::closest(&spelled, &names).map(|word| format!("did you mean {word:?}?"));
+    let shown: String = given.chars().filter(|c| !c.is_control()).take(40).collect();
+    Err(Wrong { message: format!("cannot be {shown:?}"), allowed: list_words(words), hint, item: None })
+}
+
+pub(crate) fn list_words(words: &[Word]) -> String {
+    words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ")
+}
+
+/// What a key may hold, in words.
+pub(crate) fn describe(key: &Key) -> String {
+    match key.kind {
+        Kind::Number(range) => range.to_string(),
+        Kind::Numbers(count, range) => format!("{count} numbers, each {range}"),
+        Kind::Integer(range) => format!("whole, {range}"),
+        Kind::Integers(count, range) => format!("{count} whole numbers, each {range}"),
+        Kind::Boolean => "true, false".to_owned(),
+        Kind::Name => "1 to 64 letters, digits, `-` and `_`".to_owned(),
+        Kind::Word(words) => list_words(&words()),
+        Kind::Words(words) => format!("a list of {}", list_words(&words())),
+        Kind::Table(_) => "a section".to_owned(),
+        Kind::Tables(_, most) => format!("1 to {most} sections"),
+    }
+}

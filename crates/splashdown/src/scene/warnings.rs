@@ -1,0 +1,67 @@
+//! Legal, but probably not what was meant.
+
+use super::derived::Derived;
+use super::reader::Section;
+use super::types::{Method, Scene, Shape};
+
+/// More steps than this take days.
+const MANY_STEPS: u64 = 10_000_000;
+/// Below this many times the reference speed a weakly compressible fluid visibly loses volume (4 per cent).
+const SLOWEST_SOUND: f32 = 5.0;
+
+pub(crate) fn check(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>) {
+    let derived = Derived::new(scene);
+    if derived.dt_estimate < scene.solver.min_dt {
+        let message = format!(
+            "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",
+            derived.dt_estimate, scene.solver.min_dt
+        );
+        solver.warn(
+            "min_dt",
+            message,
+            "lower solver.min_dt, or use a coarser particle_spacing or a lower sound_speed",
+        );
+    }
+    if derived.steps_estimate > MANY_STEPS {
+        let message = format!(
+            "the scene needs about {} steps of {:.1e} s, limited by {}",
+            derived.steps_estimate, derived.dt_estimate, derived.dt_limit
+        );
+        solver.warn(
+            "cfl_factor",
+            message,
+            "use a coarser particle_spacing, a shorter duration or a lower sound_speed",
+        );
+    }
+    if scene.solver.method == Method::Wcsph && derived.sound_speed < SLOWEST_SOUND * derived.reference_speed {
+        let ratio = derived.sound_speed / derived.reference_speed;
+        let name = if solver.has("stiffness") { "stiffness" } else { "sound_speed" };
+        let message = format!(
+            "the speed of sound, {:.3} m/s, is only {ratio:.1} times the largest speed to expect, {:.3} m/s",
+            derived.sound_speed, derived.reference_speed
+        );
+        let percent = 100.0 / (ratio * ratio);
+        solver.warn(
+            name,
+            message,
+            &format!("the density may vary by about {percent:.0} %; ten times keeps it within 1 %"),
+        );
+    }
+    let spacing = f64::from(scene.fluid.particle_spacing);
+    for (index, block) in scene.fluid.blocks.iter().enumerate() {
+        let Shape::Box { size, .. } = block.shape else { continue };
+        let lengths = size.to_array().map(|length| f64::from(length) / spacing);
+        let off = |length: &f64| (length - length.round()).abs() > 0.1;
+        if let Some(axis) = lengths.iter().position(|length| off(length) && *length < 50.0) {
+            let message = format!(
+                "fluid.block[{index}] is {:.2} spacings long along {}: its {} layers of particles hold {:.1} % {} water",
+                lengths[axis],
+                ["x", "y", "z"][axis],
+                lengths[axis].round(),
+                (lengths[axis].round() / lengths[axis] - 1.0).abs() * 100.0,
+                if lengths[axis].round() > lengths[axis] { "more" } else { "less" }
+            );
+            fluid.warn("particle_spacing", message, "sizes of whole spacings keep the volume exact");
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Numbers that follow from a scene, against values worked out by hand.
+
+use glam::Vec3;
+use splashdown::scene::{Derived, Scene};
+
+use crate::{CUBE, changed, parse};
+
+fn derived(text: &str) -> Derived {
+    Derived::new(&parse(text).unwrap_or_else(|errors| panic!("{errors}")))
+}
+
+/// Within a part in ten thousand: the hand's digits.
+fn near(value: f32, by_hand: f64) -> bool {
+    (f64::from(value) - by_hand).abs() <= 1e-4 * by_hand.abs()
+}
+
+#[test]
+fn the_cube_by_hand() {
+    let cube = derived(CUBE);
+    assert_eq!((cube.particles, cube.frames), (1000, 25));
+    assert!(near(cube.volume, 0.125));
+    assert!(near(cube.support_radius, 0.1));
+    // 998.2 * 0.05^3 / 1.0338
+    assert!(near(cube.particle_mass, 0.120_695), "{}", cube.particle_mass);
+    // 2 sqrt(9.81 * 0.5), ten times that, 0.3 * 0.05 / 44.294
+    assert!(near(cube.head, 0.5));
+    assert!(near(cube.reference_speed, 4.42945));
+    assert!(near(cube.sound_speed, 44.2945));
+    assert!(near(cube.dt_estimate, 3.38642e-4), "{}", cube.dt_estimate);
+    assert_eq!(cube.dt_limit, "sound");
+    // 0.04 s / dt = 118.1 steps a frame
+    assert_eq!(cube.steps_estimate, 119 * 25);
+    // Tait: 998.2 * 44.2945^2 / 7
+    assert!(near(cube.stiffness, 279_783.0), "{}", cube.stiffness);
+}
+
+#[test]
+fn stiffness_and_speed_of_sound_say_the_same() {
+    let wcsph = derived(&format!("{CUBE}stiffness = 279783\n"));
+    assert!(near(wcsph.sound_speed, 44.2945), "{}", wcsph.sound_speed);
+    let mueller = derived(&changed("\"wcsph\"", "\"mueller2003\"\nstiffness = 900"));
+    assert!(near(mueller.sound_speed, 30.0));
+    let back = derived(&changed("\"wcsph\"", "\"mueller2003\"\nsound_speed = 30"));
+    assert!(near(back.stiffness, 900.0));
+}
+
+#[test]
+fn what_drives_the_fluid_sets_the_reference_speed() {
+    let speed = |text: &str| derived(text).reference_speed;
+    // A block in the air: its top is 1 m above the floor. sqrt(4 * 9.81 * 1).
+    assert!(near(speed(&changed("position = [0, 0, 0]", "position = [0, 0.5, 0]")), 6.26418));
+    // With a velocity: sqrt(4 * 9.81 * 0.5 + 9).
+    assert!(near(
+        speed(&changed("position = [0, 0, 0]", "position = [0, 0, 0]\nvelocity = [3, 0, 0]")),
+        5.34977
+    ));
+    // Sideways gravity: the block leans at x = 0, gravity pulls to +x: 1 m of fall.
+    assert!(near(speed(&changed("frame_rate = 25", "gravity = [9.81, 0, 0]")), 6.26418));
+    // A shaken tank adds its own 2 pi 0.1 / 0.5.
+    assert!(near(
+        speed(&changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]")),
+        4.42945 + 1.25664
+    ));
+    // Nothing at all; then surface tension alone: sqrt(2 * 0.07274 / (998.2 * 0.05)).
+    let floating = changed("frame_rate = 25", "gravity = [0, 0, 0]");
+    assert!(near(speed(&floating), 0.01));
+    assert!(near(speed(&format!("{floating}surface_tension = \"akinci2013\"\n")), 0.053_990));
+}
+
+#[test]
+fn each_limit_of_the_time_step_can_be_the_least() {
+    let thick = derived(&changed("particle_spacing = 0.05", "particle_spacing = 0.05\nviscosity = 10"));
+    assert_eq!(thick.dt_limit, "viscosity");
+    assert!(near(thick.dt_estimate, 0.125 * 0.05 * 0.05 / 10.0));
+    let short = derived(&format!("{CUBE}max_dt = 1e-5\n"));
+    assert_eq!((short.dt_limit, short.dt_estimate), ("max_dt", 1e-5));
+}
+
+#[test]
+fn frames_are_counted_without_the_noise_of_single_precision() {
+    let frames = |duration: &str, rate: &str| {
+        parse(&changed("duration = 1.0", &format!("duration = {duration}")).replace("25", rate))
+            .expect("legal")
+            .frame_count()
+    };
+    assert_eq!(frames("0.1", "30"), 3);
+    assert_eq!(frames("1.5", "40"), 60);
+    assert_eq!(frames("0.11", "30"), 4, "a part of a frame is a frame");
+    assert_eq!(frames("1e-4", "1"), 1);
+}
+
+#[test]
+fn the_shaken_frame_feels_minus_the_tanks_acceleration() {
+    let text = changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]");
+    let scene: Scene = parse(&text).expect("legal");
+    let shake = scene.domain.shake.expect("the tank is shaken");
+    let place = |t: f64| 0.1 * (std::f64::consts::TAU * t / 0.5).sin();
+    let (t, step) = (0.13, 1e-4);
+    let tank = (place(t + step) - 2.0 * place(t) + place(t - step)) / (step * step);
+    assert!((f64::from(shake.acceleration(t).x) + tank).abs() < 1e-3 * tank.abs());
+    assert_eq!(shake.acceleration(t) * Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO);
+}

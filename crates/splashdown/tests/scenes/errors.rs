@@ -1,0 +1,185 @@
+//! The words of every kind of mistake, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test -p splashdown --test
+//! scenes`, then read the difference.
+
+use std::fs;
+
+use splashdown::scene::Scene;
+
+use crate::{CUBE, changed, parse};
+
+/// Errors of a text, as printed; with the warnings if it is legal.
+fn words(text: &str) -> String {
+    match parse(text) {
+        Err(errors) => errors.to_string(),
+        Ok(scene) => scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"),
+    }
+}
+
+macro_rules! snapshot {
+    ($test:ident, $text:expr) => {
+        #[test]
+        fn $test() {
+            insta::assert_snapshot!(words(&$text));
+        }
+    };
+}
+
+snapshot!(empty_file, " \n");
+snapshot!(not_toml, changed("duration = 1.0", "duration = = 1.0\nname = \"again"));
+snapshot!(duplicate_key, changed("duration = 1.0", "duration = 1.0\nduration = 2.0"));
+snapshot!(missing_sections, "[scene]\nname = \"a\"\n");
+snapshot!(
+    unknown_keys,
+    changed("frame_rate", "fps")
+        .replace("method", "mehtod")
+        .replace("[domain]", "[domain]\ngravity = [0, 0, 0]")
+);
+snapshot!(unknown_sections, format!("{CUBE}\n[solvr]\n[block]\n[weather]\n"));
+snapshot!(
+    wrong_types,
+    changed("1.0", "\"1.0\"").replace("[1, 1, 1]", "1").replace("0.05", "true").replace("\"wcsph\"", "7")
+);
+snapshot!(text_with_a_unit, changed("0.05", "\"5 cm\""));
+snapshot!(not_finite, changed("0.05", "nan").replace("1.0", "inf").replace("[1, 1, 1]", "[1, -inf, 1]"));
+snapshot!(
+    out_of_range,
+    changed("0.05", "-0.05").replace("1.0", "1e300").replace("[1, 1, 1]", "[1, 1, 123456789]")
+);
+snapshot!(wrong_words, changed("\"wcsph\"", "\"WCSPH\"\nkernel = \"cubic-spline\"\nsort = \"quick\""));
+snapshot!(
+    wrong_lists,
+    changed("[1, 1, 1]", "[1, 1]\nopen = \"y_max\"")
+        + "[output]\nformats = [\"ply\", \"ply\"]\npictures = [\"film\"]\n"
+);
+snapshot!(outside_the_domain, changed("position = [0, 0, 0]", "position = [0.6, -0.1, 0]"));
+snapshot!(far_too_many_particles, changed("0.05", "0.0005"));
+snapshot!(too_fine_for_the_domain, changed("0.05", "0.0005").replace("0.5, 0.5, 0.5", "0.1, 0.1, 0.1"));
+snapshot!(
+    too_far_from_the_origin,
+    changed("min = [0, 0, 0]\nmax = [1, 1, 1]", "min = [9000, 0, 0]\nmax = [9001, 1, 1]")
+);
+snapshot!(no_particles, changed("[0.5, 0.5, 0.5]", "[0.5, 0.02, 0.5]"));
+snapshot!(inside_out_domain, changed("[1, 1, 1]", "[1, -1, 1]"));
+snapshot!(thin_domain, changed("[1, 1, 1]", "[1, 1, 0.1]"));
+snapshot!(no_blocks, changed("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n", ""));
+snapshot!(block_without_list, changed("[[fluid.block]]", "[fluid.block]"));
+snapshot!(block_of_two_shapes, changed("position = [0, 0, 0]", "shape = \"sphere\"\nradius = 0.1"));
+snapshot!(min_dt_above_max_dt, format!("{CUBE}min_dt = 0.01\n"));
+snapshot!(too_many_frames, changed("duration = 1.0", "duration = 3600").replace("25", "1000"));
+snapshot!(
+    contradictions,
+    changed(
+        "\"wcsph\"",
+        "\"mueller2003\"\nsurface_tension = \"akinci2013\"\ndensity = \"continuity\"\nkernel = \"cubic_spline\"\nstiffness = 3\nsound_speed = 10"
+    )
+);
+snapshot!(ignored_diffusion, format!("{CUBE}density_diffusion = 0.2\nsurface_tension = \"mueller2003\"\n"));
+snapshot!(
+    output_without_surface,
+    format!(
+        "{CUBE}[surface]\nenabled = false\n[output]\npictures = [\"surface\"]\nformats = [\"obj\"]\npicture_size = [101, 100]\ncolour_range = [2, 1]\n"
+    )
+);
+snapshot!(film_without_pictures, format!("{CUBE}[output]\npictures = []\nfilm = true\n"));
+snapshot!(coarse_surface, format!("{CUBE}[surface]\ncell_size = 0.5\n"));
+snapshot!(unusable_name, changed("\"cube\"", "\"../cube\""));
+snapshot!(
+    overlap_warning,
+    format!("{CUBE}[[fluid.block]]\nposition = [0.25, 0, 0]\nsize = [0.5, 0.5, 0.5]\n")
+);
+snapshot!(doubtful_values, changed("0.5, 0.5, 0.5", "0.52, 0.5, 0.5") + "sound_speed = 10\nmin_dt = 2e-3\n");
+snapshot!(long_line, changed("duration = 1.0", &format!("\"{}\" = 1{}", "k".repeat(300), " ".repeat(10))));
+snapshot!(
+    many_at_once,
+    "\
+[scene]
+name = \"many\"
+duration = -1
+frame_rate = \"fast\"
+
+[domain]
+min = [0, 0, 0]
+max = [1, 1, 1]
+opn = [\"y_max\"]
+
+[fluid]
+particle_spacing = 0.05
+material = \"watter\"
+viscosity = -1.0
+
+[[fluid.block]]
+position = [0, 0, 0]
+size = [0.5, 0.5, 0.5]
+velocity = [0, nan, 0]
+
+[[fluid.block]]
+position = [0.5, 0, 0]
+size = [2, 0.5, 0.5]
+
+[solver]
+cfl_factor = 5
+
+[camera]
+fov = 40
+"
+);
+
+/// Errors of a file of these bytes, without the folder's name.
+fn words_of_file(name: &str, bytes: &[u8]) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).expect("writing into a temporary folder");
+    let errors = Scene::load(&path).expect_err("the file is no scene").to_string();
+    errors.replace(&folder.path().display().to_string(), "FOLDER").replace('\\', "/")
+}
+
+#[test]
+fn files_that_are_no_scenes() {
+    let all = [
+        words_of_file("binary.toml", b"\x7fELF\0\0\0\x01"),
+        words_of_file("latin1.toml", b"[scene]\nname = \"Stra\xdfe\"\n"),
+        words_of_file("huge.toml", &vec![b'#'; (4 << 20) + 1]),
+    ];
+    insta::assert_snapshot!(all.join("\n\n"));
+}
+
+#[test]
+fn a_missing_file_and_a_folder_are_told_apart() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let missing =
+        Scene::load(folder.path().join("none.toml")).expect_err("there is no such file").to_string();
+    assert!(
+        missing.contains("cannot open the scene file") && missing.contains("splashdown scenes"),
+        "{missing}"
+    );
+    let not_a_file = Scene::load(folder.path()).expect_err("a folder is no scene").to_string();
+    assert!(not_a_file.contains("this is a folder"), "{not_a_file}");
+}
+
+#[test]
+fn a_file_remembers_where_it_came_from() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("cube.toml");
+    fs::write(&path, format!("\u{feff}{}", CUBE.replace('\n', "\r\n")))
+        .expect("writing into a temporary folder");
+    let scene = Scene::load(&path).expect("a byte order mark and Windows line ends do no harm");
+    assert_eq!(scene.source.as_deref(), Some(path.as_path()));
+    assert_eq!(Scene { source: None, ..scene }, parse(CUBE).expect("the cube is legal"));
+}
+
+#[test]
+fn every_error_has_its_line_and_comes_in_the_order_of_lines() {
+    let text = changed("0.05", "-1").replace("duration = 1.0", "duration = 0").replace("\"wcsph\"", "\"x\"");
+    let errors = parse(&text).expect_err("three values are wrong").errors;
+    let places: Vec<_> = errors.iter().map(|error| (error.line, error.column, error.key.as_str())).collect();
+    let expected = [
+        (Some(3), Some(12), "scene.duration"),
+        (Some(11), Some(20), "fluid.particle_spacing"),
+        (Some(18), Some(10), "solver.method"),
+    ];
+    assert_eq!(places, expected);
+    let json = serde_json::to_value(&errors[0]).expect("errors are plain data");
+    assert_eq!(json["line"], 3);
+    assert_eq!(json["given"], "0");
+    assert!(json["allowed"].as_str().is_some_and(|allowed| allowed.contains("3600")));
+}
