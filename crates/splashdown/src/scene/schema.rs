@@ -5,8 +5,11 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::keys::ROOT;
+use super::presets::presets;
 use super::spec::{Key, Kind, Range, Table, Word};
+use super::types::Scene;
 use super::values::describe;
+use crate::sample;
 
 /// The JSON schema (draft 2020-12) of the scene file, for editors: types, ranges, words, required keys; no others allowed. What depends
 /// on several keys at once (a sphere needs a radius, blocks lie in the domain) only [`crate::scene::Scene::parse`] checks.
@@ -95,11 +98,24 @@ fn default_value(key: &Key) -> Option<Value> {
     serde_json::to_value(line.get("value")?).ok()
 }
 
-/// Every key of the scene file as a page of Markdown.
+/// The scenes that come with the program and every key of the scene file, as a page of Markdown.
 pub fn reference() -> String {
-    let mut page = String::from(
-        "# The scene file\n\nTOML; SI units; y is up. Unknown keys are errors. A key without a default here is required, or its \
-         default follows from other values as told.\n",
+    let mut page =
+        String::from("# Scenes\n\n| scene | particles | method | what one sees |\n|---|---|---|---|\n");
+    for (name, text) in presets() {
+        let (count, method) = Scene::parse(text, name)
+            .map(|scene| (sample::count(&scene).to_string(), scene.solver.method.to_string()))
+            .unwrap_or_default();
+        let lines = text.lines().map_while(|line| line.strip_prefix("# "));
+        let _ = writeln!(
+            page,
+            "| [{name}]({name}.toml) | {count} | {method} | {} |",
+            lines.collect::<Vec<_>>().join(" ")
+        );
+    }
+    page.push_str(
+        "\n# The scene file\n\nTOML; SI units; y is up. Unknown keys are errors. A default of `-` follows from other values, as the key's \
+         meaning tells. `#:schema scene.schema.json` as a file's first line gives completion in editors that know Taplo.\n",
     );
     describe_table(&mut page, &ROOT, "", false);
     page
