@@ -1,2 +1,59 @@
-//! x
-fn main(){}
+//! `splashdown`, the command line: a scene file in; particles, a watertight mesh, pictures and a film out.
+//!
+//! It only translates: arguments into the library's options, the library's stream of events into words, JSON lines and
+//! files, errors into one message and one exit code.
+
+mod args;
+mod commands;
+mod console;
+mod exit;
+mod files;
+mod human;
+mod interrupt;
+mod layout;
+mod lines;
+mod memory;
+mod pictures;
+mod progress;
+mod report;
+mod scene_file;
+mod speed;
+mod summary;
+mod teller;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use exit::Failure;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too; a closed pipe is no reason to fail.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::Exit::Usage as u8));
+        }
+    };
+    match dispatch(&arguments.command) {
+        Ok(code) => code,
+        Err(failure) => {
+            console::note(format!("error: {}", failure.message.trim_start_matches("error: ")));
+            failure.code()
+        }
+    }
+}
+
+fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
+    match command {
+        Command::Run(arguments) => return commands::run::run(arguments),
+        Command::Check(arguments) => commands::check::run(arguments)?,
+        Command::Doctor(arguments) => commands::doctor::run(arguments),
+        Command::Scenes(arguments) => commands::scenes::run(arguments)?,
+        Command::Bench(arguments) => commands::bench::run(arguments)?,
+        Command::Completions(arguments) => commands::completions::run(arguments),
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,258 @@
+//! The command line: one declaration gives the parser, the help and the shells' completions.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgAction, Args, Parser, Subcommand};
+use clap_complete::Shell;
+use splashdown::Device;
+use splashdown::scene::{Choice, Format, PictureKind};
+
+use crate::console::Verbosity;
+use crate::{exit, human};
+
+/// Fast SPH water on any GPU, from a scene file to particles, a watertight mesh and a picture.
+#[derive(Debug, Parser)]
+#[command(name = "splashdown", version, max_term_width = 100, after_help = exit::HELP)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The words after `splashdown`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate a scene and write its frames
+    Run(RunArguments),
+    /// Validate a scene and print what follows from it, without simulating
+    Check(CheckArguments),
+    /// List the devices of this machine, what fits on them, and what is missing
+    Doctor(DoctorArguments),
+    /// List, show or copy the scenes that come with the program
+    Scenes(ScenesArguments),
+    /// Measure the time of a step, by pass and by number of particles
+    Bench(BenchArguments),
+    /// Print completions for a shell
+    Completions(CompletionsArguments),
+}
+
+const RUN_EXAMPLES: &str = "\
+Examples:
+  splashdown run scenes/dam-break.toml
+  splashdown run dam-break --device cpu --frames 20 --no-pictures
+  splashdown run my.toml --out out/test --formats vtu,obj --pictures surface
+  splashdown run my.toml --json | jq 'select(.event == \"frame\") | .density_error'
+
+What is written below the output folder:
+  particles/particles_0000.ply, .vtu   one file per frame; particles.pvd opens the series in ParaView
+  mesh/surface_0000.ply, .obj          the closed surface of the fluid
+  pictures/surface_0000.png, particles_0000.png
+  surface.mp4, particles.mp4           if ffmpeg is installed
+  run.json                             the summary
+Every file is complete or absent. Frames of an earlier run in the same folder are removed.
+
+With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt, particles,
+density_error, max_speed, volume, triangles and files; what is not known at that moment is null. Events are started,
+progress, frame, warning, finished, interrupted and error. A frame's line comes when its files are complete.";
+
+/// Options of `run`.
+#[derive(Debug, Args)]
+#[command(after_help = RUN_EXAMPLES)]
+pub struct RunArguments {
+    /// Scene file (TOML), or the name of one that comes with the program
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Folder for the results [default: out/ and the scene's name]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Number of frames after the initial one [default: the scene's]
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub frames: Option<u32>,
+    /// File formats instead of the scene's, separated by commas; `none` writes no particles and no meshes
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = choice_or_none::<Format>())]
+    pub formats: Option<Vec<Option<Format>>>,
+    /// Do not extract the surface: no meshes, no pictures of it
+    #[arg(long)]
+    pub no_surface: bool,
+    /// Pictures instead of the scene's, separated by commas; a missing driver is then an error
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = choice::<PictureKind>())]
+    pub pictures: Option<Vec<PictureKind>>,
+    /// Draw no pictures
+    #[arg(long, conflicts_with = "pictures")]
+    pub no_pictures: bool,
+    /// Make no film of the pictures
+    #[arg(long)]
+    pub no_film: bool,
+    /// Measure the time of every pass and print it at the end
+    #[arg(long)]
+    pub timing: bool,
+    /// Print one JSON object per line to stdout
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub verbosity: VerbosityArguments,
+}
+
+/// How much is said.
+#[derive(Debug, Args)]
+pub struct VerbosityArguments {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Also say what the library remarks
+    #[arg(short, long, action = ArgAction::SetTrue)]
+    pub verbose: bool,
+}
+
+impl VerbosityArguments {
+    /// As a level.
+    pub fn level(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
+        }
+    }
+}
+
+/// The device to compute on.
+#[derive(Debug, Args)]
+pub struct DeviceArgument {
+    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor`
+    #[arg(short, long, value_name = "auto|gpu|cpu|NAME", default_value = "auto", value_parser = clap::value_parser!(Device))]
+    pub device: Device,
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  splashdown check scenes/dam-break.toml
+  splashdown check my.toml --json
+
+The expected time is an estimate: a few steps of a small scene are measured on this machine.";
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+#[command(after_help = CHECK_EXAMPLES)]
+pub struct CheckArguments {
+    /// Scene file (TOML), or the name of one that comes with the program
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `doctor`.
+#[derive(Debug, Args)]
+pub struct DoctorArguments {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+const SCENES_EXAMPLES: &str = "\
+Examples:
+  splashdown scenes                       list them
+  splashdown scenes show honey            print one
+  splashdown scenes copy dam-break        write dam-break.toml here, to change it
+  splashdown scenes schema > scene.schema.json";
+
+/// Options of `scenes`.
+#[derive(Debug, Args)]
+#[command(after_help = SCENES_EXAMPLES)]
+pub struct ScenesArguments {
+    /// What to do; without a word, the list.
+    #[command(subcommand)]
+    pub action: Option<ScenesAction>,
+}
+
+/// The words after `splashdown scenes`.
+#[derive(Debug, Subcommand)]
+pub enum ScenesAction {
+    /// List names and what the scenes are (the default)
+    List,
+    /// Print a scene file
+    Show {
+        /// Name of the scene
+        name: String,
+    },
+    /// Copy a scene file, to change it
+    Copy {
+        /// Name of the scene
+        name: String,
+        /// File or folder to write to
+        #[arg(default_value = ".")]
+        destination: PathBuf,
+        /// Replace a file that is there
+        #[arg(short, long)]
+        force: bool,
+    },
+    /// Print the JSON schema of scene files, for completion in an editor
+    Schema,
+    /// Print a table of all keys of a scene file, in Markdown
+    Reference,
+}
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  splashdown bench
+  splashdown bench --particles 8K,16K,32K,64K,128K,256K,512K,1M --device cpu
+  splashdown bench --particles 64K --device llvmpipe --steps 10";
+
+/// Options of `bench`.
+#[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
+pub struct BenchArguments {
+    /// Numbers of particles, separated by commas (64K = 65,536)
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_value = "64K", value_parser = human::parse_count)]
+    pub particles: Vec<u32>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Steps to measure [default: as many as take about two seconds, at least 10]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub steps: Option<u32>,
+    /// Solver to measure: wcsph or mueller2003
+    #[arg(short = 'm', long, default_value = "wcsph", value_parser = choice::<splashdown::scene::Method>())]
+    pub solver: splashdown::scene::Method,
+    /// Do not split the time by pass (measuring each pass costs a little on a GPU)
+    #[arg(long)]
+    pub no_passes: bool,
+    /// Print one JSON object per number of particles
+    #[arg(long)]
+    pub json: bool,
+}
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  splashdown completions bash > ~/.local/share/bash-completion/completions/splashdown
+  splashdown completions zsh > ~/.zfunc/_splashdown
+  splashdown completions fish > ~/.config/fish/completions/splashdown.fish
+  splashdown completions powershell >> $PROFILE";
+
+/// Options of `completions`.
+#[derive(Debug, Args)]
+#[command(after_help = COMPLETIONS_EXAMPLES)]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// Reads one word of a choice of the scene file; help and completions list the words.
+fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
+    words::<C>(&[]).try_map(|word| C::from_name(&word).ok_or("unknown word"))
+}
+
+/// As [`choice`], with the word `none` for nothing.
+fn choice_or_none<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = Option<C>> {
+    words::<C>(&["none"]).map(|word| C::from_name(&word))
+}
+
+fn words<C: Choice>(more: &[&'static str]) -> PossibleValuesParser {
+    let words = C::ALL.iter().map(|&(_, word, about)| PossibleValue::new(word).help(about.trim()));
+    PossibleValuesParser::new(words.chain(more.iter().copied().map(PossibleValue::new)))
+}

@@ -1,0 +1,156 @@
+//! `splashdown check`: is the scene valid, and what follows from it.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use splashdown::scene::{Derived, Scene, SceneWarning};
+use splashdown::{Device, Simulation, memory_forecast};
+
+use crate::args::CheckArguments;
+use crate::exit::Failure;
+use crate::lines::Line;
+use crate::speed::{bench_scene, seconds_per_step};
+use crate::{console, human, scene_file};
+
+/// How long the measurement behind the expected time may take.
+const MEASURE: Duration = Duration::from_millis(60);
+
+/// Particles that are enough to load a CPU fully; a GPU is measured with more, or it idles.
+const FEW: u64 = 4096;
+const MANY: u64 = 65_536;
+
+/// What is printed as JSON.
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    event: &'static str,
+    valid: bool,
+    scene: &'a str,
+    particle_spacing: f32,
+    duration: f32,
+    #[serde(flatten)]
+    derived: &'a Derived,
+    memory_forecast: u64,
+    speed: &'a Speed,
+    warnings: &'a [SceneWarning],
+}
+
+/// How fast this machine is, measured with another scene.
+#[derive(Debug, Serialize)]
+struct Speed {
+    #[serde(skip)]
+    on_gpu: bool,
+    device: String,
+    measured_particles: u64,
+    particle_steps_per_second: f64,
+    expected_seconds: f64,
+}
+
+/// Checks, and prints.
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+    let checked = scene_file::load(&arguments.scene);
+    let scene = checked.inspect_err(|failure| {
+        if arguments.json {
+            console::print_json(&Line::error(failure));
+        }
+    })?;
+    let derived = Derived::new(&scene);
+    let memory = memory_forecast(&scene);
+    let speed = measure(&scene, &derived, &arguments.device.device)?;
+    if arguments.json {
+        console::print_json(&Report {
+            event: "check",
+            valid: true,
+            scene: &scene.name,
+            particle_spacing: scene.fluid.particle_spacing,
+            duration: scene.duration,
+            derived: &derived,
+            memory_forecast: memory,
+            speed: &speed,
+            warnings: &scene.warnings,
+        });
+        return Ok(());
+    }
+    for warning in &scene.warnings {
+        console::note(format!("{warning}\n"));
+    }
+    let file = arguments.scene.display();
+    console::print(format!("{file}: valid\n{}", describe(&scene, &derived, memory, &speed)));
+    Ok(())
+}
+
+fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> String {
+    let fluid = &scene.fluid;
+    let size = scene.domain.size();
+    console::table(&[
+        ("name", scene.name.clone()),
+        ("domain", format!("{} x {} x {} m", size.x, size.y, size.z)),
+        (
+            "material",
+            format!(
+                "{}, {} kg/m^3, {:.3e} m^2/s",
+                fluid.material.name, fluid.material.rest_density, fluid.material.viscosity
+            ),
+        ),
+        ("particles", format!("{}, {} m apart", human::count(derived.particles), fluid.particle_spacing)),
+        ("particle mass", format!("{:.4e} kg", derived.particle_mass)),
+        ("volume", format!("{} m^3", human::three_digits(derived.volume.into()))),
+        ("solver", format!("{}, support radius {} m", scene.solver.method, derived.support_radius)),
+        (
+            "speed",
+            format!("up to about {} m/s expected", human::three_digits(derived.reference_speed.into())),
+        ),
+        ("sound", format!("{} m/s", human::three_digits(derived.sound_speed.into()))),
+        ("time step", format!("about {:.3e} s, limited by {}", derived.dt_estimate, derived.dt_limit)),
+        (
+            "steps",
+            format!(
+                "about {} in {} frames, {} s",
+                human::count(derived.steps_estimate),
+                derived.frames,
+                scene.duration
+            ),
+        ),
+        ("memory", format!("about {}", human::bytes(memory))),
+        (
+            "expected time",
+            format!(
+                "about {} on {}: an estimate from {} particle-steps/s, measured with {} particles, without pictures and files",
+                human::duration(speed.expected_seconds),
+                speed.device,
+                human::scaled(speed.particle_steps_per_second).trim_end(),
+                human::count(speed.measured_particles),
+            ),
+        ),
+    ])
+}
+
+/// Runs a few steps of a dam break with the scene's own solver.
+fn measure(scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
+    let mut speed = measure_with(FEW.min(derived.particles), scene, derived, device)?;
+    if speed.on_gpu && derived.particles > FEW {
+        speed = measure_with(MANY.min(derived.particles), scene, derived, device)?;
+    }
+    Ok(speed)
+}
+
+fn measure_with(particles: u64, scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
+    let mut small = bench_scene(particles as u32)?;
+    small.solver = scene.solver.clone();
+    let mut simulation = Simulation::new(&small, device)?;
+    // The first steps build pipelines and touch memory for the first time.
+    seconds_per_step(&mut simulation, 2)?;
+    let start = Instant::now();
+    let mut best = f64::INFINITY;
+    while best.is_infinite() || start.elapsed() < MEASURE {
+        best = best.min(seconds_per_step(&mut simulation, 4)?.0);
+    }
+    let measured = u64::from(simulation.stats().particles);
+    let rate = measured as f64 / best;
+    Ok(Speed {
+        on_gpu: simulation.executor().gpu().is_some(),
+        device: simulation.device_name(),
+        measured_particles: measured,
+        particle_steps_per_second: rate,
+        expected_seconds: derived.particles as f64 * derived.steps_estimate as f64 / rate,
+    })
+}

@@ -1,0 +1,116 @@
+//! How the program ends: one error message and one exit code. `splashdown --help` and the README list the codes from here.
+
+use std::fmt;
+use std::process::ExitCode;
+
+use splashdown::SimulationError;
+use splashdown::scene::SceneErrors;
+use splashdown_gpu::GpuError;
+use splashdown_io::IoError;
+use splashdown_render::RenderError;
+
+/// What the program's exit code says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// The simulation failed on its way.
+    Failed = 1,
+    /// The command line was not understood.
+    Usage = 2,
+    /// The scene file is missing or wrong.
+    Scene = 3,
+    /// The device is missing, too small, or was lost.
+    Device = 4,
+    /// A file or folder could not be written.
+    Files = 5,
+    /// Ctrl-C; the frames that are there are complete.
+    Interrupted = 130,
+}
+
+/// The codes as the help shows them.
+pub const HELP: &str = "\
+Exit codes:
+    0  done
+    1  the simulation failed on its way (frames already written are complete)
+    2  the command line was not understood
+    3  the scene file is missing or wrong
+    4  the device is missing, too small, or was lost; or pictures were demanded and there is no driver to draw them
+    5  a file or folder could not be written (frames already written are complete)
+  130  stopped by Ctrl-C (frames already written are complete)";
+
+/// Why the program ends early.
+#[derive(Debug)]
+pub struct Failure {
+    /// The exit code.
+    pub exit: Exit,
+    /// What is wrong and what to do, for people.
+    pub message: String,
+    /// Every problem of a scene, for programs.
+    pub scene: Option<SceneErrors>,
+}
+
+impl Failure {
+    /// A failure with its message.
+    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self { exit, message: message.into(), scene: None }
+    }
+
+    /// The process's exit code.
+    pub fn code(&self) -> ExitCode {
+        ExitCode::from(self.exit as u8)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl From<SceneErrors> for Failure {
+    fn from(errors: SceneErrors) -> Self {
+        Self { exit: Exit::Scene, message: errors.to_string(), scene: Some(errors) }
+    }
+}
+
+impl From<SimulationError> for Failure {
+    fn from(error: SimulationError) -> Self {
+        let exit = match &error {
+            SimulationError::Gpu(_) | SimulationError::TooMany { .. } => Exit::Device,
+            SimulationError::Sample(_) => Exit::Scene,
+            _ => Exit::Failed,
+        };
+        Self::new(exit, error.to_string())
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        Self::new(Exit::Device, error.to_string())
+    }
+}
+
+impl From<IoError> for Failure {
+    fn from(error: IoError) -> Self {
+        Self::new(Exit::Files, error.to_string())
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        Self::new(Exit::Device, format!("the pictures cannot be drawn: {error}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Exit, HELP};
+
+    #[test]
+    fn the_help_lists_every_code() {
+        for exit in [Exit::Failed, Exit::Usage, Exit::Scene, Exit::Device, Exit::Files, Exit::Interrupted] {
+            let code = (exit as u8).to_string();
+            assert!(HELP.lines().any(|line| line.split_whitespace().next() == Some(&code)), "{exit:?}");
+        }
+    }
+}

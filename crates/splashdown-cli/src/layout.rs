@@ -1,0 +1,178 @@
+//! Where the results of a run lie below its output folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use splashdown::scene::{Choice, PictureKind};
+use splashdown_io::{IoError, prepare_folder};
+
+/// The names of all files of a run.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    root: PathBuf,
+    digits: usize,
+}
+
+/// Folders below the root, with the stems and endings of the numbered files that a run writes there.
+const FOLDERS: [(&str, &[&str], &[&str]); 3] = [
+    ("particles", &["particles"], &["ply", "vtu"]),
+    ("mesh", &["surface"], &["ply", "obj"]),
+    ("pictures", &["surface", "particles"], &["png"]),
+];
+
+impl Layout {
+    /// Names for this many frames: four digits, more if they are needed.
+    pub fn new(root: PathBuf, frames: u32) -> Self {
+        Self { root, digits: frames.to_string().len().max(4) }
+    }
+
+    /// The output folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Particles of a frame.
+    pub fn particles(&self, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("particles", "particles", frame, ending)
+    }
+
+    /// The surface of a frame.
+    pub fn mesh(&self, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("mesh", "surface", frame, ending)
+    }
+
+    /// A picture of a frame.
+    pub fn picture(&self, kind: PictureKind, frame: u32) -> PathBuf {
+        self.numbered("pictures", kind.name(), frame, "png")
+    }
+
+    /// The names of all pictures of a kind, as ffmpeg takes them.
+    pub fn picture_pattern(&self, kind: PictureKind) -> String {
+        let name = format!("{}_%0{}d.png", kind.name(), self.digits);
+        self.root.join("pictures").join(name).display().to_string()
+    }
+
+    /// The film of the pictures of a kind.
+    pub fn film(&self, kind: PictureKind) -> PathBuf {
+        self.root.join(format!("{}.mp4", kind.name()))
+    }
+
+    /// ParaView's index of the particles, and how it names the particles of a frame.
+    pub fn index(&self) -> PathBuf {
+        self.root.join("particles").join("particles.pvd")
+    }
+
+    /// The summary.
+    pub fn report(&self) -> PathBuf {
+        self.root.join("run.json")
+    }
+
+    fn numbered(&self, folder: &str, stem: &str, frame: u32, ending: &str) -> PathBuf {
+        self.root.join(folder).join(format!("{stem}_{frame:0digits$}.{ending}", digits = self.digits))
+    }
+
+    /// Makes the folders that are wanted and finds out whether they can be written. Where an earlier run left its report,
+    /// the files that a run writes are removed, and only those: frames of two runs in one series would be read as one.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn prepare(&self, particles: bool, mesh: bool, pictures: bool) -> Result<Earlier, IoError> {
+        prepare_folder(&self.root)?;
+        let earlier = if self.report().exists() { self.remove_earlier() } else { Earlier { files: 0 } };
+        for ((folder, ..), wanted) in FOLDERS.iter().zip([particles, mesh, pictures]) {
+            if wanted {
+                prepare_folder(&self.root.join(folder))?;
+            }
+        }
+        Ok(earlier)
+    }
+
+    fn remove_earlier(&self) -> Earlier {
+        let mut files = 0;
+        // What cannot be removed cannot be overwritten either, and that is then reported with its name.
+        let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
+        for (folder, stems, endings) in FOLDERS {
+            let folder = self.root.join(folder);
+            for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+                if is_frame(&entry.file_name().to_string_lossy(), stems, endings) {
+                    remove(&entry.path());
+                }
+            }
+            // Succeeds only if nothing else is in it.
+            let _ = fs::remove_dir(&folder);
+        }
+        remove(&self.index());
+        remove(&self.report());
+        for (kind, ..) in PictureKind::ALL {
+            remove(&self.film(*kind));
+        }
+        Earlier { files }
+    }
+}
+
+/// What an earlier run had left.
+#[derive(Clone, Copy, Debug)]
+pub struct Earlier {
+    /// Files removed.
+    pub files: usize,
+}
+
+/// True for `stem_0123.ending` with at least four digits.
+fn is_frame(name: &str, stems: &[&str], endings: &[&str]) -> bool {
+    let number = |(stem, ending): (&str, &str)| {
+        let digits = name.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(ending)?.strip_suffix('.')?;
+        (digits.len() >= 4 && digits.bytes().all(|digit| digit.is_ascii_digit())).then_some(())
+    };
+    stems.iter().any(|&stem| endings.iter().any(|&ending| number((stem, ending)).is_some()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Layout, is_frame};
+    use splashdown::scene::PictureKind;
+    use std::fs;
+
+    #[test]
+    fn names_have_four_digits_or_as_many_as_needed() {
+        let layout = Layout::new("out".into(), 100);
+        assert!(layout.particles(7, "ply").ends_with("particles/particles_0007.ply"));
+        assert!(layout.picture_pattern(PictureKind::Surface).ends_with("surface_%04d.png"));
+        let layout = Layout::new("out".into(), 12_000);
+        assert!(layout.mesh(7, "obj").ends_with("mesh/surface_00007.obj"));
+        assert!(layout.picture_pattern(PictureKind::Particles).ends_with("particles_%05d.png"));
+    }
+
+    #[test]
+    fn only_the_frames_of_a_run_are_taken_for_such() {
+        let yes = ["particles_0000.ply", "particles_12345.vtu"];
+        let no = [
+            "particles_000.ply",
+            "particles_00a0.ply",
+            "particles_0000.obj",
+            "my_0000.ply",
+            "particles_0000ply",
+            "particles_.ply",
+        ];
+        assert!(yes.iter().all(|name| is_frame(name, &["particles"], &["ply", "vtu"])));
+        assert!(!no.iter().any(|name| is_frame(name, &["particles"], &["ply", "vtu"])));
+    }
+
+    #[test]
+    fn an_earlier_run_is_removed_and_nothing_else() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        let layout = Layout::new(folder.path().to_owned(), 10);
+        layout.prepare(true, true, true)?;
+        let mine = folder.path().join("particles/notes.txt");
+        let frame = layout.particles(3, "ply");
+        fs::write(&mine, "mine")?;
+        fs::write(&frame, "old")?;
+        // Without a report the folder is not known to be ours.
+        layout.prepare(true, true, true)?;
+        assert!(frame.exists());
+        fs::write(layout.report(), "{}")?;
+        let earlier = layout.prepare(true, true, true)?;
+        assert_eq!(earlier.files, 2);
+        assert!(!frame.exists() && mine.exists());
+        Ok(())
+    }
+}

@@ -1,0 +1,168 @@
+//! The lines of `splashdown run --json`: one object each, all with the same keys.
+
+use serde::Serialize;
+use splashdown::scene::SceneProblem;
+use splashdown::{Progress, Started, Stats, Summary};
+
+use crate::exit::Failure;
+use crate::files::CompleteFrame;
+
+/// One line. The first eleven keys are always there, null where nothing is known; the others only where they mean something.
+#[derive(Debug, Default, Serialize)]
+pub struct Line {
+    /// started, progress, frame, warning, finished, interrupted or error.
+    pub event: &'static str,
+    /// Number of the frame, from 0.
+    pub frame: Option<u32>,
+    /// Simulated time in s.
+    pub time: Option<f64>,
+    /// Steps since the start.
+    pub steps: Option<u64>,
+    /// The last time step in s.
+    pub dt: Option<f32>,
+    /// Particles inside the domain.
+    pub particles: Option<u32>,
+    /// The largest relative excess of density since the last frame, or of the whole run at its end.
+    pub density_error: Option<f32>,
+    /// The largest speed in m/s.
+    pub max_speed: Option<f32>,
+    /// Volume inside the surface in m^3.
+    pub volume: Option<f64>,
+    /// Triangles of the surface.
+    pub triangles: Option<usize>,
+    /// Complete files.
+    pub files: Option<Vec<String>>,
+    /// Number of frames of the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
+    /// Wall time since the start in s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall: Option<f64>,
+    /// Simulated seconds per second of wall time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulated_per_wall: Option<f64>,
+    /// Particles times steps per second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particle_steps_per_second: Option<f64>,
+    /// Particles that left through an open side, in all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub escaped: Option<u32>,
+    /// Particles that became NaN or infinite, in all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub non_finite: Option<u32>,
+    /// The device's name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
+    /// Bytes in the device's buffers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub memory: Option<u64>,
+    /// Words for people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
+    /// The exit code that follows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exit_code: Option<u8>,
+    /// Every problem of the scene file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problems: Option<Vec<SceneProblem>>,
+}
+
+impl Line {
+    /// The first line.
+    pub fn started(started: &Started) -> Self {
+        Self {
+            event: "started",
+            particles: Some(started.particles),
+            frames: Some(started.frames),
+            dt: Some(started.dt),
+            time: Some(0.0),
+            steps: Some(0),
+            device: Some(started.device.clone()),
+            memory: Some(started.memory),
+            ..Self::default()
+        }
+    }
+
+    /// Between two frames.
+    pub fn progress(progress: &Progress) -> Self {
+        Self {
+            event: "progress",
+            frame: Some(progress.frame),
+            frames: Some(progress.frames),
+            time: Some(progress.time),
+            steps: Some(progress.steps),
+            dt: Some(progress.dt),
+            wall: Some(progress.wall.as_secs_f64()),
+            ..Self::default()
+        }
+    }
+
+    /// A frame and its files.
+    pub fn frame(frame: &CompleteFrame) -> Self {
+        Self {
+            event: "frame",
+            frame: Some(frame.account.index),
+            volume: frame.account.volume,
+            triangles: frame.account.triangles,
+            files: Some(frame.files.iter().map(|file| file.display().to_string()).collect()),
+            ..Self::of_stats(&frame.account.stats)
+        }
+    }
+
+    /// Something to know.
+    pub fn warning(message: &str) -> Self {
+        Self { event: "warning", message: Some(message.to_owned()), ..Self::default() }
+    }
+
+    /// The last line of a run that went well.
+    pub fn finished(summary: &Summary, triangles: Option<usize>, files: Vec<String>) -> Self {
+        Self {
+            event: "finished",
+            frame: Some(summary.frames),
+            frames: Some(summary.frames),
+            density_error: Some(summary.density_error),
+            volume: summary.volume.map(|[_, last]| last),
+            triangles,
+            files: Some(files),
+            wall: Some(summary.wall),
+            simulated_per_wall: Some(summary.simulated_per_wall),
+            particle_steps_per_second: Some(summary.particle_steps_per_second),
+            ..Self::of_stats(&summary.stats)
+        }
+    }
+
+    /// The last line of a run that was stopped.
+    pub fn interrupted(last: Option<&CompleteFrame>, files: Vec<String>) -> Self {
+        Self {
+            event: "interrupted",
+            files: Some(files),
+            exit_code: Some(130),
+            ..last.map(Self::frame).unwrap_or_default()
+        }
+    }
+
+    /// The last line of a run that failed.
+    pub fn error(failure: &Failure) -> Self {
+        Self {
+            event: "error",
+            message: Some(failure.message.clone()),
+            exit_code: Some(failure.exit as u8),
+            problems: failure.scene.as_ref().map(|scene| scene.errors.clone()),
+            ..Self::default()
+        }
+    }
+
+    fn of_stats(stats: &Stats) -> Self {
+        Self {
+            time: Some(stats.time),
+            steps: Some(stats.steps),
+            dt: Some(stats.dt),
+            particles: Some(stats.particles),
+            density_error: Some(stats.density_error),
+            max_speed: Some(stats.max_speed),
+            escaped: Some(stats.escaped),
+            non_finite: Some(stats.non_finite),
+            ..Self::default()
+        }
+    }
+}

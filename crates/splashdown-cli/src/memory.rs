@@ -1,0 +1,64 @@
+//! How much memory this machine has, where the system tells it in a file (Linux), and whether a scene fits.
+
+use splashdown::scene::Scene;
+use splashdown::{Device, memory_forecast};
+use splashdown_gpu::list_adapters;
+
+use crate::exit::{Exit, Failure};
+use crate::human;
+
+/// Refuses a scene that would make the system run out of memory on the CPU; a GPU's own limits are the library's affair.
+///
+/// # Errors
+/// [`Exit::Device`], with what is needed and what there is.
+pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
+    let needed = memory_forecast(scene);
+    let Some(available) = available().filter(|&available| needed > available) else { return Ok(()) };
+    let on_cpu = match device {
+        Device::Cpu => true,
+        Device::Auto => list_adapters().iter().all(|adapter| adapter.software),
+        Device::Gpu | Device::Named(_) => false,
+    };
+    if !on_cpu {
+        return Ok(());
+    }
+    let message = format!(
+        "the scene needs about {} of memory and {} are free: take a larger fluid.particle_spacing, or close other programs",
+        human::bytes(needed),
+        human::bytes(available)
+    );
+    Err(Failure::new(Exit::Device, message))
+}
+
+/// Total memory in bytes.
+pub fn total() -> Option<u64> {
+    value("MemTotal:")
+}
+
+/// Memory that a new program can use, in bytes.
+pub fn available() -> Option<u64> {
+    value("MemAvailable:")
+}
+
+fn value(name: &str) -> Option<u64> {
+    parse(&std::fs::read_to_string("/proc/meminfo").ok()?, name)
+}
+
+fn parse(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kib.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+
+    #[test]
+    fn lines_of_meminfo_are_read() {
+        let text = "MemTotal:       24626928 kB\nMemFree:          8 kB\nMemAvailable:   23000000 kB\n";
+        assert_eq!(parse(text, "MemAvailable:"), Some(23_000_000 * 1024));
+        assert_eq!(parse(text, "SwapTotal:"), None);
+        assert_eq!(parse("MemTotal: lots kB", "MemTotal:"), None);
+    }
+}

@@ -1,0 +1,163 @@
+//! Progress on stderr: a bar in a terminal, a plain line now and then in a log.
+
+use std::collections::VecDeque;
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use splashdown::Progress;
+
+use crate::console::{self, Verbosity};
+use crate::human;
+
+/// The bar's length: thousandths of the simulated time.
+const LENGTH: u64 = 1000;
+
+/// Over which time speeds are taken: long enough to be calm, short enough to follow the flow.
+const WINDOW: Duration = Duration::from_secs(10);
+
+/// Between two plain lines.
+const PAUSE: Duration = Duration::from_secs(5);
+
+/// Shows where a run is.
+#[derive(Debug)]
+pub struct Bar {
+    bar: ProgressBar,
+    /// Plain lines instead of a bar.
+    plain: bool,
+    last_line: Option<Instant>,
+    speed: Speed,
+}
+
+impl Bar {
+    /// A bar, plain lines, or nothing if quiet. Programs that read JSON get plain lines only where they asked for words.
+    pub fn new(verbosity: Verbosity, json: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let quiet = verbosity == Verbosity::Quiet;
+        let target = if terminal && !quiet {
+            ProgressDrawTarget::stderr_with_hz(5)
+        } else {
+            ProgressDrawTarget::hidden()
+        };
+        let bar = ProgressBar::with_draw_target(Some(LENGTH), target);
+        if let Ok(style) = ProgressStyle::with_template("{bar:24.cyan/blue} {percent:>3} %  {msg}") {
+            bar.set_style(style.progress_chars("━━─"));
+        }
+        let plain = !terminal && !quiet && (!json || verbosity == Verbosity::Verbose);
+        Self { bar, plain, last_line: None, speed: Speed::default() }
+    }
+
+    /// Takes in where the run is.
+    pub fn update(&mut self, progress: &Progress) {
+        self.speed.add(progress);
+        let text = self.text(progress);
+        let share = if progress.duration > 0.0 { progress.time / progress.duration } else { 1.0 };
+        self.bar.set_position((share.clamp(0.0, 1.0) * LENGTH as f64) as u64);
+        if self.plain && self.last_line.is_none_or(|last| last.elapsed() >= PAUSE) {
+            self.last_line = Some(Instant::now());
+            console::note(format!("{:3.0} %  {text}", share * 100.0));
+        }
+        self.bar.set_message(text);
+    }
+
+    /// Prints a line without disturbing the bar.
+    pub fn note(&self, text: &str) {
+        self.bar.suspend(|| console::note(text));
+    }
+
+    /// Prints to stdout without disturbing the bar.
+    pub fn suspend(&self, print: impl FnOnce()) {
+        self.bar.suspend(print);
+    }
+
+    /// What is being waited for.
+    pub fn waiting(&self, what: &str) {
+        self.bar.set_position(LENGTH);
+        self.bar.set_message(what.to_owned());
+        // Progress of the run has ended; the bar must still be drawn while files are written.
+        self.bar.tick();
+    }
+
+    /// Takes the bar away.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn text(&self, progress: &Progress) -> String {
+        let frame = format!("frame {}/{}", progress.frame, progress.frames);
+        match self.speed.measure() {
+            None => frame,
+            Some((steps, simulated)) => {
+                let left = (progress.duration - progress.time) / simulated;
+                format!(
+                    "{frame}  {} steps/s  {} simulated s/s  {} left",
+                    human::scaled(steps).trim_end(),
+                    human::three_digits(simulated),
+                    human::duration(left.max(0.0))
+                )
+            }
+        }
+    }
+}
+
+/// Speeds over the last seconds.
+#[derive(Debug, Default)]
+struct Speed {
+    /// Wall time, steps, simulated time.
+    marks: VecDeque<(Duration, u64, f64)>,
+}
+
+impl Speed {
+    fn add(&mut self, progress: &Progress) {
+        self.marks.push_back((progress.wall, progress.steps, progress.time));
+        while self.marks.len() > 2
+            && self.marks.get(1).is_some_and(|mark| progress.wall.saturating_sub(mark.0) > WINDOW)
+        {
+            self.marks.pop_front();
+        }
+    }
+
+    /// Steps and simulated seconds per second; nothing before there is something to measure.
+    fn measure(&self) -> Option<(f64, f64)> {
+        let (first, last) = (self.marks.front()?, self.marks.back()?);
+        let wall = last.0.saturating_sub(first.0).as_secs_f64();
+        let simulated = last.2 - first.2;
+        (wall > 0.2 && simulated > 0.0).then(|| ((last.1 - first.1) as f64 / wall, simulated / wall))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Speed, WINDOW};
+    use splashdown::Progress;
+    use std::time::Duration;
+
+    fn at(seconds: f64, steps: u64) -> Progress {
+        Progress {
+            frame: 1,
+            frames: 10,
+            time: steps as f64 * 1e-3,
+            duration: 1.0,
+            steps,
+            dt: 1e-3,
+            wall: Duration::from_secs_f64(seconds),
+        }
+    }
+
+    #[test]
+    fn speed_forgets_what_is_long_past() {
+        let mut speed = Speed::default();
+        speed.add(&at(0.0, 0));
+        assert_eq!(speed.measure(), None);
+        // Ten steps a second at first, a hundred later.
+        for second in 1..=30 {
+            speed.add(&at(f64::from(second), 10 * second as u64));
+        }
+        for second in 31..=60 {
+            speed.add(&at(f64::from(second), 300 + 100 * (second as u64 - 30)));
+        }
+        let (steps, simulated) = speed.measure().expect("there are marks");
+        assert!((steps - 100.0).abs() < 1e-9 && (simulated - 0.1).abs() < 1e-12);
+        assert!(speed.marks.len() <= WINDOW.as_secs() as usize + 2);
+    }
+}

@@ -1,0 +1,142 @@
+//! `run.json`: the summary of a run beside its results, for programs and for later.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use splashdown::scene::Scene;
+use splashdown::{Stats, Summary};
+use splashdown_gpu::Timings;
+use splashdown_io::{IoError, atomic};
+
+use crate::layout::Layout;
+
+/// What is known about a run.
+#[derive(Debug, Default, Serialize)]
+pub struct Report {
+    /// `running`, `finished`, `interrupted` or `failed`.
+    pub status: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
+    /// The scene's name.
+    pub scene: String,
+    /// The scene's file; null for a built-in scene.
+    pub file: Option<String>,
+    /// The device's name.
+    pub device: Option<String>,
+    /// Particle spacing in m.
+    pub particle_spacing: f32,
+    /// Frames whose files are complete, the initial one counted.
+    pub complete_frames: usize,
+    /// The end of the simulation.
+    pub end: Option<End>,
+    /// Speed and quality of a finished run.
+    pub summary: Option<Numbers>,
+    /// Time per pass, if it was measured.
+    pub passes: BTreeMap<&'static str, PassNumbers>,
+    /// Files written.
+    pub files: usize,
+    /// Their size in bytes.
+    pub bytes: u64,
+    /// Why the run failed.
+    pub error: Option<String>,
+}
+
+/// The last state.
+#[derive(Debug, Serialize)]
+pub struct End {
+    time: f64,
+    steps: u64,
+    dt: f32,
+    particles: u32,
+    escaped: u32,
+    non_finite: u32,
+    wall_corrections: u32,
+    max_speed: f32,
+}
+
+/// The whole run in a few numbers.
+#[derive(Debug, Serialize)]
+pub struct Numbers {
+    frames: u32,
+    wall: f64,
+    step_wall: f64,
+    frame_wall: f64,
+    particle_steps_per_second: f64,
+    simulated_per_wall: f64,
+    density_error: f32,
+    surface_volume: Option<[f64; 2]>,
+    particle_volume: f64,
+}
+
+/// The dispatches of one pass.
+#[derive(Debug, Serialize)]
+pub struct PassNumbers {
+    count: u64,
+    seconds: f64,
+}
+
+impl Report {
+    /// Of a run that begins.
+    pub fn begin(scene: &Scene) -> Self {
+        Self {
+            status: "running",
+            version: env!("CARGO_PKG_VERSION"),
+            scene: scene.name.clone(),
+            file: scene.source.as_ref().map(|path| path.display().to_string()),
+            particle_spacing: scene.fluid.particle_spacing,
+            ..Self::default()
+        }
+    }
+
+    /// Takes in the last state.
+    pub fn end(&mut self, stats: &Stats) {
+        self.end = Some(End {
+            time: stats.time,
+            steps: stats.steps,
+            dt: stats.dt,
+            particles: stats.particles,
+            escaped: stats.escaped,
+            non_finite: stats.non_finite,
+            wall_corrections: stats.wall_corrections,
+            max_speed: stats.max_speed,
+        });
+    }
+
+    /// Takes in the library's summary.
+    pub fn summary(&mut self, summary: &Summary) {
+        self.end(&summary.stats);
+        self.passes = passes(&summary.timings);
+        self.summary = Some(Numbers {
+            frames: summary.frames,
+            wall: summary.wall,
+            step_wall: summary.step_wall,
+            frame_wall: summary.frame_wall,
+            particle_steps_per_second: summary.particle_steps_per_second,
+            simulated_per_wall: summary.simulated_per_wall,
+            density_error: summary.density_error,
+            surface_volume: summary.volume,
+            particle_volume: summary.particle_volume,
+        });
+    }
+
+    /// Writes it, complete or not at all.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn write(&self, layout: &Layout) -> Result<(), IoError> {
+        let fill = |out: &mut dyn std::io::Write| {
+            serde_json::to_writer_pretty(&mut *out, self)?;
+            out.write_all(b"\n")
+        };
+        atomic::write(&layout.report(), fill).map(|_| ())
+    }
+}
+
+/// As plain numbers.
+pub fn passes(timings: &Timings) -> BTreeMap<&'static str, PassNumbers> {
+    let numbers = |time: &splashdown_gpu::PassTime| PassNumbers {
+        count: time.count,
+        seconds: time.total.as_secs_f64(),
+    };
+    timings.passes.iter().map(|(&label, time)| (label, numbers(time))).collect()
+}

@@ -1,0 +1,58 @@
+//! How speeds are measured: a dam break of any number of particles, and the wall time of its steps.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use splashdown::scene::{Scene, SceneErrors};
+use splashdown::{Simulation, SimulationError};
+
+/// A power of two, so that the lattice's coordinates are exact and counts come out as asked for.
+const SPACING: f64 = 1.0 / 64.0;
+
+/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width. Only the
+/// size grows with the number, never the density of neighbours, so the cost per particle can be compared.
+pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
+    let side = (f64::from(particles) / 2.0).cbrt().round().max(1.0);
+    let depth = (f64::from(particles) / (side * side)).round().max(1.0);
+    let [width, height, depth] = [side, side, depth].map(|count| count * SPACING);
+    let mut text = String::new();
+    // Writing into a string cannot fail.
+    let _ = write!(
+        text,
+        "[scene]\nname = \"bench\"\nduration = 1.0\n\
+         [domain]\nmin = [0, 0, 0]\nmax = [{}, {}, {depth}]\nopen = [\"y_max\"]\n\
+         [fluid]\nparticle_spacing = {SPACING}\n\
+         [[fluid.block]]\nposition = [0, 0, 0]\nsize = [{width}, {height}, {depth}]\n",
+        3.0 * width,
+        2.0 * height,
+    );
+    Scene::parse(&text, "the benchmark's scene")
+}
+
+/// Simulates about `steps` steps and waits for their end; wall time per step in s and the number of steps.
+///
+/// # Errors
+/// Those of the simulation.
+pub fn seconds_per_step(simulation: &mut Simulation, steps: u32) -> Result<(f64, u32), SimulationError> {
+    // The step adapts itself, so their number is known only afterwards.
+    let duration = simulation.dt() * steps as f32;
+    let start = Instant::now();
+    let stats = simulation.advance(duration)?;
+    let taken = stats.steps_in_frame.max(1);
+    Ok((start.elapsed().as_secs_f64() / f64::from(taken), taken))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bench_scene;
+    use splashdown::scene::Derived;
+
+    #[test]
+    fn the_scene_has_the_particles_asked_for() {
+        for (asked, tolerance) in [(1, 0.0), (8192, 0.0), (65_536, 0.0), (1_048_576, 0.005), (10_000, 0.02)] {
+            let scene = bench_scene(asked).expect("a valid scene");
+            let given = Derived::new(&scene).particles as f64;
+            assert!((given / f64::from(asked) - 1.0).abs() <= tolerance, "{asked} asked, {given} given");
+        }
+    }
+}

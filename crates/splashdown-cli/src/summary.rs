@@ -1,0 +1,157 @@
+//! The closing words of a run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use splashdown::Summary;
+use splashdown_gpu::Timings;
+use splashdown_io::WrittenFile;
+
+use crate::{console, human};
+
+/// The numbers of a run that went to its end.
+pub fn numbers(summary: &Summary) -> String {
+    let stats = &summary.stats;
+    let particles = human::count(stats.particles.into());
+    let mut rows = vec![
+        ("simulated", format!("{:.4} s in {} frames", stats.time, summary.frames)),
+        ("wall time", human::duration(summary.wall)),
+        ("steps", format!("{}, the last of {:.3e} s", human::count(stats.steps), stats.dt)),
+        (
+            "speed",
+            format!("{} simulated seconds per second", human::three_digits(summary.simulated_per_wall)),
+        ),
+        (
+            "",
+            format!(
+                "{} particle-steps per second",
+                human::scaled(summary.particle_steps_per_second).trim_end()
+            ),
+        ),
+        (
+            "time spent",
+            format!(
+                "{} in steps, {} in surfaces and frames",
+                human::duration(summary.step_wall),
+                human::duration(summary.frame_wall)
+            ),
+        ),
+        (
+            "density error",
+            format!("{} % at most", human::three_digits(100.0 * f64::from(summary.density_error))),
+        ),
+        ("volume", volume(summary)),
+        ("particles", particles),
+    ];
+    if stats.escaped > 0 {
+        rows.push((
+            "left the domain",
+            format!("{} particles, through open sides", human::count(stats.escaped.into())),
+        ));
+    }
+    if stats.non_finite > 0 {
+        let [x, y, z] = stats.non_finite_place;
+        let text =
+            format!("{} particles, the first near ({x}, {y}, {z}) m", human::count(stats.non_finite.into()));
+        rows.push(("became NaN", text));
+    }
+    if stats.wall_corrections > 0 {
+        let text = format!(
+            "{} times a particle was put back through a wall",
+            human::count(stats.wall_corrections.into())
+        );
+        rows.push(("leaks", text));
+    }
+    console::table(&rows)
+}
+
+fn volume(summary: &Summary) -> String {
+    let litres = |cubic_metres: f64| format!("{} l", human::three_digits(1000.0 * cubic_metres));
+    let particles = litres(summary.particle_volume);
+    match summary.volume {
+        None => format!("{particles} (particles)"),
+        Some([first, last]) => {
+            let first_share = change(first, summary.particle_volume);
+            format!(
+                "{particles} (particles); inside the surface {} at first ({first_share}), {} at last ({})",
+                litres(first),
+                litres(last),
+                change(last, summary.particle_volume)
+            )
+        }
+    }
+}
+
+fn change(value: f64, reference: f64) -> String {
+    if reference > 0.0 {
+        format!("{:+.1} %", 100.0 * (value / reference - 1.0))
+    } else {
+        "no particles".to_owned()
+    }
+}
+
+/// What was written where, a line per kind of file.
+pub fn files(root: &Path, files: &[WrittenFile], films: &[(std::path::PathBuf, u64)]) -> String {
+    let mut kinds: BTreeMap<String, (usize, u64)> = BTreeMap::new();
+    for file in files {
+        let below = file.path.strip_prefix(root).unwrap_or(&file.path);
+        let name = below.to_string_lossy();
+        // particles/particles_0012.ply -> particles/particles_*.ply
+        let kind = match (name.rfind('_'), name.rfind('.')) {
+            (Some(from), Some(to)) if from < to => format!("{}_*{}", &name[..from], &name[to..]),
+            _ => name.into_owned(),
+        };
+        let entry = kinds.entry(kind).or_default();
+        entry.0 += 1;
+        entry.1 += file.bytes;
+    }
+    let mut lines: Vec<String> = kinds
+        .into_iter()
+        .map(|(kind, (count, bytes))| format!("  {kind:32} {count:>5} files, {}", human::bytes(bytes)))
+        .collect();
+    for (path, bytes) in films {
+        let name = path.strip_prefix(root).unwrap_or(path).display().to_string();
+        lines.push(format!("  {name:32}     1 film,  {}", human::bytes(*bytes)));
+    }
+    if lines.is_empty() {
+        return format!("No frames were written; the summary is in {}.", root.join("run.json").display());
+    }
+    format!("Written to {}:\n{}", root.display(), lines.join("\n"))
+}
+
+/// Time per pass, the longest first.
+pub fn passes(timings: &Timings, steps: u64) -> String {
+    let mut passes: Vec<_> = timings.passes.iter().collect();
+    passes.sort_by_key(|(_, time)| std::cmp::Reverse(time.total));
+    let total = timings.total().as_secs_f64();
+    let per_step = |seconds: f64| 1000.0 * seconds / steps.max(1) as f64;
+    let mut text = "| pass | dispatches per step | ms per step | share |\n|---|---:|---:|---:|\n".to_owned();
+    for (label, time) in passes {
+        let seconds = time.total.as_secs_f64();
+        text += &format!(
+            "| {label} | {:.2} | {:.3} | {:.1} % |\n",
+            time.count as f64 / steps.max(1) as f64,
+            per_step(seconds),
+            if total > 0.0 { 100.0 * seconds / total } else { 0.0 }
+        );
+    }
+    text + &format!("| all | | {:.3} | |", per_step(total))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::files;
+    use splashdown_io::WrittenFile;
+    use std::path::Path;
+
+    #[test]
+    fn files_of_a_kind_share_a_line() {
+        let file = |name: &str| WrittenFile { path: Path::new("out_1").join(name), bytes: 1000 };
+        let written =
+            [file("mesh/surface_0000.ply"), file("mesh/surface_0001.ply"), file("mesh/surface_0000.obj")];
+        let text = files(Path::new("out_1"), &written, &[]);
+        assert!(text.contains("mesh/surface_*.ply") && text.contains("2 files, 2.00 kB"), "{text}");
+        assert_eq!(text.lines().count(), 3);
+        assert!(files(Path::new("out_1"), &[], &[]).contains("No frames"));
+    }
+}

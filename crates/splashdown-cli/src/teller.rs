@@ -1,0 +1,175 @@
+//! What a run says: words and a bar for people, lines for programs, `run.json` for later, all from the same events.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use splashdown::{Progress, Started, Summary};
+use splashdown_io::WrittenFile;
+
+use crate::console::{self, Verbosity};
+use crate::exit::{Exit, Failure};
+use crate::files::CompleteFrame;
+use crate::layout::Layout;
+use crate::lines::Line;
+use crate::progress::Bar;
+use crate::report::Report;
+use crate::{human, summary};
+
+/// The voice of a run.
+#[derive(Debug)]
+pub struct Teller {
+    json: bool,
+    verbosity: Verbosity,
+    bar: Bar,
+    report: Report,
+    last_progress: Option<Duration>,
+    last: Option<CompleteFrame>,
+    summary: Option<Summary>,
+}
+
+impl Teller {
+    /// Says nothing yet.
+    pub fn new(json: bool, verbosity: Verbosity, report: Report) -> Self {
+        Self {
+            json,
+            verbosity,
+            bar: Bar::new(verbosity, json),
+            report,
+            last_progress: None,
+            last: None,
+            summary: None,
+        }
+    }
+
+    /// A remark, unless quiet.
+    pub fn note(&self, text: &str) {
+        if self.verbosity > Verbosity::Quiet {
+            self.bar.note(text);
+        }
+    }
+
+    /// Something the user should know.
+    pub fn warn(&self, message: &str) {
+        let message = message.trim_start_matches("warning: ");
+        self.note(&format!("warning: {message}"));
+        self.line(&Line::warning(message));
+    }
+
+    /// The run begins.
+    pub fn started(&mut self, started: &Started) {
+        self.note(&format!(
+            "{} particles, {} frames, {} of memory, on {}",
+            human::count(started.particles.into()),
+            human::count(started.frames.into()),
+            human::bytes(started.memory),
+            started.device
+        ));
+        self.report.device = Some(started.device.clone());
+        self.line(&Line::started(started));
+    }
+
+    /// Where it is. The bar follows every time, a line comes once a second.
+    pub fn progress(&mut self, progress: &Progress) {
+        self.bar.update(progress);
+        if self.last_progress.is_none_or(|last| progress.wall.saturating_sub(last) >= Duration::from_secs(1))
+        {
+            self.last_progress = Some(progress.wall);
+            self.line(&Line::progress(progress));
+        }
+    }
+
+    /// Frames whose files have become complete.
+    pub fn complete(&mut self, frames: Vec<CompleteFrame>) {
+        for frame in frames {
+            self.report.complete_frames += 1;
+            self.report.end(&frame.account.stats);
+            self.line(&Line::frame(&frame));
+            self.last = Some(frame);
+        }
+    }
+
+    /// The simulation is done.
+    pub fn finished(&mut self, summary: Summary) {
+        self.report.summary(&summary);
+        self.summary = Some(summary);
+    }
+
+    /// What is being waited for.
+    pub fn waiting(&self, what: &str) {
+        self.bar.waiting(what);
+    }
+
+    /// Writes the report and says the closing words.
+    ///
+    /// # Errors
+    /// The failure given, or that of writing the report.
+    pub fn close(
+        mut self,
+        layout: &Layout,
+        files: &[WrittenFile],
+        films: &[(PathBuf, u64)],
+        failure: Option<Failure>,
+        timing: bool,
+    ) -> Result<ExitCode, Failure> {
+        self.bar.clear();
+        self.report.status = match (&failure, &self.summary) {
+            (Some(_), _) => "failed",
+            (None, Some(_)) => "finished",
+            (None, None) => "interrupted",
+        };
+        self.report.error = failure.as_ref().map(ToString::to_string);
+        self.report.files = files.len() + films.len();
+        self.report.bytes = files.iter().map(|file| file.bytes).chain(films.iter().map(|film| film.1)).sum();
+        let written = self.report.write(layout);
+        if let Some(failure) = failure {
+            self.note(&self.what_is_left(layout));
+            return Err(failure);
+        }
+        written?;
+        let closing = [layout.report()];
+        let names = films.iter().map(|(path, _)| path).chain(&closing).map(|path| path.display().to_string());
+        let names: Vec<String> = names.collect();
+        match &self.summary {
+            Some(numbers) => {
+                let triangles = self.last.as_ref().and_then(|frame| frame.account.triangles);
+                self.line(&Line::finished(numbers, triangles, names));
+                if timing {
+                    self.say(&format!("\n{}", summary::passes(&numbers.timings, numbers.stats.steps)));
+                }
+                self.say(&format!("\nFinished.\n{}", summary::numbers(numbers)));
+                self.say(&format!("\n{}", summary::files(layout.root(), files, films)));
+                Ok(ExitCode::SUCCESS)
+            }
+            None => {
+                self.line(&Line::interrupted(self.last.as_ref(), names));
+                self.say(&format!("\nStopped. {}", self.what_is_left(layout)));
+                self.say(&summary::files(layout.root(), files, films));
+                Ok(ExitCode::from(Exit::Interrupted as u8))
+            }
+        }
+    }
+
+    fn what_is_left(&self, layout: &Layout) -> String {
+        match self.report.complete_frames {
+            0 => "No frame was completed.".to_owned(),
+            count => {
+                let index = self.last.as_ref().map_or(0, |frame| frame.account.index);
+                format!("{count} frames (0 to {index}) are complete in {}.", layout.root().display())
+            }
+        }
+    }
+
+    /// Results on stdout, unless a program reads there or nobody wants to know.
+    fn say(&self, text: &str) {
+        if !self.json && self.verbosity > Verbosity::Quiet {
+            console::print(text);
+        }
+    }
+
+    fn line(&self, line: &Line) {
+        if self.json {
+            self.bar.suspend(|| console::print_json(line));
+        }
+    }
+}
