@@ -26,6 +26,7 @@
 extern crate self as splashdown_gpu;
 
 pub mod check;
+pub mod compact;
 mod device;
 mod element;
 mod error;
@@ -33,7 +34,9 @@ mod exec;
 mod host;
 mod pass;
 mod record;
+pub mod reduce;
 pub mod scan;
+pub mod sort;
 pub mod testing;
 mod timing;
 pub mod wgsl;
@@ -44,13 +47,13 @@ pub use error::GpuError;
 pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback};
 pub use host::{Slot, as_atomic};
 pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, write};
-pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording};
+pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording, dispatch_groups};
 pub use timing::{PassTime, Timings};
 pub use wgsl::WgslModule;
 
 /// Every pass of this crate, for the gate and the tests.
 pub fn passes() -> Vec<&'static PassDesc> {
-    scan::PASSES.to_vec()
+    [&scan::PASSES[..], &reduce::PASSES, &compact::PASSES, &sort::PASSES].concat()
 }
 
 #[doc(hidden)]

@@ -78,6 +78,15 @@ pub enum Grid {
     },
 }
 
+/// Most workgroups in one dimension of a dispatch, on every adapter.
+const MAX_GROUPS: u32 = 65_535;
+
+/// Splits a number of workgroups so that no dimension is past 65,535; the last row may be longer than needed.
+pub fn dispatch_groups(groups: u32) -> [u32; 3] {
+    let rows = groups.div_ceil(MAX_GROUPS).max(1);
+    [groups.div_ceil(rows), rows, 1]
+}
+
 /// One entry of a [`Recording`].
 #[derive(Clone, Debug)]
 pub enum Command {
@@ -154,5 +163,21 @@ impl Recording {
     /// Appends a bounded repetition of another recording.
     pub fn repeat(&mut self, body: &Recording, most: u32, until: Flag) {
         self.commands.push(Command::Repeat { body: body.commands.clone(), most, until });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dispatch_groups;
+
+    #[test]
+    fn no_dimension_is_past_the_limit_and_none_is_missing() {
+        for groups in [1, 65_535, 65_536, 131_070, 131_071, 1 << 24, 3_000_000_000] {
+            let [x, y, z] = dispatch_groups(groups);
+            assert!(x <= 65_535 && y <= 65_535 && z == 1, "{groups}: {x} x {y}");
+            assert!(u64::from(x) * u64::from(y) >= u64::from(groups));
+        }
+        assert_eq!(dispatch_groups(65_535), [65_535, 1, 1]);
+        assert_eq!(dispatch_groups(0), [0, 1, 1]);
     }
 }

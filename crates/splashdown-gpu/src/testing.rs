@@ -1,10 +1,21 @@
-//! What the tests of this and other crates share: the executors there are, and skipping that is loud.
+//! What the tests of this and other crates share: the executors there are, skipping that is loud, and the gate.
 //!
 //! Not for use outside of tests: it panics.
+//!
+//! ```
+//! use splashdown_gpu::testing;
+//! for (name, mut executor) in testing::executors("doubling") {
+//!     let buffer = executor.create_from("numbers", &[1_u32, 2])?;
+//!     assert_eq!(executor.read(buffer)?, [1, 2], "{name}");
+//! }
+//! # Ok::<(), splashdown_gpu::GpuError>(())
+//! ```
 
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use crate::{CpuExecutor, DeviceRequest, Executor, Gpu, GpuExecutor};
+use crate::{CpuExecutor, DeviceRequest, Executor, Gpu, GpuExecutor, PassDesc, check};
 
 /// The device that all tests of a process share, opened once: software Vulkan where there is one, so that all
 /// machines test alike, else any GPU.
@@ -28,7 +39,8 @@ pub fn gpu_or_skip(test_name: &str) -> Option<Arc<Gpu>> {
                 std::env::var("CI").as_deref() != Ok("true"),
                 "{test_name}: CI=true forbids skipping, and {reason}"
             );
-            eprintln!("SKIPPED: {test_name}: {reason}");
+            // Not by `eprintln!`: the test harness keeps that to itself when a test passes.
+            let _ = writeln!(std::io::stderr(), "SKIPPED: {test_name}: {reason}");
             None
         }
     }
@@ -48,4 +60,55 @@ pub fn executors(test_name: &str) -> Vec<(&'static str, Executor)> {
         executor.poison();
     }
     executors
+}
+
+/// A number that looks random and is the same for the same `i`, on every machine.
+pub fn noise(i: u32) -> u32 {
+    // The PCG hash of M. Jarzynski and M. Olano, "Hash functions for GPU rendering", JCGT 9 (2020).
+    let state = i.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
+}
+
+/// What is wrong with a crate's passes: everything the [gate](check::check) reports, labels given twice, and every `.wgsl`
+/// file below `source_folder` (`concat!(env!("CARGO_MANIFEST_DIR"), "/src")`) that is neither the text of a pass nor
+/// one of its imports.
+///
+/// # Panics
+/// If a folder or file cannot be read.
+pub fn gate(source_folder: &Path, passes: &[&'static PassDesc]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (i, pass) in passes.iter().enumerate() {
+        if let Err(difference) = check::check(pass) {
+            wrong.push(format!("{}: {difference}", pass.label));
+        }
+        if passes[..i].iter().any(|other| other.label == pass.label) {
+            wrong.push(format!("two passes have the label {}", pass.label));
+        }
+    }
+    let mut files = Vec::new();
+    find_wgsl(source_folder, &mut files);
+    for file in files {
+        let text =
+            std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        let used = passes
+            .iter()
+            .any(|pass| pass.wgsl == text || pass.imports.iter().any(|module| module.source == text));
+        if !used {
+            wrong.push(format!("{}: no pass uses it", file.display()));
+        }
+    }
+    wrong
+}
+
+fn find_wgsl(folder: &Path, files: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    for entry in entries {
+        let path = entry.unwrap_or_else(|error| panic!("{}: {error}", folder.display())).path();
+        if path.is_dir() {
+            find_wgsl(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "wgsl") {
+            files.push(path);
+        }
+    }
 }

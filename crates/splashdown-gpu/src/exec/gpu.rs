@@ -8,10 +8,10 @@ use std::time::Duration;
 use super::pipeline::Pipeline;
 use super::table::{Meta, Table};
 use super::{Readback, readback};
-use crate::{BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings};
+use crate::{
+    BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings, dispatch_groups,
+};
 
-/// Most workgroups in one dimension of a dispatch, on every adapter.
-const MAX_GROUPS: u32 = 65_535;
 /// Dispatches timed per submission; those beyond go untimed.
 const TIMED_DISPATCHES: u32 = 2048;
 
@@ -255,8 +255,8 @@ impl GpuExecutor {
                             u64::from(word) * 4,
                         );
                     } else {
-                        let (x, y) = two_dimensions(groups);
-                        compute.dispatch_workgroups(x, y, 1);
+                        let [x, y, z] = dispatch_groups(groups);
+                        compute.dispatch_workgroups(x, y, z);
                     }
                 }
                 Command::Copy { from, to } => {
@@ -312,15 +312,6 @@ impl GpuExecutor {
     }
 }
 
-/// Splits a number of workgroups so that neither dimension is past the limit; the last row may be longer than needed.
-fn two_dimensions(groups: u32) -> (u32, u32) {
-    if groups <= MAX_GROUPS {
-        return (groups, 1);
-    }
-    let rows = groups.div_ceil(MAX_GROUPS);
-    (groups.div_ceil(rows), rows)
-}
-
 /// The encoder and, while dispatches follow one another, the compute pass they share.
 struct Target<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
@@ -359,20 +350,5 @@ impl Target<'_> {
     fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         self.pass = None;
         self.encoder
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::two_dimensions;
-
-    #[test]
-    fn no_dimension_is_past_the_limit_and_none_is_missing() {
-        for groups in [1, 65_535, 65_536, 131_070, 131_071, 1 << 24, 3_000_000_000] {
-            let (x, y) = two_dimensions(groups);
-            assert!(x <= 65_535 && y <= 65_535, "{groups}: {x} x {y}");
-            assert!(u64::from(x) * u64::from(y) >= u64::from(groups));
-        }
-        assert_eq!(two_dimensions(65_535), (65_535, 1));
     }
 }

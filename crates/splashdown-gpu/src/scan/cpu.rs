@@ -10,26 +10,28 @@ use crate::{CpuWork, Slot};
 const BLOCKS_PER_TASK: usize = 4;
 
 /// The sum of every block of `256 * RUN` counts.
-pub(super) fn reduce<const RUN: usize>(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn reduce<const RUN: usize, const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, counts, sums] = slots else { unreachable!("three bindings") };
     let len = params.get::<ScanParams>().len as usize;
     counts.read::<u32>()[..len]
         .par_chunks(256 * RUN)
         .with_min_len(BLOCKS_PER_TASK)
         .zip(sums.write::<u32>())
-        .for_each(|(block, sum)| *sum = block.iter().fold(0, |sum, count| sum.wrapping_add(*count)));
+        .for_each(|(block, sum)| {
+            *sum = block.iter().fold(0, |sum, count| sum.wrapping_add(*count.min(&MOST)))
+        });
 }
 
 /// All of it, serial.
-pub(super) fn single(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn single<const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, counts, starts] = slots else { unreachable!("three bindings") };
     let len = params.get::<ScanParams>().len as usize;
     let starts = starts.write::<u32>();
-    starts[len] = run(&counts.read::<u32>()[..len], &mut starts[..len], 0);
+    starts[len] = run::<MOST>(&counts.read::<u32>()[..len], &mut starts[..len], 0);
 }
 
 /// The prefix sums inside every block, on top of those of the blocks before.
-pub(super) fn spread<const RUN: usize>(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn spread<const RUN: usize, const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, counts, offsets, starts] = slots else { unreachable!("four bindings") };
     let ScanParams { len, blocks } = params.get();
     let (starts, total) = starts.write::<u32>()[..=len as usize].split_at_mut(len as usize);
@@ -41,15 +43,15 @@ pub(super) fn spread<const RUN: usize>(_: CpuWork, slots: &mut [Slot<'_>]) {
         .zip(starts.par_chunks_mut(256 * RUN))
         .zip(offsets)
         .for_each(|((counts, starts), offset)| {
-            run(counts, starts, *offset);
+            run::<MOST>(counts, starts, *offset);
         });
 }
 
 /// Writes the sums before each count, beginning with `sum`, and returns the sum after the last.
-fn run(counts: &[u32], starts: &mut [u32], mut sum: u32) -> u32 {
+fn run<const MOST: u32>(counts: &[u32], starts: &mut [u32], mut sum: u32) -> u32 {
     for (count, start) in counts.iter().zip(starts) {
         *start = sum;
-        sum = sum.wrapping_add(*count);
+        sum = sum.wrapping_add((*count).min(MOST));
     }
     sum
 }

@@ -19,8 +19,6 @@ mod cpu;
 
 use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, gpu_struct, read, uniform, wgsl, write};
 
-/// Counts per invocation.
-const RUN: u32 = 16;
 /// Up to this length one workgroup does it all.
 const SINGLE_MAX: u32 = 16_384;
 
@@ -34,56 +32,78 @@ gpu_struct! {
     }
 }
 
-/// The passes of a scan in blocks of `256 * RUN`; the tests have them with another length of a block.
-macro_rules! passes {
-    ($run:expr; $reduce:ident $reduce_label:literal, $spread:ident $spread_label:literal) => {
-        static $reduce: PassDesc = PassDesc {
-            label: $reduce_label,
+/// The passes of one kind of scan. Counts above `most` count as `most`: 1 makes flags of them.
+#[derive(Debug)]
+struct Passes {
+    run: u32,
+    reduce: PassDesc,
+    single: PassDesc,
+    spread: PassDesc,
+}
+
+const fn passes<const RUN: usize, const MOST: u32>(
+    constants: &'static [(&'static str, f64)],
+    [reduce, single, spread]: [&'static str; 3],
+) -> Passes {
+    Passes {
+        run: RUN as u32,
+        reduce: PassDesc {
+            label: reduce,
             wgsl: include_str!("scan_reduce.wgsl"),
             imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
             entry: "scan_reduce",
             workgroup_size: [256, 1, 1],
-            constants: &[("RUN", $run as f64)],
-            bindings: &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("sums")],
-            cpu: cpu::reduce::<{ $run as usize }>,
-        };
-        static $spread: PassDesc = PassDesc {
-            label: $spread_label,
+            constants,
+            bindings: const { &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("sums")] },
+            cpu: cpu::reduce::<RUN, MOST>,
+        },
+        single: PassDesc {
+            label: single,
+            wgsl: include_str!("scan_single.wgsl"),
+            imports: &[wgsl::WORKGROUP_PREFIX],
+            entry: "scan_single",
+            workgroup_size: [256, 1, 1],
+            constants: constants.split_at(1).1,
+            bindings: const { &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("starts")] },
+            cpu: cpu::single::<MOST>,
+        },
+        spread: PassDesc {
+            label: spread,
             wgsl: include_str!("scan_spread.wgsl"),
             imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
             entry: "scan_spread",
             workgroup_size: [256, 1, 1],
-            constants: &[("RUN", $run as f64)],
-            bindings: &[
-                uniform::<ScanParams>("params"),
-                read::<u32>("counts"),
-                read::<u32>("offsets"),
-                write::<u32>("starts"),
-            ],
-            cpu: cpu::spread::<{ $run as usize }>,
-        };
-    };
+            constants,
+            bindings: const {
+                &[
+                    uniform::<ScanParams>("params"),
+                    read::<u32>("counts"),
+                    read::<u32>("offsets"),
+                    write::<u32>("starts"),
+                ]
+            },
+            cpu: cpu::spread::<RUN, MOST>,
+        },
+    }
 }
 
-passes!(RUN; REDUCE "scan.reduce", SPREAD "scan.spread");
+static COUNTS: Passes = passes::<16, { u32::MAX }>(
+    &[("RUN", 16.0), ("MOST", u32::MAX as f64)],
+    ["scan.reduce", "scan.single", "scan.spread"],
+);
+static FLAGS: Passes = passes::<16, 1>(
+    &[("RUN", 16.0), ("MOST", 1.0)],
+    ["scan.flags.reduce", "scan.flags.single", "scan.flags.spread"],
+);
 
-static SINGLE: PassDesc = PassDesc {
-    label: "scan.single",
-    wgsl: include_str!("scan_single.wgsl"),
-    imports: &[wgsl::WORKGROUP_PREFIX],
-    entry: "scan_single",
-    workgroup_size: [256, 1, 1],
-    constants: &[],
-    bindings: &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("starts")],
-    cpu: cpu::single,
-};
-
-pub(crate) static PASSES: [&PassDesc; 3] = [&REDUCE, &SINGLE, &SPREAD];
+pub(crate) static PASSES: [&PassDesc; 6] =
+    [&COUNTS.reduce, &COUNTS.single, &COUNTS.spread, &FLAGS.reduce, &FLAGS.single, &FLAGS.spread];
 
 /// Exclusive prefix sums of a fixed number of counts, with the buffers that takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Scan {
     len: u32,
+    passes: &'static Passes,
     params: Buffer<ScanParams>,
     levels: Option<Levels>,
 }
@@ -95,8 +115,6 @@ struct Levels {
     block_params: Buffer<ScanParams>,
     sums: Buffer<u32>,
     offsets: Buffer<u32>,
-    reduce: &'static PassDesc,
-    spread: &'static PassDesc,
 }
 
 impl Scan {
@@ -105,34 +123,36 @@ impl Scan {
     /// # Errors
     /// As [`Executor::create`].
     pub fn new(executor: &mut Executor, len: u32) -> Result<Self, GpuError> {
-        if len <= SINGLE_MAX {
-            let params = executor.create_uniform("scan params", &ScanParams { len, blocks: 1 })?;
-            return Ok(Self { len, params, levels: None });
-        }
-        Self::in_blocks(executor, len, RUN, &REDUCE, &SPREAD)
+        Self::with(executor, len, &COUNTS, SINGLE_MAX)
     }
 
-    fn in_blocks(
+    /// Prepares scans of `len` flags: each that is not 0 counts as one.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn of_flags(executor: &mut Executor, len: u32) -> Result<Self, GpuError> {
+        Self::with(executor, len, &FLAGS, SINGLE_MAX)
+    }
+
+    fn with(
         executor: &mut Executor,
         len: u32,
-        run: u32,
-        reduce: &'static PassDesc,
-        spread: &'static PassDesc,
+        passes: &'static Passes,
+        single_max: u32,
     ) -> Result<Self, GpuError> {
-        let blocks = len.div_ceil(256 * run);
-        let block_params = ScanParams { len: blocks, blocks: 1 };
-        Ok(Self {
-            len,
-            params: executor.create_uniform("scan params", &ScanParams { len, blocks })?,
-            levels: Some(Levels {
+        let blocks = len.div_ceil(256 * passes.run);
+        let params = executor.create_uniform("scan params", &ScanParams { len, blocks })?;
+        let mut scan = Self { len, passes, params, levels: None };
+        if len > single_max {
+            let block_params = ScanParams { len: blocks, blocks: 1 };
+            scan.levels = Some(Levels {
                 blocks,
                 block_params: executor.create_uniform("scan block params", &block_params)?,
                 sums: executor.create("scan block sums", blocks as usize)?,
                 offsets: executor.create("scan block offsets", blocks as usize + 1)?,
-                reduce,
-                spread,
-            }),
-        })
+            });
+        }
+        Ok(scan)
     }
 
     /// The number of counts.
@@ -150,17 +170,45 @@ impl Scan {
         assert!(counts.len() >= self.len, "a scan of {} counts was given {counts:?}", self.len);
         assert!(starts.len() > self.len, "a scan of {} counts cannot write {starts:?}", self.len);
         let (counts, starts) = (counts.id(), starts.id());
+        let Passes { reduce, single, spread, .. } = self.passes;
+        let params = self.params.id();
         let Some(levels) = &self.levels else {
-            recording.dispatch(&SINGLE, Grid::Groups(1), &[self.params.id(), counts, starts]);
+            recording.dispatch(single, Grid::Groups(1), &[params, counts, starts]);
             return;
         };
-        let (sums, offsets) = (levels.sums.id(), levels.offsets.id());
-        recording.dispatch(levels.reduce, Grid::Groups(levels.blocks), &[self.params.id(), counts, sums]);
-        recording.dispatch(&SINGLE, Grid::Groups(1), &[levels.block_params.id(), sums, offsets]);
-        recording.dispatch(
-            levels.spread,
-            Grid::Groups(levels.blocks),
-            &[self.params.id(), counts, offsets, starts],
-        );
+        let (groups, sums, offsets) = (Grid::Groups(levels.blocks), levels.sums.id(), levels.offsets.id());
+        recording.dispatch(reduce, groups, &[params, counts, sums]);
+        recording.dispatch(&COUNTS.single, Grid::Groups(1), &[levels.block_params.id(), sums, offsets]);
+        recording.dispatch(spread, groups, &[params, counts, offsets, starts]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing;
+
+    /// One count per invocation, so that two dimensions of workgroups are reached with 67 MB.
+    static NARROW: Passes =
+        passes::<1, { u32::MAX }>(&[("RUN", 1.0), ("MOST", u32::MAX as f64)], ["narrow", "narrow", "narrow"]);
+
+    #[test]
+    fn a_dispatch_past_65_535_workgroups_is_right() {
+        let len = 65_537 * 256 + 3;
+        let counts: Vec<u32> = (0..len).map(|i| i % 5).collect();
+        for (name, mut executor) in testing::executors("a_dispatch_past_65_535_workgroups_is_right") {
+            let input = executor.create_from("counts", &counts).unwrap();
+            let starts = executor.create::<u32>("starts", counts.len() + 1).unwrap();
+            let scan = Scan::with(&mut executor, len, &NARROW, 0).unwrap();
+            assert!(scan.levels.unwrap().blocks > 65_535);
+            let mut recording = Recording::new("scan");
+            scan.record(&mut recording, input, starts);
+            executor.run(&recording).unwrap();
+            let starts = executor.read(starts).unwrap();
+            // Five counts that follow one another sum to 10.
+            let expected = |i: u32| i / 5 * 10 + [0, 0, 1, 3, 6][i as usize % 5];
+            let wrong = (0..=len).find(|&i| starts[i as usize] != expected(i));
+            assert_eq!(wrong, None, "{name}");
+        }
     }
 }

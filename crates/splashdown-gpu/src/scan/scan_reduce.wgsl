@@ -11,6 +11,7 @@ struct ScanParams {
 @group(0) @binding(2) var<storage, read_write> sums: array<u32>;
 
 override RUN: u32 = 16u;
+override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
 
 @compute @workgroup_size(256)
 fn scan_reduce(
@@ -25,7 +26,7 @@ fn scan_reduce(
     for (var i = 0u; i < RUN; i++) {
         let at = first + i * 256u;
         if (at < params.len) {
-            sum += counts[at];
+            sum += min(counts[at], MOST);
         }
     }
     let prefix = workgroup_prefix(sum, lane, 0u);

@@ -10,6 +10,7 @@ struct ScanParams {
 @group(0) @binding(2) var<storage, read_write> starts: array<u32>;
 
 const RUN: u32 = 16u;
+override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
 
 @compute @workgroup_size(256)
 fn scan_single(@builtin(local_invocation_index) lane: u32) {
@@ -20,13 +21,13 @@ fn scan_single(@builtin(local_invocation_index) lane: u32) {
         let end = min(first + RUN, params.len);
         var sum = 0u;
         for (var i = first; i < end; i++) {
-            sum += counts[i];
+            sum += min(counts[i], MOST);
         }
         let prefix = workgroup_prefix(sum, lane, round & 1u);
         var start = carry + prefix.before;
         for (var i = first; i < end; i++) {
             starts[i] = start;
-            start += counts[i];
+            start += min(counts[i], MOST);
         }
         carry += prefix.total;
     }

@@ -12,6 +12,7 @@ struct ScanParams {
 @group(0) @binding(3) var<storage, read_write> starts: array<u32>;
 
 override RUN: u32 = 16u;
+override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
 
 @compute @workgroup_size(256)
 fn scan_spread(
@@ -24,13 +25,13 @@ fn scan_spread(
     let end = min(first + RUN, params.len);
     var sum = 0u;
     for (var i = first; i < end; i++) {
-        sum += counts[i];
+        sum += min(counts[i], MOST);
     }
     let prefix = workgroup_prefix(sum, lane, 0u);
     var start = offsets[min(block, params.blocks)] + prefix.before;
     for (var i = first; i < end; i++) {
         starts[i] = start;
-        start += counts[i];
+        start += min(counts[i], MOST);
     }
     if (block == 0u && lane == 0u) {
         starts[params.len] = offsets[params.blocks];

@@ -1,0 +1,36 @@
+//! The same on the cores: every stretch of flags fills its own stretch of the list.
+
+use rayon::prelude::*;
+
+use super::CompactParams;
+use crate::{CpuWork, Slot, dispatch_groups};
+
+/// Flags per task.
+const TASK: usize = 16_384;
+
+pub(super) fn gather(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, starts, indices, counted] = slots else { unreachable!("four bindings") };
+    let CompactParams { len, workgroup_size } = params.get();
+    let starts = &starts.read::<u32>()[..=len as usize];
+    let indices = indices.write::<u32>();
+    let count = starts[len as usize];
+    let fitting = count.min(indices.len() as u32);
+    let [x, y, z] = dispatch_groups(fitting.div_ceil(workgroup_size));
+    counted.write::<u32>()[..4].copy_from_slice(&[x, y, z, count]);
+
+    let mut rest = &mut indices[..fitting as usize];
+    let mut tasks = Vec::with_capacity(len as usize / TASK + 1);
+    for first in (0..len as usize).step_by(TASK) {
+        let end = (first + TASK).min(len as usize);
+        let kept = (starts[end].min(fitting) - starts[first].min(fitting)) as usize;
+        let (part, after) = rest.split_at_mut(kept);
+        rest = after;
+        tasks.push((first, &starts[first..=end], part));
+    }
+    tasks.into_par_iter().for_each(|(first, starts, part)| {
+        let kept = starts.windows(2).enumerate().filter(|(_, pair)| pair[0] != pair[1]);
+        for ((i, _), place) in kept.zip(part) {
+            *place = (first + i) as u32;
+        }
+    });
+}

@@ -1,0 +1,119 @@
+//! The list of the elements whose flag is set, in order, and the arguments to dispatch over it.
+//!
+//! # How it works
+//!
+//! A [scan](crate::scan) of the flags says where each kept element goes; one more pass puts them there. The list may
+//! be shorter than the flags (few blocks of a grid hold fluid): what does not fit is not written, but counted.
+//!
+//! # Why not the other way
+//!
+//! A counter that every kept element increments atomically is one dispatch instead of up to four, but leaves the list
+//! in an order that differs from run to run.
+
+mod cpu;
+
+use crate::scan::Scan;
+use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, gpu_struct, read, uniform, wgsl, write};
+
+gpu_struct! {
+    /// Mirrors `CompactParams` in `compact_gather.wgsl`.
+    struct CompactParams {
+        /// Number of flags.
+        len: u32,
+        /// Invocations per workgroup of the passes that run over the list.
+        workgroup_size: u32,
+    }
+}
+
+static GATHER: PassDesc = PassDesc {
+    label: "compact.gather",
+    wgsl: include_str!("compact_gather.wgsl"),
+    imports: &[wgsl::INDEX],
+    entry: "compact_gather",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<CompactParams>("params"),
+        read::<u32>("starts"),
+        write::<u32>("indices"),
+        write::<u32>("counted"),
+    ],
+    cpu: cpu::gather,
+};
+
+pub(crate) static PASSES: [&PassDesc; 1] = [&GATHER];
+
+/// The compaction of a fixed number of flags, with the buffers that takes.
+///
+/// ```
+/// use splashdown_gpu::{CpuExecutor, Executor, Recording, compact::Compact};
+/// let mut executor = Executor::from(CpuExecutor::new());
+/// let flags = executor.create_from("flags", &[0_u32, 7, 0, 1])?;
+/// let indices = executor.create::<u32>("indices", 4)?;
+/// let counted = executor.create::<u32>("counted", 4)?;
+/// let compact = Compact::new(&mut executor, 4, 64)?;
+/// let mut recording = Recording::new("example");
+/// compact.record(&mut recording, flags, indices, counted);
+/// executor.run(&recording)?;
+/// assert_eq!(executor.read(counted)?, [1, 1, 1, 2]);
+/// assert_eq!(executor.read_first(indices, 2)?, [1, 3]);
+/// # Ok::<(), splashdown_gpu::GpuError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Compact {
+    len: u32,
+    params: Buffer<CompactParams>,
+    scan: Scan,
+    starts: Buffer<u32>,
+}
+
+impl Compact {
+    /// Where in `counted` the number of set flags lies; before it are the arguments of
+    /// [`Grid::Indirect`](crate::Grid::Indirect).
+    pub const COUNT_WORD: u32 = 3;
+
+    /// Prepares compactions of `len` flags into lists over which passes with `workgroup_size` invocations run.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    ///
+    /// # Panics
+    /// If `workgroup_size` is 0.
+    pub fn new(executor: &mut Executor, len: u32, workgroup_size: u32) -> Result<Self, GpuError> {
+        assert!(workgroup_size > 0, "a workgroup has at least one invocation");
+        Ok(Self {
+            len,
+            params: executor.create_uniform("compact params", &CompactParams { len, workgroup_size })?,
+            scan: Scan::of_flags(executor, len)?,
+            starts: executor.create("compact starts", len as usize + 1)?,
+        })
+    }
+
+    /// Where each element stands in the list: after the recorded commands element `i` of this buffer is the number of
+    /// set flags before flag `i`, so it is the place of `i` in the list if its flag is set; the last of its `len + 1`
+    /// elements is the number of all set flags.
+    pub fn places(&self) -> Buffer<u32> {
+        self.starts
+    }
+
+    /// Appends: `indices` becomes the ascending list of every `i` with `flags[i] != 0`, as many as it has room for, and
+    /// `counted` becomes four words: the arguments of a [`Grid::Indirect`](crate::Grid::Indirect) over the
+    /// list, then the number of flags set, which may be more than fit. Passes over the list check their number against
+    /// that number and their list's length.
+    ///
+    /// # Panics
+    /// If `flags` has fewer elements than this compaction was made for, `indices` none, or `counted` fewer than four.
+    pub fn record(
+        &self,
+        recording: &mut Recording,
+        flags: Buffer<u32>,
+        indices: Buffer<u32>,
+        counted: Buffer<u32>,
+    ) {
+        assert!(!indices.is_empty(), "a compaction cannot write {indices:?}");
+        assert!(counted.len() >= 4, "a compaction writes four words, not {counted:?}");
+        self.scan.record(recording, flags, self.starts);
+        let buffers = [self.params.id(), self.starts.id(), indices.id(), counted.id()];
+        recording.dispatch(&GATHER, Grid::Items(self.len.max(1)), &buffers);
+    }
+}

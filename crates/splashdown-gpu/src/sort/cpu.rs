@@ -1,0 +1,69 @@
+//! The same network on the cores.
+//!
+//! Not rayon's sort, which is several times faster: the network is here as the thesis's baseline, to be measured as
+//! such, and each of its passes must do on the CPU what it does on a GPU for any input. Blocks of 512 are sorted by the
+//! standard library, because the order is total: there is one result, however it is found.
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::{BLOCK, SortParams};
+use crate::{CpuWork, Slot};
+
+/// Pairs per task.
+const TASK: usize = 4096;
+
+fn key(pair: &UVec2) -> (u32, u32) {
+    (pair.x, pair.y)
+}
+
+#[inline(always)]
+fn compare(low: &mut UVec2, high: &mut UVec2) {
+    let (a, b) = (*low, *high);
+    let swap = key(&a) > key(&b);
+    *low = if swap { b } else { a };
+    *high = if swap { a } else { b };
+}
+
+/// Sorts each block of 512.
+pub(super) fn blocks(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, pairs] = slots else { unreachable!("two bindings") };
+    let len = params.get::<SortParams>().len as usize;
+    pairs.write::<UVec2>()[..len]
+        .par_chunks_mut(BLOCK as usize)
+        .for_each(|block| block.sort_unstable_by_key(key));
+}
+
+/// The last nine steps of a merge, inside blocks of 512.
+pub(super) fn merge(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, pairs] = slots else { unreachable!("two bindings") };
+    let len = params.get::<SortParams>().len as usize;
+    pairs.write::<UVec2>()[..len].par_chunks_mut(BLOCK as usize).for_each(|block| {
+        let mut span = BLOCK as usize;
+        while span > 1 {
+            for part in block.chunks_mut(span) {
+                let (low, high) = part.split_at_mut(part.len().min(span / 2));
+                low.iter_mut().zip(high).for_each(|(low, high)| compare(low, high));
+            }
+            span /= 2;
+        }
+    });
+}
+
+/// One step over spans that are longer than a block.
+pub(super) fn step(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, pairs] = slots else { unreachable!("two bindings") };
+    let SortParams { len, span, flip } = params.get();
+    let half = span as usize / 2;
+    pairs.write::<UVec2>()[..len as usize].par_chunks_mut(span as usize).for_each(|part| {
+        let (low, high) = part.split_at_mut(part.len().min(half));
+        if flip == 1 {
+            // The first of `high` meets the last of `low`; where `high` is cut short, the first of `low` meet padding.
+            let met = half - high.len();
+            let low = low.get_mut(met..).unwrap_or_default();
+            low.par_iter_mut().rev().zip(high).with_min_len(TASK).for_each(|(low, high)| compare(low, high));
+        } else {
+            low.par_iter_mut().zip(high).with_min_len(TASK).for_each(|(low, high)| compare(low, high));
+        }
+    });
+}

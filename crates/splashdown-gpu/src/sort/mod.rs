@@ -1,0 +1,179 @@
+//! Bitonic sort of pairs of a key and a value: the way the thesis found neighbours, kept as a baseline.
+//!
+//! # How it works
+//!
+//! Batcher's network (K. E. Batcher, *Sorting networks and their applications*, AFIPS 1968) in the form whose comparisons
+//! all point the same way: a merge first compares mirrored places of two sorted halves (a *flip*), then places half a
+//! span apart, a quarter, and so on. Since the smaller of two always goes to the front, padding of
+//! `u32::MAX` up to the next power of two never moves, and need not be there: comparisons with it are left out. So any
+//! length is sorted in place.
+//!
+//! Everything inside blocks of 512 happens in workgroup memory; only longer spans take a dispatch per step: 36 dispatches
+//! for 65,536 pairs, 78 for a million.
+//!
+//! Pairs are ordered by key, then by value. If the values differ (numbers of particles do), the order is total and the
+//! result repeats bit by bit.
+//!
+//! # Why not the other way
+//!
+//! It *is* the other way: n log² n comparisons, where a counting sort by cell (histogram, [scan](crate::scan), scatter)
+//! reads and writes everything twice. It stays because it is what the numbers of the thesis are compared with.
+
+mod cpu;
+
+use glam::UVec2;
+
+use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, WgslModule};
+use crate::{gpu_struct, uniform, wgsl, write};
+
+/// Pairs per workgroup in workgroup memory.
+const BLOCK: u32 = 512;
+
+gpu_struct! {
+    /// Mirrors `SortParams` in the passes' WGSL.
+    struct SortParams {
+        /// Number of pairs.
+        len: u32,
+        /// What a step's halves are halves of.
+        span: u32,
+        /// 1 if the step compares mirrored places.
+        flip: u32,
+    }
+}
+
+const ORDER: WgslModule = WgslModule { name: "sort/order", source: include_str!("order.wgsl") };
+
+static BLOCKS: PassDesc = PassDesc {
+    label: "sort.blocks",
+    wgsl: include_str!("sort_local.wgsl"),
+    imports: &[wgsl::INDEX, ORDER],
+    entry: "sort_local",
+    workgroup_size: [256, 1, 1],
+    constants: &[("WHOLE", 1.0)],
+    bindings: &[uniform::<SortParams>("params"), write::<UVec2>("pairs")],
+    cpu: cpu::blocks,
+};
+
+static MERGE: PassDesc =
+    PassDesc { label: "sort.merge", constants: &[("WHOLE", 0.0)], cpu: cpu::merge, ..BLOCKS };
+
+static STEP: PassDesc = PassDesc {
+    label: "sort.step",
+    wgsl: include_str!("sort_step.wgsl"),
+    imports: &[wgsl::INDEX, ORDER],
+    entry: "sort_step",
+    workgroup_size: [256, 1, 1],
+    constants: &[],
+    bindings: &[uniform::<SortParams>("params"), write::<UVec2>("pairs")],
+    cpu: cpu::step,
+};
+
+pub(crate) static PASSES: [&PassDesc; 3] = [&BLOCKS, &MERGE, &STEP];
+
+/// The sort of a fixed number of pairs.
+///
+/// ```
+/// use splashdown_gpu::{CpuExecutor, Executor, Recording, glam::uvec2, sort::Sort};
+/// let mut executor = Executor::from(CpuExecutor::new());
+/// let pairs = executor.create_from("pairs", &[uvec2(9, 0), uvec2(3, 2), uvec2(3, 1)])?;
+/// let sort = Sort::new(&mut executor, 3)?;
+/// let mut recording = Recording::new("example");
+/// sort.record(&mut recording, pairs);
+/// executor.run(&recording)?;
+/// assert_eq!(executor.read(pairs)?, [uvec2(3, 1), uvec2(3, 2), uvec2(9, 0)]);
+/// # Ok::<(), splashdown_gpu::GpuError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Sort {
+    len: u32,
+    params: Buffer<SortParams>,
+    /// The numbers of a flip of 1024, 2048, ... pairs and of the straight step of as many.
+    steps: Vec<[Buffer<SortParams>; 2]>,
+}
+
+impl Sort {
+    /// Prepares sorts of `len` pairs, at most 2^31.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    ///
+    /// # Panics
+    /// If `len` is more than 2^31.
+    pub fn new(executor: &mut Executor, len: u32) -> Result<Self, GpuError> {
+        assert!(len <= 1 << 31, "{len} pairs are more than 2^31");
+        let params = executor.create_uniform("sort params", &SortParams { len, span: BLOCK, flip: 0 })?;
+        let mut sort = Self { len, params, steps: Vec::new() };
+        let mut span = BLOCK;
+        while span < len {
+            span *= 2;
+            let mut step = |flip| executor.create_uniform("sort step", &SortParams { len, span, flip });
+            sort.steps.push([step(1)?, step(0)?]);
+        }
+        Ok(sort)
+    }
+
+    /// Appends: the first pairs (key, value) of `pairs`, as many as this sort was made for, are put into ascending
+    /// order of keys, and where these are equal of values.
+    ///
+    /// # Panics
+    /// If `pairs` has fewer elements.
+    pub fn record(&self, recording: &mut Recording, pairs: Buffer<UVec2>) {
+        assert!(pairs.len() >= self.len, "a sort of {} pairs was given {pairs:?}", self.len);
+        let blocks = Grid::Groups(self.len.div_ceil(BLOCK));
+        let pairs = pairs.id();
+        recording.dispatch(&BLOCKS, blocks, &[self.params.id(), pairs]);
+        for (level, [flip, _]) in self.steps.iter().enumerate() {
+            let comparisons = |span_level: usize| {
+                let half = BLOCK << span_level;
+                Grid::Items(self.len.div_ceil(2 * half).saturating_mul(half))
+            };
+            recording.dispatch(&STEP, comparisons(level), &[flip.id(), pairs]);
+            for (lower, [_, straight]) in self.steps[..level].iter().enumerate().rev() {
+                recording.dispatch(&STEP, comparisons(lower), &[straight.id(), pairs]);
+            }
+            recording.dispatch(&MERGE, blocks, &[self.params.id(), pairs]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::uvec2;
+
+    use super::*;
+    use crate::testing;
+
+    /// On any input, not only on the halves sorted before: a network compares the same places whatever they hold.
+    #[test]
+    fn every_step_does_the_same_on_both_executors() {
+        let len = 5000;
+        let pairs: Vec<UVec2> = (0..len).map(|i| uvec2(testing::noise(i) % 999, i)).collect();
+        let cases = [
+            (&BLOCKS, 512, 0),
+            (&MERGE, 512, 0),
+            (&STEP, 1024, 0),
+            (&STEP, 1024, 1),
+            (&STEP, 4096, 1),
+            (&STEP, 8192, 1),
+        ];
+        let mut results: Vec<Vec<Vec<UVec2>>> = Vec::new();
+        for (_, mut executor) in testing::executors("every_step_does_the_same_on_both_executors") {
+            let run = |(pass, span, flip): (&'static PassDesc, u32, u32)| {
+                let buffer = executor.create_from("pairs", &pairs)?;
+                let params = executor.create_uniform("params", &SortParams { len, span, flip })?;
+                let mut recording = Recording::new("step");
+                let grid = if std::ptr::eq(pass, &STEP) { Grid::Items(8192) } else { Grid::Groups(10) };
+                recording.dispatch(pass, grid, &[params.id(), buffer.id()]);
+                executor.run(&recording)?;
+                executor.read(buffer)
+            };
+            results.push(cases.into_iter().map(run).collect::<Result<_, GpuError>>().unwrap());
+        }
+        for result in &results {
+            assert!(*result == results[0]);
+            assert!(result.iter().all(|after| *after != pairs), "a step changed nothing");
+        }
+        let distinct = results[0].iter().enumerate().all(|(i, a)| results[0][..i].iter().all(|b| a != b));
+        assert!(distinct, "two different steps gave the same");
+    }
+}

@@ -1,0 +1,32 @@
+#import gpu/index
+#import sort/order
+
+struct SortParams {
+    len: u32,
+    span: u32,
+    flip: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: SortParams;
+@group(0) @binding(1) var<storage, read_write> pairs: array<vec2<u32>>;
+
+@compute @workgroup_size(256)
+fn sort_step(
+    @builtin(global_invocation_id) gid: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    let i = linear_index(gid, groups, 256u);
+    let half = params.span / 2u;
+    let begin = i / half * params.span;
+    let low = begin + i % half;
+    let high = select(low + half, begin + params.span - 1u - i % half, params.flip == 1u);
+    if (high >= params.len) {
+        return; // its partner is padding, which stays behind everything
+    }
+    let a = pairs[low];
+    let b = pairs[high];
+    if (comes_after(a, b)) {
+        pairs[low] = b;
+        pairs[high] = a;
+    }
+}

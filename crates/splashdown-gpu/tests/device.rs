@@ -1,0 +1,82 @@
+//! Adapters: choosing, refusing by name, and a machine without drivers.
+
+use std::process::Command;
+
+use splashdown_gpu::{DeviceRequest, Gpu, GpuError, list_adapters, testing};
+
+#[test]
+fn listed_adapters_can_be_opened_by_name() {
+    if testing::gpu_or_skip("listed_adapters_can_be_opened_by_name").is_none() {
+        return;
+    }
+    let adapters = list_adapters();
+    let adapter = adapters.first().expect("a device was opened");
+    assert!(adapters.is_sorted_by_key(|adapter| adapter.software), "software drivers come last");
+    assert!(adapter.largest_buffer() >= 128 << 20, "{adapter:?}");
+    assert!(adapter.limits.max_storage_buffers_per_shader_stage >= 8);
+    let gpu = Gpu::open(&DeviceRequest::Named(adapter.info.name.to_uppercase())).unwrap();
+    assert_eq!(gpu.info.name, adapter.info.name);
+    assert_eq!(gpu.is_software(), adapter.software);
+    assert_eq!(gpu.largest_buffer(), adapter.largest_buffer());
+    assert!(gpu.name().contains(&adapter.info.name));
+    gpu.health("nothing").unwrap();
+}
+
+#[test]
+fn an_unknown_name_is_refused_with_the_names_there_are() {
+    for name in ["Voodoo 2", ""] {
+        let error = Gpu::open(&DeviceRequest::Named(name.into())).unwrap_err();
+        assert!(matches!(error, GpuError::UnknownDevice { .. }), "{error}");
+        let message = error.to_string();
+        assert!(message.contains(&format!("{name:?}")), "{message}");
+        match list_adapters().first() {
+            Some(adapter) => assert!(message.contains(&adapter.info.name), "{message}"),
+            None => assert!(message.contains("only the CPU"), "{message}"),
+        }
+    }
+}
+
+#[test]
+fn asking_for_a_kind_that_is_missing_names_what_there_is() {
+    let adapters = list_adapters();
+    for (request, software) in [(DeviceRequest::Hardware, false), (DeviceRequest::Software, true)] {
+        let there = adapters.iter().any(|adapter| adapter.software == software);
+        match Gpu::open(&request) {
+            Ok(gpu) => assert!(there && gpu.is_software() == software, "{request:?} opened {}", gpu.name()),
+            Err(GpuError::NoAdapter { .. }) => assert!(adapters.is_empty()),
+            Err(GpuError::NoneOfKind { available, .. }) => {
+                assert!(!there && available.contains(&adapters[0].info.name), "{request:?}: {available}");
+            }
+            Err(error) => panic!("{request:?}: {error}"),
+        }
+    }
+}
+
+/// Set in the child process that runs without drivers.
+const CHILD: &str = "SPLASHDOWN_TEST_WITHOUT_DRIVERS";
+
+#[test]
+fn without_drivers_opening_fails_and_says_how_to_get_one() {
+    if std::env::var_os(CHILD).is_some() {
+        assert!(list_adapters().is_empty());
+        for request in [DeviceRequest::Auto, DeviceRequest::Hardware, DeviceRequest::Software] {
+            let error = Gpu::open(&request).unwrap_err();
+            assert!(matches!(error, GpuError::NoAdapter { .. }), "{error}");
+            assert!(error.to_string().contains("mesa-vulkan-drivers"), "{error}");
+        }
+        return;
+    }
+    if cfg!(not(target_os = "linux")) {
+        return; // where drivers belong to the system, no variable hides them
+    }
+    let test = std::env::current_exe().unwrap();
+    let output = Command::new(test)
+        .args(["--exact", "without_drivers_opening_fails_and_says_how_to_get_one", "--nocapture"])
+        .env(CHILD, "1")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && text.contains("1 passed"), "{text}");
+}
