@@ -1,0 +1,35 @@
+use std::sync::atomic::Ordering;
+
+use glam::{UVec3, Vec3, Vec4};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::cells::Grid;
+use crate::surface::params::{Lattice, SIDE};
+
+pub(super) fn mark(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [lattice, grid, cell_start, positions, marks] = slots else { unreachable!() };
+    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get::<Grid>());
+    let living = cell_start.read::<u32>()[grid.cell_count as usize].min(lattice.particle_capacity) as usize;
+    let blocks = UVec3::new(lattice.blocks_x, lattice.blocks_y, lattice.blocks_z);
+    let most = (blocks * SIDE - 1).as_vec3();
+    let marks = marks.atomics();
+    positions.read::<Vec4>()[..living].par_iter().with_min_len(1024).for_each(|position| {
+        let p = position.truncate() - lattice.origin;
+        let low = ((p - lattice.support_radius) * lattice.inverse_cell).floor() - 1.0;
+        let high = ((p + lattice.support_radius) * lattice.inverse_cell).floor();
+        let first = low.clamp(Vec3::ZERO, most).as_uvec3() / SIDE;
+        let last = high.clamp(Vec3::ZERO, most).as_uvec3() / SIDE;
+        for z in first.z..=last.z {
+            for y in first.y..=last.y {
+                let row = (z as usize * blocks.y as usize + y as usize) * blocks.x as usize;
+                for mark in &marks[row + first.x as usize..=row + last.x as usize] {
+                    // Most blocks are marked already, and a read leaves the other cores' caches alone.
+                    if mark.load(Ordering::Relaxed) == 0 {
+                        mark.store(1, Ordering::Relaxed);
+                    }
+                }
+            }
+        }
+    });
+}

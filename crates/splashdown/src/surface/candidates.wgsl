@@ -1,0 +1,14 @@
+// The cells that a box touches. The pass binds `grid`.
+struct CellRange {
+    first: vec3<u32>,
+    last: vec3<u32>, // one past the last
+}
+
+fn cell_range(low: vec3<f32>, high: vec3<f32>) -> CellRange {
+    let size = vec3<f32>(vec3<u32>(grid.size_x, grid.size_y, grid.size_z));
+    let inverse = 1.0 / grid.cell_size;
+    let first = floor((low - grid.origin) * inverse);
+    let last = floor((high - grid.origin) * inverse) + 1.0;
+    // Empty where the box lies outside.
+    return CellRange(vec3<u32>(clamp(first, vec3<f32>(0.0), size)), vec3<u32>(clamp(last, vec3<f32>(0.0), size)));
+}

@@ -1,0 +1,61 @@
+#import gpu/index
+#import sph/grid
+#import surface/lattice
+#import surface/spline
+#import surface/candidates
+
+@group(0) @binding(0) var<uniform> lattice: Lattice;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> status: Status;
+@group(0) @binding(3) var<storage, read> block_list: array<u32>;
+@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(5) var<storage, read> samples: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> values: array<f32>;
+@group(0) @binding(7) var<storage, read_write> signs: array<u32>;
+
+@compute @workgroup_size(64)
+fn field(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) row: u32,
+) {
+    let slot = linear_group(group, groups);
+    if slot >= status.blocks {
+        return;
+    }
+    let node = block_place(block_list[slot]) * 8 + vec3<i32>(0, i32(row & 7u), i32(row >> 3u));
+    let start = node_position(node);
+    let low_x = lattice.origin.x + lattice.cell_size * (f32(node.x) + vec4<f32>(0.0, 1.0, 2.0, 3.0));
+    let high_x = lattice.origin.x + lattice.cell_size * (f32(node.x) + vec4<f32>(4.0, 5.0, 6.0, 7.0));
+    let reach = vec3<f32>(lattice.support_radius);
+    let support2 = lattice.support_radius * lattice.support_radius;
+    let cells = cell_range(start - reach, vec3<f32>(high_x.w, start.yz) + reach);
+    var low = vec4<f32>(0.0);
+    var high = vec4<f32>(0.0);
+    for (var z = cells.first.z; z < cells.last.z; z++) {
+        for (var y = cells.first.y; y < cells.last.y; y++) {
+            let cell_row = (z * grid.size_y + y) * grid.size_x;
+            let end = cell_start[cell_row + cells.last.x];
+            for (var i = cell_start[cell_row + cells.first.x]; i < end; i++) {
+                let sample = samples[i];
+                let d = start.yz - sample.yz;
+                let d2 = dot(d, d);
+                if d2 < support2 {
+                    let a = low_x - sample.x;
+                    let b = high_x - sample.x;
+                    low += sample.w * spline4(sqrt(a * a + d2) * lattice.inverse_support);
+                    high += sample.w * spline4(sqrt(b * b + d2) * lattice.inverse_support);
+                }
+            }
+        }
+    }
+    let first = (slot * 64u + row) * 8u;
+    var inside = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        values[first + i] = low[i];
+        values[first + 4u + i] = high[i];
+        inside |= select(0u, 1u << i, low[i] >= lattice.iso_level);
+        inside |= select(0u, 16u << i, high[i] >= lattice.iso_level);
+    }
+    signs[slot * 64u + row] = inside;
+}

@@ -1,0 +1,66 @@
+#import gpu/index
+#import surface/lattice
+#import surface/slots
+#import surface/signs
+
+@group(0) @binding(0) var<uniform> lattice: Lattice;
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> block_list: array<u32>;
+@group(0) @binding(3) var<storage, read> block_slot: array<u32>;
+@group(0) @binding(4) var<storage, read> signs: array<u32>;
+@group(0) @binding(5) var<storage, read> cases: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read_write> rows: array<vec2<u32>>;
+@group(0) @binding(7) var<storage, read_write> vertex_counts: array<u32>;
+@group(0) @binding(8) var<storage, read_write> triangle_counts: array<u32>;
+
+// Per row: vertices in the low half, triangles in the high half. A block has at most 1,536 and 2,560.
+var<workgroup> tallies: array<u32, 64>;
+
+fn sign_bits(row: u32) -> u32 {
+    return signs[row];
+}
+
+@compute @workgroup_size(64)
+fn count(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) row: u32,
+) {
+    let slot = linear_group(group, groups);
+    let is_filled = slot < status.blocks;
+    var edges = 0u;
+    var tally = 0u;
+    if is_filled {
+        let place = block_place(block_list[slot]);
+        let y = row & 7u;
+        let z = row >> 3u;
+        let here = vec4<u32>(
+            row_signs(place, y, z),
+            row_signs(place, y + 1u, z),
+            row_signs(place, y, z + 1u),
+            row_signs(place, y + 1u, z + 1u),
+        );
+        let x_edges = (here.x ^ (here.x >> 1u)) & 255u;
+        let y_edges = (here.x ^ here.y) & 255u;
+        let z_edges = (here.x ^ here.z) & 255u;
+        edges = x_edges | (y_edges << 8u) | (z_edges << 16u);
+        tally = countOneBits(edges);
+        edges |= here.x << 24u;
+        for (var x = 0u; x < 8u; x++) {
+            tally += (cases[cell_case(here, x)].y >> 28u) << 16u;
+        }
+    }
+    tallies[row] = tally;
+    workgroupBarrier();
+    if is_filled {
+        var before = 0u;
+        for (var i = 0u; i < row; i++) {
+            before += tallies[i];
+        }
+        rows[slot * 64u + row] = vec2<u32>(edges, before);
+        if row == 63u {
+            vertex_counts[slot] = (before + tally) & 0xffffu;
+            triangle_counts[slot] = (before + tally) >> 16u;
+        }
+    }
+}

@@ -1,0 +1,42 @@
+use glam::UVec2;
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use super::super::halo::{cell_case, is_uniform, signs, upper_slots};
+use crate::surface::params::{Lattice, ROWS, Status};
+use crate::surface::tables::COUNTS;
+
+pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [lattice, status, list, slot_of, sign_bits, _, rows, vertex_counts, triangle_counts] = slots else {
+        unreachable!()
+    };
+    let (lattice, status) = (lattice.get::<Lattice>(), status.get::<Status>());
+    let (slot_of, sign_bits) = (slot_of.read::<u32>(), sign_bits.read::<u32>());
+    let counts = vertex_counts.write::<u32>().par_iter_mut().zip(triangle_counts.write::<u32>());
+    let outputs = rows.write::<UVec2>().par_chunks_exact_mut(ROWS).zip(counts);
+    let blocks = list.read::<u32>()[..status.blocks as usize].par_iter().zip(outputs).with_min_len(16);
+    blocks.for_each(|(&block, (rows, (vertex_count, triangle_count)))| {
+        let slots = upper_slots(&lattice, slot_of, lattice.block_place(block));
+        let signs = signs(&slots, |row| sign_bits[row]);
+        (*vertex_count, *triangle_count) = (0, 0);
+        if is_uniform(&signs) {
+            rows.fill(UVec2::new(signs[0][0] << 24, 0));
+            return;
+        }
+        for (row, out) in rows.iter_mut().enumerate() {
+            let (y, z) = (row & 7, row >> 3);
+            let here = signs[z][y];
+            let x_edges = (here ^ here >> 1) & 255;
+            let y_edges = (here ^ signs[z][y + 1]) & 255;
+            let z_edges = (here ^ signs[z + 1][y]) & 255;
+            let edges = x_edges | y_edges << 8 | z_edges << 16;
+            *out = UVec2::new(edges | here << 24, *vertex_count | *triangle_count << 16);
+            *vertex_count += edges.count_ones();
+            // A row whose four lines of nodes agree has no triangles.
+            let others = [signs[z][y + 1], signs[z + 1][y], signs[z + 1][y + 1]];
+            if (here != 0 && here != 0x1ff) || others.iter().any(|&other| other != here) {
+                *triangle_count += (0..8).map(|x| u32::from(COUNTS[cell_case(&signs, x, y, z)])).sum::<u32>();
+            }
+        }
+    });
+}

@@ -1,0 +1,32 @@
+#import surface/lattice
+#import surface/spread
+
+@group(0) @binding(0) var<uniform> lattice: Lattice;
+@group(0) @binding(1) var<storage, read> vertex_starts: array<u32>;
+@group(0) @binding(2) var<storage, read> triangle_starts: array<u32>;
+@group(0) @binding(3) var<storage, read_write> status: Status;
+@group(0) @binding(4) var<storage, read_write> draw_args: array<u32>;
+@group(0) @binding(5) var<storage, read_write> vertex_groups: array<u32>;
+@group(0) @binding(6) var<storage, read_write> triangle_groups: array<u32>;
+
+@compute @workgroup_size(1)
+fn finish() {
+    let vertices = vertex_starts[lattice.block_capacity];
+    let triangles = triangle_starts[lattice.block_capacity];
+    status.vertices_needed = vertices;
+    status.triangles_needed = triangles;
+    status.vertices = min(vertices, lattice.vertex_capacity);
+    status.triangles = min(triangles, lattice.triangle_capacity);
+    // Indexed, indirect: indices, instances, first index, base vertex, first instance.
+    draw_args[0] = 3u * status.triangles;
+    draw_args[1] = 1u;
+    draw_args[2] = 0u;
+    draw_args[3] = 0u;
+    draw_args[4] = 0u;
+    let for_vertices = spread((status.vertices + 63u) / 64u);
+    let for_triangles = spread((status.triangles + 63u) / 64u);
+    for (var i = 0u; i < 3u; i++) {
+        vertex_groups[i] = for_vertices[i];
+        triangle_groups[i] = for_triangles[i];
+    }
+}

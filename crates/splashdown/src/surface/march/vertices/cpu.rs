@@ -1,0 +1,92 @@
+use glam::{UVec2, Vec3, Vec4};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::surface::params::{Lattice, NODES, NONE, SIDE, Status};
+use crate::surface::parts::by_starts;
+
+const N: usize = SIDE as usize;
+/// A block's nodes with one layer below and two above: the neighbours of the ends of all its edges.
+const WIDE: usize = N + 3;
+
+pub(super) fn vertices(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [lattice, status, list, slot_of, values, rows, starts, positions, normals] = slots else {
+        unreachable!()
+    };
+    let (lattice, status) = (lattice.get::<Lattice>(), status.get::<Status>());
+    let blocks = status.blocks as usize;
+    let (slot_of, values, rows) = (slot_of.read::<u32>(), values.read::<f32>(), rows.read::<UVec2>());
+    let starts = &starts.read::<u32>()[..=blocks];
+    let positions = by_starts(positions.write::<Vec4>(), starts);
+    let normals = by_starts(normals.write::<Vec4>(), starts);
+    let outputs =
+        positions.into_iter().zip(normals).enumerate().filter(|(_, (positions, _))| !positions.is_empty());
+    let outputs: Vec<_> = outputs.collect();
+    let list = list.read::<u32>();
+    outputs.into_par_iter().for_each_init(
+        || vec![0.0; WIDE * WIDE * WIDE],
+        |wide, (slot, (positions, normals))| {
+            let place = lattice.block_place(list[slot]);
+            widen(&lattice, slot_of, values, place, wide);
+            let edges = rows[slot * N * N..][..N * N].iter().enumerate().flat_map(|(row, data)| {
+                (0..24).filter(move |edge| data.x >> edge & 1 == 1).map(move |edge| (row, edge))
+            });
+            for (((row, edge), position), normal) in edges.zip(positions).zip(normals) {
+                let local = [edge & 7, row & 7, row >> 3];
+                let (at, outwards) = vertex(&lattice, wide, place, local, edge >> 3);
+                *position = at.extend(0.0);
+                *normal = outwards.extend(0.0);
+            }
+        },
+    );
+}
+
+/// Copies a block's values and those round it; zero where there is no block.
+fn widen(lattice: &Lattice, slot_of: &[u32], values: &[f32], place: [i32; 3], wide: &mut [f32]) {
+    wide.fill(0.0);
+    for neighbour in 0..27_i32 {
+        let offset = [neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1];
+        let at = std::array::from_fn(|axis| place[axis] + offset[axis]);
+        let slot = lattice.block_at(at).map_or(NONE, |block| slot_of[block]);
+        if slot == NONE {
+            continue;
+        }
+        let block = &values[slot as usize * NODES..][..NODES];
+        // In the wide array the block itself begins at 1; of the neighbours below the last layer is wanted, of those above the first two.
+        let range = |axis: usize| match offset[axis] {
+            -1 => (N - 1..N, 0),
+            0 => (0..N, 1),
+            _ => (0..2, N + 1),
+        };
+        let ((xs, to_x), (ys, to_y), (zs, to_z)) = (range(0), range(1), range(2));
+        for (dz, z) in zs.enumerate() {
+            for (dy, y) in ys.clone().enumerate() {
+                let from = &block[(z * N + y) * N..][xs.clone()];
+                let to = ((to_z + dz) * WIDE + to_y + dy) * WIDE + to_x;
+                wide[to..to + from.len()].copy_from_slice(from);
+            }
+        }
+    }
+}
+
+fn vertex(lattice: &Lattice, wide: &[f32], place: [i32; 3], local: [usize; 3], axis: usize) -> (Vec3, Vec3) {
+    const STEPS: [usize; 3] = [1, WIDE, WIDE * WIDE];
+    let node = ((local[2] + 1) * WIDE + local[1] + 1) * WIDE + local[0] + 1;
+    let gradient = |i: usize| Vec3::from(STEPS.map(|step| wide[i + step] - wide[i - step]));
+    let (a, b) = (wide[node], wide[node + STEPS[axis]]);
+    let t = ((lattice.iso_level - a) / (b - a)).clamp(0.001, 0.999);
+    let along = Vec3::AXES[axis];
+    let outwards = -gradient(node).lerp(gradient(node + STEPS[axis]), t);
+    let length2 = outwards.length_squared();
+    let outwards = if length2 > 1e-20 {
+        outwards / length2.sqrt()
+    } else if a > b {
+        // No gradient in sight: from the inside end to the outside end.
+        along
+    } else {
+        -along
+    };
+    let corner =
+        std::array::from_fn(|axis| lattice.coordinate(axis, place[axis] as u32 * SIDE + local[axis] as u32));
+    (Vec3::from_array(corner) + along * (t * lattice.cell_size), outwards)
+}

@@ -1,0 +1,33 @@
+//! One vertex per cut edge, with the field's gradient as its normal.
+//!
+//! The place on the edge is `t = (iso - a) / (b - a)` between the values a and b at its ends, kept within [0.001, 0.999]: at an end the vertices
+//! of several edges would coincide and their triangles have no area. The normal is the negative gradient by central differences at both ends, mixed by t.
+
+mod cpu;
+
+use glam::{UVec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use crate::surface::modules::{LATTICE, SLOTS, STATUS};
+use crate::surface::params::{Lattice, Status};
+
+pub(crate) static VERTICES: PassDesc = PassDesc {
+    label: "surface.vertices",
+    wgsl: include_str!("vertices.wgsl"),
+    imports: &[wgsl::INDEX, STATUS, LATTICE, SLOTS],
+    entry: "vertices",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Lattice>("lattice"),
+        read::<Status>("status"),
+        read::<u32>("block_list"),
+        read::<u32>("block_slot"),
+        read::<f32>("values"),
+        read::<UVec2>("rows"),
+        read::<u32>("vertex_starts"),
+        write::<Vec4>("positions"),
+        write::<Vec4>("normals"),
+    ],
+    cpu: cpu::vertices,
+};

@@ -1,0 +1,69 @@
+#import gpu/index
+#import surface/lattice
+#import surface/slots
+
+@group(0) @binding(0) var<uniform> lattice: Lattice;
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> block_list: array<u32>;
+@group(0) @binding(3) var<storage, read> block_slot: array<u32>;
+@group(0) @binding(4) var<storage, read> values: array<f32>;
+@group(0) @binding(5) var<storage, read> rows: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read> vertex_starts: array<u32>;
+@group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> normals: array<vec4<f32>>;
+
+// The value at a node of the whole lattice; zero in blocks that no particle reaches.
+fn value(node: vec3<i32>) -> f32 {
+    let slot = slot_at(node >> vec3<u32>(3u));
+    if slot == NONE {
+        return 0.0;
+    }
+    let local = vec3<u32>(node & vec3<i32>(7));
+    return values[(slot * 64u + local.z * 8u + local.y) * 8u + local.x];
+}
+
+fn gradient(node: vec3<i32>) -> vec3<f32> {
+    return vec3<f32>(
+        value(node + vec3<i32>(1, 0, 0)) - value(node - vec3<i32>(1, 0, 0)),
+        value(node + vec3<i32>(0, 1, 0)) - value(node - vec3<i32>(0, 1, 0)),
+        value(node + vec3<i32>(0, 0, 1)) - value(node - vec3<i32>(0, 0, 1)),
+    );
+}
+
+@compute @workgroup_size(64)
+fn vertices(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) row: u32,
+) {
+    let slot = linear_group(group, groups);
+    if slot >= status.blocks {
+        return;
+    }
+    let start = block_place(block_list[slot]) * 8 + vec3<i32>(0, i32(row & 7u), i32(row >> 3u));
+    let row_data = rows[slot * 64u + row];
+    var number = vertex_starts[slot] + (row_data.y & 0xffffu);
+    var edges = row_data.x & 0xffffffu;
+    while edges != 0u && number < lattice.vertex_capacity {
+        let edge = firstTrailingBit(edges);
+        edges &= edges - 1u;
+        let axis = edge >> 3u;
+        let node = start + vec3<i32>(i32(edge & 7u), 0, 0);
+        let step = vec3<i32>(vec3<u32>(axis) == vec3<u32>(0u, 1u, 2u));
+        let a = value(node);
+        let b = value(node + step);
+        let t = clamp((lattice.iso_level - a) / (b - a), 0.001, 0.999);
+        let along = vec3<f32>(step);
+        var outwards = -mix(gradient(node), gradient(node + step), t);
+        let length2 = dot(outwards, outwards);
+        if length2 > 1e-20 {
+            outwards *= inverseSqrt(length2);
+        } else {
+            // No gradient in sight: from the inside end to the outside end.
+            outwards = select(-along, along, a > b);
+        }
+        positions[number] = vec4<f32>(node_position(node) + along * (t * lattice.cell_size), 0.0);
+        normals[number] = vec4<f32>(outwards, 0.0);
+        number++;
+    }
+}

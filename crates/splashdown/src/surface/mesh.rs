@@ -1,0 +1,436 @@
+//! The extraction as a whole: its buffers, its list of passes, its growth.
+
+use glam::{UVec2, Vec4};
+use splashdown_gpu::scan::Scan;
+use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording};
+use splashdown_io::Mesh;
+
+use super::params::{Lattice, NODES, ROWS, Status, SurfaceParams};
+use super::{SurfaceError, blocks, field, march, smooth, tables, volume};
+use crate::cells::Grid;
+
+/// The particles whose surface is wanted, where the simulation keeps them.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceInput {
+    /// Positions in m, sorted by cell; the fourth component is ignored.
+    pub positions: Buffer<Vec4>,
+    /// First particle of every cell, and the number of living particles at the end.
+    pub cell_start: Buffer<u32>,
+    /// The neighbour grid on the device.
+    pub grid: Buffer<Grid>,
+    /// The same grid on the host.
+    pub grid_host: Grid,
+    /// Most particles there can be.
+    pub particle_capacity: u32,
+}
+
+/// How large a mesh is, and what it took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceStats {
+    /// Vertices.
+    pub vertices: u32,
+    /// Triangles.
+    pub triangles: u32,
+    /// Blocks of 8x8x8 nodes at which the field was computed.
+    pub blocks: u32,
+    /// How often the extraction was repeated because the mesh or its blocks did not fit.
+    pub retries: u32,
+    /// Particles left out because a coordinate was NaN or infinite; only host data can have such.
+    pub not_finite: u32,
+}
+
+/// Extracts the surface of a simulation's particles, again and again, without leaving the device.
+///
+/// With a host that may wait: [`extract`](Self::extract), then [`mesh`](Self::mesh) if the mesh is wanted there.
+/// Without: [`record`](Self::record) into the frame's recording, draw with [`draw_args`](Self::draw_args), request
+/// [`status`](Self::status) and, when it has arrived, hand it to [`grow`](Self::grow); record again if that made room.
+#[derive(Debug)]
+pub struct Surface {
+    params: SurfaceParams,
+    input: SurfaceInput,
+    lattice: Lattice,
+    recording: Recording,
+    b: Buffers,
+    mark_scan: Scan,
+    block_scan: Scan,
+    vertex_scan: Option<Scan>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Buffers {
+    lattice: Buffer<Lattice>,
+    cases: Buffer<UVec2>,
+    samples: Buffer<Vec4>,
+    crowding: Buffer<f32>,
+    marks: Buffer<u32>,
+    mark_starts: Buffer<u32>,
+    block_slot: Buffer<u32>,
+    block_list: Buffer<u32>,
+    values: Buffer<f32>,
+    signs: Buffer<u32>,
+    rows: Buffer<UVec2>,
+    vertex_counts: Buffer<u32>,
+    triangle_counts: Buffer<u32>,
+    vertex_starts: Buffer<u32>,
+    triangle_starts: Buffer<u32>,
+    status: Buffer<Status>,
+    draw_args: Buffer<u32>,
+    block_groups: Buffer<u32>,
+    vertex_groups: Buffer<u32>,
+    triangle_groups: Buffer<u32>,
+    vertices: Buffer<Vec4>,
+    normals: Buffer<Vec4>,
+    indices: Buffer<u32>,
+    valences: Buffer<u32>,
+    ring_starts: Buffer<u32>,
+    rings: Buffer<UVec2>,
+    relaxed: Buffer<Vec4>,
+}
+
+impl Buffers {
+    /// Empty ones, but for those of fixed length.
+    fn new(executor: &mut Executor, lattice: &Lattice) -> Result<Self, SurfaceError> {
+        let e = executor;
+        Ok(Self {
+            lattice: e.create_uniform("surface lattice", lattice)?,
+            cases: e.create_from("surface cases", &tables::packed())?,
+            samples: e.create("surface samples", 0)?,
+            crowding: e.create("surface crowding", 0)?,
+            marks: e.create("surface marks", 0)?,
+            mark_starts: e.create("surface mark starts", 0)?,
+            block_slot: e.create("surface block slots", 0)?,
+            block_list: e.create("surface block list", 0)?,
+            values: e.create("surface field", 0)?,
+            signs: e.create("surface signs", 0)?,
+            rows: e.create("surface rows", 0)?,
+            vertex_counts: e.create("surface vertex counts", 0)?,
+            triangle_counts: e.create("surface triangle counts", 0)?,
+            vertex_starts: e.create("surface vertex starts", 0)?,
+            triangle_starts: e.create("surface triangle starts", 0)?,
+            status: e.create("surface status", 1)?,
+            draw_args: e.create("surface draw arguments", 5)?,
+            block_groups: e.create("surface block groups", 3)?,
+            vertex_groups: e.create("surface vertex groups", 3)?,
+            triangle_groups: e.create("surface triangle groups", 3)?,
+            vertices: e.create("surface vertices", 0)?,
+            normals: e.create("surface normals", 0)?,
+            indices: e.create("surface indices", 0)?,
+            valences: e.create("surface valences", 0)?,
+            ring_starts: e.create("surface ring starts", 0)?,
+            rings: e.create("surface rings", 0)?,
+            relaxed: e.create("surface relaxed vertices", 0)?,
+        })
+    }
+
+    /// Gives every buffer the length that the lattice's capacities ask for.
+    fn resize(&mut self, e: &mut Executor, lattice: &Lattice, smoothed: bool) -> Result<(), SurfaceError> {
+        macro_rules! resize {
+            ($($buffer:ident: $len:expr),* $(,)?) => {
+                $(if self.$buffer.len() as usize != $len { e.resize(&mut self.$buffer, $len)?; })*
+            };
+        }
+        let (particles, table) = (lattice.particle_capacity as usize, lattice.block_count as usize);
+        let blocks = lattice.block_capacity as usize;
+        let (vertices, triangles) = (lattice.vertex_capacity as usize, lattice.triangle_capacity as usize);
+        resize! {
+            samples: particles, crowding: particles,
+            marks: table, mark_starts: table + 1, block_slot: table,
+            block_list: blocks, values: blocks * NODES, signs: blocks * ROWS, rows: blocks * ROWS,
+            vertex_counts: blocks, triangle_counts: blocks, vertex_starts: blocks + 1, triangle_starts: blocks + 1,
+            vertices: vertices, normals: vertices, indices: 3 * triangles,
+        }
+        let (vertices, triangles) = if smoothed { (vertices, triangles) } else { (0, 0) };
+        resize! { valences: vertices, ring_starts: vertices + 1, rings: 3 * triangles, relaxed: vertices }
+        e.write(self.lattice, std::slice::from_ref(lattice))?;
+        Ok(())
+    }
+}
+
+impl Surface {
+    /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when needed.
+    ///
+    /// # Errors
+    /// [`SurfaceError`] if a parameter makes no sense, the grid does not fit the kernel, or the device is too small.
+    pub fn new(
+        executor: &mut Executor,
+        params: SurfaceParams,
+        input: SurfaceInput,
+    ) -> Result<Self, SurfaceError> {
+        let largest = executor.largest_buffer();
+        let lattice = Lattice::new(&params, &input.grid_host, input.particle_capacity, largest)?;
+        Self::with_lattice(executor, params, input, lattice)
+    }
+
+    /// As [`new`](Self::new), with room for this many blocks, vertices and triangles to begin with.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_capacity(
+        executor: &mut Executor,
+        params: SurfaceParams,
+        input: SurfaceInput,
+        blocks: u32,
+        vertices: u32,
+        triangles: u32,
+    ) -> Result<Self, SurfaceError> {
+        let largest = executor.largest_buffer();
+        let mut lattice = Lattice::new(&params, &input.grid_host, input.particle_capacity, largest)?;
+        lattice.block_capacity = blocks.clamp(1, lattice.block_count);
+        lattice.vertex_capacity = vertices.max(1);
+        lattice.triangle_capacity = triangles.max(1);
+        Self::with_lattice(executor, params, input, lattice)
+    }
+
+    fn with_lattice(
+        executor: &mut Executor,
+        params: SurfaceParams,
+        input: SurfaceInput,
+        lattice: Lattice,
+    ) -> Result<Self, SurfaceError> {
+        let mut surface = Self {
+            params,
+            input,
+            lattice,
+            recording: Recording::new("surface"),
+            b: Buffers::new(executor, &lattice)?,
+            mark_scan: Scan::new(executor, lattice.block_count)?,
+            block_scan: Scan::new(executor, lattice.block_capacity)?,
+            vertex_scan: None,
+        };
+        surface.allocate(executor)?;
+        Ok(surface)
+    }
+
+    /// Makes the buffers fit the lattice, and the list of passes the buffers.
+    fn allocate(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
+        let smoothed = self.params.smoothing_iterations > 0;
+        self.b.resize(executor, &self.lattice, smoothed)?;
+        if self.block_scan.len() != self.lattice.block_capacity {
+            self.block_scan = Scan::new(executor, self.lattice.block_capacity)?;
+        }
+        if smoothed && self.vertex_scan.is_none_or(|scan| scan.len() != self.lattice.vertex_capacity) {
+            self.vertex_scan = Some(Scan::new(executor, self.lattice.vertex_capacity)?);
+        }
+        let mut recording = Recording::new("surface");
+        self.record(&mut recording);
+        self.recording = recording;
+        Ok(())
+    }
+
+    /// Appends the extraction to a recording. Valid until [`grow`](Self::grow) has made room.
+    pub fn record(&self, recording: &mut Recording) {
+        self.record_field(recording);
+        self.record_march(recording);
+        if let Some(scan) = &self.vertex_scan {
+            self.record_smoothing(recording, scan);
+        }
+    }
+
+    fn record_field(&self, recording: &mut Recording) {
+        let (b, input) = (&self.b, &self.input);
+        let (lattice, grid) = (b.lattice.id(), input.grid.id());
+        let (cell_start, positions) = (input.cell_start.id(), input.positions.id());
+        let particles = Work::Items(input.particle_capacity);
+        let (samples, crowding) = (b.samples.id(), b.crowding.id());
+        recording.dispatch(
+            &volume::VOLUME,
+            particles,
+            &[lattice, grid, cell_start, positions, samples, crowding],
+        );
+        recording.clear(b.marks);
+        recording.dispatch(&blocks::MARK, particles, &[lattice, grid, cell_start, positions, b.marks.id()]);
+        self.mark_scan.record(recording, b.marks, b.mark_starts);
+        recording.dispatch(
+            &blocks::COMPACT,
+            Work::Items(self.lattice.block_count),
+            &[lattice, b.marks.id(), b.mark_starts.id(), b.block_list.id(), b.block_slot.id()],
+        );
+        recording.dispatch(
+            &blocks::PLAN,
+            Work::Groups(1),
+            &[lattice, b.mark_starts.id(), b.status.id(), b.block_groups.id()],
+        );
+        let (status, list) = (b.status.id(), b.block_list.id());
+        recording.dispatch(
+            &field::FIELD,
+            self.per_block(),
+            &[lattice, grid, status, list, cell_start, samples, b.values.id(), b.signs.id()],
+        );
+    }
+
+    fn record_march(&self, recording: &mut Recording) {
+        let b = &self.b;
+        let (lattice, status, list, slot) =
+            (b.lattice.id(), b.status.id(), b.block_list.id(), b.block_slot.id());
+        let (cases, rows) = (b.cases.id(), b.rows.id());
+        let (vertex_starts, triangle_starts) = (b.vertex_starts.id(), b.triangle_starts.id());
+        // The scans go over all slots; those without a block have nothing.
+        recording.clear(b.vertex_counts);
+        recording.clear(b.triangle_counts);
+        let counts = [b.vertex_counts.id(), b.triangle_counts.id()];
+        recording.dispatch(
+            &march::COUNT,
+            self.per_block(),
+            &[lattice, status, list, slot, b.signs.id(), cases, rows, counts[0], counts[1]],
+        );
+        self.block_scan.record(recording, b.vertex_counts, b.vertex_starts);
+        self.block_scan.record(recording, b.triangle_counts, b.triangle_starts);
+        let groups = [b.vertex_groups.id(), b.triangle_groups.id()];
+        recording.dispatch(
+            &march::FINISH,
+            Work::Groups(1),
+            &[lattice, vertex_starts, triangle_starts, status, b.draw_args.id(), groups[0], groups[1]],
+        );
+        let mesh = [b.vertices.id(), b.normals.id()];
+        recording.dispatch(
+            &march::VERTICES,
+            self.per_block(),
+            &[lattice, status, list, slot, b.values.id(), rows, vertex_starts, mesh[0], mesh[1]],
+        );
+        recording.dispatch(
+            &march::TRIANGLES,
+            self.per_block(),
+            &[lattice, status, list, slot, rows, cases, vertex_starts, triangle_starts, b.indices.id()],
+        );
+    }
+
+    fn record_smoothing(&self, recording: &mut Recording, scan: &Scan) {
+        let (b, input) = (&self.b, &self.input);
+        let (status, vertices) = (b.status.id(), b.vertices.id());
+        let (starts, rings, valences) = (b.ring_starts.id(), b.rings.id(), b.valences.id());
+        let per_vertex = Work::Indirect { buffer: b.vertex_groups.id(), word: 0 };
+        let per_triangle = Work::Indirect { buffer: b.triangle_groups.id(), word: 0 };
+        recording.dispatch(
+            &smooth::WEIGH,
+            self.per_block(),
+            &[
+                b.lattice.id(),
+                input.grid.id(),
+                status,
+                b.block_list.id(),
+                b.vertex_starts.id(),
+                input.cell_start.id(),
+                b.samples.id(),
+                b.crowding.id(),
+                vertices,
+            ],
+        );
+        recording.clear(b.valences);
+        recording.dispatch(&smooth::VALENCE, per_triangle, &[status, b.indices.id(), valences]);
+        scan.record(recording, b.valences, b.ring_starts);
+        recording.dispatch(&smooth::RING, per_triangle, &[status, b.indices.id(), starts, valences, rings]);
+        recording.dispatch(&smooth::ORDER, per_vertex, &[status, starts, rings]);
+        let (mut from, mut to) = (b.vertices, b.relaxed);
+        for _ in 0..self.params.smoothing_iterations {
+            recording.dispatch(&smooth::RELAX, per_vertex, &[status, starts, rings, from.id(), to.id()]);
+            std::mem::swap(&mut from, &mut to);
+        }
+        if self.params.smoothing_iterations % 2 == 1 {
+            recording.copy(b.relaxed, b.vertices);
+        }
+        recording.dispatch(&smooth::SHADE, per_vertex, &[status, starts, rings, vertices, b.normals.id()]);
+    }
+
+    fn per_block(&self) -> Work {
+        Work::Indirect { buffer: self.b.block_groups.id(), word: 0 }
+    }
+
+    /// Extracts the surface and waits until its size is known. Where the room was too small, makes more and repeats.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Gpu`] if the device was lost or the mesh does not fit it.
+    pub fn extract(&mut self, executor: &mut Executor) -> Result<SurfaceStats, SurfaceError> {
+        let mut retries = 0;
+        loop {
+            executor.run(&self.recording)?;
+            let status = self.read_status(executor)?;
+            if !self.grow(executor, &status)? {
+                let Status { blocks, vertices, triangles, .. } = status;
+                return Ok(SurfaceStats { vertices, triangles, blocks, retries, not_finite: 0 });
+            }
+            retries += 1;
+        }
+    }
+
+    /// Makes room if the status says that there was too little, a quarter more than was missing. Returns true if so: then earlier recordings
+    /// are void and the mesh must be extracted again.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Gpu`] if the device has not that much room.
+    pub fn grow(&mut self, executor: &mut Executor, status: &Status) -> Result<bool, SurfaceError> {
+        if !status.overflowed() {
+            return Ok(false);
+        }
+        // Blocks that found no room have vertices too: as many as the others.
+        let missing = f64::from(status.blocks_needed) / f64::from(status.blocks.max(1));
+        let enough = |needed: u32, scale: f64, capacity: u32, most: u32| {
+            let wanted = f64::from(needed) * scale;
+            if wanted <= f64::from(capacity) { capacity } else { (1.25 * wanted).min(f64::from(most)) as u32 }
+        };
+        let lattice = &mut self.lattice;
+        lattice.block_capacity =
+            enough(status.blocks_needed, 1.0, lattice.block_capacity, lattice.block_count);
+        // Three indices per triangle are counted in 32 bits.
+        let most = u32::MAX / 3;
+        lattice.vertex_capacity = enough(status.vertices_needed, missing, lattice.vertex_capacity, most);
+        lattice.triangle_capacity = enough(status.triangles_needed, missing, lattice.triangle_capacity, most);
+        self.allocate(executor)?;
+        Ok(true)
+    }
+
+    /// The mesh of the last extraction, on the host.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Gpu`] if the device was lost.
+    pub fn mesh(&self, executor: &mut Executor) -> Result<Mesh, SurfaceError> {
+        let status = self.read_status(executor)?;
+        let xyz = |values: Vec<Vec4>| values.into_iter().map(|v| v.truncate().to_array()).collect();
+        let vertices = executor.read_first(self.b.vertices, status.vertices as usize)?;
+        let normals = executor.read_first(self.b.normals, status.vertices as usize)?;
+        let indices = executor.read_first(self.b.indices, 3 * status.triangles as usize)?;
+        let triangles = indices.as_chunks::<3>().0.to_vec();
+        Ok(Mesh { vertices: xyz(vertices), normals: xyz(normals), triangles })
+    }
+
+    fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {
+        Ok(executor.read(self.b.status)?[0])
+    }
+
+    /// Gives the memory of all buffers back to the device.
+    pub(crate) fn release(mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
+        let lattice = &mut self.lattice;
+        (lattice.particle_capacity, lattice.block_count, lattice.block_capacity) = (0, 0, 0);
+        (lattice.vertex_capacity, lattice.triangle_capacity) = (0, 0);
+        self.b.resize(executor, &self.lattice, false)
+    }
+
+    /// Positions of the vertices in m; the fourth component is of no use outside. The first [`Status::vertices`] are valid.
+    pub fn vertices(&self) -> Buffer<Vec4> {
+        self.b.vertices
+    }
+
+    /// Unit normals of the vertices, pointing out of the fluid; the fourth component is 0.
+    pub fn normals(&self) -> Buffer<Vec4> {
+        self.b.normals
+    }
+
+    /// Three vertex numbers per triangle, counter-clockwise seen from outside.
+    pub fn indices(&self) -> Buffer<u32> {
+        self.b.indices
+    }
+
+    /// The five words of an indexed indirect draw: indices, instances, first index, base vertex, first instance.
+    pub fn draw_args(&self) -> Buffer<u32> {
+        self.b.draw_args
+    }
+
+    /// How large the mesh is and whether it found room.
+    pub fn status(&self) -> Buffer<Status> {
+        self.b.status
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &SurfaceParams {
+        &self.params
+    }
+}

@@ -1,0 +1,222 @@
+//! What the caller chooses, checked, and the lattice of nodes that follows from it.
+
+use glam::{DVec3, UVec3, Vec3};
+use splashdown_gpu::gpu_struct;
+
+use super::SurfaceError;
+use crate::cells::Grid;
+
+/// Nodes along a block's side.
+pub(crate) const SIDE: u32 = 8;
+/// Rows of eight nodes along x in a block.
+pub(crate) const ROWS: usize = (SIDE * SIDE) as usize;
+/// Nodes in a block.
+pub(crate) const NODES: usize = ROWS * SIDE as usize;
+/// In the table of blocks: no surface can be there.
+pub(crate) const NONE: u32 = u32::MAX;
+/// Most blocks in the dense table, whatever the device: 64 Mi, 256 MiB for each of its three arrays.
+const MAX_BLOCKS: u64 = 1 << 26;
+
+/// What a surface looks like and how finely it is resolved. Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceParams {
+    /// Distance of particles on the initial lattice; it sets the first guess of the mesh's size.
+    pub particle_spacing: f32,
+    /// Where the kernel becomes zero; usually 2 spacings.
+    pub support_radius: f32,
+    /// Edge of a marching-cubes cell; usually 0.5 spacings.
+    pub cell_size: f32,
+    /// Value of the colour field at the surface; the field is about 1 in the fluid's bulk and 0 outside. Usually 0.6.
+    pub iso_level: f32,
+    /// Rounds of weighted Laplacian smoothing; 0 leaves marching cubes' vertices, 15 to 25 remove the particles' bumps.
+    pub smoothing_iterations: u32,
+}
+
+impl SurfaceParams {
+    /// The usual values for a particle spacing: support 2 spacings, cells of half a spacing, iso level 0.6, no smoothing.
+    pub fn new(particle_spacing: f32) -> Self {
+        Self {
+            particle_spacing,
+            support_radius: 2.0 * particle_spacing,
+            cell_size: 0.5 * particle_spacing,
+            iso_level: 0.6,
+            smoothing_iterations: 0,
+        }
+    }
+
+    /// Tells whether the values make sense.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Parameter`] for the first that does not.
+    pub fn check(&self) -> Result<(), SurfaceError> {
+        let lengths = [
+            ("particle_spacing", self.particle_spacing),
+            ("support_radius", self.support_radius),
+            ("cell_size", self.cell_size),
+        ];
+        for (name, given) in lengths {
+            // The squares and reciprocals of lengths outside this range are not numbers any more.
+            if !(1e-12..=1e12).contains(&given) {
+                return Err(SurfaceError::Parameter {
+                    name,
+                    given,
+                    allowed: "a length between 1e-12 and 1e12 m",
+                });
+            }
+        }
+        // At 0 the surface would be infinitely far away.
+        if !(1e-3..=1e3).contains(&self.iso_level) {
+            let (name, given) = ("iso_level", self.iso_level);
+            return Err(SurfaceError::Parameter { name, given, allowed: "between 0.001 and 1000" });
+        }
+        Ok(())
+    }
+}
+
+/// The largest coordinate at which an `f32` keeps three bits for the place inside a cell.
+pub(crate) fn farthest(cell_size: f32) -> f32 {
+    cell_size * (1 << 21) as f32
+}
+
+gpu_struct! {
+    /// Mirrors `Lattice` in `lattice.wgsl`: the nodes at which the field is computed, in blocks of 8x8x8, and the mesh's capacities.
+    pub(crate) struct Lattice {
+        /// Position of node (0, 0, 0), a multiple of the cell size.
+        origin: Vec3,
+        /// Distance of nodes.
+        cell_size: f32,
+        /// Blocks along each axis.
+        blocks_x: u32,
+        blocks_y: u32,
+        blocks_z: u32,
+        /// Their product: the length of the dense table of blocks.
+        block_count: u32,
+        support_radius: f32,
+        /// 1 / support_radius
+        inverse_support: f32,
+        /// 1 / cell_size
+        inverse_cell: f32,
+        iso_level: f32,
+        /// Blocks that the field has room for.
+        block_capacity: u32,
+        vertex_capacity: u32,
+        triangle_capacity: u32,
+        particle_capacity: u32,
+    }
+}
+
+impl Lattice {
+    /// The lattice over all that particles in `grid` can reach, with capacities estimated from their number.
+    pub fn new(
+        params: &SurfaceParams,
+        grid: &Grid,
+        particle_capacity: u32,
+        largest_table: u64,
+    ) -> Result<Self, SurfaceError> {
+        params.check()?;
+        if grid.cell_size < params.support_radius {
+            let (cell_size, support_radius) = (grid.cell_size, params.support_radius);
+            return Err(SurfaceError::GridTooFine { cell_size, support_radius });
+        }
+        let cell = f64::from(params.cell_size);
+        let low = grid.origin.as_dvec3();
+        let extent = UVec3::new(grid.size_x, grid.size_y, grid.size_z).as_dvec3() * f64::from(grid.cell_size);
+        let cell_size = params.cell_size;
+        let (most, allowed) = (low.abs().max((low + extent).abs()).max_element(), farthest(cell_size));
+        if most > f64::from(allowed) {
+            return Err(SurfaceError::TooFar { farthest: most as f32, cell_size, allowed });
+        }
+        // The grid has a ghost cell, no narrower than the support, on every side. Two nodes more keep the cells round the outermost
+        // nodes, and what rounding may add, inside.
+        let first = (low / cell).floor() - 2.0;
+        let nodes = ((low + extent) / cell).ceil() + 3.0 - first;
+        let blocks: DVec3 = (nodes / f64::from(SIDE)).ceil();
+        let count = blocks.x * blocks.y * blocks.z;
+        let allowed = MAX_BLOCKS.min(largest_table / 4);
+        if count > allowed as f64 {
+            let size = extent.as_vec3().to_array();
+            return Err(SurfaceError::TooLarge { size, cell_size: params.cell_size, blocks: count, allowed });
+        }
+        let mut lattice = Self {
+            origin: (first * cell).as_vec3(),
+            cell_size: params.cell_size,
+            blocks_x: blocks.x as u32,
+            blocks_y: blocks.y as u32,
+            blocks_z: blocks.z as u32,
+            block_count: count as u32,
+            support_radius: params.support_radius,
+            inverse_support: 1.0 / params.support_radius,
+            inverse_cell: 1.0 / params.cell_size,
+            iso_level: params.iso_level,
+            block_capacity: 1,
+            vertex_capacity: 1,
+            triangle_capacity: 1,
+            particle_capacity,
+        };
+        lattice.estimate(params);
+        Ok(lattice)
+    }
+
+    /// Guesses capacities: a splash of 64K particles has about one vertex per particle at cells of half a spacing, four at a quarter,
+    /// and twice as many triangles; its blocks hold about four times the fluid's own volume.
+    fn estimate(&mut self, params: &SurfaceParams) {
+        let particles = f64::from(self.particle_capacity);
+        let cells = f64::from(params.particle_spacing / params.cell_size);
+        let vertices = (1.5 * particles * (cells / 2.0).powi(2) + 1024.0).min(f64::from(1 << 30));
+        let bulk = particles * (cells / f64::from(SIDE)).powi(3);
+        let skin = particles * (cells / f64::from(SIDE)).powi(2);
+        self.block_capacity = (2.0 * (bulk + skin) + 64.0).min(f64::from(self.block_count)) as u32;
+        self.vertex_capacity = vertices as u32;
+        self.triangle_capacity = 2 * self.vertex_capacity;
+    }
+
+    /// Place of a block in units of blocks.
+    pub fn block_place(&self, block: u32) -> [i32; 3] {
+        let (x, rest) = (block % self.blocks_x, block / self.blocks_x);
+        [x, rest % self.blocks_y, rest / self.blocks_y].map(|place| place as i32)
+    }
+
+    /// The number in the dense table of the block at a place, if the lattice reaches there.
+    pub fn block_at(&self, place: [i32; 3]) -> Option<usize> {
+        let [x, y, z] = place.map(|p| p as u32);
+        // A negative place is a large number here.
+        let within = x < self.blocks_x && y < self.blocks_y && z < self.blocks_z;
+        within
+            .then(|| (z as usize * self.blocks_y as usize + y as usize) * self.blocks_x as usize + x as usize)
+    }
+
+    /// A node's coordinate along an axis.
+    pub fn coordinate(&self, axis: usize, node: u32) -> f32 {
+        self.origin[axis] + self.cell_size * node as f32
+    }
+}
+
+gpu_struct! {
+    /// Mirrors `Status` in `lattice.wgsl`: how large the mesh is, written on the device; one element.
+    ///
+    /// What is needed can exceed what there was room for; then the mesh has holes until
+    /// [`Surface::grow`](super::Surface::grow) has made room and the recording has run again.
+    pub struct Status {
+        /// Blocks filled.
+        blocks: u32,
+        /// Blocks that particles reach.
+        blocks_needed: u32,
+        /// Vertices written.
+        vertices: u32,
+        /// Vertices of the blocks filled.
+        vertices_needed: u32,
+        /// Triangles written.
+        triangles: u32,
+        /// Triangles of the blocks filled.
+        triangles_needed: u32,
+    }
+}
+
+impl Status {
+    /// True if there was not room for everything.
+    pub fn overflowed(&self) -> bool {
+        self.blocks_needed > self.blocks
+            || self.vertices_needed > self.vertices
+            || self.triangles_needed > self.triangles
+    }
+}

@@ -1,0 +1,95 @@
+//! The surface of particles that lie in host memory.
+
+use glam::{Vec3, Vec4};
+use splashdown_gpu::Executor;
+use splashdown_io::Mesh;
+
+use super::{Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats};
+use crate::cells::Grid;
+
+/// The surface of any set of points, in m, each the centre of a particle.
+///
+/// Positions that are not finite are left out and counted in [`SurfaceStats::not_finite`]. No particles give an empty mesh.
+///
+/// ```
+/// use splashdown::surface::{SurfaceParams, reconstruct};
+/// use splashdown_gpu::{CpuExecutor, Executor};
+/// let mut executor = Executor::from(CpuExecutor::new());
+/// let drop = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.0, 0.05, 0.0]];
+/// let (mesh, stats) = reconstruct(&drop, &SurfaceParams::new(0.05), &mut executor)?;
+/// assert_eq!(mesh.triangles.len(), stats.triangles as usize);
+/// # Ok::<(), splashdown::surface::SurfaceError>(())
+/// ```
+///
+/// # Errors
+/// [`SurfaceError`] if a parameter makes no sense, the points are too far apart for the cell size, or the device is too small.
+pub fn reconstruct(
+    positions: &[[f32; 3]],
+    params: &SurfaceParams,
+    executor: &mut Executor,
+) -> Result<(Mesh, SurfaceStats), SurfaceError> {
+    params.check()?;
+    let finite: Vec<Vec3> = positions.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()).collect();
+    let not_finite = (positions.len() - finite.len()) as u32;
+    if finite.is_empty() {
+        return Ok((Mesh::default(), SurfaceStats { not_finite, ..SurfaceStats::default() }));
+    }
+    let grid = grid_over(&finite, params)?;
+    let (sorted, cell_start) = sort_by_cell(&grid, &finite);
+    let mut input = SurfaceInput {
+        positions: executor.create_from("surface particles", &sorted)?,
+        cell_start: executor.create_from("surface cell starts", &cell_start)?,
+        grid: executor.create_uniform("surface grid", &grid)?,
+        grid_host: grid,
+        particle_capacity: sorted.len() as u32,
+    };
+    let mut surface = Surface::new(executor, *params, input)?;
+    let stats = surface.extract(executor)?;
+    let mesh = surface.mesh(executor)?;
+    surface.release(executor)?;
+    executor.resize(&mut input.positions, 0)?;
+    executor.resize(&mut input.cell_start, 0)?;
+    Ok((mesh, SurfaceStats { not_finite, ..stats }))
+}
+
+/// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that there are not many more cells than particles.
+fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, SurfaceError> {
+    let low = positions.iter().fold(Vec3::MAX, |low, &p| low.min(p));
+    let high = positions.iter().fold(Vec3::MIN, |high, &p| high.max(p));
+    let most = 64 * positions.len() as u32 + 4096;
+    let mut cell_size = params.support_radius;
+    loop {
+        match Grid::new(low, high, cell_size) {
+            Some(grid) if grid.cell_count <= most => return Ok(grid),
+            _ if cell_size.is_finite() && (high - low).is_finite() => cell_size *= 1.5,
+            _ => {
+                let (farthest, cell_size) = (low.abs().max(high.abs()).max_element(), params.cell_size);
+                return Err(SurfaceError::TooFar {
+                    farthest,
+                    cell_size,
+                    allowed: super::params::farthest(cell_size),
+                });
+            }
+        }
+    }
+}
+
+/// A counting sort; particles of one cell keep their order.
+fn sort_by_cell(grid: &Grid, positions: &[Vec3]) -> (Vec<Vec4>, Vec<u32>) {
+    let cells: Vec<u32> = positions.iter().map(|&p| grid.cell_of(p)).collect();
+    let mut start = vec![0_u32; grid.cell_count as usize + 1];
+    for &cell in &cells {
+        start[cell as usize + 1] += 1;
+    }
+    for cell in 1..start.len() {
+        start[cell] += start[cell - 1];
+    }
+    let mut next = start.clone();
+    let mut sorted = vec![Vec4::ZERO; positions.len()];
+    for (p, &cell) in positions.iter().zip(&cells) {
+        let place = &mut next[cell as usize];
+        sorted[*place as usize] = p.extend(0.0);
+        *place += 1;
+    }
+    (sorted, start)
+}

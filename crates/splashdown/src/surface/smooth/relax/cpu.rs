@@ -1,0 +1,23 @@
+use glam::{UVec2, Vec3, Vec4};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::surface::params::Status;
+
+pub(super) fn relax(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [status, starts, rings, before, after] = slots else { unreachable!() };
+    let vertices = status.get::<Status>().vertices as usize;
+    let (starts, rings) = (&starts.read::<u32>()[..=vertices], rings.read::<UVec2>());
+    let before = before.read::<Vec4>();
+    let after = &mut after.write::<Vec4>()[..vertices];
+    after.par_iter_mut().zip(starts.par_windows(2)).with_min_len(2048).enumerate().for_each(
+        |(vertex, (after, range))| {
+            let own = before[vertex];
+            let ring = &rings[range[0] as usize..range[1] as usize];
+            // Relative to the vertex, so that a mesh far from the origin loses no digits.
+            let sum = ring.iter().fold(Vec4::ZERO, |sum, pair| sum + (before[pair.x as usize] - own));
+            let step: Vec3 = sum.truncate() * (own.w / ring.len().max(1) as f32);
+            *after = (own.truncate() + step).extend(own.w);
+        },
+    );
+}

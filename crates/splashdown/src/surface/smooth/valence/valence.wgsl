@@ -1,0 +1,23 @@
+#import gpu/index
+#import surface/status
+
+@group(0) @binding(0) var<storage, read> status: Status;
+@group(0) @binding(1) var<storage, read> indices: array<u32>;
+@group(0) @binding(2) var<storage, read_write> valences: array<atomic<u32>>;
+
+@compute @workgroup_size(64)
+fn valence(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let triangle = linear_index(gid, groups, 64u);
+    if triangle >= status.triangles {
+        return;
+    }
+    let a = indices[3u * triangle];
+    let b = indices[3u * triangle + 1u];
+    // A triangle without room for its vertices has equal numbers.
+    if a == b {
+        return;
+    }
+    atomicAdd(&valences[a], 1u);
+    atomicAdd(&valences[b], 1u);
+    atomicAdd(&valences[indices[3u * triangle + 2u]], 1u);
+}
