@@ -1,4 +1,45 @@
-//! Smoothed-particle hydrodynamics on any GPU: scenes, solvers and the surface of the fluid.
+//! Smoothed-particle hydrodynamics on any GPU, and fast without one: scenes, solvers and the surface of the fluid.
+//!
+//! ```
+//! use splashdown::{Device, Simulation, scene::Scene};
+//! # let text = include_str!("../../../scenes/dam-break-small.toml");
+//! let scene = Scene::parse(text, "dam-break-small.toml")?; // or Scene::load(path)
+//! let mut simulation = Simulation::new(&scene, &Device::Auto)?; // the best GPU, else the CPU
+//! let stats = simulation.advance(0.002)?; // as many steps as stability asks for
+//! println!("{} steps, {} particles", stats.steps, simulation.particles()?.positions.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Whole runs, with the surface of every frame, come as one stream of events: [`Run`].
+//!
+//! A step is a list of passes ([`solver`]), each of which is one folder ([`passes`]) with its equation, its WGSL and its
+//! Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
 
+pub mod boundary;
+pub mod cells;
+mod device;
+mod error;
+mod fields;
+pub mod kernel;
+mod memory;
+pub mod passes;
+mod run;
 pub mod sample;
 pub mod scene;
+mod simulation;
+pub mod solver;
+mod stats;
+pub mod surface;
+
+pub use device::Device;
+pub use error::SimulationError;
+pub use fields::Fields;
+pub use memory::{largest_particle_count, memory_forecast};
+pub use run::{Event, Frame, Progress, Run, RunOptions, Started, Summary};
+pub use simulation::Simulation;
+pub use stats::Stats;
+
+/// Every pass of this crate.
+pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
+    [passes::passes(), surface::passes()].concat()
+}

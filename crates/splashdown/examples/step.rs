@@ -1,0 +1,44 @@
+//! Steps a scene and prints its account and the time of every pass:
+//! `cargo run --release -p splashdown --example step -- SCENE [DEVICE] [FRAMES]`
+
+use splashdown::{Device, Simulation, scene::Scene};
+
+#[expect(clippy::print_stdout, reason = "an example that prints")]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let scene = Scene::load(arguments.next().ok_or("give a scene file")?)?;
+    let device: Device = arguments.next().unwrap_or_else(|| "auto".into()).parse()?;
+    let frames: u32 = arguments.next().map_or(Ok(3), |text| text.parse())?;
+    let mut simulation = Simulation::new(&scene, &device)?;
+    println!(
+        "{} particles on {}, {} MB",
+        simulation.stats().particles,
+        simulation.device_name(),
+        simulation.memory() >> 20
+    );
+    for _ in 0..frames {
+        let begun = std::time::Instant::now();
+        let stats = simulation.advance(scene.frame_duration())?;
+        let wall = begun.elapsed().as_secs_f64();
+        let steps = f64::from(stats.steps_in_frame);
+        println!(
+            "t {:.4} s: {} steps, {:.2} ms each, dt {:.2e} s, density error {:.4}, max speed {:.3} m/s, limits {}, walls {}",
+            stats.time,
+            stats.steps_in_frame,
+            1e3 * wall / steps,
+            stats.dt,
+            stats.density_error,
+            stats.max_speed,
+            stats.speed_limits,
+            stats.wall_corrections
+        );
+    }
+    if simulation.enable_timing() {
+        simulation.take_timings();
+        let steps = simulation.advance(scene.frame_duration())?.steps_in_frame;
+        for (label, time) in simulation.take_timings().passes {
+            println!("{label:30} {:8.3} ms per step", 1e3 * time.total.as_secs_f64() / f64::from(steps));
+        }
+    }
+    Ok(())
+}

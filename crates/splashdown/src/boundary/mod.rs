@@ -1,0 +1,10 @@
+//! What bounds the fluid: the box's closed sides.
+
+mod walls;
+
+pub use walls::{KernelPair, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};
+
+use splashdown_gpu::WgslModule;
+
+/// The WGSL side of [`Walls`]: `wall_terms`.
+pub const WGSL: WgslModule = WgslModule { name: "sph/walls", source: include_str!("walls.wgsl") };

@@ -1,0 +1,113 @@
+// The closed sides of the box; see walls.rs. Needs `params` (Params) and `wall_table` (33 x 33 nodes).
+override WALL_KERNEL: u32 = 0u;
+const WALL_STEPS: u32 = 32u;
+
+struct WallTerms {
+    density: f32,
+    density_slope: vec3<f32>,
+    slope: vec3<f32>,
+    single: vec3<f32>,
+    normal: vec3<f32>,
+    distance: vec3<f32>,
+}
+
+// (D, A) of the density's kernel.
+fn wall_plane(q: f32) -> vec2<f32> {
+    if (q >= 1.0) {
+        return vec2(0.0);
+    }
+    let t = 1.0 - q;
+    if (WALL_KERNEL == 0u) {
+        let t5 = t * t * t * t * t;
+        return vec2(0.5 * t5 * t * (3.0 * q * q + 3.0 * q + 1.0), 1.5 * t5 * (8.0 * q * q + 5.0 * q + 1.0));
+    }
+    let q2 = q * q;
+    if (WALL_KERNEL == 1u) {
+        if (q >= 0.5) {
+            let t4 = t * t * t * t;
+            return vec2(8.0 / 15.0 * t4 * t * (2.0 * q + 1.0), 1.6 * t4 * (4.0 * q + 1.0));
+        }
+        let d = 0.5 - 1.4 * q + q2 * q * (8.0 / 3.0 + q2 * (-24.0 / 5.0 + 16.0 / 5.0 * q));
+        return vec2(d, 1.4 + q2 * (-8.0 + q2 * (24.0 - 96.0 / 5.0 * q)));
+    }
+    let s = 1.0 - q2;
+    let inner = 1.0 + q2 * (-4.0 / 3.0 + q2 * (6.0 / 5.0 + q2 * (-4.0 / 7.0 + q2 / 9.0)));
+    return vec2(0.5 - 315.0 / 256.0 * q * inner, 315.0 / 256.0 * s * s * s * s);
+}
+
+// (D, A) of the gradient's kernel.
+fn wall_plane_gradient(q: f32) -> vec2<f32> {
+    if (WALL_KERNEL != 2u) {
+        return wall_plane(q);
+    }
+    if (q >= 1.0) {
+        return vec2(0.0);
+    }
+    let t = 1.0 - q;
+    let t4 = t * t * t * t;
+    return vec2(t4 * t * (1.5 - t), 1.5 * t4 * (1.0 + 4.0 * q));
+}
+
+fn wall_pair(a: f32, b: f32) -> vec4<f32> {
+    if (a * a + b * b >= 1.0) {
+        return vec4(0.0);
+    }
+    let x = a * f32(WALL_STEPS);
+    let y = b * f32(WALL_STEPS);
+    let i = min(u32(x), WALL_STEPS - 1u);
+    let j = min(u32(y), WALL_STEPS - 1u);
+    let fx = x - f32(i);
+    let fy = y - f32(j);
+    let k = j * (WALL_STEPS + 1u) + i;
+    let low = wall_table[k] * (1.0 - fx) + wall_table[k + 1u] * fx;
+    let high = wall_table[k + WALL_STEPS + 1u] * (1.0 - fx) + wall_table[k + WALL_STEPS + 2u] * fx;
+    return low * (1.0 - fy) + high * fy;
+}
+
+// (D, slopes) by inclusion and exclusion; d and a of the planes, pair values of axis k with the two others.
+fn wall_combine(d: vec3<f32>, a: vec3<f32>, p01: vec2<f32>, p02: vec2<f32>, p12: vec2<f32>, p10: vec2<f32>, p20: vec2<f32>, p21: vec2<f32>) -> vec4<f32> {
+    var sum = d.x + d.y + d.z - p01.x - p02.x - p12.x;
+    var slope = a - vec3(p01.y, p12.y, p20.y) - vec3(p02.y, p10.y, p21.y);
+    if (p01.x > 0.0 && p02.x > 0.0 && p12.x > 0.0) {
+        let corner = p01.x * p02.x * p12.x / (d.x * d.y * d.z);
+        sum += corner;
+        slope += corner * (vec3(p01.y, p12.y, p20.y) / vec3(p01.x, p12.x, p20.x)
+            + vec3(p02.y, p10.y, p21.y) / vec3(p02.x, p10.x, p21.x) - a / d);
+    }
+    return vec4(slope, sum);
+}
+
+fn wall_open(bit: u32) -> f32 {
+    return select(1e30, 0.0, ((params.closed >> bit) & 1u) == 1u);
+}
+
+fn wall_terms(x: vec3<f32>) -> WallTerms {
+    let low = x - params.domain_min + vec3(wall_open(0u), wall_open(2u), wall_open(4u));
+    let high = params.domain_max - x + vec3(wall_open(1u), wall_open(3u), wall_open(5u));
+    var terms: WallTerms;
+    terms.normal = select(vec3(-1.0), vec3(1.0), low <= high);
+    terms.distance = min(low, high);
+    let q = max(terms.distance + params.wall_offset, vec3(0.0)) / params.support_radius;
+    if (min(q.x, min(q.y, q.z)) >= 1.0) {
+        return terms;
+    }
+    let px = wall_plane(q.x);
+    let py = wall_plane(q.y);
+    let pz = wall_plane(q.z);
+    let gx = wall_plane_gradient(q.x);
+    let gy = wall_plane_gradient(q.y);
+    let gz = wall_plane_gradient(q.z);
+    let p01 = wall_pair(q.x, q.y);
+    let p02 = wall_pair(q.x, q.z);
+    let p12 = wall_pair(q.y, q.z);
+    let p10 = wall_pair(q.y, q.x);
+    let p20 = wall_pair(q.z, q.x);
+    let p21 = wall_pair(q.z, q.y);
+    let density = wall_combine(vec3(px.x, py.x, pz.x), vec3(px.y, py.y, pz.y), p01.xy, p02.xy, p12.xy, p10.xy, p20.xy, p21.xy);
+    let gradient = wall_combine(vec3(gx.x, gy.x, gz.x), vec3(gx.y, gy.y, gz.y), p01.zw, p02.zw, p12.zw, p10.zw, p20.zw, p21.zw);
+    terms.density = density.w;
+    terms.density_slope = density.xyz;
+    terms.slope = gradient.xyz;
+    terms.single = vec3(gx.y, gy.y, gz.y);
+    return terms;
+}

@@ -1,0 +1,32 @@
+#import gpu/index
+#import sph/state
+#import sph/grid
+
+@group(0) @binding(0) var<uniform> grid: Grid;
+@group(0) @binding(1) var<storage, read> state: StepState;
+@group(0) @binding(2) var<storage, read> pairs: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read_write> cell_start: array<u32>;
+@group(0) @binding(4) var<storage, read_write> slots: array<u32>;
+
+// One invocation more than particles: the last one closes the cells behind the last particle.
+@compute @workgroup_size(64)
+fn bounds(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear_index(gid, groups, 64u);
+    let n = state.run_count;
+    if (k > n) {
+        return;
+    }
+    // Cells are numbered up to that of the dead; one start more closes it.
+    var here = grid.cell_count + 1u;
+    if (k < n) {
+        here = pairs[k].x;
+        slots[k] = pairs[k].y;
+    }
+    var first = 0u;
+    if (k > 0u) {
+        first = pairs[k - 1u].x + 1u;
+    }
+    for (var cell = first; cell <= here; cell++) {
+        cell_start[cell] = k;
+    }
+}

@@ -1,0 +1,34 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/tally
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> state: StepState;
+@group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read_write> cell_rank: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read_write> counts: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> tally: array<atomic<u32>>;
+
+@compute @workgroup_size(64)
+fn count(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= state.run_count) {
+        return;
+    }
+    let p = positions[i];
+    var cell = grid.cell_count;
+    if (p.w == 0.0) {
+        if (!is_finite(p.xyz)) {
+            positions[i] = vec4(params.domain_min, DEAD_NON_FINITE);
+            atomicAdd(&tally[TALLY_NON_FINITE], 1u);
+        } else if (any(p.xyz < params.domain_min) || any(p.xyz > params.domain_max)) {
+            positions[i].w = DEAD_ESCAPED;
+            atomicAdd(&tally[TALLY_ESCAPED], 1u);
+        } else {
+            cell = cell_of(p.xyz);
+        }
+    }
+    cell_rank[i] = vec2(cell, atomicAdd(&counts[cell], 1u));
+}

@@ -1,0 +1,32 @@
+//! Counts the particles of every cell, and notes each one's cell and the order of its arrival there.
+//!
+//! Dead particles go to one more cell behind the last, so that sorting puts them behind the living. Particles that are
+//! outside the domain or not finite are marked dead here, and counted.
+
+mod cpu;
+
+use glam::{UVec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{GRID, Grid};
+use crate::passes::{PARAMS, Params, STATE, StepState, TALLY};
+
+/// See the module.
+pub static COUNT: PassDesc = PassDesc {
+    label: "cells.count",
+    wgsl: include_str!("count.wgsl"),
+    imports: &[wgsl::INDEX, GRID, STATE, PARAMS, TALLY],
+    entry: "count",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        write::<Vec4>("positions"),
+        write::<UVec2>("cell_rank"),
+        write::<u32>("counts"),
+        write::<u32>("tally"),
+    ],
+    cpu: cpu::count,
+};

@@ -1,0 +1,20 @@
+//! Writes (cell, number) pairs for the bitonic sort: the thesis's way, kept as a baseline.
+
+mod cpu;
+
+use glam::UVec2;
+use splashdown_gpu::{PassDesc, read, wgsl, write};
+
+use crate::passes::{STATE, StepState};
+
+/// See the module.
+pub static KEYS: PassDesc = PassDesc {
+    label: "cells.keys",
+    wgsl: include_str!("keys.wgsl"),
+    imports: &[wgsl::INDEX, STATE],
+    entry: "keys",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[read::<StepState>("state"), read::<UVec2>("cell_rank"), write::<UVec2>("pairs")],
+    cpu: cpu::keys,
+};

@@ -1,0 +1,26 @@
+#import gpu/index
+#import sph/state
+
+@group(0) @binding(0) var<storage, read> state: StepState;
+@group(0) @binding(1) var<storage, read> cell_rank: array<vec2<u32>>;
+@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(3) var<storage, read> slots: array<u32>;
+@group(0) @binding(4) var<storage, read> ids: array<u32>;
+@group(0) @binding(5) var<storage, read_write> order: array<u32>;
+
+@compute @workgroup_size(64)
+fn order_cell(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= state.run_count) {
+        return;
+    }
+    let cell = cell_rank[i].x;
+    let begin = cell_start[cell];
+    let end = cell_start[cell + 1u];
+    let id = ids[i];
+    var place = begin;
+    for (var k = begin; k < end; k++) {
+        place += u32(ids[slots[k]] < id);
+    }
+    order[place] = i;
+}

@@ -1,0 +1,68 @@
+//! Which device a simulation runs on.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use splashdown_gpu::{CpuExecutor, DeviceRequest, Executor, Gpu, GpuError, GpuExecutor};
+
+/// Where to simulate.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Device {
+    /// The best GPU, else the CPU. A software driver does not count as a GPU: the CPU is about fifteen times faster.
+    #[default]
+    Auto,
+    /// The best GPU; an error where there is none.
+    Gpu,
+    /// The CPU.
+    Cpu,
+    /// The adapter whose name contains this, software drivers among them.
+    Named(String),
+}
+
+impl FromStr for Device {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text.to_lowercase().as_str() {
+            "auto" => Self::Auto,
+            "gpu" => Self::Gpu,
+            "cpu" => Self::Cpu,
+            _ => Self::Named(text.to_owned()),
+        })
+    }
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+            Self::Named(name) => name,
+        })
+    }
+}
+
+impl Device {
+    /// Opens the device and makes an executor on it.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] and [`GpuError::UnknownDevice`]; never for [`Auto`](Self::Auto) and [`Cpu`](Self::Cpu).
+    pub fn executor(&self) -> Result<Executor, GpuError> {
+        let gpu =
+            |request: &DeviceRequest| Ok(Executor::from(GpuExecutor::new(Arc::new(Gpu::open(request)?))));
+        match self {
+            Self::Cpu => Ok(CpuExecutor::new().into()),
+            Self::Gpu => gpu(&DeviceRequest::Hardware),
+            Self::Named(name) => gpu(&DeviceRequest::Named(name.clone())),
+            Self::Auto => match gpu(&DeviceRequest::Hardware) {
+                Ok(executor) => Ok(executor),
+                Err(error) => {
+                    tracing::info!("simulating on the CPU: {error}");
+                    Ok(CpuExecutor::new().into())
+                }
+            },
+        }
+    }
+}

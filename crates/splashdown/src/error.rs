@@ -1,0 +1,53 @@
+//! The library's errors.
+
+use splashdown_gpu::GpuError;
+
+/// What can go wrong from a validated scene to a frame.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The device or its driver.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// Particles could not be placed.
+    #[error(transparent)]
+    Sample(#[from] crate::sample::SampleError),
+    /// The surface.
+    #[error(transparent)]
+    Surface(#[from] crate::surface::SurfaceError),
+    /// More than the device or the indices allow.
+    #[error("{given} {what} are too many: at most {allowed} fit; {advice}")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many.
+        given: u64,
+        /// How many fit.
+        allowed: u64,
+        /// What to do.
+        advice: String,
+    },
+    /// Every particle left the domain or became NaN.
+    #[error("no particle is left at {time:.4} s: {reason}")]
+    NothingLeft {
+        /// Simulated time in seconds.
+        time: f64,
+        /// Where they went.
+        reason: String,
+    },
+    /// The time step that stability asks for is below the scene's smallest.
+    #[error(
+        "at {time:.4} s the time step that keeps the simulation stable is {wanted:.3e} s, below solver.min_dt = {min_dt:.3e} s \
+         (largest speed {max_speed:.3e} m/s): look for particles placed inside one another, or lower the speeds or min_dt"
+    )]
+    StepTooSmall {
+        /// Simulated time in seconds.
+        time: f64,
+        /// The step asked for in seconds.
+        wanted: f32,
+        /// The smallest allowed in seconds.
+        min_dt: f32,
+        /// The largest speed in m/s.
+        max_speed: f32,
+    },
+}

@@ -1,0 +1,72 @@
+//! The buffers of a simulation.
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{Buffer, Executor, GpuError};
+
+use crate::boundary::{KernelPair, wall_table};
+use crate::passes::{Params, StepState, Tally};
+
+/// Every buffer that passes share, but for those of the sort. One entry per particle unless said otherwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields {
+    /// Constants; a uniform.
+    pub params: Buffer<Params>,
+    /// What changes from step to step; one.
+    pub state: Buffer<StepState>,
+    /// Length of the frame to begin, in seconds; one.
+    pub duration: Buffer<f32>,
+    /// Counters and maxima, [`Tally::WORDS`] words.
+    pub tally: Buffer<u32>,
+    /// Overlap of half-spaces; see [`wall_table`].
+    pub wall_table: Buffer<Vec4>,
+    /// Resting: position in metres, and 0 or why the particle is dead.
+    pub positions: Buffer<Vec4>,
+    /// Resting: velocity in m/s, and density in kg/m^3.
+    pub velocities: Buffer<Vec4>,
+    /// Resting: number of the particle since the start.
+    pub ids: Buffer<u32>,
+    /// Sorted by cell: as `positions`.
+    pub sorted_positions: Buffer<Vec4>,
+    /// Sorted by cell: as `velocities`.
+    pub sorted_velocities: Buffer<Vec4>,
+    /// Sorted by cell: as `ids`.
+    pub sorted_ids: Buffer<u32>,
+    /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the resting arrays
+    /// once the step is done.
+    pub densities: Buffer<Vec2>,
+    /// Acceleration in m/s^2, and rate of density in kg/(m^3 s); order as `densities`.
+    pub accelerations: Buffer<Vec4>,
+    /// Normals for surface tension; order as `densities`. One entry where there is none.
+    pub normals: Buffer<Vec4>,
+}
+
+impl Fields {
+    /// Makes the buffers.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn new(
+        executor: &mut Executor,
+        params: &Params,
+        walls: KernelPair,
+        normals: bool,
+    ) -> Result<Self, GpuError> {
+        let n = params.particle_count as usize;
+        Ok(Self {
+            params: executor.create_uniform("params", params)?,
+            state: executor.create("state", 1)?,
+            duration: executor.create_from("duration", &[0.0])?,
+            tally: executor.create_from("tally", &[0; Tally::WORDS])?,
+            wall_table: executor.create_from("wall_table", &wall_table(walls))?,
+            positions: executor.create("positions", n)?,
+            velocities: executor.create("velocities", n)?,
+            ids: executor.create("ids", n)?,
+            sorted_positions: executor.create("sorted_positions", n)?,
+            sorted_velocities: executor.create("sorted_velocities", n)?,
+            sorted_ids: executor.create("sorted_ids", n)?,
+            densities: executor.create("densities", n)?,
+            accelerations: executor.create("accelerations", n)?,
+            normals: executor.create("normals", if normals { n } else { 1 })?,
+        })
+    }
+}

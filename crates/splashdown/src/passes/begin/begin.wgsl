@@ -1,0 +1,17 @@
+#import sph/params
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> duration: array<f32>;
+@group(0) @binding(2) var<storage, read_write> state: StepState;
+
+@compute @workgroup_size(1)
+fn begin() {
+    let length = duration[0];
+    state.frame_duration = length;
+    state.remaining = length;
+    state.dt = min(state.stable_dt, length);
+    state.done = 0u;
+    state.run_count = params.particle_count;
+    state.steps = 0u;
+    state.density_error = 0.0;
+}

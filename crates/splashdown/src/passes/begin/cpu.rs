@@ -1,0 +1,16 @@
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::passes::{Params, StepState};
+
+pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, duration, state] = slots else { unreachable!() };
+    let length = duration.read::<f32>()[0];
+    let state = &mut state.write::<StepState>()[0];
+    state.frame_duration = length;
+    state.remaining = length;
+    state.dt = state.stable_dt.min(length);
+    state.done = 0;
+    state.run_count = params.get::<Params>().particle_count;
+    state.steps = 0;
+    state.density_error = 0.0;
+}

@@ -1,0 +1,51 @@
+//! Density by summation, and the pressure that follows from it.
+//!
+//! rho_i = m sum_j W(x_i - x_j) (j = i included) + rho0 D(x_i), with D the walls' share
+//! ([`boundary`](crate::boundary)); p_i by the equation of state (Batchelor 1967; Monaghan 1994).
+
+mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
+
+use super::{PARAMS, Params, ROWS, STATE};
+use crate::boundary::{self, KernelPair};
+use crate::cells::{GRID, Grid};
+use crate::kernel::{self, CubicSpline, Kernel, Poly6};
+
+const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::WGSL];
+
+/// With the Wendland C2 kernel.
+pub static WENDLAND_C2: PassDesc = PassDesc {
+    label: "density.wendland_c2",
+    wgsl: include_str!("density.wgsl"),
+    imports: IMPORTS,
+    entry: "density",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<u32>("cell_start"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("wall_table"),
+        write::<Vec2>("densities"),
+    ],
+    cpu: cpu::density::<kernel::WendlandC2>,
+};
+
+/// With the cubic spline.
+pub static CUBIC_SPLINE: PassDesc = PassDesc {
+    label: "density.cubic_spline",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
+    cpu: cpu::density::<CubicSpline>,
+    ..WENDLAND_C2
+};
+
+/// With the poly6 kernel of Mueller 2003.
+pub static POLY6: PassDesc = PassDesc {
+    label: "density.poly6",
+    constants: &[("KERNEL", Poly6::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
+    cpu: cpu::density::<Poly6>,
+    ..WENDLAND_C2
+};

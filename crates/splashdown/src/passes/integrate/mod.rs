@@ -1,0 +1,36 @@
+//! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the resting ones.
+//!
+//! It is the leap-frog of the thesis read at half steps: v here is v at t + dt/2 there. Closed walls are a contact in the
+//! velocities: a particle nearer than a quarter of a spacing, or on its way there within this step, loses just the
+//! speed that would take it past. Pressure keeps a body of fluid off the wall; this holds the lone drops that have none.
+//! A particle that is outside all the same is put back and counted: the count is zero in a sound run. A result that is
+//! not finite leaves the particle where it was, dead, and is counted.
+
+mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{PARAMS, Params, STATE, StepState, TALLY};
+
+/// See the module.
+pub static INTEGRATE: PassDesc = PassDesc {
+    label: "integrate",
+    wgsl: include_str!("integrate.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, TALLY],
+    entry: "integrate",
+    workgroup_size: [256, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        read::<StepState>("state"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<Vec2>("densities"),
+        read::<Vec4>("accelerations"),
+        write::<Vec4>("positions"),
+        write::<Vec4>("velocities"),
+        write::<u32>("tally"),
+    ],
+    cpu: cpu::integrate,
+};

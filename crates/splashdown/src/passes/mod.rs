@@ -1,0 +1,202 @@
+//! The passes of a step, one folder each: equation and declaration (`mod.rs`), WGSL, and the CPU's way (`cpu.rs`).
+//!
+//! Particles rest in arrays "A" (`positions`, `velocities`, `ids`). A step sorts them by cell into arrays "B"
+//! (`sorted_*`), computes from B, and integrates back into A, so that a step needs no swap of buffers and one that
+//! has nothing to do leaves A untouched.
+
+pub mod begin;
+pub mod cfl;
+pub mod density;
+pub mod integrate;
+pub mod momentum;
+pub mod mueller;
+pub mod normals;
+pub mod state_equation;
+
+pub(crate) mod rows;
+pub(crate) mod simd;
+
+use crate::boundary::{KernelPair, Walls};
+use glam::{UVec2, Vec3};
+use splashdown_gpu::{PassDesc, WgslModule, gpu_struct};
+
+/// The WGSL side of [`StepState`].
+pub const STATE: WgslModule = WgslModule { name: "sph/state", source: include_str!("state.wgsl") };
+/// The WGSL side of [`Params`]; imports [`STATE`].
+pub const PARAMS: WgslModule = WgslModule { name: "sph/params", source: include_str!("params.wgsl") };
+/// `row_range`: how the GPU visits neighbours.
+pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
+/// The WGSL side of [`Tally`].
+pub const TALLY: WgslModule = WgslModule { name: "sph/tally", source: include_str!("tally.wgsl") };
+
+gpu_struct! {
+    /// What does not change while a simulation runs. SI units.
+    pub struct Params {
+        /// Gravity in m/s^2.
+        gravity: Vec3,
+        /// Where the kernel becomes zero, in metres.
+        support_radius: f32,
+        /// Lower corner of the domain in metres.
+        domain_min: Vec3,
+        /// Distance of particles on the initial lattice in metres.
+        particle_spacing: f32,
+        /// Upper corner of the domain in metres.
+        domain_max: Vec3,
+        /// Mass of a particle in kg.
+        particle_mass: f32,
+        /// Amplitude of the tank's acceleration, as felt in the tank, in m/s^2.
+        shake: Vec3,
+        /// Its angular frequency in rad/s.
+        shake_rate: f32,
+        /// Density at rest in kg/m^3.
+        rest_density: f32,
+        /// Numerical speed of sound in m/s.
+        sound_speed: f32,
+        /// How far behind a closed side its solid begins, in metres: see [`wall_offset`](crate::boundary::wall_offset).
+        wall_offset: f32,
+        /// Exponent of the equation of state.
+        exponent: f32,
+        /// Kinematic viscosity in m^2/s.
+        viscosity: f32,
+        /// Coefficient alpha of the artificial viscosity.
+        artificial_viscosity: f32,
+        /// Coefficient delta of the density diffusion.
+        density_diffusion: f32,
+        /// Akinci's gamma in m^4/(kg s^2), or Mueller's sigma in N/m; 0 for none.
+        surface_tension: f32,
+        /// 0 for free slip at closed sides, 1 for no slip.
+        wall_friction: f32,
+        /// Factor of the time step's limits by sound and speed.
+        cfl_factor: f32,
+        /// Largest time step in seconds.
+        max_dt: f32,
+        /// Smallest time step in seconds.
+        min_dt: f32,
+        /// Bit 2 * axis + side is set if that side of the domain is closed.
+        closed: u32,
+        /// 1 if negative pressures count as zero.
+        clamp_pressure: u32,
+        /// Number of particles, dead ones included.
+        particle_count: u32,
+        /// 1 if the density is integrated by the continuity equation instead of summed.
+        continuity: u32,
+    }
+}
+
+gpu_struct! {
+    /// What changes from step to step; decided on the device.
+    pub struct StepState {
+        /// The current time step in seconds.
+        dt: f32,
+        /// The time step that stability asks for; `dt` may be shorter to meet the end of a frame.
+        stable_dt: f32,
+        /// Simulated time in seconds.
+        time: f32,
+        /// What is left of the frame in seconds.
+        remaining: f32,
+        /// 1 once the frame is complete: the passes do nothing then.
+        done: u32,
+        /// Particles to process: all, or none once the frame is complete.
+        run_count: u32,
+        /// Steps of this frame.
+        steps: u32,
+        /// 1 if stability asked for less than `min_dt`.
+        too_small: u32,
+        /// Largest speed of the last step in m/s.
+        max_speed: f32,
+        /// Largest acceleration of the last step in m/s^2.
+        max_acceleration: f32,
+        /// Largest relative excess of density in this frame.
+        density_error: f32,
+        /// Length of the frame in seconds.
+        frame_duration: f32,
+    }
+}
+
+/// Counters and maxima that passes raise atomically: the places of the words.
+///
+/// Maxima are of non-negative floats by their bits, whose order is that of the numbers, so the result does not depend
+/// on the order of the invocations.
+pub struct Tally;
+
+impl Tally {
+    /// Particles that left through an open side.
+    pub const ESCAPED: usize = 0;
+    /// Particles that became NaN or infinite.
+    pub const NON_FINITE: usize = 1;
+    /// Particles put back through a closed wall.
+    pub const CORRECTIONS: usize = 2;
+    /// Velocities limited to half a spacing per step.
+    pub const LIMITED: usize = 3;
+    /// Largest speed.
+    pub const MAX_SPEED: usize = 4;
+    /// Largest acceleration.
+    pub const MAX_ACCELERATION: usize = 5;
+    /// Largest relative excess of density.
+    pub const MAX_EXCESS: usize = 6;
+    /// Number of words.
+    pub const WORDS: usize = 8;
+}
+
+/// Mark of a particle that left, in the fourth component of its position.
+pub const DEAD_ESCAPED: f32 = 1.0;
+/// Mark of a particle that became NaN or infinite.
+pub const DEAD_NON_FINITE: f32 = 2.0;
+
+impl Params {
+    /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
+    #[inline(always)]
+    pub fn pressure_at(&self, density: f32) -> f32 {
+        let x = density / self.rest_density;
+        let stiffness = self.rest_density * self.sound_speed * self.sound_speed / self.exponent;
+        let p = if self.exponent == 7.0 {
+            let x2 = x * x;
+            stiffness * (x2 * x2 * x2 * x - 1.0)
+        } else if self.exponent == 1.0 {
+            stiffness * (x - 1.0)
+        } else {
+            stiffness * (x.powf(self.exponent) - 1.0)
+        };
+        if self.clamp_pressure == 1 { p.max(0.0) } else { p }
+    }
+
+    /// The closed sides of the domain for these kernels.
+    pub fn walls(&self, kernels: KernelPair) -> Walls {
+        Walls {
+            min: self.domain_min,
+            max: self.domain_max,
+            closed: self.closed,
+            offset: self.wall_offset,
+            support_radius: self.support_radius,
+            kernels,
+        }
+    }
+
+    /// Gravity and the tank's own motion, in m/s^2, at a time in seconds.
+    pub fn body_acceleration(&self, time: f32) -> Vec3 {
+        self.gravity + self.shake * (self.shake_rate * time).sin()
+    }
+}
+
+/// The cell of a particle and its place among those that arrived there.
+pub type CellRank = UVec2;
+
+/// Every pass of this module and of [`cells`](crate::cells).
+pub fn passes() -> Vec<&'static PassDesc> {
+    let mut all = crate::cells::passes();
+    all.extend([
+        &begin::BEGIN,
+        &cfl::CFL,
+        &density::WENDLAND_C2,
+        &density::CUBIC_SPLINE,
+        &density::POLY6,
+        &integrate::INTEGRATE,
+        &momentum::WENDLAND_C2,
+        &momentum::CUBIC_SPLINE,
+        &mueller::MUELLER,
+        &normals::WENDLAND_C2,
+        &normals::CUBIC_SPLINE,
+        &state_equation::STATE_EQUATION,
+    ]);
+    all
+}

@@ -1,0 +1,131 @@
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::boundary::{KernelPair, Walls};
+use crate::cells::Grid;
+use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
+use crate::passes::rows::{self, LANES, Window};
+use crate::passes::simd::{Leaf, vectorised};
+use crate::passes::{Params, StepState};
+
+pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, grid, state, cell_start, positions, velocities, densities, wall_table, accelerations] =
+        slots
+    else {
+        unreachable!()
+    };
+    let (params, grid, state) = (&params.get::<Params>(), &grid.get::<Grid>(), &state.get::<StepState>());
+    let cell_start = cell_start.read::<u32>();
+    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
+    let (densities, wall_table) = (densities.read::<Vec2>(), wall_table.read::<Vec4>());
+    let walls = params.walls(KernelPair::Mueller);
+    let body = params.body_acceleration(state.time);
+    rows::for_each(grid, cell_start, accelerations.write::<Vec4>(), |window, row, places, out| {
+        vectorised(Row { params, grid, cell_start, positions, velocities, densities, row, window, out });
+        for (i, a) in places.zip(out) {
+            *a += body.extend(0.0);
+            let (x, v) = (positions[i].xyz(), velocities[i].xyz());
+            if walls.near(x) {
+                *a += wall_acceleration(params, state.dt, body, &walls, wall_table, x, v, densities[i])
+                    .extend(0.0);
+            }
+        }
+    });
+}
+
+#[expect(clippy::too_many_arguments, reason = "one particle's state, spelled out")]
+fn wall_acceleration(
+    params: &Params,
+    dt: f32,
+    body: Vec3,
+    walls: &Walls,
+    table: &[Vec4],
+    x: Vec3,
+    v: Vec3,
+    density: Vec2,
+) -> Vec3 {
+    let terms = walls.terms(table, x);
+    let [rho, pressure] = density.to_array();
+    let scale = 1.0 / params.support_radius;
+    let mut a = Vec3::ZERO;
+    for axis in 0..3 {
+        let (distance, n) = (terms.distance[axis], terms.normal[axis]);
+        if distance >= params.support_radius {
+            continue;
+        }
+        let mut behind =
+            pressure - params.rest_density * body[axis] * n * (distance + 0.5 * params.particle_spacing);
+        if params.clamp_pressure == 1 {
+            behind = behind.max(0.0);
+        }
+        a[axis] += 0.5 * (pressure + behind) / rho * terms.slope[axis] * scale * n;
+        let k = params.wall_friction * 2.0 * params.viscosity * terms.single[axis] * scale
+            / distance.max(0.25 * params.particle_spacing);
+        let mut along = v;
+        along[axis] = 0.0;
+        a -= k / (1.0 + k * dt) * along;
+    }
+    a
+}
+
+/// The sums over the neighbours of the particles in one row of cells.
+struct Row<'a> {
+    params: &'a Params,
+    grid: &'a Grid,
+    cell_start: &'a [u32],
+    positions: &'a [Vec4],
+    velocities: &'a [Vec4],
+    densities: &'a [Vec2],
+    row: usize,
+    window: &'a mut Window<8>,
+    out: &'a mut [Vec4],
+}
+
+impl Leaf for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { params, grid, cell_start, positions, velocities, densities, row, window, out } = self;
+        let mass = params.particle_mass;
+        window.gather(grid, cell_start, row, |j| {
+            let (p, v, [rho, pressure]) = (positions[j], velocities[j], densities[j].to_array());
+            [p.x, p.y, p.z, v.x, v.y, v.z, pressure, mass / rho]
+        });
+        let scale = 1.0 / params.support_radius;
+        let scale5 = (scale * scale) * (scale * scale) * scale;
+        let friction = params.viscosity * params.rest_density;
+        let first = cell_start[row] as usize;
+        for (x, places) in rows::occupied(grid, cell_start, row) {
+            let c = window.candidates(x);
+            for i in places {
+                let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
+                let mut sums = [[0.0; LANES]; 7];
+                for k in 0..c[0].len() {
+                    let [xs, ys, zs, us, vs, ws, ps, volumes] = std::array::from_fn(|f| &c[f][k]);
+                    for l in 0..LANES {
+                        let (dx, dy, dz) = (p.x - xs[l], p.y - ys[l], p.z - zs[l]);
+                        let q = (dx * dx + dy * dy + dz * dz).sqrt() * scale;
+                        let push = -volumes[l] * 0.5 * (pressure + ps[l]) * Spiky::g(q);
+                        let rub = friction * volumes[l] * viscosity_laplacian(q);
+                        sums[0][l] += push * dx + rub * (us[l] - v.x);
+                        sums[1][l] += push * dy + rub * (vs[l] - v.y);
+                        sums[2][l] += push * dz + rub * (ws[l] - v.z);
+                        let slope = volumes[l] * Poly6::g(q);
+                        sums[3][l] += slope * dx;
+                        sums[4][l] += slope * dy;
+                        sums[5][l] += slope * dz;
+                        sums[6][l] += volumes[l] * Poly6::laplacian(q);
+                    }
+                }
+                let [fx, fy, fz, nx, ny, nz, laplacian] = sums.map(|lanes| scale5 * rows::sum(lanes));
+                let (mut force, normal) = (Vec3::new(fx, fy, fz), Vec3::new(nx, ny, nz));
+                let steepness = normal.length();
+                if steepness > 0.5 * scale {
+                    force -= params.surface_tension * laplacian / steepness * normal;
+                }
+                out[i - first] = (force / rho).extend(0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Accelerations of Mueller, Charypar & Gross 2003, the thesis's mode.
+//!
+//! f_p = -sum m_j (p_i + p_j) / (2 rho_j) grad W_spiky; f_v = nu rho0 sum m_j (v_j - v_i) / rho_j lap W_visc; with the
+//! colour field c = sum (m_j / rho_j) W_poly6 and n = grad c, f_s = -sigma lap c n / |n| where |n| > 0.5 / H. The
+//! acceleration is the force density over rho_i. The pressure's form does not conserve momentum where densities
+//! differ: use it to compare with the thesis, not to measure.
+
+mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{PARAMS, Params, ROWS, STATE, StepState};
+use crate::boundary::{self, KernelPair};
+use crate::cells::{GRID, Grid};
+use crate::kernel::{self, Kernel, Spiky};
+
+/// See the module.
+pub static MUELLER: PassDesc = PassDesc {
+    label: "mueller",
+    wgsl: include_str!("mueller.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::WGSL],
+    entry: "mueller",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", Spiky::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        read::<u32>("cell_start"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<Vec2>("densities"),
+        read::<Vec4>("wall_table"),
+        write::<Vec4>("accelerations"),
+    ],
+    cpu: cpu::mueller,
+};

@@ -1,0 +1,83 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/walls
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> state: StepState;
+@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
+@group(0) @binding(7) var<storage, read> wall_table: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> accelerations: array<vec4<f32>>;
+
+@compute @workgroup_size(64)
+fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= living()) {
+        return;
+    }
+    let x = sorted_positions[i].xyz;
+    let v = sorted_velocities[i].xyz;
+    let rho = densities[i].x;
+    let pressure = densities[i].y;
+    let body = body_acceleration(state.time);
+    let cell = cell_of(x);
+    let support = params.support_radius;
+    let scale = 1.0 / support;
+    let scale5 = scale * scale * scale * scale * scale;
+    let reach = support * support;
+    let friction = params.viscosity * params.rest_density;
+
+    var force = vec3(0.0);
+    var normal = vec3(0.0);
+    var laplacian = 0.0;
+    for (var row = 0u; row < 9u; row++) {
+        let range = row_range(cell, row);
+        for (var j = range.x; j < range.y; j++) {
+            let d = x - sorted_positions[j].xyz;
+            let r2 = dot(d, d);
+            if (r2 >= reach) {
+                continue;
+            }
+            let q = sqrt(r2) * scale;
+            let other = densities[j];
+            let volume = params.particle_mass / other.x;
+            force -= (volume * 0.5 * (pressure + other.y) * kernel_g(q)) * d;
+            force += (friction * volume * viscosity_laplacian(q)) * (sorted_velocities[j].xyz - v);
+            normal += (volume * poly6_g(q)) * d;
+            laplacian += volume * poly6_laplacian(q);
+        }
+    }
+    force *= scale5;
+    normal *= scale5;
+    laplacian *= scale5;
+    let steepness = length(normal);
+    if (steepness > 0.5 * scale) {
+        force -= (params.surface_tension * laplacian / steepness) * normal;
+    }
+    var a = force / rho;
+
+    let wall = wall_terms(x);
+    for (var axis = 0u; axis < 3u; axis++) {
+        if (wall.distance[axis] >= support) {
+            continue;
+        }
+        let n = wall.normal[axis];
+        var behind = pressure - params.rest_density * body[axis] * n * (wall.distance[axis] + 0.5 * params.particle_spacing);
+        if (params.clamp_pressure == 1u) {
+            behind = max(behind, 0.0);
+        }
+        a[axis] += 0.5 * (pressure + behind) / rho * wall.slope[axis] * scale * n;
+        let k = params.wall_friction * 2.0 * params.viscosity * wall.single[axis] * scale
+            / max(wall.distance[axis], 0.25 * params.particle_spacing);
+        var along = v;
+        along[axis] = 0.0;
+        a -= k / (1.0 + k * state.dt) * along;
+    }
+    accelerations[i] = vec4(a + body, 0.0);
+}

@@ -1,0 +1,37 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(3) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> densities: array<vec2<f32>>;
+@group(0) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
+
+@compute @workgroup_size(64)
+fn normals_of_surface(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= living()) {
+        return;
+    }
+    let x = sorted_positions[i].xyz;
+    let cell = cell_of(x);
+    let scale = 1.0 / params.support_radius;
+    let reach = params.support_radius * params.support_radius;
+    var sum = vec3(0.0);
+    for (var row = 0u; row < 9u; row++) {
+        let range = row_range(cell, row);
+        for (var j = range.x; j < range.y; j++) {
+            let d = x - sorted_positions[j].xyz;
+            let r2 = dot(d, d);
+            if (r2 < reach) {
+                sum += d * (kernel_g(sqrt(r2) * scale) / densities[j].x);
+            }
+        }
+    }
+    let s2 = scale * scale;
+    normals[i] = vec4(params.particle_mass * s2 * s2 * sum, 0.0);
+}

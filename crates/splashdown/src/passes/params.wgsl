@@ -1,0 +1,47 @@
+#import sph/state
+// Mirrors Params in passes/mod.rs.
+struct Params {
+    gravity: vec3<f32>,
+    support_radius: f32,
+    domain_min: vec3<f32>,
+    particle_spacing: f32,
+    domain_max: vec3<f32>,
+    particle_mass: f32,
+    shake: vec3<f32>,
+    shake_rate: f32,
+    rest_density: f32,
+    sound_speed: f32,
+    wall_offset: f32,
+    exponent: f32,
+    viscosity: f32,
+    artificial_viscosity: f32,
+    density_diffusion: f32,
+    surface_tension: f32,
+    wall_friction: f32,
+    cfl_factor: f32,
+    max_dt: f32,
+    min_dt: f32,
+    closed: u32,
+    clamp_pressure: u32,
+    particle_count: u32,
+    continuity: u32,
+}
+
+fn pressure_at(density: f32) -> f32 {
+    let x = density / params.rest_density;
+    let stiffness = params.rest_density * params.sound_speed * params.sound_speed / params.exponent;
+    var p: f32;
+    if (params.exponent == 7.0) {
+        let x2 = x * x;
+        p = stiffness * (x2 * x2 * x2 * x - 1.0);
+    } else if (params.exponent == 1.0) {
+        p = stiffness * (x - 1.0);
+    } else {
+        p = stiffness * (pow(x, params.exponent) - 1.0);
+    }
+    return select(p, max(p, 0.0), params.clamp_pressure == 1u);
+}
+
+fn body_acceleration(time: f32) -> vec3<f32> {
+    return params.gravity + params.shake * sin(params.shake_rate * time);
+}

@@ -1,0 +1,18 @@
+// The words of `tally`; see Tally in passes/mod.rs.
+const TALLY_ESCAPED: u32 = 0u;
+const TALLY_NON_FINITE: u32 = 1u;
+const TALLY_CORRECTIONS: u32 = 2u;
+const TALLY_LIMITED: u32 = 3u;
+const TALLY_MAX_SPEED: u32 = 4u;
+const TALLY_MAX_ACCELERATION: u32 = 5u;
+const TALLY_MAX_EXCESS: u32 = 6u;
+
+// Marks in the fourth component of a position.
+const DEAD_ESCAPED: f32 = 1.0;
+const DEAD_NON_FINITE: f32 = 2.0;
+
+// By its bits: shaders may assume that comparisons meet no NaN.
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponents = bitcast<vec3<u32>>(v) & vec3(0x7f800000u);
+    return all(exponents != vec3(0x7f800000u));
+}

@@ -1,0 +1,356 @@
+//! A whole run as one stream of events, which command line, window and Python read.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use splashdown_gpu::{Gpu, Timings};
+use splashdown_io::{Mesh, Particles};
+
+use crate::scene::Scene;
+use crate::surface::Surface;
+use crate::{Device, Simulation, SimulationError, Stats};
+
+/// What to compute beside the particles' motion.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Where to simulate.
+    pub device: Device,
+    /// Frames to compute; the scene's own number if `None`.
+    pub frames: Option<u32>,
+    /// Extract the surface in every frame.
+    pub surface: bool,
+    /// Measure the time of every pass.
+    pub timing: bool,
+}
+
+impl RunOptions {
+    /// The scene's own wishes on the best device.
+    pub fn new(scene: &Scene) -> Self {
+        Self { device: Device::Auto, frames: None, surface: scene.surface.enabled, timing: false }
+    }
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Event {
+    /// The first event.
+    Started(Started),
+    /// Now and then between two frames.
+    Progress(Progress),
+    /// A frame is complete. Frame 0 is the initial state.
+    Frame(Frame),
+    /// Something the user should know; the run goes on.
+    Warning(String),
+    /// The last event.
+    Finished(Summary),
+}
+
+/// What is about to run.
+#[derive(Clone, Debug)]
+pub struct Started {
+    /// The device's name.
+    pub device: String,
+    /// Number of particles.
+    pub particles: u32,
+    /// Number of frames, the initial one not counted.
+    pub frames: u32,
+    /// Bytes in the device's buffers.
+    pub memory: u64,
+    /// The first time step in seconds.
+    pub dt: f32,
+}
+
+/// Where the run is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// The frame being computed.
+    pub frame: u32,
+    /// Number of frames.
+    pub frames: u32,
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// Simulated time at the end in seconds.
+    pub duration: f64,
+    /// Steps since the start.
+    pub steps: u64,
+    /// The last time step in seconds.
+    pub dt: f32,
+    /// Wall time since the start.
+    pub wall: Duration,
+}
+
+/// A complete frame.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Number, from 0.
+    pub index: u32,
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// The simulation's own account.
+    pub stats: Stats,
+    /// The living particles in order of id.
+    pub particles: Arc<Particles>,
+    /// The fluid's surface, if asked for.
+    pub mesh: Option<Arc<Mesh>>,
+    /// The volume that the surface encloses in m^3.
+    pub volume: Option<f64>,
+}
+
+/// The whole run in a few numbers.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// The simulation's last account.
+    pub stats: Stats,
+    /// Frames computed, the initial one not counted.
+    pub frames: u32,
+    /// Wall time of everything, in seconds.
+    pub wall: f64,
+    /// Wall time spent in steps, in seconds.
+    pub step_wall: f64,
+    /// Wall time spent in the surface and in fetching frames, in seconds.
+    pub frame_wall: f64,
+    /// Particles times steps per second of `step_wall`.
+    pub particle_steps_per_second: f64,
+    /// Simulated seconds per second of `wall`.
+    pub simulated_per_wall: f64,
+    /// The largest density error of all frames.
+    pub density_error: f32,
+    /// Enclosed volume of the first and the last surface in m^3.
+    pub volume: Option<[f64; 2]>,
+    /// The volume of the particles, count times mass over rest density, in m^3.
+    pub particle_volume: f64,
+    /// Time per pass, if asked for.
+    pub timings: Timings,
+}
+
+/// Time between two [`Event::Progress`].
+const PROGRESS: Duration = Duration::from_millis(100);
+
+/// Computes a scene frame by frame; an iterator over [`Event`]s, the last of which is [`Event::Finished`] or an error.
+///
+/// ```
+/// use splashdown::{Event, Run, RunOptions, scene::Scene};
+/// # let text = include_str!("../../../scenes/dam-break-small.toml");
+/// let scene = Scene::parse(text, "dam-break-small.toml")?;
+/// let options = RunOptions { frames: Some(1), ..RunOptions::new(&scene) };
+/// for event in Run::new(&scene, options)? {
+///     if let Event::Frame(frame) = event? {
+///         println!("{:.3} s: {} particles", frame.time, frame.particles.positions.len());
+///     }
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Run {
+    simulation: Simulation,
+    surface: Option<Surface>,
+    frames: u32,
+    frame_duration: f32,
+    duration: f64,
+    stage: Stage,
+    started: Instant,
+    told: Instant,
+    clock: Clock,
+    density_error: f32,
+    volume: Option<[f64; 2]>,
+    particle_volume: f64,
+    waiting: Vec<Event>,
+    stats_before: Stats,
+}
+
+/// Wall time by what it was spent on.
+#[derive(Default)]
+struct Clock {
+    steps: Duration,
+    frames: Duration,
+}
+
+enum Stage {
+    Start,
+    /// The frame of this number is being computed.
+    Steps(u32),
+    /// The frame of this number has to be fetched.
+    Fetch(u32),
+    Finish,
+    End,
+}
+
+impl Run {
+    /// Places the particles and prepares the surface.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn new(scene: &Scene, options: RunOptions) -> Result<Self, SimulationError> {
+        let started = Instant::now();
+        let mut simulation = Simulation::new(scene, &options.device)?;
+        let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
+        if options.timing {
+            simulation.enable_timing();
+        }
+        let frames = options.frames.unwrap_or_else(|| scene.frame_count());
+        let frame_duration = scene.frame_duration();
+        let params = simulation.params();
+        let particle_volume =
+            f64::from(params.particle_count) * f64::from(scene.fluid.particle_spacing).powi(3);
+        Ok(Self {
+            surface,
+            frames,
+            frame_duration,
+            duration: f64::from(frames) * f64::from(frame_duration),
+            stage: Stage::Start,
+            started,
+            told: started,
+            clock: Clock::default(),
+            density_error: 0.0,
+            volume: None,
+            particle_volume,
+            waiting: Vec::new(),
+            stats_before: simulation.stats(),
+            simulation,
+        })
+    }
+
+    /// The device, if this does not run on the CPU: pictures are best drawn there.
+    pub fn gpu(&self) -> Option<&Arc<Gpu>> {
+        self.simulation.gpu()
+    }
+
+    fn start(&mut self) -> Event {
+        self.stage = Stage::Fetch(0);
+        Event::Started(Started {
+            device: self.simulation.device_name(),
+            particles: self.simulation.stats().particles,
+            frames: self.frames,
+            memory: self.simulation.memory(),
+            dt: self.simulation.dt(),
+        })
+    }
+
+    /// Works on a frame until there is something to tell.
+    fn steps(&mut self, frame: u32) -> Result<Option<Event>, SimulationError> {
+        let begun = Instant::now();
+        let outcome = self.simulation.continue_frame();
+        self.clock.steps += begun.elapsed();
+        if let Some(stats) = outcome? {
+            self.density_error = self.density_error.max(stats.density_error);
+            self.warn(&stats);
+            self.stage = Stage::Fetch(frame);
+            return Ok(None);
+        }
+        if self.told.elapsed() < PROGRESS {
+            return Ok(None);
+        }
+        self.told = Instant::now();
+        let (time, steps) = self.simulation.progress();
+        Ok(Some(Event::Progress(Progress {
+            frame,
+            frames: self.frames,
+            time,
+            duration: self.duration,
+            steps,
+            dt: self.simulation.dt(),
+            wall: self.started.elapsed(),
+        })))
+    }
+
+    /// Puts into words what was lost since the last frame.
+    fn warn(&mut self, stats: &Stats) {
+        let before = std::mem::replace(&mut self.stats_before, *stats);
+        let mut tell = |more: u32, what: &str| {
+            if more > 0 {
+                self.waiting.push(Event::Warning(format!("at {:.4} s: {more} {what}", stats.time)));
+            }
+        };
+        tell(stats.escaped - before.escaped, "particles left through open sides and were taken out");
+        let [x, y, z] = stats.non_finite_place;
+        let lost = format!(
+            "particles became NaN or infinite and were taken out; the first, id {}, was last at ({x:.4}, {y:.4}, {z:.4}) m. \
+             Lower solver.cfl_factor, or look for particles placed inside one another",
+            stats.non_finite_id
+        );
+        tell(stats.non_finite - before.non_finite, &lost);
+        tell(
+            stats.wall_corrections - before.wall_corrections,
+            "times a particle was put back through a closed wall",
+        );
+        tell(
+            stats.speed_limits - before.speed_limits,
+            "times a particle was slowed down to half a spacing per step: the time step is too long for this motion. \
+             Lower solver.cfl_factor, or raise solver.sound_speed",
+        );
+    }
+
+    fn fetch(&mut self, index: u32) -> Result<Frame, SimulationError> {
+        let begun = Instant::now();
+        let mesh = match &mut self.surface {
+            Some(surface) => {
+                self.simulation.extract(surface)?;
+                Some(self.simulation.mesh(surface)?)
+            }
+            None => None,
+        };
+        let particles = Arc::new(self.simulation.particles()?);
+        let volume = mesh.as_ref().map(Mesh::volume);
+        if let Some(volume) = volume {
+            let first = self.volume.map_or(volume, |[first, _]| first);
+            self.volume = Some([first, volume]);
+        }
+        self.stage = if index < self.frames {
+            self.simulation.begin(self.frame_duration)?;
+            Stage::Steps(index + 1)
+        } else {
+            Stage::Finish
+        };
+        self.clock.frames += begun.elapsed();
+        let stats = self.simulation.stats();
+        Ok(Frame { index, time: stats.time, stats, particles, mesh: mesh.map(Arc::new), volume })
+    }
+
+    fn finish(&mut self) -> Event {
+        self.stage = Stage::End;
+        let stats = self.simulation.stats();
+        let wall = self.started.elapsed().as_secs_f64();
+        let step_wall = self.clock.steps.as_secs_f64();
+        let particle_steps = stats.steps as f64 * f64::from(self.simulation.params().particle_count);
+        Event::Finished(Summary {
+            stats,
+            frames: self.frames,
+            wall,
+            step_wall,
+            frame_wall: self.clock.frames.as_secs_f64(),
+            particle_steps_per_second: particle_steps / step_wall.max(f64::MIN_POSITIVE),
+            simulated_per_wall: stats.time / wall,
+            density_error: self.density_error,
+            volume: self.volume,
+            particle_volume: self.particle_volume,
+            timings: self.simulation.take_timings(),
+        })
+    }
+}
+
+impl Iterator for Run {
+    type Item = Result<Event, SimulationError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(event) = self.waiting.pop() {
+                return Some(Ok(event));
+            }
+            let outcome = match self.stage {
+                Stage::Start => Ok(Some(self.start())),
+                Stage::Steps(frame) => self.steps(frame),
+                Stage::Fetch(frame) => self.fetch(frame).map(|frame| Some(Event::Frame(frame))),
+                Stage::Finish => Ok(Some(self.finish())),
+                Stage::End => return None,
+            };
+            match outcome {
+                Ok(None) => {}
+                Ok(Some(event)) => return Some(Ok(event)),
+                Err(error) => {
+                    self.stage = Stage::End;
+                    return Some(Err(error));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! A running simulation.
+
+use std::mem::offset_of;
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown_gpu::{Executor, Flag, Gpu, Readback, Recording, Timings};
+use splashdown_io::{Mesh, Particles};
+
+use crate::cells::{Cells, Grid};
+use crate::fields::Fields;
+use crate::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
+use crate::scene::{Derived, Scene, SurfaceSettings};
+use crate::solver::{self, Solver};
+use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
+use crate::{Device, SimulationError, Stats, memory, sample};
+
+/// Most steps in one submission to a device: a bound on how long it does not answer.
+const MOST_STEPS: u32 = 64;
+/// Steps in one batch on the CPU, which tests for the frame's end before each.
+const CPU_STEPS: u32 = 16;
+
+/// A fluid in its box, with everything that moves it, on one device.
+///
+/// ```
+/// use splashdown::{Device, Simulation, scene::Scene};
+/// # let text = include_str!("../../../scenes/dam-break-small.toml");
+/// let scene = Scene::parse(text, "dam-break-small.toml")?;
+/// let mut simulation = Simulation::new(&scene, &Device::Cpu)?;
+/// let stats = simulation.advance(0.001)?;
+/// assert!(stats.steps > 0 && stats.escaped == 0);
+/// let particles = simulation.particles()?;
+/// assert_eq!(particles.positions.len(), stats.particles as usize);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Simulation {
+    executor: Executor,
+    params: Params,
+    fields: Fields,
+    cells: Cells,
+    begin: Recording,
+    prime: Recording,
+    /// The step, repeated 1, 2, 4, ... times.
+    batches: Vec<Recording>,
+    stats: Stats,
+    /// What `stable_dt` was when last heard of, in seconds.
+    stable_dt: f32,
+    frame: Option<FrameInProgress>,
+}
+
+/// A frame that has begun.
+struct FrameInProgress {
+    duration: f32,
+    /// Steps submitted so far.
+    submitted: u32,
+    /// The state behind the batch before the last: the device always has work while the host looks.
+    pending: Option<Readback<StepState>>,
+    state: Option<StepState>,
+}
+
+impl Simulation {
+    /// Places a scene's particles on a device.
+    ///
+    /// # Errors
+    /// Any [`SimulationError`] of devices, sampling and sizes.
+    pub fn new(scene: &Scene, device: &Device) -> Result<Self, SimulationError> {
+        Self::with_executor(scene, device.executor()?)
+    }
+
+    /// Places a scene's particles on an executor that is already there.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
+        Self::with_particles(scene, executor, &sample::particles(scene)?)
+    }
+
+    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
+    /// `densities`, if given, are where the continuity equation starts. Particles that lie outside the domain or are not
+    /// finite are taken out and counted.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_particles(
+        scene: &Scene,
+        mut executor: Executor,
+        particles: &Particles,
+    ) -> Result<Self, SimulationError> {
+        let n = particles.positions.len();
+        memory::check(n as u64, executor.largest_buffer())?;
+        let params = solver::params(scene, n as u32);
+        let solver = Solver::new(scene);
+        let (min, max) = (scene.domain.min, scene.domain.max);
+        // One grid for the motion and the surface.
+        let reach = params.support_radius.max(scene.surface.support_ratio * params.particle_spacing);
+        let grid = Grid::new(min, max, reach).ok_or_else(|| SimulationError::TooMany {
+            what: "grid cells",
+            given: u64::MAX,
+            allowed: 1 << 31,
+            advice: "make the domain smaller or particle_spacing larger".into(),
+        })?;
+        let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
+        let cells = Cells::new(&mut executor, grid, n as u32, scene.solver.sort)?;
+        upload(&mut executor, &fields, particles, params.rest_density)?;
+        let stable_dt = Derived::new(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
+        let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
+        executor.write(fields.state, &[first])?;
+
+        let step = solver.step(&cells, &fields, n as u32);
+        let done = Flag::new(fields.state, offset_of!(StepState, done));
+        let batches = (0..=MOST_STEPS.ilog2())
+            .map(|power| {
+                let mut batch = Recording::new(format!("{} steps", 1 << power));
+                batch.repeat(&step, 1 << power, done);
+                batch
+            })
+            .collect();
+        let mut simulation = Self {
+            begin: solver::begin_frame(&fields),
+            prime: solver.prime(&cells, &fields, n as u32),
+            executor,
+            params,
+            fields,
+            cells,
+            batches,
+            stats: Stats::default(),
+            stable_dt,
+            frame: None,
+        };
+        simulation.executor.write(simulation.fields.duration, &[0.0])?;
+        simulation.executor.run(&simulation.prime)?;
+        simulation.count()?;
+        Ok(simulation)
+    }
+
+    /// Simulates `seconds`, in as many steps as stability asks for, and waits for the end.
+    ///
+    /// # Errors
+    /// [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`], and those of the device.
+    pub fn advance(&mut self, seconds: f32) -> Result<Stats, SimulationError> {
+        self.begin(seconds)?;
+        loop {
+            if let Some(stats) = self.continue_frame()? {
+                return Ok(stats);
+            }
+        }
+    }
+
+    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn begin(&mut self, seconds: f32) -> Result<(), SimulationError> {
+        self.executor.write(self.fields.duration, &[seconds])?;
+        self.executor.run(&self.begin)?;
+        self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
+        Ok(())
+    }
+
+    /// Submits the next steps of the frame, without waiting for them; the frame's account once it is complete, `None`
+    /// before.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn continue_frame(&mut self) -> Result<Option<Stats>, SimulationError> {
+        let Some(mut frame) = self.frame.take() else { return Ok(Some(self.stats)) };
+        let expected = (frame.duration / self.stable_dt).ceil() as u32 + 1;
+        let most = if self.executor.gpu().is_some() { MOST_STEPS } else { CPU_STEPS };
+        let left = expected.saturating_sub(frame.submitted).clamp(1, most);
+        let power = left.ilog2();
+        self.executor.run(&self.batches[power as usize])?;
+        frame.submitted += 1 << power;
+        let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
+        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never is.
+        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() {
+            frame.pending.take()
+        } else {
+            behind
+        };
+        if let Some(readback) = answer {
+            let state = readback.wait(&mut self.executor)?[0];
+            self.stable_dt = state.stable_dt;
+            frame.state = Some(state);
+            if state.done != 0 {
+                return self.end_frame(state).map(Some);
+            }
+        }
+        self.frame = Some(frame);
+        Ok(None)
+    }
+
+    fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
+        let last = self.stats;
+        self.stats = Stats {
+            time: last.time + f64::from(state.frame_duration),
+            steps: last.steps + u64::from(state.steps),
+            steps_in_frame: state.steps,
+            dt: state.stable_dt,
+            density_error: state.density_error,
+            max_speed: state.max_speed,
+            ..last
+        };
+        self.count()?;
+        if state.too_small != 0 {
+            return Err(SimulationError::StepTooSmall {
+                time: self.stats.time,
+                wanted: state.stable_dt,
+                min_dt: self.params.min_dt,
+                max_speed: state.max_speed,
+            });
+        }
+        if self.stats.particles == 0 && self.params.particle_count > 0 {
+            return Err(SimulationError::NothingLeft {
+                time: self.stats.time,
+                reason: format!(
+                    "{} left through open sides, {} were not finite",
+                    self.stats.escaped, self.stats.non_finite
+                ),
+            });
+        }
+        Ok(self.stats)
+    }
+
+    /// Brings the counters of lost particles up to date.
+    fn count(&mut self) -> Result<(), SimulationError> {
+        let tally = self.executor.read(self.fields.tally)?;
+        let stats = &mut self.stats;
+        stats.escaped = tally[Tally::ESCAPED];
+        stats.wall_corrections = tally[Tally::CORRECTIONS];
+        stats.speed_limits = tally[Tally::LIMITED];
+        stats.particles = self.params.particle_count - stats.escaped - tally[Tally::NON_FINITE];
+        if tally[Tally::NON_FINITE] > stats.non_finite {
+            stats.non_finite = tally[Tally::NON_FINITE];
+            let (positions, ids) =
+                (self.executor.read(self.fields.positions)?, self.executor.read(self.fields.ids)?);
+            let dead = positions.iter().zip(ids).filter(|(p, _)| p.w == DEAD_NON_FINITE);
+            if let Some((p, id)) = dead.min_by_key(|(_, id)| *id) {
+                stats.non_finite_place = p.xyz().to_array();
+                stats.non_finite_id = id;
+            }
+        }
+        Ok(())
+    }
+
+    /// The account of the last frame.
+    pub fn stats(&self) -> Stats {
+        self.stats
+    }
+
+    /// Simulated time in seconds and steps, those of the frame in progress included as far as they are known.
+    pub fn progress(&self) -> (f64, u64) {
+        let known = self.frame.as_ref().and_then(|frame| frame.state);
+        known.map_or((self.stats.time, self.stats.steps), |state| {
+            let done = f64::from(state.frame_duration - state.remaining);
+            (self.stats.time + done, self.stats.steps + u64::from(state.steps))
+        })
+    }
+
+    /// The time step in seconds that stability asked for when last heard of.
+    pub fn dt(&self) -> f32 {
+        self.stable_dt
+    }
+
+    /// The living particles in order of id. Densities and pressures are those of the last step's beginning.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn particles(&mut self) -> Result<Particles, SimulationError> {
+        let (fields, executor) = (self.fields, &mut self.executor);
+        // All four travel together; only then does the host wait.
+        let n = self.params.particle_count as usize;
+        let positions = executor.request(fields.positions, n)?;
+        let velocities = executor.request(fields.velocities, n)?;
+        let densities = executor.request(fields.densities, n)?;
+        let ids = executor.request(fields.ids, n)?.wait(executor)?;
+        let (positions, velocities) = (positions.wait(executor)?, velocities.wait(executor)?);
+        let densities = densities.wait(executor)?;
+        Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
+    }
+
+    /// Density errors max(0, rho/rho0 - 1) averaged over the living particles.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn mean_density_error(&mut self) -> Result<f32, SimulationError> {
+        let densities = self.particles()?.densities;
+        let rest = f64::from(self.params.rest_density);
+        let sum: f64 = densities.iter().map(|&rho| (f64::from(rho) / rest - 1.0).max(0.0)).sum();
+        Ok((sum / densities.len().max(1) as f64) as f32)
+    }
+
+    /// Sorts the particles as they are now by cell, without a step: input of the surface.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn sort(&mut self) -> Result<(), SimulationError> {
+        let mut recording = Recording::new("sort");
+        recording.append(&self.begin);
+        self.cells.record(&mut recording, &self.fields);
+        self.executor.write(self.fields.duration, &[0.0])?;
+        Ok(self.executor.run(&recording)?)
+    }
+
+    /// Prepares the fluid's surface with the scene's settings.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn surface(&mut self, settings: &SurfaceSettings) -> Result<Surface, SimulationError> {
+        let spacing = self.params.particle_spacing;
+        let params = SurfaceParams {
+            particle_spacing: spacing,
+            support_radius: settings.support_ratio * spacing,
+            cell_size: settings.cell_size,
+            iso_level: settings.iso_level,
+            smoothing_iterations: settings.smoothing_iterations,
+        };
+        let input = SurfaceInput {
+            positions: self.fields.sorted_positions,
+            cell_start: self.cells.cell_start,
+            grid: self.cells.grid_uniform,
+            grid_host: self.cells.grid,
+            particle_capacity: self.params.particle_count,
+        };
+        Ok(Surface::new(&mut self.executor, params, input)?)
+    }
+
+    /// Extracts the surface of the particles as they are now; it stays on the device.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn extract(&mut self, surface: &mut Surface) -> Result<SurfaceStats, SimulationError> {
+        self.sort()?;
+        Ok(surface.extract(&mut self.executor)?)
+    }
+
+    /// Fetches the surface extracted last.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn mesh(&mut self, surface: &Surface) -> Result<Mesh, SimulationError> {
+        Ok(surface.mesh(&mut self.executor)?)
+    }
+
+    /// The constants of the simulation.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// Its buffers, for drawing straight from them.
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// The grid and the sorted order.
+    pub fn cells(&self) -> &Cells {
+        &self.cells
+    }
+
+    /// Where it runs.
+    pub fn executor(&mut self) -> &mut Executor {
+        &mut self.executor
+    }
+
+    /// The device, if this does not run on the CPU.
+    pub fn gpu(&self) -> Option<&Arc<Gpu>> {
+        self.executor.gpu()
+    }
+
+    /// The device's name.
+    pub fn device_name(&self) -> String {
+        match self.executor.gpu() {
+            Some(gpu) => gpu.name(),
+            None => format!("CPU ({} threads)", rayon::current_num_threads()),
+        }
+    }
+
+    /// Bytes in buffers.
+    pub fn memory(&self) -> u64 {
+        self.executor.bytes()
+    }
+
+    /// From now on every pass is timed; false where the device cannot.
+    pub fn enable_timing(&mut self) -> bool {
+        self.executor.enable_timing()
+    }
+
+    /// Time per pass since the last call.
+    pub fn take_timings(&mut self) -> Timings {
+        self.executor.take_timings()
+    }
+}
+
+fn upload(
+    executor: &mut Executor,
+    fields: &Fields,
+    particles: &Particles,
+    rest_density: f32,
+) -> Result<(), SimulationError> {
+    let n = particles.positions.len();
+    let positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
+    let density = |i: usize| particles.densities.get(i).copied().unwrap_or(rest_density);
+    let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
+    let velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
+    let ids: Vec<u32> =
+        if particles.ids.len() == n { particles.ids.clone() } else { (0..n as u32).collect() };
+    executor.write(fields.positions, &positions)?;
+    executor.write(fields.velocities, &velocities)?;
+    executor.write(fields.ids, &ids)?;
+    Ok(())
+}
+
+fn in_order_of_id(ids: &[u32], positions: &[Vec4], velocities: &[Vec4], densities: &[Vec2]) -> Particles {
+    let mut order: Vec<u32> = (0..ids.len() as u32).filter(|&i| positions[i as usize].w == 0.0).collect();
+    order.sort_unstable_by_key(|&i| ids[i as usize]);
+    let order = || order.iter().map(|&i| i as usize);
+    Particles {
+        ids: order().map(|i| ids[i]).collect(),
+        positions: order().map(|i| positions[i].xyz().to_array()).collect(),
+        velocities: order().map(|i| velocities[i].xyz().to_array()).collect(),
+        densities: order().map(|i| densities[i].x).collect(),
+        pressures: order().map(|i| densities[i].y).collect(),
+    }
+}

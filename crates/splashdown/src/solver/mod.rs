@@ -1,0 +1,158 @@
+//! A step as a list of passes that reads like the paper.
+
+mod mueller2003;
+mod wcsph;
+
+use splashdown_gpu::{Grid as Extent, Recording};
+
+use crate::boundary::{KernelPair, wall_offset};
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::passes::{Params, begin, cfl, integrate};
+use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
+
+/// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2: measured with the pressure in a drop, see
+/// `docs/solvers.md`.
+const AKINCI_PER_SIGMA: f32 = 1.0;
+
+/// What a scene's solver section asks for.
+#[derive(Clone, Copy, Debug)]
+pub struct Solver {
+    method: Method,
+    kernel: KernelKind,
+    continuity: bool,
+    tension: bool,
+}
+
+impl Solver {
+    /// The solver of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            method: scene.solver.method,
+            kernel: scene.solver.kernel,
+            continuity: scene.solver.density == DensityMode::Continuity,
+            tension: scene.solver.surface_tension == SurfaceTension::Akinci2013,
+        }
+    }
+
+    /// The kernels whose integrals the walls use.
+    pub fn walls(&self) -> KernelPair {
+        match (self.method, self.kernel) {
+            (Method::Mueller2003, _) => KernelPair::Mueller,
+            (Method::Wcsph, KernelKind::WendlandC2) => KernelPair::WendlandC2,
+            (Method::Wcsph, KernelKind::CubicSpline) => KernelPair::CubicSpline,
+        }
+    }
+
+    /// True if the surface's normals are needed.
+    pub fn needs_normals(&self) -> bool {
+        self.tension
+    }
+
+    /// One step: sort, density and pressure, accelerations, motion, next time step.
+    pub fn step(&self, cells: &Cells, fields: &Fields, particles: u32) -> Recording {
+        let mut step = Recording::new("step");
+        let all = Extent::Items(particles);
+        cells.record(&mut step, fields);
+        // The resting arrays take the sorted order when the step integrates back into them.
+        step.copy(fields.sorted_ids, fields.ids);
+        match self.method {
+            Method::Wcsph => self.wcsph(&mut step, cells, fields, all),
+            Method::Mueller2003 => self.mueller2003(&mut step, cells, fields, all),
+        }
+        step.dispatch(
+            &integrate::INTEGRATE,
+            all,
+            &[
+                fields.params.id(),
+                fields.state.id(),
+                fields.sorted_positions.id(),
+                fields.sorted_velocities.id(),
+                fields.densities.id(),
+                fields.accelerations.id(),
+                fields.positions.id(),
+                fields.velocities.id(),
+                fields.tally.id(),
+            ],
+        );
+        step.dispatch(
+            &cfl::CFL,
+            Extent::Groups(1),
+            &[fields.params.id(), fields.state.id(), fields.tally.id()],
+        );
+        step
+    }
+
+    /// Sort, density and pressure without motion: what the first frame shows.
+    pub fn prime(&self, cells: &Cells, fields: &Fields, particles: u32) -> Recording {
+        let mut prime = Recording::new("prime");
+        prime.append(&begin_frame(fields));
+        cells.record(&mut prime, fields);
+        prime.copy(fields.sorted_ids, fields.ids);
+        prime.copy(fields.sorted_positions, fields.positions);
+        prime.copy(fields.sorted_velocities, fields.velocities);
+        self.pressure(&mut prime, cells, fields, Extent::Items(particles));
+        prime
+    }
+
+    fn pressure(&self, recording: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        match self.method {
+            Method::Wcsph => self.wcsph_pressure(recording, cells, fields, all),
+            Method::Mueller2003 => self.mueller2003_pressure(recording, cells, fields, all),
+        }
+    }
+}
+
+/// Begins a frame of the length that `duration` holds.
+pub fn begin_frame(fields: &Fields) -> Recording {
+    let mut recording = Recording::new("begin frame");
+    let buffers = [fields.params.id(), fields.duration.id(), fields.state.id()];
+    recording.dispatch(&begin::BEGIN, Extent::Groups(1), &buffers);
+    recording
+}
+
+/// The constants of a scene.
+pub fn params(scene: &Scene, particles: u32) -> Params {
+    let (solver, material) = (&scene.solver, &scene.fluid.material);
+    let derived = Derived::new(scene);
+    let support_radius = derived.support_radius;
+    let rest_density = material.rest_density;
+    let (shake, shake_rate) = scene.domain.shake.map_or_else(Default::default, |shake| {
+        let rate = std::f32::consts::TAU / shake.period;
+        (shake.amplitude * rate * rate, rate)
+    });
+    let closed = scene.domain.closed.as_flattened();
+    let walls = Solver::new(scene).walls();
+    Params {
+        gravity: scene.gravity,
+        support_radius,
+        domain_min: scene.domain.min,
+        particle_spacing: scene.fluid.particle_spacing,
+        domain_max: scene.domain.max,
+        particle_mass: derived.particle_mass,
+        shake,
+        shake_rate,
+        rest_density,
+        sound_speed: derived.sound_speed,
+        wall_offset: scene.fluid.particle_spacing * wall_offset(walls, solver.support_ratio),
+        exponent: solver.exponent,
+        viscosity: material.viscosity,
+        artificial_viscosity: solver.artificial_viscosity,
+        density_diffusion: solver.density_diffusion,
+        surface_tension: match solver.surface_tension {
+            SurfaceTension::None => 0.0,
+            SurfaceTension::ColourField => material.surface_tension,
+            SurfaceTension::Akinci2013 => {
+                AKINCI_PER_SIGMA * material.surface_tension / (rest_density * support_radius).powi(2)
+            }
+        },
+        wall_friction: solver.wall_friction,
+        cfl_factor: solver.cfl_factor,
+        max_dt: solver.max_dt,
+        min_dt: solver.min_dt,
+        closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
+        clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
+        particle_count: particles,
+        continuity: u32::from(solver.method == Method::Wcsph && solver.density == DensityMode::Continuity),
+    }
+}
