@@ -1,1 +1,74 @@
-//! Placeholder.
+//! Pictures of particles and liquid surfaces, drawn with wgpu into any texture.
+//!
+//! ```no_run
+//! use splashdown_render::*;
+//!
+//! # fn main() -> Result<(), RenderError> {
+//! let (device, queue, _) = open_device()?;
+//! let mut renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, 4)?;
+//! let mut target = Offscreen::new(&device, &queue, [1280, 720])?;
+//!
+//! let particles = UploadedParticles::new(&device, &[[0.5, 0.1, 0.5]], &[[1.0, 0.0, 0.0]], &[], &[])?;
+//! let domain = Domain::closed([0.0; 3], [1.0; 3]);
+//! let frame = Frame {
+//!     camera: Camera::framing(&domain, 30.0, 20.0, 35.0, 16.0 / 9.0),
+//!     domain,
+//!     sun: Frame::SUN,
+//!     particles: Some(DrawnParticles {
+//!         buffers: particles.buffers(),
+//!         radius: 0.05,
+//!         colouring: Colouring {
+//!             quantity: Quantity::Speed,
+//!             range: [0.0, 2.0],
+//!             map: ColourMap::Water,
+//!             colour_bar: true,
+//!         },
+//!     }),
+//!     surface: None,
+//!     caption: Some("t = 0.00 s"),
+//! };
+//! let rgba: Vec<u8> = target.render_to_rgba(&mut renderer, &frame)?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`ParticleBuffers`] and [`SurfaceBuffers`] name GPU buffers that a simulation has filled; nothing is copied.
+//! [`UploadedParticles`] and [`UploadedSurface`] put host slices into such buffers. [`Renderer::draw`] records into the
+//! caller's encoder and texture, for windows; [`Offscreen`] reads pictures back.
+//!
+//! Each thing drawn is a folder with its Rust and its WGSL, which opens with how it works and why not otherwise. Only
+//! what WebGPU guarantees is asked for: at most 3 storage buffers per stage, 16-bit floats to blend into, 4 samples.
+
+mod background;
+mod buffers;
+mod camera;
+mod colour_map;
+#[cfg(not(target_arch = "wasm32"))]
+mod device;
+mod domain;
+mod edges;
+mod error;
+mod frame;
+mod globals;
+mod liquid;
+mod offscreen;
+mod overlay;
+mod particles;
+mod pipeline;
+mod renderer;
+mod shader;
+mod shadow;
+mod surface;
+mod targets;
+
+pub use buffers::{Draw, ParticleBuffers, SurfaceBuffers, UploadedParticles, UploadedSurface};
+pub use camera::Camera;
+pub use colour_map::ColourMap;
+#[cfg(not(target_arch = "wasm32"))]
+pub use device::open_device;
+pub use domain::Domain;
+pub use error::RenderError;
+pub use frame::{Colouring, DrawnParticles, DrawnSurface, Frame, Quantity};
+pub use liquid::Liquid;
+pub use offscreen::{Offscreen, Ticket};
+pub use renderer::Renderer;

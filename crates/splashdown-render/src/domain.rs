@@ -1,0 +1,128 @@
+//! The box around the fluid.
+
+use crate::RenderError;
+use glam::Vec3;
+
+/// The simulation's box and which of its sides are walls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Corner with the smallest coordinates, metres.
+    pub min: [f32; 3],
+    /// Corner with the largest coordinates, metres.
+    pub max: [f32; 3],
+    /// Walls at -x, +x, -y, +y, -z, +z. An edge between two open sides is drawn dashed and faint.
+    pub closed: [bool; 6],
+}
+
+/// One edge of the box, as it is to be drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BoxEdge {
+    pub start: Vec3,
+    pub end: Vec3,
+    /// Both walls that meet here turn their inside to the eye, so the fluid may be in front of this edge.
+    pub behind: bool,
+    /// At least one of the two sides is a wall.
+    pub wall: bool,
+}
+
+impl Domain {
+    /// A box with walls on all sides but the upper one.
+    pub fn closed(min: [f32; 3], max: [f32; 3]) -> Domain {
+        Domain { min, max, closed: [true, true, true, false, true, true] }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        let (low, high) = (Vec3::from(self.min), Vec3::from(self.max));
+        if low.is_finite() && high.is_finite() && low.cmplt(high).all() {
+            return Ok(());
+        }
+        Err(RenderError::Value {
+            what: "the box of the domain",
+            given: format!("{low} to {high}"),
+            allowed: "a box whose max is above its min on every axis",
+        })
+    }
+
+    /// Bit 0 of the index chooses x, bit 1 y, bit 2 z.
+    pub(crate) fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|index| {
+            Vec3::from_array(std::array::from_fn(|axis| match index >> axis & 1 {
+                0 => self.min[axis],
+                _ => self.max[axis],
+            }))
+        })
+    }
+
+    /// The twelve edges; those that fluid inside can hide come first.
+    pub(crate) fn edges(&self, eye: Vec3) -> [BoxEdge; 12] {
+        let corners = self.corners();
+        let seen_from_outside = |axis: usize, upper: bool| match upper {
+            false => eye[axis] < self.min[axis],
+            true => eye[axis] > self.max[axis],
+        };
+        let mut edges: [BoxEdge; 12] = std::array::from_fn(|index| {
+            let (along, first, second) = (index / 4, (index / 4 + 1) % 3, (index / 4 + 2) % 3);
+            let (upper_first, upper_second) = (index & 1 == 1, index & 2 == 2);
+            let start = usize::from(upper_first) << first | usize::from(upper_second) << second;
+            let side = |axis: usize, upper: bool| self.closed[2 * axis + usize::from(upper)];
+            BoxEdge {
+                start: corners[start],
+                end: corners[start | 1 << along],
+                behind: !seen_from_outside(first, upper_first) && !seen_from_outside(second, upper_second),
+                wall: side(first, upper_first) || side(second, upper_second),
+            }
+        });
+        edges.sort_by_key(|edge| !edge.behind);
+        edges
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn twelve_different_edges_of_the_right_lengths() {
+        let domain = Domain::closed([0.0; 3], [1.0, 2.0, 3.0]);
+        let edges = domain.edges(Vec3::splat(10.0));
+        let total: f32 = edges.iter().map(|edge| edge.start.distance(edge.end)).sum();
+        assert_eq!(total, 4.0 * (1.0 + 2.0 + 3.0));
+        for (i, a) in edges.iter().enumerate() {
+            for b in &edges[..i] {
+                assert!(a.start.midpoint(a.end) != b.start.midpoint(b.end));
+            }
+        }
+    }
+
+    #[test]
+    fn from_a_corner_three_edges_are_behind_and_they_meet_at_the_far_corner() {
+        let domain = Domain::closed([0.0; 3], [1.0; 3]);
+        let edges = domain.edges(Vec3::splat(5.0));
+        let behind: Vec<_> = edges.iter().filter(|edge| edge.behind).collect();
+        assert_eq!(behind.len(), 3);
+        assert!(behind.iter().all(|edge| edge.start == Vec3::ZERO));
+        assert!(edges[..3].iter().all(|edge| edge.behind), "hidden edges come first");
+        assert_eq!(
+            domain.edges(Vec3::splat(0.5)).iter().filter(|edge| edge.behind).count(),
+            12,
+            "eye inside"
+        );
+    }
+
+    #[test]
+    fn only_edges_between_open_sides_count_as_open() {
+        let mut domain = Domain::closed([0.0; 3], [1.0; 3]);
+        assert!(domain.edges(Vec3::splat(5.0)).iter().all(|edge| edge.wall));
+        domain.closed = [false, true, true, false, true, true];
+        let open: Vec<_> = domain.edges(Vec3::splat(5.0)).into_iter().filter(|edge| !edge.wall).collect();
+        assert_eq!(open.len(), 1);
+        assert_eq!((open[0].start, open[0].end), (Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 1.0)));
+    }
+
+    #[test]
+    fn an_inside_out_box_is_refused() {
+        assert!(Domain::closed([0.0; 3], [1.0, 0.0, 1.0]).check().is_err());
+        assert!(Domain::closed([0.0; 3], [1.0, f32::NAN, 1.0]).check().is_err());
+        assert!(Domain::closed([0.0; 3], [1.0; 3]).check().is_ok());
+    }
+}

@@ -1,0 +1,91 @@
+//! What every shader of a frame reads: the Rust twin of `Globals` in `shared/globals.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct EdgeGlobals {
+    pub start: [f32; 3],
+    pub opacity: f32,
+    pub end: [f32; 3],
+    pub dashes: f32,
+}
+
+/// Meanings and units stand in the WGSL; names and offsets are compared by a test.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct Globals {
+    pub clip_from_world: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub near: f32,
+    pub right: [f32; 3],
+    pub pixel_angle: f32,
+    pub up: [f32; 3],
+    pub encode_srgb: u32,
+    pub forward: [f32; 3],
+    pub liquid_film: f32,
+    pub sun: [f32; 3],
+    pub floor_height: f32,
+    pub box_min: [f32; 3],
+    pub tile_size: f32,
+    pub box_max: [f32; 3],
+    pub fade_distance: f32,
+    pub shadow_min: [f32; 2],
+    pub shadow_size: [f32; 2],
+    pub picture_size: [f32; 2],
+    pub line_width: f32,
+    pub particle_radius: f32,
+    pub shadow_absorption: [f32; 3],
+    pub shadow_particle_path: f32,
+    pub quantity: u32,
+    pub range_low: f32,
+    pub range_scale: f32,
+    pub refractive_index: f32,
+    pub liquid_absorption: [f32; 3],
+    pub liquid_scattering: f32,
+    pub liquid_colour: [f32; 3],
+    pub liquid_roughness: f32,
+    pub edges: [EdgeGlobals; 12],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::{offset_of, size_of};
+
+    /// Name and byte offset of each member.
+    macro_rules! layout {
+        ($type:ty: $($field:ident)*) => { [$((stringify!($field), offset_of!($type, $field))),*] };
+    }
+
+    fn wgsl_layout(source: &str, name: &str) -> (Vec<(String, usize)>, usize) {
+        let module = naga::front::wgsl::parse_str(source).unwrap();
+        let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
+        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+        let named = |member: &naga::StructMember| (member.name.clone().unwrap(), member.offset as usize);
+        (members.iter().map(named).collect(), *span as usize)
+    }
+
+    fn same(source: &str) -> bool {
+        let globals = layout!(Globals: clip_from_world eye near right pixel_angle up encode_srgb forward
+            liquid_film sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
+            picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
+            range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness edges);
+        let edge = layout!(EdgeGlobals: start opacity end dashes);
+        let owned =
+            |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();
+        wgsl_layout(source, "Globals") == (owned(&globals), size_of::<Globals>())
+            && wgsl_layout(source, "Edge") == (owned(&edge), size_of::<EdgeGlobals>())
+    }
+
+    #[test]
+    fn rust_and_wgsl_agree() {
+        // The declarations alone: what uses them would not compile under the changed names.
+        let source = include_str!("shared/globals.wgsl").split("@group").next().unwrap();
+        assert!(same(source));
+        // Negative controls: a member that is renamed, moved or gone.
+        assert!(!same(&source.replace("near: f32", "nearest: f32")));
+        assert!(!same(&source.replace("shadow_size: vec2f,", "shadow_size: vec3f,")));
+        assert!(!same(&source.replace("    line_width: f32,", "    ")));
+    }
+}

@@ -1,0 +1,212 @@
+//! Pictures without a window: drawn into a texture and read back while the next ones are under way.
+
+use crate::renderer::check_size;
+use crate::{Frame, RenderError, Renderer};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use wgpu::{
+    Buffer, BufferAsyncError, BufferUsages, Device, Extent3d, MapMode, PollType, Queue, SubmissionIndex,
+    TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+};
+
+/// A texture to draw into and the buffers its pictures come back through.
+///
+/// Up to [`Offscreen::FRAMES_IN_FLIGHT`] pictures may be submitted before the first is collected, so that the GPU draws
+/// while the host simulates, encodes or writes.
+#[derive(Debug)]
+pub struct Offscreen {
+    device: Device,
+    queue: Queue,
+    size: [u32; 2],
+    texture: Texture,
+    identity: u64,
+    submitted: u64,
+    free: Vec<Buffer>,
+    in_flight: Vec<InFlight>,
+}
+
+/// The right to collect one submitted picture.
+#[derive(Debug, PartialEq, Eq)]
+#[must_use = "a picture that is never collected blocks its place among those in flight"]
+pub struct Ticket {
+    target: u64,
+    number: u64,
+}
+
+#[derive(Debug)]
+struct InFlight {
+    number: u64,
+    buffer: Buffer,
+    submission: SubmissionIndex,
+    mapped: Receiver<Result<(), BufferAsyncError>>,
+}
+
+impl Offscreen {
+    /// Format of the texture; [`Renderer::new`] must be given the same.
+    pub const FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+    /// Most pictures that may be submitted and not collected.
+    pub const FRAMES_IN_FLIGHT: usize = 3;
+
+    /// A target of `size` pixels.
+    ///
+    /// # Errors
+    /// [`RenderError::PictureSize`] if a side is 0 or beyond the device's limit, [`RenderError::DeviceLost`] if there is no
+    /// memory for it.
+    pub fn new(device: &Device, queue: &Queue, size: [u32; 2]) -> Result<Offscreen, RenderError> {
+        static IDENTITIES: AtomicU64 = AtomicU64::new(0);
+        check_size(device, size)?;
+        watched(device, || {
+            Ok(Offscreen::make(device, queue, size, IDENTITIES.fetch_add(1, Ordering::Relaxed)))
+        })
+    }
+
+    fn make(device: &Device, queue: &Queue, size: [u32; 2], identity: u64) -> Offscreen {
+        let bytes = u64::from(padded_row(size[0])) * u64::from(size[1]);
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("offscreen"),
+            size: extent(size),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Offscreen::FORMAT,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let read_back = || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("read-back"),
+                size: bytes,
+                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            })
+        };
+        Offscreen {
+            free: (0..Offscreen::FRAMES_IN_FLIGHT).map(|_| read_back()).collect(),
+            device: device.clone(),
+            queue: queue.clone(),
+            size,
+            texture,
+            identity,
+            submitted: 0,
+            in_flight: Vec::new(),
+        }
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Starts a picture and returns at once.
+    ///
+    /// # Errors
+    /// [`RenderError::FramesInFlight`] if a picture has to be collected first, [`RenderError::Format`] if the renderer
+    /// was made for another format, [`RenderError::DeviceLost`] if the device is gone or out of memory, and those of [`Renderer::draw`].
+    pub fn submit(&mut self, renderer: &mut Renderer, frame: &Frame<'_>) -> Result<Ticket, RenderError> {
+        if renderer.format() != Offscreen::FORMAT {
+            return Err(RenderError::Format { renderer: renderer.format(), target: Offscreen::FORMAT });
+        }
+        let Some(buffer) = self.free.last() else {
+            return Err(RenderError::FramesInFlight { limit: Offscreen::FRAMES_IN_FLIGHT });
+        };
+        let submission = watched(&self.device, || {
+            let mut encoder = self
+                .device
+                .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+            let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
+            renderer.draw(&mut encoder, &view, self.size, frame)?;
+            let layout = TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded_row(self.size[0])),
+                rows_per_image: Some(self.size[1]),
+            };
+            let destination = TexelCopyBufferInfo { buffer, layout };
+            encoder.copy_texture_to_buffer(self.texture.as_image_copy(), destination, extent(self.size));
+            Ok(self.queue.submit([encoder.finish()]))
+        })?;
+
+        let (sender, mapped) = channel();
+        buffer.map_async(MapMode::Read, .., move |result| {
+            // Nobody listens any more if the target was dropped meanwhile.
+            let _ = sender.send(result);
+        });
+        let number = self.submitted;
+        self.submitted += 1;
+        let buffer = buffer.clone();
+        self.free.pop();
+        self.in_flight.push(InFlight { number, buffer, submission, mapped });
+        Ok(Ticket { target: self.identity, number })
+    }
+
+    /// Waits for a submitted picture: RGBA with 8 bits each, sRGB, row by row from the upper left, without padding.
+    ///
+    /// # Errors
+    /// [`RenderError::UnknownTicket`] for another target's ticket, [`RenderError::DeviceLost`] if the picture was lost
+    /// with the device.
+    pub fn collect(&mut self, ticket: Ticket) -> Result<Vec<u8>, RenderError> {
+        let place = self.in_flight.iter().position(|picture| picture.number == ticket.number);
+        let Some(place) = place.filter(|_| ticket.target == self.identity) else {
+            return Err(RenderError::UnknownTicket { ticket });
+        };
+        let InFlight { buffer, submission, mapped, .. } = self.in_flight.remove(place);
+        let lost = |reason: String| RenderError::DeviceLost { reason };
+        let waiting = PollType::Wait { submission_index: Some(submission), timeout: None };
+        self.device.poll(waiting).map_err(|error| lost(error.to_string()))?;
+        mapped
+            .recv()
+            .map_err(|_| lost("the read-back was given up".to_owned()))?
+            .map_err(|error| lost(error.to_string()))?;
+        let pixels = {
+            let padded = buffer.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
+            let rows = padded.chunks_exact(padded_row(self.size[0]) as usize);
+            let mut pixels = Vec::with_capacity(4 * self.size[0] as usize * self.size[1] as usize);
+            rows.for_each(|row| pixels.extend_from_slice(&row[..4 * self.size[0] as usize]));
+            pixels
+        };
+        buffer.unmap();
+        self.free.push(buffer);
+        Ok(pixels)
+    }
+
+    /// Draws a picture and waits for it; see [`Offscreen::collect`] for the bytes.
+    ///
+    /// # Errors
+    /// Those of [`Offscreen::submit`] and [`Offscreen::collect`].
+    pub fn render_to_rgba(
+        &mut self,
+        renderer: &mut Renderer,
+        frame: &Frame<'_>,
+    ) -> Result<Vec<u8>, RenderError> {
+        let ticket = self.submit(renderer, frame)?;
+        self.collect(ticket)
+    }
+}
+
+/// Turns what the device reports while `work` is done into an error; without this, wgpu would panic.
+#[cfg(not(target_arch = "wasm32"))]
+fn watched<T>(device: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let result = work();
+    // Both are popped before either is looked at, inner one first.
+    let (validation, memory) = (pollster::block_on(validation.pop()), pollster::block_on(memory.pop()));
+    match memory.or(validation) {
+        Some(error) => Err(RenderError::DeviceLost { reason: error.to_string() }),
+        None => result,
+    }
+}
+
+/// In a browser nobody may wait for an error scope; errors go to the page's console.
+#[cfg(target_arch = "wasm32")]
+fn watched<T>(_: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+    work()
+}
+
+fn extent([width, height]: [u32; 2]) -> Extent3d {
+    Extent3d { width, height, depth_or_array_layers: 1 }
+}
+
+/// Bytes of a row in a buffer that a texture is copied to.
+fn padded_row(width: u32) -> u32 {
+    (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+}

@@ -1,0 +1,189 @@
+//! Colour bar and caption, laid over the finished picture.
+//!
+//! # How it works
+//! Each is painted on the host into a small image ([`Canvas`]) when its content changes, uploaded into a texture of its
+//! own and drawn as a quad whose texels fall on pixels. A new texture for each content means that a picture still
+//! under way keeps its old one.
+//!
+//! # Why not the other way
+//! A glyph atlas and a quad per letter save the upload of some 100 KB when a caption changes, which takes less than a
+//! millisecond, and cost an atlas, its packing and a layout pass. Text drawn under multisampling would be blurred.
+//!
+//! # Things we might try
+//! A scale bar of the scene's length.
+
+mod canvas;
+mod colour_bar;
+mod ticks;
+
+use crate::pipeline::{Bind, OVER, Recipe, bind_group, bind_group_layout};
+use crate::shader::Shader;
+use crate::{Frame, RenderError};
+use bytemuck::{Pod, Zeroable};
+use canvas::Canvas;
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, BufferUsages, CommandEncoder, Device, PrimitiveTopology,
+    Queue, RenderPipeline, TextureFormat, TextureUsages, TextureView,
+};
+
+pub(crate) const SHADER: Shader = Shader { label: "overlay", parts: &[include_str!("overlay.wgsl")] };
+
+#[derive(Debug)]
+pub(crate) struct Overlay {
+    pipeline: RenderPipeline,
+    layout: BindGroupLayout,
+    encode_srgb: bool,
+    colour_bar: Option<Label>,
+    caption: Option<Label>,
+}
+
+/// A painted rectangle on the GPU.
+#[derive(Debug)]
+struct Label {
+    /// What it shows and in which picture size; painted anew when this changes.
+    content: String,
+    /// Absent where the picture is too small for it.
+    group: Option<BindGroup>,
+}
+
+/// Twin of `Place` in overlay.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Place {
+    corner: [f32; 2],
+    size: [f32; 2],
+    picture_size: [f32; 2],
+    encode_srgb: u32,
+    pad: u32,
+}
+
+impl Overlay {
+    pub fn new(device: &Device, format: TextureFormat) -> Overlay {
+        let layout = bind_group_layout(device, "overlay", &[Bind::Uniform, Bind::Texture]);
+        let layouts = [&layout];
+        let recipe = Recipe {
+            blend: Some(OVER),
+            topology: PrimitiveTopology::TriangleStrip,
+            ..Recipe::new(SHADER, &layouts, format)
+        };
+        let pipeline = recipe.build(device);
+        Overlay { pipeline, layout, encode_srgb: !format.is_srgb(), colour_bar: None, caption: None }
+    }
+
+    /// Paints what has changed since the last picture.
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        size: [u32; 2],
+        frame: &Frame<'_>,
+    ) -> Result<(), RenderError> {
+        let colouring = frame.particles.map(|drawn| drawn.colouring).filter(|colouring| colouring.colour_bar);
+        let bar = match &colouring {
+            Some(colouring) => Some((format!("{size:?} {colouring:?}"), colouring.checked_range()?)),
+            None => None,
+        };
+        let caption = frame.caption.filter(|text| !text.is_empty());
+
+        let old = self.colour_bar.take();
+        self.colour_bar = bar.zip(colouring).map(|((content, range), colouring)| {
+            let paint = || colour_bar::paint(&colouring, range, size);
+            self.keep_or_paint(device, queue, size, old, content, paint)
+        });
+        let old = self.caption.take();
+        self.caption = caption.map(|text| {
+            let content = format!("{size:?} {text}");
+            self.keep_or_paint(device, queue, size, old, content, || colour_bar::paint_caption(text, size))
+        });
+        Ok(())
+    }
+
+    fn keep_or_paint(
+        &self,
+        device: &Device,
+        queue: &Queue,
+        picture_size: [u32; 2],
+        old: Option<Label>,
+        content: String,
+        paint: impl FnOnce() -> Option<([u32; 2], Canvas)>,
+    ) -> Label {
+        if let Some(old) = old.filter(|old| old.content == content) {
+            return old;
+        }
+        let group = paint().map(|(corner, canvas)| {
+            let place = Place {
+                corner: corner.map(|x| x as f32),
+                size: canvas.size().map(|x| x as f32),
+                picture_size: picture_size.map(|x| x as f32),
+                encode_srgb: u32::from(self.encode_srgb),
+                pad: 0,
+            };
+            let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("overlay place"),
+                size: size_of::<Place>() as u64,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&place));
+            let texture = upload_texture(device, queue, "overlay", canvas.size(), canvas.bytes());
+            let resources = [uniform.as_entire_binding(), BindingResource::TextureView(&texture)];
+            bind_group(device, "overlay", &self.layout, &resources)
+        });
+        Label { content, group }
+    }
+
+    /// Lays the labels over the finished picture.
+    pub fn record(&self, encoder: &mut CommandEncoder, target: &TextureView) {
+        let groups: Vec<&BindGroup> = [&self.colour_bar, &self.caption]
+            .into_iter()
+            .flatten()
+            .filter_map(|label| label.group.as_ref())
+            .collect();
+        if groups.is_empty() {
+            return;
+        }
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("overlay"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        for group in groups {
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..4, 0..1);
+        }
+    }
+}
+
+/// A texture of sRGB bytes.
+pub(crate) fn upload_texture(
+    device: &Device,
+    queue: &Queue,
+    label: &str,
+    [width, height]: [u32; 2],
+    bytes: &[u8],
+) -> TextureView {
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Rgba8UnormSrgb,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(4 * width),
+        rows_per_image: Some(height),
+    };
+    queue.write_texture(texture.as_image_copy(), bytes, layout, size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

@@ -1,0 +1,106 @@
+// Spheres as impostors: a quad around the outline, the hit worked out per pixel. Needs globals.wgsl.
+
+@group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, w ignored
+@group(2) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored
+@group(2) @binding(2) var<storage, read> densities: array<vec2f>;   // density, pressure
+@group(2) @binding(3) var colour_map: texture_2d<f32>;              // 256 x 1
+
+override SAMPLES: u32 = 4u;
+
+struct Varying {
+    @builtin(position) position: vec4f,
+    @location(0) across: vec2f,        // length 1 on the sphere's outline
+    @location(1) ray: vec3f,           // from the eye to the quad
+    @location(2) @interpolate(flat) centre: vec4f,  // from the eye, and its distance
+    @location(3) @interpolate(flat) base: vec3f,    // colour
+}
+
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
+    let particle = index / 6u;
+    // Two triangles, corners 0 1 2 and 2 1 3, packed two bits each.
+    let corner = (0xDA4u >> (2u * (index % 6u))) & 3u;
+    let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+
+    let centre = positions[particle].xyz - globals.eye;
+    let distance_squared = dot(centre, centre);
+    let radius = globals.particle_radius;
+    var out: Varying;
+    // Also false for NaN and infinity, so that a broken particle is not drawn, and for one that holds the eye.
+    if !(distance_squared > 1.02 * radius * radius && distance_squared < 1e30) {
+        out.position = vec4f(2.0, 2.0, 2.0, 1.0);
+        return out;
+    }
+    let distance = sqrt(distance_squared);
+    let axis = centre / distance;
+    // The plane through the centre cuts the cone that touches the sphere in a circle of this radius.
+    let outline = distance * radius * inverseSqrt(distance_squared - radius * radius);
+    let u = normalize(cross(axis, globals.up + 0.001 * globals.right));
+    let v = cross(u, axis);
+    // One pixel more on every side for the soft edge.
+    let reach = 1.0 + distance * globals.pixel_angle / outline;
+    out.across = side * reach;
+    out.ray = centre + (u * side.x + v * side.y) * (outline * reach);
+    out.centre = vec4f(centre, distance);
+    out.position = globals.clip_from_world * vec4f(globals.eye + out.ray, 1.0);
+
+    var quantity = length(velocities[particle].xyz);
+    if globals.quantity == 1u {
+        quantity = densities[particle].x;
+    } else if globals.quantity == 2u {
+        quantity = densities[particle].y;
+    }
+    let place = clamp((quantity - globals.range_low) * globals.range_scale, 0.0, 1.0);
+    out.base = textureLoad(colour_map, vec2u(u32(255.0 * place + 0.5), 0u), 0).rgb;
+    return out;
+}
+
+struct Output {
+    @location(0) colour: vec4f,
+    @builtin(frag_depth) depth: f32,
+    @builtin(sample_mask) covered: u32,
+}
+
+// Which of the pixel's samples the disc covers: WebGPU's places of four samples, in sixteenths of a pixel.
+fn coverage(across: vec2f, right: vec2f, down: vec2f) -> u32 {
+    if SAMPLES == 1u {
+        return select(0u, 1u, dot(across, across) <= 1.0);
+    }
+    let a = across + (-2.0 * right - 6.0 * down) / 16.0;
+    let b = across + (6.0 * right - 2.0 * down) / 16.0;
+    let c = across + (-6.0 * right + 2.0 * down) / 16.0;
+    let d = across + (2.0 * right + 6.0 * down) / 16.0;
+    let inside = vec4f(dot(a, a), dot(b, b), dot(c, c), dot(d, d)) <= vec4f(1.0);
+    return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), inside), vec4u(1u));
+}
+
+@fragment
+fn fragment_main(in: Varying) -> Output {
+    let covered = coverage(in.across, dpdx(in.across), dpdy(in.across));
+    if covered == 0u {
+        discard;
+    }
+    let q2 = dot(in.across, in.across);
+    // |s ray - centre| = radius, written so that nothing cancels: see particles/mod.rs.
+    let distance = in.centre.w;
+    let rise = globals.particle_radius * sqrt(max(1.0 - q2, 0.0));
+    let s = distance * (distance - rise) / dot(in.ray, in.ray);
+    let normal = (s * in.ray - in.centre.xyz) / globals.particle_radius;
+
+    let to_eye = -in.centre.xyz / distance;
+    let sun = max(dot(normal, globals.sun), 0.0);
+    let facing = max(dot(normal, to_eye), 0.0);
+    // Sky from above, a little light from the floor, the sun; darker towards the outline, so that neighbours stand apart.
+    let light = (0.68 + 0.20 * normal.y + 0.30 * sun) * (0.48 + 0.52 * facing);
+    // Blinn's highlight with exponent 32, by squaring.
+    let half_way = globals.sun + to_eye;
+    let aligned = max(dot(normal, half_way), 0.0) * inverseSqrt(max(dot(half_way, half_way), 1e-6));
+    let a4 = aligned * aligned * aligned * aligned;
+    let a16 = a4 * a4 * a4 * a4;
+
+    var output: Output;
+    output.colour = vec4f(encode(min(in.base * light + 0.012 * light + 0.03 * a16 * a16, vec3f(1.0))), 1.0);
+    output.covered = covered;
+    output.depth = depth_of(s * dot(in.ray, globals.forward));
+    return output;
+}

@@ -1,0 +1,209 @@
+//! One way to make the render pipelines, so that what differs between them is all that is written where they are used.
+
+use crate::shader::Shader;
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
+    BufferBindingType, CompareFunction, Device, Face, PrimitiveTopology, RenderPipeline, SamplerBindingType,
+    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexAttribute,
+    VertexBufferLayout, VertexFormat, VertexStepMode,
+};
+
+/// Format of the depth buffer.
+pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+
+/// What sets a pipeline apart. The defaults: triangles, both sides, no depth, no blending, one sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Recipe<'a> {
+    pub shader: Shader,
+    pub layouts: &'a [&'a BindGroupLayout],
+    pub format: TextureFormat,
+    pub samples: u32,
+    pub topology: PrimitiveTopology,
+    pub cull: Option<Face>,
+    pub depth: Option<Depth>,
+    pub blend: Option<BlendState>,
+    /// Number of `vec4<f32>` vertex buffers.
+    pub vertex_buffers: usize,
+    pub constants: &'a [(&'a str, f64)],
+}
+
+/// What a pipeline does with the depth buffer; nearer is greater.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Depth {
+    Write,
+    TestAndWrite,
+    Test,
+}
+
+impl<'a> Recipe<'a> {
+    pub fn new(shader: Shader, layouts: &'a [&'a BindGroupLayout], format: TextureFormat) -> Recipe<'a> {
+        Recipe {
+            shader,
+            layouts,
+            format,
+            samples: 1,
+            topology: PrimitiveTopology::TriangleList,
+            cull: None,
+            depth: None,
+            blend: None,
+            vertex_buffers: 0,
+            constants: &[],
+        }
+    }
+
+    pub fn build(&self, device: &Device) -> RenderPipeline {
+        let label = Some(self.shader.label);
+        let layouts: Vec<Option<&BindGroupLayout>> = self.layouts.iter().copied().map(Some).collect();
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &layouts,
+            ..Default::default()
+        });
+        let module = self.shader.module(device);
+        let attributes: Vec<VertexAttribute> = (0..self.vertex_buffers)
+            .map(|slot| VertexAttribute {
+                format: VertexFormat::Float32x4,
+                offset: 0,
+                shader_location: slot as u32,
+            })
+            .collect();
+        let buffers: Vec<Option<VertexBufferLayout<'_>>> = attributes
+            .iter()
+            .map(|attribute| {
+                let attributes = std::slice::from_ref(attribute);
+                Some(VertexBufferLayout { array_stride: 16, step_mode: VertexStepMode::Vertex, attributes })
+            })
+            .collect();
+        let compilation_options =
+            wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label,
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex_main"),
+                compilation_options: compilation_options.clone(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
+                cull_mode: self.cull,
+                ..Default::default()
+            },
+            depth_stencil: self.depth.map(|depth| wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(depth != Depth::Test),
+                depth_compare: Some(if depth == Depth::Write {
+                    CompareFunction::Always
+                } else {
+                    CompareFunction::GreaterEqual
+                }),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: self.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment_main"),
+                compilation_options,
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: self.format,
+                    blend: self.blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// Sums what is drawn.
+pub(crate) const ADD: BlendState = {
+    let component = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    BlendState { color: component, alpha: component }
+};
+
+/// Lays straight alpha over an opaque picture, which stays opaque.
+pub(crate) const OVER: BlendState = BlendState {
+    color: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::SrcAlpha,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    },
+    alpha: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    },
+};
+
+/// A kind of binding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bind {
+    Uniform,
+    Storage,
+    /// Read by the vertex shader, texel by texel.
+    VertexTexture,
+    Texture,
+    Sampler,
+}
+
+/// A layout whose bindings are numbered from 0.
+pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind]) -> BindGroupLayout {
+    let entries: Vec<BindGroupLayoutEntry> = (0..)
+        .zip(bindings)
+        .map(|(binding, bind)| BindGroupLayoutEntry {
+            binding,
+            visibility: match bind {
+                Bind::Uniform => ShaderStages::VERTEX_FRAGMENT,
+                Bind::Storage | Bind::VertexTexture => ShaderStages::VERTEX,
+                Bind::Texture | Bind::Sampler => ShaderStages::FRAGMENT,
+            },
+            ty: match bind {
+                Bind::Uniform => buffer(BufferBindingType::Uniform),
+                Bind::Storage => buffer(BufferBindingType::Storage { read_only: true }),
+                Bind::Texture | Bind::VertexTexture => BindingType::Texture {
+                    sample_type: TextureSampleType::Float { filterable: true },
+                    view_dimension: TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                Bind::Sampler => BindingType::Sampler(SamplerBindingType::Filtering),
+            },
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+fn buffer(ty: BufferBindingType) -> BindingType {
+    BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
+}
+
+/// A bind group whose entries are numbered from 0.
+pub(crate) fn bind_group(
+    device: &Device,
+    label: &str,
+    layout: &BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// Bilinear, clamped at the border.
+pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("linear"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}

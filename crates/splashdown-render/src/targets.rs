@@ -1,0 +1,55 @@
+//! The textures that depend on the picture's size.
+
+use crate::pipeline::DEPTH;
+use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
+
+pub(crate) const THICKNESS_FORMAT: TextureFormat = TextureFormat::R16Float;
+
+#[derive(Debug)]
+pub(crate) struct Targets {
+    pub size: [u32; 2],
+    /// The picture with several samples per pixel; absent where one is enough.
+    pub samples: Option<TextureView>,
+    pub depth: TextureView,
+    /// The picture without the liquid.
+    pub scene: TextureView,
+    /// Metres of liquid, at half the resolution.
+    pub thickness: TextureView,
+}
+
+impl Targets {
+    pub fn new(device: &Device, size: [u32; 2], format: TextureFormat, sample_count: u32) -> Targets {
+        let half = size.map(|side| side.div_ceil(2));
+        let drawn = TextureUsages::RENDER_ATTACHMENT;
+        let read = drawn | TextureUsages::TEXTURE_BINDING;
+        let make = |label, size, format, samples, usage| texture(device, label, size, format, samples, usage);
+        Targets {
+            size,
+            samples: (sample_count > 1).then(|| make("samples", size, format, sample_count, drawn)),
+            depth: make("depth", size, DEPTH, sample_count, drawn),
+            scene: make("scene", size, format, 1, read),
+            thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
+        }
+    }
+}
+
+fn texture(
+    device: &Device,
+    label: &str,
+    [width, height]: [u32; 2],
+    format: TextureFormat,
+    sample_count: u32,
+    usage: TextureUsages,
+) -> TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    });
+    texture.create_view(&TextureViewDescriptor::default())
+}

@@ -1,0 +1,254 @@
+//! Pictures whose pixels can be worked out by hand.
+
+mod common;
+
+use common::{Picture, Studio, sample};
+use splashdown_render::*;
+
+const SIZE: [u32; 2] = [200, 160];
+const RED: Colouring =
+    Colouring { quantity: Quantity::Speed, range: [0.0, 1.0], map: ColourMap::BlueRed, colour_bar: false };
+
+/// A box far larger than what is drawn in it, seen from +z, so that its edges and floor stay out of the way.
+fn level_frame(distance: f32) -> Frame<'static> {
+    Frame {
+        camera: Camera::orbit([0.0; 3], distance, 0.0, 0.0, 40.0),
+        domain: Domain::closed([-50.0; 3], [50.0; 3]),
+        sun: Frame::SUN,
+        particles: None,
+        surface: None,
+        caption: None,
+    }
+}
+
+/// Particles at rest are blue in the blue-red map, those that move by 1 m/s are red.
+fn spheres(studio: &mut Studio, places: &[([f32; 3], f32)], radius: f32, frame: Frame<'_>) -> Picture {
+    let positions: Vec<[f32; 3]> = places.iter().map(|(place, _)| *place).collect();
+    let velocities: Vec<[f32; 3]> = places.iter().map(|(_, speed)| [0.0, *speed, 0.0]).collect();
+    let particles = UploadedParticles::new(&studio.device, &positions, &velocities, &[], &[]).unwrap();
+    let drawn = DrawnParticles { buffers: particles.buffers(), radius, colouring: RED };
+    studio.draw(SIZE, &Frame { particles: Some(drawn), ..frame })
+}
+
+fn changed(picture: &Picture, empty: &Picture) -> Vec<[u32; 2]> {
+    let all = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    let off = |pixel: &[u32; 2]| {
+        let (a, b) = (picture.pixel(*pixel), empty.pixel(*pixel));
+        a.iter().zip(b).any(|(a, b)| a.abs_diff(b) > 12)
+    };
+    all.filter(off).collect()
+}
+
+fn is_red([r, _, b]: [u8; 3]) -> bool {
+    i32::from(r) - i32::from(b) > 40
+}
+
+fn is_blue([r, _, b]: [u8; 3]) -> bool {
+    i32::from(b) - i32::from(r) > 40
+}
+
+#[test]
+fn a_sphere_covers_its_disc() {
+    let Some(mut studio) = common::studio() else { return };
+    let (distance, radius) = (4.0f32, 0.5f32);
+    let empty = studio.draw(SIZE, &level_frame(distance));
+    let picture = spheres(&mut studio, &[([0.0; 3], 1.0)], radius, level_frame(distance));
+    // The cone that touches the sphere, on a picture whose half height is tan 20 degrees at unit distance.
+    let outline = radius / (distance * distance - radius * radius).sqrt() / 20f32.to_radians().tan() * 80.0;
+    let covered = changed(&picture, &empty);
+    let area = std::f32::consts::PI * outline * outline;
+    assert!((covered.len() as f32 - area).abs() < 0.06 * area, "{} pixels, expected {area}", covered.len());
+    for [x, y] in covered {
+        let away = (x as f32 + 0.5 - 100.0).hypot(y as f32 + 0.5 - 80.0);
+        assert!(away < outline + 1.2, "pixel {x} {y} is {away} from the middle, the outline {outline}");
+    }
+    assert!(is_red(picture.pixel([100, 80])));
+
+    // The outline is smooth: many pixels are neither background nor sphere.
+    let row: Vec<[u8; 3]> = (0..SIZE[1]).map(|y| picture.pixel([100 - (0.7 * outline) as u32, y])).collect();
+    assert!(row.iter().any(|pixel| is_red(*pixel)));
+    let hard = {
+        let mut renderer = Renderer::new(&studio.device, &studio.queue, Offscreen::FORMAT, 1).unwrap();
+        std::mem::swap(&mut renderer, &mut studio.renderer);
+        let hard = spheres(&mut studio, &[([0.0; 3], 1.0)], radius, level_frame(distance));
+        std::mem::swap(&mut renderer, &mut studio.renderer);
+        hard
+    };
+    let between = |picture: &Picture| {
+        let shades = |pixel: &[u32; 2]| {
+            let [r, _, b] = picture.pixel(*pixel);
+            let [empty_r, _, empty_b] = empty.pixel(*pixel);
+            let (redness, background) =
+                (i32::from(r) - i32::from(b), i32::from(empty_r) - i32::from(empty_b));
+            redness > background + 12 && redness < 25
+        };
+        changed(picture, &empty).iter().filter(|pixel| shades(pixel)).count()
+    };
+    assert!(between(&picture) > 40, "{} pixels in between", between(&picture));
+    assert!(between(&hard) < 10, "negative control: one sample gives hard outlines, {}", between(&hard));
+}
+
+#[test]
+fn nearer_spheres_hide_farther_ones_in_either_order() {
+    let Some(mut studio) = common::studio() else { return };
+    let (near, far) = (([0.0, 0.0, 1.0], 1.0), ([0.0, 0.0, -1.0], 0.0));
+    for places in [[near, far], [far, near]] {
+        let picture = spheres(&mut studio, &places, 0.5, level_frame(5.0));
+        assert!(is_red(picture.pixel([100, 80])));
+    }
+    // Negative control: seen from behind, the other one is in front.
+    let behind = Frame { camera: Camera::orbit([0.0; 3], 5.0, 180.0, 0.0, 40.0), ..level_frame(5.0) };
+    assert!(is_blue(spheres(&mut studio, &[near, far], 0.5, behind).pixel([100, 80])));
+}
+
+#[test]
+fn spheres_cut_into_each_other_where_they_should() {
+    let Some(mut studio) = common::studio() else { return };
+    // Side by side and overlapping: the seam is the plane between the centres, which faces the eye edge on.
+    let picture =
+        spheres(&mut studio, &[([-0.3, 0.0, 0.0], 1.0), ([0.3, 0.0, 0.0], 0.0)], 0.6, level_frame(5.0));
+    for y in [70, 80, 90] {
+        assert!(is_red(picture.pixel([97, y])) && is_blue(picture.pixel([103, y])), "row {y}");
+    }
+}
+
+#[test]
+fn broken_particles_are_left_out() {
+    let Some(mut studio) = common::studio() else { return };
+    let empty = studio.draw(SIZE, &level_frame(5.0));
+    let nan = ([f32::NAN, 0.0, 0.0], 1.0);
+    let far = ([f32::INFINITY, 0.0, 0.0], 1.0);
+    let around_the_eye = ([0.0, 0.0, 5.1], 1.0);
+    let picture = spheres(&mut studio, &[nan, far, around_the_eye], 0.5, level_frame(5.0));
+    assert_eq!(changed(&picture, &empty).len(), 0);
+    let picture = spheres(&mut studio, &[nan, ([0.0; 3], 1.0)], 0.5, level_frame(5.0));
+    assert!(changed(&picture, &empty).len() > 500, "negative control: a sound one is drawn");
+}
+
+#[test]
+fn a_surface_hides_and_is_hidden() {
+    let Some(mut studio) = common::studio() else { return };
+    let mesh = sample::ball([0.0; 3], 0.5, 32);
+    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    // Nearly opaque, so that what lies behind does not show.
+    let ink =
+        Liquid { absorption: [40.0; 3], scattering: 40.0, colour: [0.0, 0.4, 0.0], ..Liquid::water(1.0) };
+    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: ink });
+    let frame = Frame { surface, ..level_frame(5.0) };
+    let centre = [100, 80];
+    let front = spheres(&mut studio, &[([0.0, 0.0, 1.0], 1.0)], 0.2, frame);
+    assert!(is_red(front.pixel(centre)));
+    let behind = spheres(&mut studio, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame);
+    let [r, g, b] = behind.pixel(centre);
+    assert!(g > r && g > b, "{:?}", behind.pixel(centre));
+    // Clear liquid lets the same particle through.
+    let clear = Liquid { absorption: [0.0; 3], scattering: 0.0, film: 0.0, ..Liquid::water(1.0) };
+    let frame = Frame { surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: clear }), ..frame };
+    assert!(is_red(spheres(&mut studio, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame).pixel(centre)));
+}
+
+#[test]
+fn indirect_draws_equal_direct_ones() {
+    use wgpu::util::DeviceExt;
+    let Some(mut studio) = common::studio() else { return };
+    let mesh = sample::ball([0.0; 3], 0.5, 32);
+    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let arguments = |index_count: u32| {
+        studio.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytemuck::cast_slice(&[7, 7, index_count, 1, 0, 0, 0]),
+            usage: wgpu::BufferUsages::INDIRECT,
+        })
+    };
+    let (all, half) =
+        (arguments(3 * mesh.triangles.len() as u32), arguments(3 * mesh.triangles.len() as u32 / 2));
+    let mut draw = |draw| {
+        let buffers = SurfaceBuffers { draw, ..ball.buffers() };
+        let surface = Some(DrawnSurface { buffers, liquid: Liquid::water(1.0) });
+        studio.draw(SIZE, &Frame { surface, ..level_frame(5.0) })
+    };
+    let direct = draw(ball.buffers().draw);
+    assert_eq!(draw(Draw::Indirect(&all, 8)).rgba, direct.rgba);
+    assert_ne!(draw(Draw::Indirect(&half, 8)).rgba, direct.rgba, "negative control: half of the triangles");
+}
+
+#[test]
+fn the_colour_bar_ends_in_the_map_s_colours() {
+    let Some(mut studio) = common::studio() else { return };
+    let size = [640, 360];
+    let particles = UploadedParticles::new(&studio.device, &[[0.0; 3]], &[], &[], &[]).unwrap();
+    for map in ColourMap::ALL {
+        let colouring =
+            Colouring { quantity: Quantity::Density, range: [990.0, 1010.0], map, colour_bar: true };
+        let drawn = DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring };
+        let picture = studio.draw(size, &Frame { particles: Some(drawn), ..level_frame(5.0) });
+        // The longest run of rows in which a column follows the map from the upper to the lower end.
+        let near = |pixel: [u8; 3], t: f32| pixel.iter().zip(map.sample(t)).all(|(a, b)| a.abs_diff(b) <= 1);
+        let found = (size[0] / 2..size[0]).any(|x| {
+            let Some(top) = (0..size[1] - 140).find(|&y| {
+                (0..140).step_by(20).all(|row| near(picture.pixel([x, y + row]), 1.0 - row as f32 / 139.0))
+            }) else {
+                return false;
+            };
+            near(picture.pixel([x, top + 139]), 0.0)
+        });
+        assert!(found, "{map:?}");
+    }
+}
+
+#[test]
+fn one_sample_and_unencoded_targets_show_the_same_picture() {
+    let Some(mut studio) = common::studio() else { return };
+    let mesh = sample::ball([0.0, 0.0, 0.0], 0.8, 48);
+    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(1.0) });
+    let domain = Domain::closed([-1.0; 3], [1.0; 3]);
+    let frame = Frame { surface, domain, ..level_frame(6.0) };
+    let four = studio.draw(SIZE, &frame);
+    studio.renderer = Renderer::new(&studio.device, &studio.queue, Offscreen::FORMAT, 1).unwrap();
+    let one = studio.draw(SIZE, &frame);
+    let difference = one.difference(&four);
+    assert!(difference.mean < 1.5 && difference.share < 0.06, "{difference:?}");
+
+    // A target that stores what it is given: the shaders encode.
+    let plain = draw_into(&studio, wgpu::TextureFormat::Rgba8Unorm, &frame);
+    let difference = plain.difference(&four);
+    assert!(difference.mean < 1.5 && difference.share < 0.03, "{difference:?}");
+}
+
+/// Draws into a texture of any 8-bit format and reads its bytes as they are.
+fn draw_into(studio: &Studio, format: wgpu::TextureFormat, frame: &Frame<'_>) -> Picture {
+    let Studio { device, queue, .. } = studio;
+    let mut renderer = Renderer::new(device, queue, format, 4).unwrap();
+    let size = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let row = 1024;
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(row * SIZE[1]),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    renderer.draw(&mut encoder, &view, SIZE, frame).unwrap();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+    let destination = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), destination, size);
+    queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
+    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let bytes = buffer.get_mapped_range(..).unwrap();
+    let rgba =
+        bytes.chunks_exact(row as usize).flat_map(|line| line[..4 * SIZE[0] as usize].to_vec()).collect();
+    Picture { size: SIZE, rgba }
+}
