@@ -19,7 +19,7 @@ use wgpu::{
 ///
 /// The passes of a picture, in their order:
 ///
-/// 1. the fluid's shadow on the floor ([`Shadow`], 256 x 256, blurred);
+/// 1. the fluid's shadow on the floor (256 x 256, blurred);
 /// 2. background, hidden edges, particles; with a surface also its thickness, then a copy to look through, then the
 ///    surface; near edges; several samples per pixel, resolved into the target;
 /// 3. colour bar and caption, pixel on pixel.
