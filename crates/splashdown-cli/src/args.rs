@@ -45,16 +45,17 @@ Examples:
   splashdown run my.toml --json | jq 'select(.event == \"frame\") | .density_error'
 
 What is written below the output folder:
-  particles/particles_0000.ply, .vtu   one file per frame; particles.pvd opens the series in ParaView
-  mesh/surface_0000.ply, .obj          the closed surface of the fluid
+  particles/particles_0000.ply, .vtu     one file per frame; particles.pvd is ParaView's index
+  mesh/surface_0000.ply, .obj            the closed surface of the fluid
   pictures/surface_0000.png, particles_0000.png
-  surface.mp4, particles.mp4           if ffmpeg is installed
-  run.json                             the summary
+  surface.mp4, particles.mp4             if ffmpeg is installed
+  run.json                               the summary
 Every file is complete or absent. Frames of an earlier run in the same folder are removed.
 
-With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt, particles,
-density_error, max_speed, volume, triangles and files; what is not known at that moment is null. Events are started,
-progress, frame, warning, finished, interrupted and error. A frame's line comes when its files are complete.";
+With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt,
+particles, density_error, max_speed, volume, triangles and files; what is not known at that
+moment is null. Events are started, progress, frame, warning, finished, interrupted and error.
+A frame's line comes when its files are complete.";
 
 /// Options of `run`.
 #[derive(Debug, Args)]
@@ -254,5 +255,5 @@ fn choice_or_none<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = Op
 
 fn words<C: Choice>(more: &[&'static str]) -> PossibleValuesParser {
     let words = C::ALL.iter().map(|&(_, word, about)| PossibleValue::new(word).help(about.trim()));
-    PossibleValuesParser::new(words.chain(more.iter().copied().map(PossibleValue::new)))
+    PossibleValuesParser::new(words.chain(more.iter().map(|word| PossibleValue::new(word).help("Nothing."))))
 }

@@ -34,7 +34,8 @@ Exit codes:
     1  the simulation failed on its way (frames already written are complete)
     2  the command line was not understood
     3  the scene file is missing or wrong
-    4  the device is missing, too small, or was lost; or pictures were demanded and there is no driver to draw them
+    4  the device is missing, too small, or was lost; or pictures were demanded and nothing
+       can draw them
     5  a file or folder could not be written (frames already written are complete)
   130  stopped by Ctrl-C (frames already written are complete)";
 

@@ -32,13 +32,14 @@ pub fn scaled(number: f64) -> String {
 
 /// About three significant digits without an exponent, for numbers that are not tiny.
 pub fn three_digits(number: f64) -> String {
+    // A number that rounds up to the next power of ten has its digits.
     let decimals = match number.abs() {
-        x if x >= 100.0 => 0,
-        x if x >= 10.0 => 1,
-        x if x >= 1.0 => 2,
-        x if x >= 0.1 => 3,
-        x if x >= 0.01 => 4,
-        x if x >= 0.001 => 5,
+        x if x >= 99.95 => 0,
+        x if x >= 9.995 => 1,
+        x if x >= 0.9995 => 2,
+        x if x >= 0.09995 => 3,
+        x if x >= 0.009_995 => 4,
+        x if x >= 0.000_999_5 => 5,
         0.0 => 0,
         _ => return format!("{number:.2e}"),
     };

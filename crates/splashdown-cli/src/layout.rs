@@ -91,6 +91,7 @@ impl Layout {
         let mut files = 0;
         // What cannot be removed cannot be overwritten either, and that is then reported with its name.
         let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
+        remove(&self.index());
         for (folder, stems, endings) in FOLDERS {
             let folder = self.root.join(folder);
             for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
@@ -101,7 +102,6 @@ impl Layout {
             // Succeeds only if nothing else is in it.
             let _ = fs::remove_dir(&folder);
         }
-        remove(&self.index());
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));

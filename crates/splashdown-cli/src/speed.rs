@@ -15,16 +15,19 @@ pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
     let side = (f64::from(particles) / 2.0).cbrt().round().max(1.0);
     let depth = (f64::from(particles) / (side * side)).round().max(1.0);
     let [width, height, depth] = [side, side, depth].map(|count| count * SPACING);
+    // A domain holds four spacings in every direction.
+    let least = 4.0 * SPACING;
     let mut text = String::new();
     // Writing into a string cannot fail.
     let _ = write!(
         text,
         "[scene]\nname = \"bench\"\nduration = 1.0\n\
-         [domain]\nmin = [0, 0, 0]\nmax = [{}, {}, {depth}]\nopen = [\"y_max\"]\n\
+         [domain]\nmin = [0, 0, 0]\nmax = [{}, {}, {}]\nopen = [\"y_max\"]\n\
          [fluid]\nparticle_spacing = {SPACING}\n\
          [[fluid.block]]\nposition = [0, 0, 0]\nsize = [{width}, {height}, {depth}]\n",
-        3.0 * width,
-        2.0 * height,
+        (3.0 * width).max(least),
+        (2.0 * height).max(least),
+        depth.max(least),
     );
     Scene::parse(&text, "the benchmark's scene")
 }

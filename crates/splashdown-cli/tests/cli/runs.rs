@@ -1,0 +1,227 @@
+//! Whole runs of a small scene, as a user sees them.
+
+use std::fs;
+
+use crate::place::{Outcome, Place, can_draw, lines, names, stderr, stdout};
+use serde_json::Value;
+use splashdown_io::ply;
+
+/// Keys that every line has.
+const KEYS: [&str; 11] = [
+    "event",
+    "frame",
+    "time",
+    "steps",
+    "dt",
+    "particles",
+    "density_error",
+    "max_speed",
+    "volume",
+    "triangles",
+    "files",
+];
+
+#[test]
+fn a_run_leaves_complete_frames_and_a_summary() -> Outcome {
+    let place = Place::new()?;
+    let output = place.run_small(&["--formats", "ply,vtu,obj"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for word in [
+        "particle-steps per second",
+        "simulated seconds per second",
+        "density error",
+        "volume",
+        "particles_*.ply",
+    ] {
+        assert!(stdout(&output).contains(word), "{word} is missing in:\n{}", stdout(&output));
+    }
+    let mut particles = Vec::new();
+    for frame in 0..=2 {
+        particles.push(ply::read_particles(&place.path(&format!("out/particles/particles_000{frame}.ply")))?);
+        let mesh = ply::read_mesh(&place.path(&format!("out/mesh/surface_000{frame}.ply")))?;
+        assert!(mesh.topology()?.is_watertight(), "frame {frame}");
+        assert!((mesh.volume() / 0.027 - 1.0).abs() < 0.3, "frame {frame} encloses {} m^3", mesh.volume());
+        assert!(place.path(&format!("out/mesh/surface_000{frame}.obj")).exists());
+    }
+    assert!(particles.iter().all(|particles| particles.len() == 216 && particles.check().is_ok()));
+    // Control: the frames are different ones.
+    assert_ne!(particles[0].positions, particles[2].positions);
+    let series = fs::read_to_string(place.path("out/particles/particles.pvd"))?;
+    assert_eq!(series.matches(".vtu\"").count(), 3, "{series}");
+    let report: Value = serde_json::from_str(&fs::read_to_string(place.path("out/run.json"))?)?;
+    assert_eq!((&report["status"], &report["complete_frames"]), (&Value::from("finished"), &Value::from(3)));
+    assert!(report["summary"]["particle_steps_per_second"].as_f64().is_some_and(|speed| speed > 0.0));
+    Ok(())
+}
+
+#[test]
+fn every_json_line_has_every_key() -> Outcome {
+    let place = Place::new()?;
+    let output = place.run_small(&["--json", "--formats", "ply"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let lines = lines(&output)?;
+    for line in &lines {
+        for key in KEYS {
+            assert!(line.get(key).is_some(), "{key} is missing in {line}");
+        }
+    }
+    let of = |event: &str| lines.iter().filter(|line| line["event"] == event).collect::<Vec<_>>();
+    assert_eq!((of("started").len(), of("frame").len(), of("finished").len()), (1, 3, 1));
+    assert_eq!(lines.first().map(|line| &line["event"]), Some(&Value::from("started")));
+    assert_eq!(lines.last().map(|line| &line["event"]), Some(&Value::from("finished")));
+    for (index, frame) in of("frame").into_iter().enumerate() {
+        assert_eq!(frame["frame"], index);
+        assert_eq!(frame["particles"], 216);
+        assert!(frame["volume"].as_f64().is_some_and(|volume| volume > 0.0));
+        assert!(frame["triangles"].as_u64().is_some_and(|count| count > 100));
+        let files = frame["files"].as_array().ok_or("no files")?;
+        assert_eq!(files.len(), 2, "{frame}");
+        for file in files {
+            assert!(place.path(file.as_str().ok_or("no name")?).exists(), "{file}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes_with_any_number_of_threads() -> Outcome {
+    let place = Place::new()?;
+    let run = |out: &str, threads: &str, more: &[&str]| {
+        let mut command =
+            place.splashdown(&["run", "small.toml", "--device", "cpu", "--no-pictures", "-q", "--out", out]);
+        command.args(more).env("RAYON_NUM_THREADS", threads).output()
+    };
+    for (out, threads) in [("one", "1"), ("two", "2"), ("eight", "8")] {
+        assert!(run(out, threads, &[])?.status.success());
+    }
+    let mut differences = 0;
+    for folder in ["particles", "mesh"] {
+        for name in names(&place.path("one").join(folder))? {
+            let bytes = |out: &str| fs::read(place.path(out).join(folder).join(&name));
+            assert_eq!(bytes("one")?, bytes("two")?, "{name}");
+            assert_eq!(bytes("one")?, bytes("eight")?, "{name}");
+            differences += usize::from(
+                name.contains("0002")
+                    && bytes("one")?
+                        != fs::read(place.path("one").join(folder).join(name.replace("0002", "0000")))?,
+            );
+        }
+    }
+    assert_eq!(differences, 2, "control: files of different times differ");
+    Ok(())
+}
+
+#[test]
+fn options_choose_what_is_written() -> Outcome {
+    let place = Place::new()?;
+    let output = place.run_small(&["--no-surface", "--frames", "1", "--formats", "vtu"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(names(&place.path("out"))?, ["particles", "run.json"]);
+    assert_eq!(
+        names(&place.path("out/particles"))?,
+        ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu"]
+    );
+
+    let output = place.run_small(&["--formats", "none", "--frames", "1", "-q"]).output()?;
+    assert!(
+        output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(names(&place.path("out"))?, ["run.json"], "the earlier run is gone");
+
+    let output = place.run_small(&["--timing", "--frames", "1", "--formats", "none"]).output()?;
+    assert!(stdout(&output).contains("| pass |"), "{}", stdout(&output));
+    Ok(())
+}
+
+#[test]
+fn a_built_in_scene_runs_by_its_name() -> Outcome {
+    let place = Place::new()?;
+    let arguments =
+        ["run", "dam-break-small", "--frames", "1", "--no-pictures", "--no-surface", "--device", "cpu"];
+    let output = place.splashdown(&arguments).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(place.path("out/dam-break-small/particles/particles_0001.ply").exists());
+    Ok(())
+}
+
+#[test]
+fn pictures_and_films_are_made() -> Outcome {
+    if !can_draw() {
+        return Ok(());
+    }
+    let place = Place::new()?;
+    let output = place
+        .splashdown(&["run", "small.toml", "--out", "out", "--device", "cpu", "--formats", "none"])
+        .output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for kind in ["surface", "particles"] {
+        let pictures: Vec<_> = (0..=2)
+            .map(|i| fs::read(place.path(&format!("out/pictures/{kind}_000{i}.png"))))
+            .collect::<Result<_, _>>()?;
+        assert!(pictures.iter().all(|bytes| bytes.starts_with(b"\x89PNG") && bytes.len() > 1000), "{kind}");
+        assert_ne!(pictures[0], pictures[2], "control: the pictures of different times differ");
+        let film = place.path(&format!("out/{kind}.mp4"));
+        if film.exists() {
+            assert!(fs::metadata(film)?.len() > 500);
+        } else {
+            assert!(stderr(&output).contains("ffmpeg"), "neither a film nor a hint: {}", stderr(&output));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn without_ffmpeg_there_are_pictures_and_the_command_for_later() -> Outcome {
+    if !can_draw() {
+        return Ok(());
+    }
+    let place = Place::new()?;
+    let mut command = place.splashdown(&[
+        "run",
+        "small.toml",
+        "--out",
+        "out",
+        "--device",
+        "cpu",
+        "--formats",
+        "none",
+        "--frames",
+        "1",
+    ]);
+    let output = command.env("PATH", "").output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for word in ["ffmpeg", "-framerate", "surface_%04d.png", "particles_%04d.png"] {
+        assert!(stderr(&output).contains(word), "{word} is missing in:\n{}", stderr(&output));
+    }
+    assert_eq!(names(&place.path("out/pictures"))?.len(), 4);
+    assert!(!place.path("out/surface.mp4").exists());
+    Ok(())
+}
+
+#[test]
+fn the_benchmark_measures_steps_and_passes() -> Outcome {
+    let output =
+        crate::place::splashdown(&["bench", "--particles", "128,1K", "--steps", "2", "--device", "cpu"])
+            .output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for word in ["| particles |", "| 128 |", "largest over the smallest", "| pass |"] {
+        assert!(stdout(&output).contains(word), "{word} is missing in:\n{}", stdout(&output));
+    }
+    let output = crate::place::splashdown(&[
+        "bench",
+        "--particles",
+        "512",
+        "--steps",
+        "2",
+        "--device",
+        "cpu",
+        "--json",
+    ])
+    .output()?;
+    let row: Value = serde_json::from_slice(&output.stdout)?;
+    assert!(row["seconds_per_step"].as_f64().is_some_and(|seconds| seconds > 0.0));
+    assert!(row["passes"].as_object().is_some_and(|passes| passes.len() > 3), "{row}");
+    Ok(())
+}

@@ -1,0 +1,188 @@
+//! The words that neither simulate nor draw: help, scenes, check, doctor, completions, and what the README says of them.
+
+use crate::place::{Outcome, Place, SMALL, splashdown, stderr, stdout};
+use serde_json::Value;
+
+#[test]
+fn the_help_reads_as_it_was_approved() -> Outcome {
+    for (name, arguments) in [
+        ("help", &["--help"][..]),
+        ("help_run", &["run", "--help"]),
+        ("help_check", &["check", "--help"]),
+        ("help_scenes", &["scenes", "--help"]),
+        ("help_bench", &["bench", "--help"]),
+    ] {
+        let output = splashdown(arguments).output()?;
+        assert!(output.status.success());
+        let text = stdout(&output).replace("splashdown.exe", "splashdown");
+        insta::assert_snapshot!(name, text);
+    }
+    Ok(())
+}
+
+#[test]
+fn wrong_words_end_with_two_and_a_hint() -> Outcome {
+    for arguments in [
+        &["rnu"][..],
+        &["run"],
+        &["run", "x.toml", "--formats", "stl"],
+        &["run", "x.toml", "--frames", "0"],
+        &["run", "x.toml", "--no-pictures", "--pictures", "surface"],
+        &["bench", "--particles", "many"],
+        &["scenes", "show", "no-such-scene"],
+    ] {
+        let output = splashdown(arguments).output()?;
+        crate::place::assert_refused(&output, 2, &[]);
+    }
+    let formats = splashdown(&["run", "x.toml", "--formats", "stl"]).output()?;
+    assert!(stderr(&formats).contains("ply") && stderr(&formats).contains("vtu"), "{}", stderr(&formats));
+    Ok(())
+}
+
+#[test]
+fn scenes_are_listed_shown_and_copied() -> Outcome {
+    let place = Place::new()?;
+    let list = stdout(&place.splashdown(&["scenes"]).output()?);
+    for name in ["dam-break", "double-dam-break", "falling-drop", "sloshing-tank", "honey", "thesis-64k"] {
+        assert!(list.lines().any(|line| line.starts_with(name)), "{name} is missing in:\n{list}");
+    }
+    let shown = stdout(&place.splashdown(&["scenes", "show", "honey"]).output()?);
+    assert!(place.splashdown(&["scenes", "copy", "honey"]).output()?.status.success());
+    assert_eq!(std::fs::read_to_string(place.path("honey.toml"))?, shown);
+
+    let again = place.splashdown(&["scenes", "copy", "honey"]).output()?;
+    crate::place::assert_refused(&again, 5, &["honey.toml", "--force"]);
+    assert!(place.splashdown(&["scenes", "copy", "honey", "--force"]).output()?.status.success());
+    let nowhere = place.splashdown(&["scenes", "copy", "honey", "missing/folder/x.toml"]).output()?;
+    crate::place::assert_refused(&nowhere, 5, &["missing"]);
+    Ok(())
+}
+
+#[test]
+fn check_prints_what_follows_from_a_scene() -> Outcome {
+    let place = Place::new()?;
+    let words = place.splashdown(&["check", "small.toml", "--device", "cpu"]).output()?;
+    assert!(words.status.success(), "{}", stderr(&words));
+    for word in ["valid", "216", "particle mass", "time step", "memory", "expected time", "estimate"] {
+        assert!(stdout(&words).contains(word), "{word} is missing in:\n{}", stdout(&words));
+    }
+    let json = place.splashdown(&["check", "small.toml", "--device", "cpu", "--json"]).output()?;
+    let report: Value = serde_json::from_slice(&json.stdout)?;
+    assert_eq!(report["particles"], 216);
+    assert_eq!(report["frames"], 2);
+    for key in
+        ["particle_mass", "support_radius", "sound_speed", "dt_estimate", "steps_estimate", "memory_forecast"]
+    {
+        assert!(report[key].as_f64().is_some_and(|number| number > 0.0), "{key} in {report}");
+    }
+    assert!(report["speed"]["expected_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0));
+    Ok(())
+}
+
+#[test]
+fn check_reports_every_problem_at_once() -> Outcome {
+    let place = Place::new()?;
+    let broken = SMALL
+        .replace("0.05", "-1")
+        .replace("frame_rate = 200", "frame_rat = 200")
+        .replace("[1, 1, 0.3]", "[1, 1]");
+    place.write("broken.toml", broken)?;
+    let words = place.splashdown(&["check", "broken.toml"]).output()?;
+    crate::place::assert_refused(
+        &words,
+        3,
+        &["broken.toml:4", "frame_rate", "fluid.particle_spacing", "-1", "domain.max"],
+    );
+    let json = place.splashdown(&["check", "broken.toml", "--json"]).output()?;
+    assert_eq!(json.status.code(), Some(3));
+    let line: Value = serde_json::from_slice(&json.stdout)?;
+    assert_eq!((&line["event"], &line["exit_code"]), (&Value::from("error"), &Value::from(3)));
+    let problems = line["problems"].as_array().ok_or("no problems")?;
+    assert!(problems.len() >= 3 && problems.iter().all(|problem| problem["message"].is_string()));
+    Ok(())
+}
+
+#[test]
+fn doctor_tells_what_is_there() -> Outcome {
+    let words = splashdown(&["doctor"]).output()?;
+    assert!(words.status.success());
+    for word in ["CPU", "threads", "simulate on", "draw on", "films"] {
+        assert!(stdout(&words).contains(word), "{word} is missing in:\n{}", stdout(&words));
+    }
+    let json: Value = serde_json::from_slice(&splashdown(&["doctor", "--json"]).output()?.stdout)?;
+    assert!(json["cpu"]["threads"].as_u64().is_some_and(|threads| threads > 0));
+    for adapter in json["adapters"].as_array().ok_or("no list")? {
+        assert!(
+            adapter["largest_particle_count"].as_u64().is_some_and(|count| count > 1_000_000),
+            "{adapter}"
+        );
+    }
+    Ok(())
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn doctor_tells_what_is_missing_and_how_to_get_it() -> Outcome {
+    let mut doctor = splashdown(&["doctor"]);
+    let output = doctor
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("PATH", "")
+        .output()?;
+    assert!(output.status.success());
+    for word in
+        ["No graphics adapter", "apt-get install mesa-vulkan-drivers", "no ffmpeg", "apt-get install ffmpeg"]
+    {
+        assert!(stdout(&output).contains(word), "{word} is missing in:\n{}", stdout(&output));
+    }
+    Ok(())
+}
+
+#[test]
+fn completions_know_every_word() -> Outcome {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let output = splashdown(&["completions", shell]).output()?;
+        assert!(output.status.success());
+        for word in ["run", "check", "doctor", "scenes", "bench", "completions", "no-surface"] {
+            assert!(stdout(&output).contains(word), "{word} is missing for {shell}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn schema_is_json_and_the_reference_lists_keys() -> Outcome {
+    let schema: Value = serde_json::from_slice(&splashdown(&["scenes", "schema"]).output()?.stdout)?;
+    assert!(schema["properties"]["fluid"].is_object());
+    let reference = stdout(&splashdown(&["scenes", "reference"]).output()?);
+    assert!(reference.contains("| `particle_spacing` |") && reference.contains("## `[[fluid.block]]`"));
+    Ok(())
+}
+
+#[test]
+fn the_readme_tells_the_truth() -> Outcome {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md"))?;
+    let help = stdout(&splashdown(&["run", "--help"]).output()?);
+    let table = readme
+        .split("Options of `run`:")
+        .nth(1)
+        .and_then(|rest| rest.split("Every line").next())
+        .ok_or("no table")?;
+    let options: Vec<&str> = table.split(['`', ' ', ',']).filter(|word| word.starts_with("--")).collect();
+    assert!(options.len() >= 10, "{options:?}");
+    for option in options {
+        assert!(help.contains(option), "the README has {option}, the help has not");
+    }
+    let codes = stdout(&splashdown(&["--help"]).output()?);
+    let codes = codes.split("Exit codes:").nth(1).ok_or("no codes")?;
+    for code in codes.split_whitespace().filter(|word| word.bytes().all(|byte| byte.is_ascii_digit())) {
+        assert!(readme.contains(&format!("| {code} |")), "the README has no exit code {code}");
+    }
+    let scene =
+        readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).ok_or("no scene")?;
+    let place = Place::new()?;
+    place.write("readme.toml", scene)?;
+    let output = place.splashdown(&["check", "readme.toml", "--device", "cpu"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    Ok(())
+}
