@@ -3,7 +3,7 @@
 //! *How it works.* The particles of an x-row of cells are contiguous. For such a row its candidates are gathered once
 //! into columns (one array per quantity), ordered by x-cell: all particles of the nine cells at x = 0, then at x = 1,
 //! and so on. The candidates of a particle in cell x are then one contiguous run, from the beginning of x-cell x - 1 to
-//! the end of x-cell x + 1, and a loop over [`LANES`] of them at a time needs no branch and no tail: what lies behind the
+//! the end of x-cell x + 1, and a loop over 8 or 16 of them at a time needs no branch and no tail: what lies behind the
 //! run is at least one support away and contributes zero, and the end is padded with particles far away.
 //!
 //! *Why not* a list of neighbours: at two spacings of support it costs more to write and read than the distance tests it
@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use crate::cells::Grid;
 
-/// Candidates per turn of the inner loops.
-pub(crate) const LANES: usize = 16;
+/// Most candidates per turn of an inner loop: 16 where few sums are kept, 8 where more would not fit the registers.
+const MOST_LANES: usize = 16;
 /// Coordinate of the padding: far from everything, and its square is finite.
 const FAR: f32 = 1e15;
 
@@ -57,13 +57,13 @@ impl<const F: usize> Window<F> {
         }
         self.starts.push(self.columns[0].len() as u32);
         for (f, column) in self.columns.iter_mut().enumerate() {
-            column.extend_from_slice(&[if f < 3 { FAR } else { 0.0 }; LANES]);
+            column.extend_from_slice(&[if f < 3 { FAR } else { 0.0 }; MOST_LANES]);
         }
     }
 
     /// The candidates of the particles in the x-cell `x`, in columns of whole lanes.
     #[inline(always)]
-    pub fn candidates(&self, x: usize) -> [&[[f32; LANES]]; F] {
+    pub fn candidates<const LANES: usize>(&self, x: usize) -> [&[[f32; LANES]]; F] {
         let (begin, end) = (self.starts[x - 1] as usize, self.starts[x + 2] as usize);
         let end = begin + (end - begin).next_multiple_of(LANES);
         std::array::from_fn(|f| self.columns[f][begin..end].as_chunks().0)
@@ -111,12 +111,15 @@ pub(crate) fn occupied<'a>(
         .map(|(x, bounds)| (x, bounds[0] as usize..bounds[1] as usize))
 }
 
-/// The sum of lanes, always in the same order.
+/// The sum of lanes, always in the same order: halves are folded onto each other.
 #[inline(always)]
-pub(crate) fn sum(lanes: [f32; LANES]) -> f32 {
-    let mut half = [0.0; 8];
-    for l in 0..8 {
-        half[l] = lanes[l] + lanes[l + 8];
+pub(crate) fn sum<const LANES: usize>(mut lanes: [f32; LANES]) -> f32 {
+    let mut width = LANES;
+    while width > 1 {
+        width /= 2;
+        for l in 0..width {
+            lanes[l] += lanes[l + width];
+        }
     }
-    ((half[0] + half[4]) + (half[2] + half[6])) + ((half[1] + half[5]) + (half[3] + half[7]))
+    lanes[0]
 }

@@ -5,8 +5,10 @@ use crate::boundary::WallKernel;
 use crate::cells::Grid;
 use crate::kernel::Kernel;
 use crate::passes::Params;
-use crate::passes::rows::{self, LANES, Window};
+use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
+
+const LANES: usize = 16;
 
 pub(super) fn density<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, cell_start, positions, wall_table, densities] = slots else { unreachable!() };
@@ -59,7 +61,7 @@ impl<K: Kernel> Leaf for Row<'_, K> {
         });
         let first = self.cell_start[row] as usize;
         for (x, places) in rows::occupied(self.grid, self.cell_start, row) {
-            let [xs, ys, zs] = self.window.candidates(x);
+            let [xs, ys, zs] = self.window.candidates::<LANES>(x);
             for i in places {
                 let p = positions[i];
                 let mut lanes = [0.0; LANES];

@@ -7,9 +7,11 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::boundary::{WallKernel, Walls};
 use crate::cells::Grid;
 use crate::kernel::{Kernel, SMALLEST_Q, max};
-use crate::passes::rows::{self, LANES, Window};
+use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
 use crate::passes::{Params, StepState};
+
+const LANES: usize = 8;
 
 pub(super) fn momentum<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [
@@ -160,7 +162,7 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
 
         let first = cell_start[self.row] as usize;
         for (x, places) in rows::occupied(grid, cell_start, self.row) {
-            let c = self.window.candidates(x);
+            let c = self.window.candidates::<LANES>(x);
             for i in places {
                 let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
                 let specific = pressure / (rho * rho);

@@ -4,9 +4,11 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::boundary::{KernelPair, Walls};
 use crate::cells::Grid;
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
-use crate::passes::rows::{self, LANES, Window};
+use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
 use crate::passes::{Params, StepState};
+
+const LANES: usize = 8;
 
 pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, positions, velocities, densities, wall_table, accelerations] =
@@ -97,7 +99,7 @@ impl Leaf for Row<'_> {
         let friction = params.viscosity * params.rest_density;
         let first = cell_start[row] as usize;
         for (x, places) in rows::occupied(grid, cell_start, row) {
-            let c = window.candidates(x);
+            let c = window.candidates::<LANES>(x);
             for i in places {
                 let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
                 let mut sums = [[0.0; LANES]; 7];

@@ -6,8 +6,10 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::cells::Grid;
 use crate::kernel::Kernel;
 use crate::passes::Params;
-use crate::passes::rows::{self, LANES, Window};
+use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
+
+const LANES: usize = 8;
 
 pub(super) fn normals<K: Kernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, cell_start, positions, densities, normals] = slots else { unreachable!() };
@@ -46,7 +48,7 @@ impl<K: Kernel> Leaf for Row<'_, K> {
         });
         let first = self.cell_start[row] as usize;
         for (x, places) in rows::occupied(self.grid, self.cell_start, row) {
-            let [xs, ys, zs, specific] = self.window.candidates(x);
+            let [xs, ys, zs, specific] = self.window.candidates::<LANES>(x);
             for i in places {
                 let p = positions[i];
                 let mut sums = [[0.0; LANES]; 3];
