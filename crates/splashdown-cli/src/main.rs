@@ -29,6 +29,7 @@ use args::{Arguments, Command};
 use exit::Failure;
 
 fn main() -> ExitCode {
+    quieten_drivers();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -43,6 +44,16 @@ fn main() -> ExitCode {
             console::note(format!("error: {}", failure.message.trim_start_matches("error: ")));
             failure.code()
         }
+    }
+}
+
+/// Mesa prints "error: XDG_RUNTIME_DIR is invalid or not set" whenever adapters are listed on a machine without a desktop.
+/// It is harmless, looks like an error of this program, and any folder in that variable silences it.
+fn quieten_drivers() {
+    const VARIABLE: &str = "XDG_RUNTIME_DIR";
+    if cfg!(target_os = "linux") && std::env::var_os(VARIABLE).is_none() {
+        // SAFETY: this is the first thing the program does, so no other thread reads the environment.
+        unsafe { std::env::set_var(VARIABLE, std::env::temp_dir()) };
     }
 }
 
