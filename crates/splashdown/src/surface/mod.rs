@@ -32,6 +32,8 @@ mod reconstruct;
 mod smooth;
 mod spline;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod volume;
 
 pub use error::SurfaceError;

@@ -162,10 +162,10 @@ impl Lattice {
     fn estimate(&mut self, params: &SurfaceParams) {
         let particles = f64::from(self.particle_capacity);
         let cells = f64::from(params.particle_spacing / params.cell_size);
-        let vertices = (1.5 * particles * (cells / 2.0).powi(2) + 1024.0).min(f64::from(1 << 30));
+        let vertices = (1.5 * particles * (cells / 2.0).powi(2) + 4096.0).min(f64::from(1 << 30));
         let bulk = particles * (cells / f64::from(SIDE)).powi(3);
         let skin = particles * (cells / f64::from(SIDE)).powi(2);
-        self.block_capacity = (2.0 * (bulk + skin) + 64.0).min(f64::from(self.block_count)) as u32;
+        self.block_capacity = (2.0 * (bulk + skin) + 512.0).min(f64::from(self.block_count)) as u32;
         self.vertex_capacity = vertices as u32;
         self.triangle_capacity = 2 * self.vertex_capacity;
     }

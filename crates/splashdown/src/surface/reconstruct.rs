@@ -34,15 +34,7 @@ pub fn reconstruct(
     if finite.is_empty() {
         return Ok((Mesh::default(), SurfaceStats { not_finite, ..SurfaceStats::default() }));
     }
-    let grid = grid_over(&finite, params)?;
-    let (sorted, cell_start) = sort_by_cell(&grid, &finite);
-    let mut input = SurfaceInput {
-        positions: executor.create_from("surface particles", &sorted)?,
-        cell_start: executor.create_from("surface cell starts", &cell_start)?,
-        grid: executor.create_uniform("surface grid", &grid)?,
-        grid_host: grid,
-        particle_capacity: sorted.len() as u32,
-    };
+    let mut input = upload(executor, &finite, params)?;
     let mut surface = Surface::new(executor, *params, input)?;
     let stats = surface.extract(executor)?;
     let mesh = surface.mesh(executor)?;
@@ -50,6 +42,23 @@ pub fn reconstruct(
     executor.resize(&mut input.positions, 0)?;
     executor.resize(&mut input.cell_start, 0)?;
     Ok((mesh, SurfaceStats { not_finite, ..stats }))
+}
+
+/// Sorts points by cell and hands them to the device.
+pub(super) fn upload(
+    executor: &mut Executor,
+    points: &[Vec3],
+    params: &SurfaceParams,
+) -> Result<SurfaceInput, SurfaceError> {
+    let grid = grid_over(points, params)?;
+    let (sorted, cell_start) = sort_by_cell(&grid, points);
+    Ok(SurfaceInput {
+        positions: executor.create_from("surface particles", &sorted)?,
+        cell_start: executor.create_from("surface cell starts", &cell_start)?,
+        grid: executor.create_uniform("surface grid", &grid)?,
+        grid_host: grid,
+        particle_capacity: sorted.len() as u32,
+    })
 }
 
 /// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that there are not many more cells than particles.

@@ -1,0 +1,189 @@
+//! Every pass on the GPU against its twin on the CPU, each from equal input.
+//!
+//! The two executors get the same buffers in the same order, so that one set of names serves both. Before each command all of the CPU's
+//! buffers are copied to the GPU; after it, all are compared: what the pass wrote, and that it wrote nothing else. New
+//! buffers are poisoned.
+
+use glam::{UVec2, Vec3, Vec4};
+use splashdown_gpu::{Command, CpuExecutor, Executor, GpuExecutor, Recording, testing};
+
+use super::mesh::Buffers;
+use super::params::SurfaceParams;
+use super::{Surface, reconstruct};
+
+const SPACING: f32 = 0.05;
+
+/// A jittered ball of particles, a thin sheet through its middle, a lone particle, two in one place.
+fn cloud() -> Vec<Vec3> {
+    let unit = |i: u32| testing::noise(i) as f32 / u32::MAX as f32 - 0.5;
+    let mut points = Vec::new();
+    for i in 0..9 * 9 * 9_u32 {
+        let lattice = Vec3::new((i % 9) as f32, (i / 9 % 9) as f32, (i / 81) as f32) - 4.0;
+        let jitter = 0.3 * Vec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2));
+        if lattice.length() < 4.2 || lattice.y == 0.0 {
+            points.push(SPACING * (lattice + jitter));
+        }
+    }
+    points.extend([Vec3::new(0.4, 0.3, 0.1), Vec3::new(0.4, -0.3, 0.1), Vec3::new(0.4, -0.3, 0.1)]);
+    points
+}
+
+/// The first place where two columns differ by more than `tolerance` (equal bits never differ, NaN or not).
+fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<String> {
+    assert_eq!(cpu.len(), gpu.len());
+    let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || (a - b).abs() <= tolerance * (1.0 + a.abs());
+    let place = (0..cpu.len()).find(|&i| !same(cpu[i], gpu[i]))?;
+    Some(format!("{what}[{place}]: CPU {}, GPU {}", cpu[place], gpu[place]))
+}
+
+/// Does something to every buffer of the extraction.
+macro_rules! for_each_buffer {
+    ($b:expr, $buffer:ident, $name:ident => $body:block) => {
+        for_each_buffer!(@ $b, $buffer, $name, $body;
+            samples crowding marks mark_starts block_slot block_list values signs rows vertex_counts triangle_counts
+            vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertices normals
+            indices valences ring_starts rings relaxed)
+    };
+    (@ $b:expr, $buffer:ident, $name:ident, $body:block; $($field:ident)*) => {
+        $({ let $buffer = $b.$field; let $name = stringify!($field); $body })*
+    };
+}
+
+fn copy_all(b: &Buffers, from: &mut Executor, to: &mut Executor) {
+    for_each_buffer!(b, buffer, _name => {
+        let data = from.read(buffer).unwrap();
+        to.write(buffer, &data).unwrap();
+    });
+}
+
+/// Rings have no order until they are sorted; this compares them as sets.
+fn sort_rings(starts: &[u32], rings: &mut [UVec2]) {
+    for range in starts.windows(2) {
+        // Before the first scan the starts are poison.
+        if let Some(ring) = rings.get_mut(range[0] as usize..range[1] as usize) {
+            ring.sort_unstable_by_key(|pair| pair.x);
+        }
+    }
+}
+
+/// What differs between the executors after a command.
+fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let values = cpu.read(b.values).unwrap();
+    for_each_buffer!(b, buffer, name => {
+        let (mut here, mut there) = (cpu.read(buffer).unwrap(), gpu.read(buffer).unwrap());
+        match name {
+            // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8, and the hardware's square root.
+            "samples" | "crowding" | "values" | "vertices" | "relaxed" | "normals" => {
+                // A normal is a difference of such values divided by its length, which can be a hundredth of them.
+                let tolerance = if name == "normals" { 5e-4 } else { 1e-5 };
+                let (here, there) = (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
+                wrong.extend(difference(name, here, there, tolerance));
+            }
+            "signs" => {
+                let (here, there): (&[u32], &[u32]) =
+                    (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
+                for (row, (a, b)) in here.iter().zip(there).enumerate() {
+                    // A node closer to the iso level than rounding may lie on either side.
+                    let certain = (0..32).filter(|i| i / 8 > 0 || (values[8 * row + i] - iso).abs() > 1e-5);
+                    if certain.into_iter().any(|i| (a ^ b) >> i & 1 == 1) {
+                        wrong.push(format!("signs of row {row}: CPU {a:b}, GPU {b:b}"));
+                    }
+                }
+            }
+            _ => {
+                if name == "rings" {
+                    let starts = cpu.read(b.ring_starts).unwrap();
+                    sort_rings(&starts, bytemuck::cast_slice_mut(&mut here));
+                    sort_rings(&starts, bytemuck::cast_slice_mut(&mut there));
+                }
+                let (here, there): (&[u32], &[u32]) =
+                    (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
+                if let Some(i) = (0..here.len()).find(|&i| here[i] != there[i]) {
+                    wrong.push(format!("{name}[{i}]: CPU {}, GPU {}", here[i], there[i]));
+                }
+            }
+        }
+    });
+    wrong
+}
+
+fn prepare(executor: &mut Executor, params: SurfaceParams, capacity: Option<u32>) -> Surface {
+    executor.poison();
+    let input = reconstruct::upload(executor, &cloud(), &params).unwrap();
+    match capacity {
+        None => Surface::new(executor, params, input).unwrap(),
+        Some(few) => Surface::with_capacity(executor, params, input, few, 8 * few, 12 * few).unwrap(),
+    }
+}
+
+fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Option<u32>) {
+    let mut cpu = Executor::from(CpuExecutor::new());
+    let surface = prepare(&mut cpu, params, capacity);
+    prepare(gpu, params, capacity);
+    for command in surface.recording.commands.clone() {
+        let label = match &command {
+            Command::Dispatch { pass, .. } => pass.label.to_owned(),
+            other => format!("{other:?}"),
+        };
+        copy_all(&surface.b, &mut cpu, gpu);
+        let one = Recording { label: label.clone(), commands: vec![command] };
+        cpu.run(&one).unwrap();
+        gpu.run(&one).unwrap();
+        let wrong = compare(&surface.b, params.iso_level, &mut cpu, gpu);
+        assert!(wrong.is_empty(), "{label}: {}", wrong.join("\n"));
+    }
+    let status = cpu.read(surface.b.status).unwrap()[0];
+    assert_eq!(status.overflowed(), capacity.is_some(), "{status:?}");
+    if capacity.is_none() {
+        let topology = surface.mesh(&mut cpu).unwrap().topology().unwrap();
+        assert!(topology.is_watertight() && topology.components == 3, "{topology}");
+    }
+}
+
+#[test]
+fn every_pass_agrees_with_its_twin() {
+    let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_twin") else { return };
+    for smoothing_iterations in [0, 3] {
+        let params = SurfaceParams { smoothing_iterations, ..SurfaceParams::new(SPACING) };
+        command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, None);
+    }
+}
+
+/// With room for less than there is, nothing is written outside on either side, and both leave out the same.
+#[test]
+fn every_pass_agrees_with_its_twin_where_there_is_no_room() {
+    let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_twin_where_there_is_no_room") else {
+        return;
+    };
+    let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
+    for few in [5, 70] {
+        command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, Some(few));
+    }
+}
+
+/// The control: the smallest wrong changes that a comparison must find.
+#[test]
+fn the_comparison_finds_a_wrong_bit_and_a_wrong_digit() {
+    let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
+    let (mut a, mut b) = (Executor::from(CpuExecutor::new()), Executor::from(CpuExecutor::new()));
+    let surface = prepare(&mut a, params, None);
+    prepare(&mut b, params, None);
+    a.run(&surface.recording).unwrap();
+    copy_all(&surface.b, &mut a, &mut b);
+    assert!(compare(&surface.b, params.iso_level, &mut a, &mut b).is_empty());
+
+    let values = a.read(surface.b.values).unwrap();
+    let mut changed = values.clone();
+    changed[values.iter().position(|&value| value > 0.1).unwrap()] *= 1.0001;
+    b.write(surface.b.values, &changed).unwrap();
+    b.write(surface.b.vertices, &[Vec4::splat(0.001)]).unwrap();
+    let mut rings = a.read(surface.b.rings).unwrap();
+    rings[0].y += 1;
+    b.write(surface.b.rings, &rings).unwrap();
+    let mut signs = a.read(surface.b.signs).unwrap();
+    signs[0] ^= 1;
+    b.write(surface.b.signs, &signs).unwrap();
+    let wrong = compare(&surface.b, params.iso_level, &mut a, &mut b);
+    assert_eq!(wrong.len(), 4, "{wrong:?}");
+}
