@@ -66,7 +66,7 @@ impl Liquid {
         Liquid {
             absorption: absorption.map(|per_size| per_size / size),
             scattering: scattering / size,
-            film: 0.13,
+            film: 0.20,
             colour,
             refractive_index,
             roughness: 0.16,

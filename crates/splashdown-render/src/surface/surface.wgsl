@@ -53,7 +53,8 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     let facing = max(dot(normal, to_eye), 0.0);
 
     let mirrored = reflect(-to_eye, normal);
-    let reflection = environment(in.world, mirrored, 6.0 * globals.pixel_angle);
+    // A real sky is brighter than a floor under it; the background is drawn darker for the eye's sake.
+    let reflection = 1.5 * environment(in.world, mirrored, 6.0 * globals.pixel_angle);
 
     let uv_here = in.position.xy / globals.picture_size;
     let path = max(textureSampleLevel(thickness, scene_sampler, uv_here, 0.0).r, 0.0);
