@@ -8,6 +8,8 @@
 //! 2. A [`Recording`] is a list of commands (dispatches, copies, clears, bounded repeats) over buffers.
 //! 3. An [`Executor`] owns the buffers and runs recordings: on the GPU ([`GpuExecutor`]) or on the CPU
 //!    ([`CpuExecutor`]), from equal input to comparable output.
+//! 4. On these stand four primitives, each a folder that shows how a pass is written: [`scan`], [`reduce`],
+//!    [`compact`] and [`sort`].
 //!
 //! ```
 //! use splashdown_gpu::{CpuExecutor, Executor, Recording, scan};

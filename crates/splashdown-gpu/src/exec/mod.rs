@@ -160,7 +160,8 @@ impl Executor {
         either!(self, e => e.table().poison = true);
     }
 
-    /// From now on every dispatch is timed; on a GPU this separates dispatches and waits after every submission.
+    /// From now on dispatches are timed: all of them on the CPU, the first 2,048 of each recording on a GPU, where this
+    /// separates dispatches and waits after every submission.
     ///
     /// Returns false where the device has no timestamps.
     pub fn enable_timing(&mut self) -> bool {

@@ -10,6 +10,13 @@
 //! Inside a workgroup each invocation sums sixteen counts in registers, and sixteen invocations join the 256 sums: two
 //! barriers a round where the usual tree has sixteen.
 //!
+//! # What it costs
+//!
+//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 counts take 0.04 ms by the CPU side
+//! and 0.28 ms on software Vulkan (lavapipe of Mesa 22.3.6), a million counts 0.3 ms and 2.9 ms. One workgroup
+//! alone is as fast as blocks there up to 16,384 counts (0.14 ms); a graphics card likes blocks earlier, but has
+//! little to lose at such lengths.
+//!
 //! # Why not the other way
 //!
 //! *Decoupled look-back* (one pass, each block waiting for its predecessor) reads memory once instead of twice, but

@@ -14,6 +14,11 @@
 //! Pairs are ordered by key, then by value. If the values differ (numbers of particles do), the order is total and the
 //! result repeats bit by bit.
 //!
+//! # What it costs
+//!
+//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 pairs take 4 ms by the CPU side and
+//! 27 ms on software Vulkan (lavapipe of Mesa 22.3.6), where the scan of a counting sort takes 0.3 ms.
+//!
 //! # Why not the other way
 //!
 //! It *is* the other way: n log² n comparisons, where a counting sort by cell (histogram, [scan](crate::scan), scatter)
