@@ -69,7 +69,7 @@ pub struct Compact {
 
 impl Compact {
     /// Where in `counted` the number of set flags lies; before it are the arguments of
-    /// [`Grid::Indirect`](crate::Grid::Indirect).
+    /// [`Grid::Indirect`].
     pub const COUNT_WORD: u32 = 3;
 
     /// Prepares compactions of `len` flags into lists over which passes with `workgroup_size` invocations run.
@@ -97,7 +97,7 @@ impl Compact {
     }
 
     /// Appends: `indices` becomes the ascending list of every `i` with `flags[i] != 0`, as many as it has room for, and
-    /// `counted` becomes four words: the arguments of a [`Grid::Indirect`](crate::Grid::Indirect) over the
+    /// `counted` becomes four words: the arguments of a [`Grid::Indirect`] over the
     /// list, then the number of flags set, which may be more than fit. Passes over the list check their number against
     /// that number and their list's length.
     ///
