@@ -15,7 +15,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     setup::ensure_requirements()?;
     let binary = process::build_release()?;
     let mut command = process::command(&binary);
-    command.args(["run", "scenes/dam-break.toml", "--formats", "ply,vtu,obj"]);
+    command.args(["run", "scenes/dam-break.toml", "--formats", "ply,vtu"]);
     if !arguments.iter().any(|argument| argument == "--out" || argument.starts_with("--out=")) {
         command.args(["--out", OUT]);
     }

@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 
 use crate::layers::{Outcome, Report, filtered, succeeds};
-use crate::process::{command, cargo, say};
+use crate::process::{cargo, command, say};
 use crate::setup;
 
 /// Systems that are checked without being there.
@@ -35,10 +35,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ]))
     });
     report.layer("tests", |filter| {
-        filtered(
-            &mut cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]),
-            filter,
-        )
+        filtered(&mut cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]), filter)
     });
     if fast {
         say("\n--fast: documentation and other systems were left out.");

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use splashdown::SimulationError;
 use splashdown::scene::SceneErrors;
+use splashdown::surface::SurfaceError;
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;
@@ -77,7 +78,9 @@ impl From<SceneErrors> for Failure {
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
         let exit = match &error {
-            SimulationError::Gpu(_) | SimulationError::TooMany { .. } => Exit::Device,
+            SimulationError::Gpu(_)
+            | SimulationError::Surface(SurfaceError::Gpu(_))
+            | SimulationError::TooMany { .. } => Exit::Device,
             SimulationError::Sample(_) => Exit::Scene,
             _ => Exit::Failed,
         };
