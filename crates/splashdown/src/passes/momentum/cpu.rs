@@ -158,6 +158,7 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
         let laminar = 10.0 * params.viscosity * volume;
         let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
         let diffusion = params.density_diffusion * support * params.sound_speed;
+        let tension = -2.0 * params.surface_tension * params.rest_density;
         let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * self.body;
 
         let first = cell_start[self.row] as usize;
@@ -183,15 +184,6 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
                         sums[0][l] += along * dx;
                         sums[1][l] += along * dy;
                         sums[2][l] += along * dz;
-                        if TENSION {
-                            let inside = if q < 1.0 { 1.0 } else { 0.0 };
-                            let k2 = -params.surface_tension * 2.0 * params.rest_density / (rho + c[7][k][l])
-                                * inside;
-                            let pull = mass * scale2 * scale2 * cohesion(q) / max(q, SMALLEST_Q);
-                            sums[0][l] += k2 * (pull * dx + n.x - c[8][k][l]);
-                            sums[1][l] += k2 * (pull * dy + n.y - c[9][k][l]);
-                            sums[2][l] += k2 * (pull * dz + n.z - c[10][k][l]);
-                        }
                         if CONTINUITY {
                             // The padding has density zero; it must not divide.
                             let other = max(c[7][k][l], f32::MIN_POSITIVE);
@@ -199,6 +191,20 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
                             let excess = other - rho + level;
                             let inside = if q < 1.0 { g * mass / other } else { 0.0 };
                             sums[3][l] += inside * (rho * vx - diffusion * excess * r2 / soft_r2);
+                        }
+                    }
+                    if TENSION {
+                        // A loop of its own: in one with the rest the compiler gives up vectorising.
+                        let (rhos, nx, ny, nz) = (&c[7][k], &c[8][k], &c[9][k], &c[10][k]);
+                        for l in 0..LANES {
+                            let (dx, dy, dz) = (p.x - xs[l], p.y - ys[l], p.z - zs[l]);
+                            let q = (dx * dx + dy * dy + dz * dz).sqrt() * scale;
+                            let inside = if q < 1.0 { tension } else { 0.0 };
+                            let factor = inside / (rho + rhos[l]);
+                            let pull = mass * scale2 * scale2 * cohesion(q) / max(q, SMALLEST_Q);
+                            sums[0][l] += factor * (pull * dx + n.x - nx[l]);
+                            sums[1][l] += factor * (pull * dy + n.y - ny[l]);
+                            sums[2][l] += factor * (pull * dz + n.z - nz[l]);
                         }
                     }
                 }

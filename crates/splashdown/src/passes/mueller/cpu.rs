@@ -8,7 +8,7 @@ use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
 use crate::passes::{Params, StepState};
 
-const LANES: usize = 8;
+const LANES: usize = 16;
 
 pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, positions, velocities, densities, wall_table, accelerations] =
@@ -104,20 +104,39 @@ impl Leaf for Row<'_> {
                 let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
                 let mut sums = [[0.0; LANES]; 7];
                 for k in 0..c[0].len() {
-                    let [xs, ys, zs, us, vs, ws, ps, volumes] = std::array::from_fn(|f| &c[f][k]);
+                    // One simple loop per quantity: the compiler vectorises each, and gives up on all of them in one.
+                    let (xs, ys, zs, us) = (&c[0][k], &c[1][k], &c[2][k], &c[3][k]);
+                    let (vs, ws, ps, volumes) = (&c[4][k], &c[5][k], &c[6][k], &c[7][k]);
+                    let mut d = [[0.0; LANES]; 3];
+                    let mut q = [0.0; LANES];
                     for l in 0..LANES {
-                        let (dx, dy, dz) = (p.x - xs[l], p.y - ys[l], p.z - zs[l]);
-                        let q = (dx * dx + dy * dy + dz * dz).sqrt() * scale;
-                        let push = -volumes[l] * 0.5 * (pressure + ps[l]) * Spiky::g(q);
-                        let rub = friction * volumes[l] * viscosity_laplacian(q);
-                        sums[0][l] += push * dx + rub * (us[l] - v.x);
-                        sums[1][l] += push * dy + rub * (vs[l] - v.y);
-                        sums[2][l] += push * dz + rub * (ws[l] - v.z);
-                        let slope = volumes[l] * Poly6::g(q);
-                        sums[3][l] += slope * dx;
-                        sums[4][l] += slope * dy;
-                        sums[5][l] += slope * dz;
-                        sums[6][l] += volumes[l] * Poly6::laplacian(q);
+                        d[0][l] = p.x - xs[l];
+                        d[1][l] = p.y - ys[l];
+                        d[2][l] = p.z - zs[l];
+                        q[l] = (d[0][l] * d[0][l] + d[1][l] * d[1][l] + d[2][l] * d[2][l]).sqrt() * scale;
+                    }
+                    let mut push = [0.0; LANES];
+                    let mut rub = [0.0; LANES];
+                    let mut slope = [0.0; LANES];
+                    for l in 0..LANES {
+                        push[l] = -volumes[l] * 0.5 * (pressure + ps[l]) * Spiky::g(q[l]);
+                    }
+                    for l in 0..LANES {
+                        rub[l] = friction * volumes[l] * viscosity_laplacian(q[l]);
+                    }
+                    for l in 0..LANES {
+                        slope[l] = volumes[l] * Poly6::g(q[l]);
+                        sums[6][l] += volumes[l] * Poly6::laplacian(q[l]);
+                    }
+                    for l in 0..LANES {
+                        sums[0][l] += push[l] * d[0][l] + rub[l] * (us[l] - v.x);
+                        sums[1][l] += push[l] * d[1][l] + rub[l] * (vs[l] - v.y);
+                        sums[2][l] += push[l] * d[2][l] + rub[l] * (ws[l] - v.z);
+                    }
+                    for axis in 0..3 {
+                        for l in 0..LANES {
+                            sums[3 + axis][l] += slope[l] * d[axis][l];
+                        }
                     }
                 }
                 let [fx, fy, fz, nx, ny, nz, laplacian] = sums.map(|lanes| scale5 * rows::sum(lanes));

@@ -9,7 +9,7 @@ use crate::passes::Params;
 use crate::passes::rows::{self, Window};
 use crate::passes::simd::{Leaf, vectorised};
 
-const LANES: usize = 8;
+const LANES: usize = 16;
 
 pub(super) fn normals<K: Kernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, cell_start, positions, densities, normals] = slots else { unreachable!() };
