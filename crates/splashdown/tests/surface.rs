@@ -27,7 +27,8 @@ fn ball(center: Vec3, radius: f32) -> Vec<[f32; 3]> {
     points.filter(|p| p.length() <= radius).map(|p| (center + p).to_array()).collect()
 }
 
-/// Closed, manifold and oriented outwards, every normal of unit length and on the outer side of its triangles.
+/// Closed, manifold and oriented outwards, every normal of unit length and on the outer side of its
+/// triangles.
 fn assert_sound(mesh: &Mesh, stats: &SurfaceStats) {
     mesh.check().unwrap();
     let topology = mesh.topology().unwrap();
@@ -60,13 +61,14 @@ fn a_ball_has_a_sphere_of_its_volume_around_it() {
             let topology = mesh.topology().unwrap();
             assert_eq!(topology.euler_characteristic, 2, "{name}: {topology}");
             assert_eq!(stats.not_finite, 0);
-            // The iso level 0.6 lies a little inside the particles' outer faces, and marching cubes and smoothing cut convex
-            // corners: a twentieth of a spacing all round, 3 * 0.05 / 10 of the volume, and the lattice's own roughness.
+            // The iso level 0.6 lies a little inside the particles' outer faces, and marching cubes and
+            // smoothing cut convex corners: a twentieth of a spacing all round, 3 * 0.05 / 10 of the volume,
+            // and the lattice's own roughness.
             let expected = points.len() as f64 * f64::from(SPACING).powi(3);
             let ratio = mesh.volume() / expected;
             assert!((0.93..1.03).contains(&ratio), "{name}, {smoothing_iterations}: {ratio}");
             for (vertex, normal) in mesh.vertices.iter().zip(&mesh.normals) {
-                let outwards = (Vec3::from(*vertex) - Vec3::new(0.3, -0.2, 7.0)).normalize();
+                let outwards = (Vec3::from(*vertex) - Vec3::new(0.3, -0.2, 7.0)).normalize_or_zero();
                 assert!(outwards.dot(Vec3::from(*normal)) > 0.6, "{name}: {vertex:?} {normal:?}");
             }
         }
@@ -92,7 +94,7 @@ fn smoothing_removes_the_particles_bumps() {
         let error = mesh
             .triangles
             .iter()
-            .map(|t| 1.0 - normal(t).dot(Vec3::from(mesh.vertices[t[0] as usize]).normalize()));
+            .map(|t| 1.0 - normal(t).dot(Vec3::from(mesh.vertices[t[0] as usize]).normalize_or_zero()));
         error.sum::<f32>() / mesh.triangles.len() as f32
     };
     let (rough, smooth) = (roughness(0, &mut executor), roughness(25, &mut executor));
@@ -150,7 +152,8 @@ fn wrong_parameters_and_hopeless_regions_are_refused() {
     assert!(matches!(spread, SurfaceError::TooLarge { .. }), "{spread}");
 }
 
-/// Ways to place particles that have broken surface extractors: random, in one place, on the borders of cells and blocks.
+/// Ways to place particles that have broken surface extractors: random, in one place, on the borders of cells
+/// and blocks.
 fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
     let random = prop::collection::vec(prop::array::uniform3(-0.5_f32..0.5), 1..120);
     let on_nodes = prop::collection::vec(prop::array::uniform3(-12_i32..12), 1..120)
@@ -167,7 +170,8 @@ fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
 }
 
 fn parameters() -> impl Strategy<Value = SurfaceParams> {
-    // Cells from a quarter of a spacing to larger than the support; levels from the outermost shell to the cores.
+    // Cells from a quarter of a spacing to larger than the support; levels from the outermost shell to the
+    // cores.
     (0.25_f32..3.0, 1.2_f32..3.0, 0.02_f32..1.1, 0..4_u32).prop_map(
         |(cell, support, iso_level, smoothing_iterations)| SurfaceParams {
             cell_size: cell * SPACING,

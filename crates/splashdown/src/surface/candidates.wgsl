@@ -10,5 +10,6 @@ fn cell_range(low: vec3<f32>, high: vec3<f32>) -> CellRange {
     let first = floor((low - grid.origin) * inverse);
     let last = floor((high - grid.origin) * inverse) + 1.0;
     // Empty where the box lies outside.
-    return CellRange(vec3<u32>(clamp(first, vec3<f32>(0.0), size)), vec3<u32>(clamp(last, vec3<f32>(0.0), size)));
+    let zero = vec3<f32>(0.0);
+    return CellRange(vec3<u32>(clamp(first, zero, size)), vec3<u32>(clamp(last, zero, size)));
 }

@@ -21,8 +21,8 @@ pub enum SurfaceError {
     },
     /// The search grid is finer than the kernel.
     #[error(
-        "the neighbour grid's cells are {cell_size} m wide, the surface's support_radius is {support_radius} m; \
-         cells must be at least as wide as the support: lower surface.support_radius"
+        "the neighbour grid's cells are {cell_size} m wide, the surface's support_radius is {support_radius} \
+         m; cells must be at least as wide as the support: lower surface.support_radius"
     )]
     GridTooFine {
         /// The grid's cell size in m.
@@ -32,8 +32,8 @@ pub enum SurfaceError {
     },
     /// The region is too large for its resolution.
     #[error(
-        "a region of {size:?} m at a surface cell_size of {cell_size} m needs {blocks:.3e} blocks of 8x8x8 nodes, at most {allowed} fit; \
-         use a larger cell_size or look for particles far from the others"
+        "a region of {size:?} m at a surface cell_size of {cell_size} m needs {blocks:.3e} blocks of 8x8x8 nodes, \
+         at most {allowed} fit; use a larger cell_size or look for particles far from the others"
     )]
     TooLarge {
         /// Extent in m.
@@ -47,8 +47,8 @@ pub enum SurfaceError {
     },
     /// The region's coordinates are so large that `f32` cannot tell neighbouring nodes apart.
     #[error(
-        "coordinates up to {farthest} m cannot be told apart at a surface cell_size of {cell_size} m in 32-bit numbers \
-         (at most {allowed} m); use a larger cell_size or move the fluid nearer to the origin"
+        "coordinates up to {farthest} m cannot be told apart at a surface cell_size of {cell_size} m in 32-bit \
+         numbers (at most {allowed} m); use a larger cell_size or move the fluid nearer to the origin"
     )]
     TooFar {
         /// The largest coordinate in m.

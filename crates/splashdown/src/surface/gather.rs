@@ -1,7 +1,8 @@
 //! The particles near a box, copied side by side for the processor's wide lanes.
 //!
-//! The particles of a box of cells lie in a few contiguous ranges of the sorted arrays, one per row of cells. Copying them once into short
-//! columns, padded to whole vectors, makes the loops that visit them thousands of times branchless; they stay in the first-level cache.
+//! The particles of a box of cells lie in a few contiguous ranges of the sorted arrays, one per row of cells.
+//! Copying them once into short columns, padded to whole vectors, makes the loops that visit them thousands
+//! of times branchless; they stay in the first-level cache.
 
 use glam::{Vec3, Vec4};
 
@@ -12,16 +13,23 @@ pub(crate) const LANES: usize = 8;
 /// So far away that nothing reaches it, and its square is still a number.
 const FAR: f32 = 1e18;
 
-/// Particles in columns. The columns have equal length, a multiple of [`LANES`]; padding lies far away and weighs nothing.
+/// Particles in columns of equal length, a multiple of [`LANES`]; padding lies far away and weighs nothing.
 #[derive(Default)]
 pub(crate) struct Gathered {
-    pub x: Vec<f32>,
-    pub y: Vec<f32>,
-    pub z: Vec<f32>,
-    /// The fourth component of what was gathered.
-    pub w: Vec<f32>,
-    /// A further value per particle, where asked for.
-    pub extra: Vec<f32>,
+    /// x, y, z, the fourth component of what was gathered, and a further value where asked for. Longer than
+    /// `len` after a fuller neighbourhood.
+    columns: [Vec<f32>; 5],
+    len: usize,
+}
+
+/// The columns of what was gathered.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a> {
+    pub x: &'a [f32],
+    pub y: &'a [f32],
+    pub z: &'a [f32],
+    pub w: &'a [f32],
+    pub extra: &'a [f32],
 }
 
 /// The cells that a box touches, both ends included; `None` if it lies outside the grid.
@@ -39,8 +47,8 @@ pub(crate) fn cell_range(grid: &Grid, low: Vec3, high: Vec3) -> Option<([u32; 3]
 }
 
 impl Gathered {
-    /// Copies the particles of the cells that the box touches, in the order of the sorted arrays; those outside the box itself are
-    /// left out. `extra`, unless empty, is gathered too.
+    /// Copies the particles of the cells that the box touches, in the order of the sorted arrays; those
+    /// outside the box itself are left out. `extra`, unless empty, is gathered too.
     pub fn fill(
         &mut self,
         grid: &Grid,
@@ -50,48 +58,66 @@ impl Gathered {
         low: Vec3,
         high: Vec3,
     ) {
-        self.clear();
-        let Some((first, last)) = cell_range(grid, low, high) else { return };
+        self.len = 0;
+        if let Some(cells) = cell_range(grid, low, high) {
+            self.fill_from(grid, cells, cell_start, values, extra, (low, high));
+        }
+    }
+
+    /// As [`fill`](Self::fill), from these cells only (first and last along each axis).
+    pub fn fill_from(
+        &mut self,
+        grid: &Grid,
+        (first, last): ([u32; 3], [u32; 3]),
+        cell_start: &[u32],
+        values: &[Vec4],
+        extra: &[f32],
+        (low, high): (Vec3, Vec3),
+    ) {
         let limit = values.len() as u32;
-        for z in first[2]..=last[2] {
-            for y in first[1]..=last[1] {
+        let ranges =
+            (first[2]..=last[2]).flat_map(|z| (first[1]..=last[1]).map(move |y| (y, z))).map(|(y, z)| {
                 let row = (z as usize * grid.size_y as usize + y as usize) * grid.size_x as usize;
                 let start = cell_start[row + first[0] as usize].min(limit) as usize;
-                let end = cell_start[row + last[0] as usize + 1].min(limit) as usize;
-                for (i, value) in values[..end].iter().enumerate().skip(start) {
-                    let p = value.truncate();
-                    if p.cmpge(low).all() && p.cmple(high).all() {
-                        self.push(value, extra.get(i).copied().unwrap_or_default());
-                    }
+                start..(cell_start[row + last[0] as usize + 1].min(limit) as usize).max(start)
+            });
+        let most = ranges.clone().map(|range| range.len()).sum::<usize>() + LANES;
+        if self.columns[0].len() < most {
+            self.columns.iter_mut().for_each(|column| column.resize(most, 0.0));
+        }
+        let [x, y, z, w, more] = self.columns.each_mut().map(|column| &mut column[..most]);
+        let (low, high) = (low.extend(0.0), high.extend(0.0));
+        let mut len = 0;
+        for range in ranges {
+            for (i, value) in range.clone().zip(&values[range]) {
+                // Always written, and kept by counting it: no branch to mispredict.
+                (x[len], y[len], z[len], w[len]) = (value.x, value.y, value.z, value.w);
+                if !extra.is_empty() {
+                    more[len] = extra[i];
                 }
+                let within = value.cmpge(low) & value.cmple(high);
+                len += usize::from(within.bitmask() & 7 == 7);
             }
         }
-        self.pad();
-    }
-
-    fn clear(&mut self) {
-        for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.w, &mut self.extra] {
-            column.clear();
+        let padded = len.next_multiple_of(LANES);
+        for column in [x, y, z] {
+            column[len..padded].fill(FAR);
         }
-    }
-
-    fn push(&mut self, value: &Vec4, extra: f32) {
-        self.x.push(value.x);
-        self.y.push(value.y);
-        self.z.push(value.z);
-        self.w.push(value.w);
-        self.extra.push(extra);
-    }
-
-    fn pad(&mut self) {
-        while !self.x.len().is_multiple_of(LANES) {
-            self.push(&Vec4::new(FAR, FAR, FAR, 0.0), 0.0);
+        for column in [w, more] {
+            column[len..padded].fill(0.0);
         }
+        self.len = padded;
+    }
+
+    /// What was gathered.
+    pub fn columns(&self) -> Columns<'_> {
+        let [x, y, z, w, extra] = self.columns.each_ref().map(|column| &column[..self.len]);
+        Columns { x, y, z, w, extra }
     }
 }
 
-/// Defines a function twice: as it is, and compiled for AVX2, chosen when it runs. No fused multiply-add is used, so both give
-/// the same bits.
+/// Defines a function twice: as it is, and compiled for AVX2, chosen when it runs. No fused multiply-add is
+/// used, so both give the same bits.
 macro_rules! dispatched {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? $body:block) => {
         $(#[$meta])*

@@ -41,9 +41,11 @@ pub struct SurfaceStats {
 
 /// Extracts the surface of a simulation's particles, again and again, without leaving the device.
 ///
-/// With a host that may wait: [`extract`](Self::extract), then [`mesh`](Self::mesh) if the mesh is wanted there.
-/// Without: [`record`](Self::record) into the frame's recording, draw with [`draw_args`](Self::draw_args), request
-/// [`status`](Self::status) and, when it has arrived, hand it to [`grow`](Self::grow); record again if that made room.
+/// With a host that may wait: [`extract`](Self::extract), then [`mesh`](Self::mesh) if the mesh is wanted
+/// there. Without: [`record`](Self::record) into the frame's recording, draw with
+/// [`draw_args`](Self::draw_args), request
+/// [`status`](Self::status) and, when it has arrived, hand it to [`grow`](Self::grow); record again if that
+/// made room.
 #[derive(Debug)]
 pub struct Surface {
     params: SurfaceParams,
@@ -147,10 +149,12 @@ impl Buffers {
 }
 
 impl Surface {
-    /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when needed.
+    /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when
+    /// needed.
     ///
     /// # Errors
-    /// [`SurfaceError`] if a parameter makes no sense, the grid does not fit the kernel, or the device is too small.
+    /// [`SurfaceError`] if a parameter makes no sense, the grid does not fit the kernel, or the device is too
+    /// small.
     pub fn new(
         executor: &mut Executor,
         params: SurfaceParams,
@@ -335,7 +339,8 @@ impl Surface {
         Work::Indirect { buffer: self.b.block_groups.id(), word: 0 }
     }
 
-    /// Extracts the surface and waits until its size is known. Where the room was too small, makes more and repeats.
+    /// Extracts the surface and waits until its size is known. Where the room was too small, makes more and
+    /// repeats.
     ///
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device was lost or the mesh does not fit it.
@@ -352,8 +357,8 @@ impl Surface {
         }
     }
 
-    /// Makes room if the status says that there was too little, a quarter more than was missing. Returns true if so: then earlier recordings
-    /// are void and the mesh must be extracted again.
+    /// Makes room if the status says that there was too little, a quarter more than was missing. Returns true
+    /// if so: then earlier recordings are void and the mesh must be extracted again.
     ///
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device has not that much room.
@@ -404,7 +409,8 @@ impl Surface {
         self.b.resize(executor, &self.lattice, false)
     }
 
-    /// Positions of the vertices in m; the fourth component is of no use outside. The first [`Status::vertices`] are valid.
+    /// Positions of the vertices in m; the fourth component is of no use outside. The first
+    /// [`Status::vertices`] are valid.
     pub fn vertices(&self) -> Buffer<Vec4> {
         self.b.vertices
     }
@@ -419,7 +425,8 @@ impl Surface {
         self.b.indices
     }
 
-    /// The five words of an indexed indirect draw: indices, instances, first index, base vertex, first instance.
+    /// The five words of an indexed indirect draw: indices, instances, first index, base vertex, first
+    /// instance.
     pub fn draw_args(&self) -> Buffer<u32> {
         self.b.draw_args
     }

@@ -26,14 +26,17 @@ pub struct SurfaceParams {
     pub support_radius: f32,
     /// Edge of a marching-cubes cell; usually 0.5 spacings.
     pub cell_size: f32,
-    /// Value of the colour field at the surface; the field is about 1 in the fluid's bulk and 0 outside. Usually 0.6.
+    /// Value of the colour field at the surface; the field is about 1 in the fluid's bulk and 0 outside.
+    /// Usually 0.6.
     pub iso_level: f32,
-    /// Rounds of weighted Laplacian smoothing; 0 leaves marching cubes' vertices, 15 to 25 remove the particles' bumps.
+    /// Rounds of weighted Laplacian smoothing; 0 leaves marching cubes' vertices, 15 to 25 remove the
+    /// particles' bumps.
     pub smoothing_iterations: u32,
 }
 
 impl SurfaceParams {
-    /// The usual values for a particle spacing: support 2 spacings, cells of half a spacing, iso level 0.6, no smoothing.
+    /// The usual values for a particle spacing: support 2 spacings, cells of half a spacing, iso level 0.6,
+    /// no smoothing.
     pub fn new(particle_spacing: f32) -> Self {
         Self {
             particle_spacing,
@@ -79,7 +82,8 @@ pub(crate) fn farthest(cell_size: f32) -> f32 {
 }
 
 gpu_struct! {
-    /// Mirrors `Lattice` in `lattice.wgsl`: the nodes at which the field is computed, in blocks of 8x8x8, and the mesh's capacities.
+    /// Mirrors `Lattice` in `lattice.wgsl`: the nodes at which the field is computed, in blocks of 8x8x8, and
+    /// the mesh's capacities.
     pub(crate) struct Lattice {
         /// Position of node (0, 0, 0), a multiple of the cell size.
         origin: Vec3,
@@ -126,8 +130,8 @@ impl Lattice {
         if most > f64::from(allowed) {
             return Err(SurfaceError::TooFar { farthest: most as f32, cell_size, allowed });
         }
-        // The grid has a ghost cell, no narrower than the support, on every side. Two nodes more keep the cells round the outermost
-        // nodes, and what rounding may add, inside.
+        // The grid has a ghost cell, no narrower than the support, on every side. Two nodes more keep the
+        // cells round the outermost nodes, and what rounding may add, inside.
         let first = (low / cell).floor() - 2.0;
         let nodes = ((low + extent) / cell).ceil() + 3.0 - first;
         let blocks: DVec3 = (nodes / f64::from(SIDE)).ceil();
@@ -157,8 +161,9 @@ impl Lattice {
         Ok(lattice)
     }
 
-    /// Guesses capacities: a splash of 64K particles has about one vertex per particle at cells of half a spacing, four at a quarter,
-    /// and twice as many triangles; its blocks hold about four times the fluid's own volume.
+    /// Guesses capacities: a splash of 64K particles has about one vertex per particle at cells of half a
+    /// spacing, four at a quarter, and twice as many triangles; its blocks hold about four times the fluid's
+    /// own volume.
     fn estimate(&mut self, params: &SurfaceParams) {
         let particles = f64::from(self.particle_capacity);
         let cells = f64::from(params.particle_spacing / params.cell_size);

@@ -1,7 +1,8 @@
-//! Sharing work out: an output cut into the pieces that tasks write in parallel, workgroups spread over two dimensions.
+//! Sharing work out: an output cut into the pieces that tasks write in parallel, workgroups spread over two
+//! dimensions.
 
-/// Cuts `whole` at `starts`: piece `i` is `starts[i]..starts[i + 1]`. Pieces past the end of `whole` are cut short, so an overflow of a
-/// capacity writes nothing outside.
+/// Cuts `whole` at `starts`: piece `i` is `starts[i]..starts[i + 1]`. Pieces past the end of `whole` are cut
+/// short, so an overflow of a capacity writes nothing outside.
 pub(crate) fn by_starts<'a, T>(whole: &'a mut [T], starts: &[u32]) -> Vec<&'a mut [T]> {
     let mut rest = whole;
     let mut pieces = Vec::with_capacity(starts.len());

@@ -9,7 +9,8 @@ use crate::cells::Grid;
 
 /// The surface of any set of points, in m, each the centre of a particle.
 ///
-/// Positions that are not finite are left out and counted in [`SurfaceStats::not_finite`]. No particles give an empty mesh.
+/// Positions that are not finite are left out and counted in [`SurfaceStats::not_finite`]. No particles give
+/// an empty mesh.
 ///
 /// ```
 /// use splashdown::surface::{SurfaceParams, reconstruct};
@@ -22,7 +23,8 @@ use crate::cells::Grid;
 /// ```
 ///
 /// # Errors
-/// [`SurfaceError`] if a parameter makes no sense, the points are too far apart for the cell size, or the device is too small.
+/// [`SurfaceError`] if a parameter makes no sense, the points are too far apart for the cell size, or the
+/// device is too small.
 pub fn reconstruct(
     positions: &[[f32; 3]],
     params: &SurfaceParams,
@@ -61,7 +63,8 @@ pub(super) fn upload(
     })
 }
 
-/// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that there are not many more cells than particles.
+/// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that
+/// there are not many more cells than particles.
 fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, SurfaceError> {
     let low = positions.iter().fold(Vec3::MAX, |low, &p| low.min(p));
     let high = positions.iter().fold(Vec3::MIN, |high, &p| high.max(p));

@@ -1,4 +1,5 @@
-// Where the data of the block at a place lie. The pass binds `lattice` and `block_slot`, and imports surface/lattice.
+// Where the data of the block at a place lie. The pass binds `lattice` and `block_slot`, and imports
+// surface/lattice.
 fn slot_at(place: vec3<i32>) -> u32 {
     let p = vec3<u32>(place);
     // A negative place is a large number here.

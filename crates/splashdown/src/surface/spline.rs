@@ -1,8 +1,9 @@
 //! The cubic spline as the surface needs it: without its factor.
 //!
 //! Monaghan's cubic spline with support radius H is `W(r) = 16 / (pi H^3) * f(r / H)` with
-//! `f(q) = (1 - q)^3 - 4 (1/2 - q)^3`, where a power of a negative number counts as zero: both pieces of the usual form in
-//! one, without a branch. The colour field divides one sum of W by another, so the factor cancels and is left out.
+//! `f(q) = (1 - q)^3 - 4 (1/2 - q)^3`, where a power of a negative number counts as zero: both pieces of the usual
+//! form in one, without a branch. The colour field divides one sum of W by another, so the factor cancels and is left
+//! out.
 
 /// `f(q)` for `q >= 0`.
 #[inline(always)]

@@ -1,20 +1,23 @@
 //! The table of marching cubes, made from its rules instead of being typed in.
 //!
-//! A cube's corner `c` lies at `(c & 1, c >> 1 & 1, c >> 2)`. Edge `e` runs along axis `e / 4`; its two low bits say where it
-//! lies on the two other axes, in their order. A case is the set of corners inside the fluid, one bit each.
+//! A cube's corner `c` lies at `(c & 1, c >> 1 & 1, c >> 2)`. Edge `e` runs along axis `e / 4`; its two low
+//! bits say where it lies on the two other axes, in their order. A case is the set of corners inside the
+//! fluid, one bit each.
 //!
 //! # How it works
 //!
-//! The surface cuts every edge between an inside and an outside corner once. On each face the cuts are joined so that
-//! each run of inside corners along the face's border is cut off by itself: of two inside corners that are diagonal on a face, each
-//! gets its own corner cut. Every cut edge belongs to two faces, so the joins close to loops. A loop is split into
-//! triangles by the shortest diagonals, none of which may lie in a face of the cube.
+//! The surface cuts every edge between an inside and an outside corner once. On each face the cuts are joined
+//! so that each run of inside corners along the face's border is cut off by itself: of two inside corners
+//! that are diagonal on a face, each gets its own corner cut. Every cut edge belongs to two faces, so the
+//! joins close to loops. A loop is split into triangles by the shortest diagonals, none of which may lie in a
+//! face of the cube.
 //!
-//! A face's joins depend on that face's four corners only, and both cubes at the face see the same four. So the
-//! triangles of neighbours meet along the same lines, in opposite directions: the mesh is closed and oriented whatever
-//! the corners are. A diagonal in a face could coincide with one of the neighbour's and give an edge with four triangles; hence the
-//! last rule. The joins are those of the table of Lorensen and Cline as corrected by Bourke
-//! ("Polygonising a scalar field", 1994); the tests check all of this for every case.
+//! A face's joins depend on that face's four corners only, and both cubes at the face see the same four. So
+//! the triangles of neighbours meet along the same lines, in opposite directions: the mesh is closed and
+//! oriented whatever the corners are. A diagonal in a face could coincide with one of the neighbour's and
+//! give an edge with four triangles; hence the last rule. The joins are those of the table of Lorensen and
+//! Cline as corrected by Bourke ("Polygonising a scalar field", 1994); the tests check all of this for every
+//! case.
 
 use std::sync::LazyLock;
 
@@ -24,8 +27,8 @@ use glam::UVec2;
 pub(crate) static TRIANGLES: LazyLock<Vec<Vec<[u8; 3]>>> =
     LazyLock::new(|| (0..=255).map(triangulate).collect());
 
-/// [`TRIANGLES`] for the device: per case 15 edges of 4 bits, from the lowest bit of `x` to `y`'s bit 27, and above them the number of
-/// triangles.
+/// [`TRIANGLES`] for the device: per case 15 edges of 4 bits, from the lowest bit of `x` to `y`'s bit 27, and
+/// above them the number of triangles.
 pub(crate) fn packed() -> Vec<UVec2> {
     let pack = |triangles: &Vec<[u8; 3]>| {
         let edges = triangles.iter().flatten().enumerate();
@@ -64,7 +67,8 @@ fn edge_between(a: u8, b: u8) -> u8 {
 const FACES: [[u8; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
-/// The joins on one face: from the edge by which the border enters a run of inside corners to the edge by which it leaves.
+/// The joins on one face: from the edge by which the border enters a run of inside corners to the edge by
+/// which it leaves.
 fn joins(case: u8, face: [u8; 4]) -> impl Iterator<Item = (u8, u8)> {
     let inside = move |k: usize| case >> face[k % 4] & 1 == 1;
     (0..4).filter(move |&k| !inside(k) && inside(k + 1)).map(move |k| {
@@ -86,7 +90,8 @@ fn distance(a: u8, b: u8) -> u32 {
     (0..3).map(|axis| (middle(a, axis) - middle(b, axis)).pow(2) as u32).sum()
 }
 
-/// The best split of the polygon `edges` (its first and last are joined by a side already paid for), with its cost.
+/// The best split of the polygon `edges` (its first and last are joined by a side already paid for), with its
+/// cost.
 fn split(edges: &[u8]) -> (u32, Vec<[u8; 3]>) {
     let last = edges.len() - 1;
     if last < 2 {

@@ -1,8 +1,8 @@
 //! Every pass on the GPU against its twin on the CPU, each from equal input.
 //!
-//! The two executors get the same buffers in the same order, so that one set of names serves both. Before each command all of the CPU's
-//! buffers are copied to the GPU; after it, all are compared: what the pass wrote, and that it wrote nothing else. New
-//! buffers are poisoned.
+//! The two executors get the same buffers in the same order, so that one set of names serves both. Before
+//! each command all of the CPU's buffers are copied to the GPU; after it, all are compared: what the pass
+//! wrote, and that it wrote nothing else. New buffers are poisoned.
 
 use glam::{UVec2, Vec3, Vec4};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuExecutor, Recording, testing};
@@ -73,9 +73,11 @@ fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec
     for_each_buffer!(b, buffer, name => {
         let (mut here, mut there) = (cpu.read(buffer).unwrap(), gpu.read(buffer).unwrap());
         match name {
-            // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8, and the hardware's square root.
+            // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8, and the
+            // hardware's square root.
             "samples" | "crowding" | "values" | "vertices" | "relaxed" | "normals" => {
-                // A normal is a difference of such values divided by its length, which can be a hundredth of them.
+                // A normal is a difference of such values divided by its length, which can be a hundredth of
+                // them.
                 let tolerance = if name == "normals" { 5e-4 } else { 1e-5 };
                 let (here, there) = (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
                 wrong.extend(difference(name, here, there, tolerance));

@@ -2,7 +2,7 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use super::super::gather::{Gathered, dispatched};
+use super::super::gather::{Columns, Gathered, dispatched};
 use super::super::params::{Lattice, NODES, ROWS, SIDE, Status};
 use super::super::spline::spline;
 use crate::cells::Grid;
@@ -28,7 +28,7 @@ pub(super) fn field(_: CpuWork, slots: &mut [Slot<'_>]) {
             let low = Vec3::from(axes.map(|axis| axis[0])) - lattice.support_radius;
             let high = Vec3::from(axes.map(|axis| axis[N - 1])) + lattice.support_radius;
             near.fill(&grid, cell_start, samples, &[], low, high);
-            add(near, &axes, lattice.support_radius, lattice.inverse_support, rows);
+            add(near.columns(), &axes, lattice.support_radius, lattice.inverse_support, rows);
             values.copy_from_slice(rows.as_flattened());
             for (signs, row) in signs.iter_mut().zip(rows.iter()) {
                 *signs = (0..N).fold(0, |bits, i| bits | (u32::from(row[i] >= lattice.iso_level) << i));
@@ -40,7 +40,7 @@ pub(super) fn field(_: CpuWork, slots: &mut [Slot<'_>]) {
 dispatched! {
     /// The sum over all gathered particles at a block's nodes, whose coordinates `axes` gives per axis.
     fn add(
-        near: &Gathered,
+        near: Columns<'_>,
         axes: &[[f32; N]; 3],
         support: f32,
         inverse_support: f32,
@@ -48,7 +48,7 @@ dispatched! {
     ) {
         *rows = [[0.0; N]; ROWS];
         let support2 = support * support;
-        for (((&x, &y), &z), &volume) in near.x.iter().zip(&near.y).zip(&near.z).zip(&near.w) {
+        for (((&x, &y), &z), &volume) in near.x.iter().zip(near.y).zip(near.z).zip(near.w) {
             let square = |axis: &[f32; N], center: f32| -> [f32; N] {
                 std::array::from_fn(|i| (axis[i] - center) * (axis[i] - center))
             };

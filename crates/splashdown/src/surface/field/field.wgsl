@@ -40,7 +40,9 @@ fn field(
                 let sample = samples[i];
                 let d = start.yz - sample.yz;
                 let d2 = dot(d, d);
-                if d2 < support2 {
+                // How far the particle lies before or behind the row.
+                let outside = max(max(low_x.x - sample.x, sample.x - high_x.w), 0.0);
+                if d2 + outside * outside < support2 {
                     let a = low_x - sample.x;
                     let b = high_x - sample.x;
                     low += sample.w * spline4(sqrt(a * a + d2) * lattice.inverse_support);

@@ -2,7 +2,8 @@
 
 use crate::surface::params::{Lattice, NONE};
 
-/// The slots of a block (first) and of the seven blocks towards higher coordinates; block `(dx, dy, dz)` is number `dx + 2 dy + 4 dz`.
+/// The slots of a block (first) and of the seven blocks towards higher coordinates; block `(dx, dy, dz)` is
+/// number `dx + 2 dy + 4 dz`.
 pub(super) fn upper_slots(lattice: &Lattice, slot_of: &[u32], place: [i32; 3]) -> [u32; 8] {
     std::array::from_fn(|i| {
         let i = i as i32;
@@ -11,8 +12,8 @@ pub(super) fn upper_slots(lattice: &Lattice, slot_of: &[u32], place: [i32; 3]) -
     })
 }
 
-/// Which nodes of the block, and of one layer more on the upper sides, are inside: one bit per x, by z and y. `sign_bits` gives the eight
-/// bits of a row.
+/// Which nodes of the block, and of one layer more on the upper sides, are inside: one bit per x, by z and y.
+/// `sign_bits` gives the eight bits of a row.
 pub(super) fn signs(slots: &[u32; 8], sign_bits: impl Fn(usize) -> u32) -> [[u32; 9]; 9] {
     let bits = |slot: u32, row: usize| if slot == NONE { 0 } else { sign_bits(slot as usize * 64 + row) };
     std::array::from_fn(|z| {

@@ -1,16 +1,18 @@
-//! Weighted Laplacian smoothing of the mesh (Löschner et al., "Weighted Laplacian smoothing for surface reconstruction of particle-based
-//! fluids", VMV 2023).
+//! Weighted Laplacian smoothing of the mesh (Löschner et al., "Weighted Laplacian smoothing for surface
+//! reconstruction of particle-based fluids", VMV 2023).
 //!
-//! Each round moves a vertex towards the mean of its neighbours: `v <- (1 - w) v + w mean`. The weight w is near 1 where the fluid is
-//! dense, so the bumps of particles vanish, and near 0 at lone particles and thin sheets, which would shrink to nothing: with n the crowding
-//! interpolated to the vertex and `s = min(n / 13, 1)`, `w = 6 s^5 - 15 s^4 + 10 s^3`.
+//! Each round moves a vertex towards the mean of its neighbours: `v <- (1 - w) v + w mean`. The weight w is
+//! near 1 where the fluid is dense, so the bumps of particles vanish, and near 0 at lone particles and thin
+//! sheets, which would shrink to nothing: with n the crowding interpolated to the vertex and `s = min(n / 13,
+//! 1)`, `w = 6 s^5 - 15 s^4 + 10 s^3`.
 //!
 //! # How it works
 //!
-//! On a closed mesh the triangles round a vertex form one ring, and each neighbour comes after the vertex in exactly one of them. So the ring of a
-//! vertex is stored as one pair per triangle: the vertex that comes next and the one after it. Triangles are counted per vertex, the counts scanned, the
-//! pairs put into place in any order and then sorted, so that sums run in a fixed order. The mean is over the first of each pair; both
-//! together give the area-weighted normals of the smoothed mesh at the end.
+//! On a closed mesh the triangles round a vertex form one ring, and each neighbour comes after the vertex in
+//! exactly one of them. So the ring of a vertex is stored as one pair per triangle: the vertex that comes
+//! next and the one after it. Triangles are counted per vertex, the counts scanned, the pairs put into place
+//! in any order and then sorted, so that sums run in a fixed order. The mean is over the first of each pair;
+//! both together give the area-weighted normals of the smoothed mesh at the end.
 
 mod order;
 mod relax;

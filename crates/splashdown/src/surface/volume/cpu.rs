@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use super::super::gather::{Gathered, LANES, dispatched};
+use super::super::gather::{Columns, Gathered, LANES, dispatched};
 use super::super::params::Lattice;
 use super::super::parts::by_starts;
 use super::super::spline::{positive, spline};
@@ -14,6 +14,7 @@ pub(super) fn volume(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, grid, cell_start, positions, samples, crowding] = slots else { unreachable!() };
     let (lattice, grid) = (lattice.get::<Lattice>(), grid.get::<Grid>());
     let (cell_start, positions) = (cell_start.read::<u32>(), positions.read::<Vec4>());
+    let size = [grid.size_x, grid.size_y, grid.size_z];
     let width = grid.size_x as usize;
     if width == 0 {
         return;
@@ -33,22 +34,28 @@ pub(super) fn volume(_: CpuWork, slots: &mut [Slot<'_>]) {
         for (x, range) in starts.windows(2).enumerate().filter(|(_, range)| range[0] < range[1]) {
             let cell = [x as u32, row as u32 % grid.size_y, row as u32 / grid.size_y];
             let low = grid.origin + Vec3::from(cell.map(|c| c as f32)) * grid.cell_size;
-            // A little beyond the support, so that rounding cannot leave a neighbour out; what is farther weighs nothing.
+            // A little beyond the support, so that rounding cannot leave a neighbour out; what is farther
+            // weighs nothing.
             let margin = 1.001 * lattice.support_radius;
-            near.fill(&grid, cell_start, positions, &[], low - margin, low + grid.cell_size + margin);
+            let bounds = (low - margin, low + grid.cell_size + margin);
+            // Cells are no narrower than the support, so these hold all neighbours.
+            let cells =
+                (cell.map(|c| c.saturating_sub(1)), std::array::from_fn(|i| (cell[i] + 1).min(size[i] - 1)));
+            near.fill_from(&grid, cells, cell_start, positions, &[], bounds);
             let own = range[0] as usize..range[1].min(living as u32) as usize;
             let place = own.start - starts[0] as usize;
             let samples = &mut samples[place..place + own.len()];
             let crowding = &mut crowding[place..place + own.len()];
-            sum_over(near, &positions[own], lattice.inverse_support, samples, crowding);
+            sum_over(near.columns(), &positions[own], lattice.inverse_support, samples, crowding);
         }
     });
 }
 
 dispatched! {
-    /// For each particle the sums of the spline and of `1 - r^2 / H^2` over what was gathered, in eight lanes.
+    /// For each particle the sums of the spline and of `1 - r^2 / H^2` over what was gathered, in eight
+    /// lanes.
     fn sum_over(
-        near: &Gathered,
+        near: Columns<'_>,
         particles: &[Vec4],
         inverse_support: f32,
         samples: &mut [Vec4],

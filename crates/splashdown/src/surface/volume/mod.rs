@@ -1,9 +1,10 @@
 //! Each particle's share of space, and how crowded its neighbourhood is.
 //!
-//! The colour field is `sum_j V_j W(x - x_j)` with `V_j = m / rho_j` and `rho_j = sum_k m W(x_j - x_k)`. Mass and the kernel's factor cancel,
-//! so `V_j` is stored as `1 / sum_k f(r_jk / H)` (`f`: [`spline`](super::spline)) beside the position. The sum has the particle itself
-//! in it, so it is never zero. Particle i's crowding is `sum_j max(0, 1 - r_ij^2 / H^2)` over the others
-//! (Löschner, Böttcher, Jeske, Bender, "Weighted Laplacian smoothing for surface reconstruction of particle-based fluids", 2023).
+//! The colour field is `sum_j V_j W(x - x_j)` with `V_j = m / rho_j` and `rho_j = sum_k m W(x_j - x_k)`. Mass
+//! and the kernel's factor cancel, so `V_j` is stored as `1 / sum_k f(r_jk / H)` (`f`:
+//! [`spline`](super::spline)) beside the position. The sum has the particle itself in it, so it is never
+//! zero. Particle i's crowding is `sum_j max(0, 1 - r_ij^2 / H^2)` over the others (Löschner, Böttcher,
+//! Jeske, Bender, "Weighted Laplacian smoothing for surface reconstruction of particle-based fluids", 2023).
 
 mod cpu;
 

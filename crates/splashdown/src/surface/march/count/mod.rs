@@ -1,7 +1,8 @@
 //! Finds the cut edges of every row and counts each block's vertices and triangles.
 //!
-//! `rows` holds two words per row: bits 0-23 of the first are the cut x-, y- and z-edges, bits 24-31 the signs; the second is the number of
-//! vertices (low half) and triangles (high half) of the block's rows before this one.
+//! `rows` holds two words per row: bits 0-23 of the first are the cut x-, y- and z-edges, bits 24-31 the
+//! signs; the second is the number of vertices (low half) and triangles (high half) of the block's rows
+//! before this one.
 
 mod cpu;
 

@@ -1,4 +1,5 @@
-//! The mesh's size, the arguments of its drawing, and the workgroups of the passes over it; all decided on the device.
+//! The mesh's size, the arguments of its drawing, and the workgroups of the passes over it; all decided on
+//! the device.
 
 mod cpu;
 

@@ -1,6 +1,7 @@
 //! The triangles of every cell, as numbers of vertices.
 //!
-//! A triangle one of whose vertices did not find room gets three equal numbers: nothing is drawn, nothing read outside.
+//! A triangle one of whose vertices did not find room gets three equal numbers: nothing is drawn, nothing
+//! read outside.
 
 mod cpu;
 

@@ -52,7 +52,8 @@ fn widen(lattice: &Lattice, slot_of: &[u32], values: &[f32], place: [i32; 3], wi
             continue;
         }
         let block = &values[slot as usize * NODES..][..NODES];
-        // In the wide array the block itself begins at 1; of the neighbours below the last layer is wanted, of those above the first two.
+        // In the wide array the block itself begins at 1; of the neighbours below the last layer is wanted,
+        // of those above the first two.
         let range = |axis: usize| match offset[axis] {
             -1 => (N - 1..N, 0),
             0 => (0..N, 1),

@@ -1,7 +1,8 @@
 //! One vertex per cut edge, with the field's gradient as its normal.
 //!
-//! The place on the edge is `t = (iso - a) / (b - a)` between the values a and b at its ends, kept within [0.001, 0.999]: at an end the vertices
-//! of several edges would coincide and their triangles have no area. The normal is the negative gradient by central differences at both ends, mixed by t.
+//! The place on the edge is `t = (iso - a) / (b - a)` between the values a and b at its ends, kept within
+//! [0.001, 0.999]: at an end the vertices of several edges would coincide and their triangles have no area.
+//! The normal is the negative gradient by central differences at both ends, mixed by t.
 
 mod cpu;
 

@@ -1,4 +1,5 @@
-//! Puts every triangle into the rings of its three corners, in any order; the valences count down to zero on the way.
+//! Puts every triangle into the rings of its three corners, in any order; the valences count down to zero on
+//! the way.
 
 mod cpu;
 

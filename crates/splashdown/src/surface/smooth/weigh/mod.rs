@@ -1,4 +1,5 @@
-//! How far each vertex may move: from the crowding of the particles near it, into the fourth component of its position.
+//! How far each vertex may move: from the crowding of the particles near it, into the fourth component of its
+//! position.
 
 mod cpu;
 
