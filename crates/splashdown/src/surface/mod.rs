@@ -15,6 +15,20 @@
 //! once, and the nodes at the rim of the marked blocks are outside. The same particles give the same bits on
 //! the same device, with any number of threads.
 //!
+//! # Measured
+//!
+//! 64,000 particles in mid-splash, 2 cores with AVX2, medians; `splashsurf_lib` 0.14.1 in the same run and
+//! with the same parameters finds the same number of vertices:
+//!
+//! | cells, in spacings | smoothing | vertices | CPU | software Vulkan | splashsurf, not smoothed |
+//! |---|---|---|---|---|---|
+//! | 0.5 | none | 57,272 | 21 ms | 104 ms | 79 ms |
+//! | 0.5 | 25 rounds | 57,272 | 34 ms | 155 ms | 79 ms |
+//! | 0.25 | none | 231,858 | 79 ms | 516 ms | 432 ms |
+//!
+//! These are the passes alone; with [`reconstruct`]'s sorting and copying see the test `surface_times`, which
+//! prints both. Two thirds are the field's square roots.
+//!
 //! # Why not the other way
 //!
 //! A dense grid costs memory by the domain's volume instead of the fluid's. A hash table of edges, the usual
