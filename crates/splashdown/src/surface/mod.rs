@@ -2,16 +2,16 @@
 //!
 //! # How it works
 //!
-//! 1. [`volume`]: each particle's share of space and how crowded it is.
-//! 2. [`blocks`]: the blocks of 8x8x8 nodes that particles reach, marked, numbered by a scan, listed.
-//! 3. [`field`]: the colour field at the nodes of these blocks, and its signs.
-//! 4. [`march`]: cut edges counted, numbered by scans, turned into shared vertices with normals and into
+//! 1. `volume`: each particle's share of space and how crowded it is.
+//! 2. `blocks`: the blocks of 8x8x8 nodes that particles reach, marked, numbered by a scan, listed.
+//! 3. `field`: the colour field at the nodes of these blocks, and its signs.
+//! 4. `march`: cut edges counted, numbered by scans, turned into shared vertices with normals and into
 //!    triangles (marching cubes: Lorensen and Cline 1987). The arguments of the indirect draw are written on
 //!    the device.
-//! 5. [`smooth`]: weighted Laplacian smoothing (Löschner et al. 2023), where asked for.
+//! 5. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), where asked for.
 //!
 //! The mesh is closed, manifold and oriented outwards for any set of particles: which vertices exist and how
-//! triangles join them follows from the nodes' signs alone (see [`tables`]), each node's sign is computed
+//! triangles join them follows from the nodes' signs alone (see `tables`), each node's sign is computed
 //! once, and the nodes at the rim of the marked blocks are outside. The same particles give the same bits on
 //! the same device, with any number of threads.
 //!
