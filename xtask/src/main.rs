@@ -4,6 +4,7 @@
 mod bench;
 mod demo;
 mod layers;
+mod pictures;
 mod process;
 mod setup;
 mod suite;
@@ -19,6 +20,7 @@ Usage: cargo xtask <WORD> [OPTIONS]
                     further arguments go to `splashdown run` (for example --frames 20)
   test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
   bench [--quick]   the numbers of docs/performance.md as Markdown tables (--quick: small sizes only)
+  pictures [SCENE]  make the pictures of the README anew
   validate          the checks against measurements at full resolution, in release mode
   setup             check what demo and test need and install it where that is possible
   help              this text
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         "demo" => demo::run(rest),
         "test" => suite::run(rest),
         "bench" => bench::run(rest),
+        "pictures" => pictures::run(rest),
         "validate" => validate::run(rest),
         "setup" => setup::run(rest),
         "help" | "--help" | "-h" => {

@@ -1,0 +1,46 @@
+//! The pictures of the README, made by the program itself.
+
+use std::fs;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::process::{self, say};
+use crate::setup;
+
+/// A scene, and which of its pictures go where: kind, frame, name in `docs/pictures`.
+const PICTURES: [(&str, &[(&str, u32, &str)]); 4] = [
+    ("dam-break", &[("surface", 20, "dam-break"), ("particles", 12, "dam-break-particles")]),
+    ("falling-drop", &[("surface", 30, "falling-drop")]),
+    ("honey", &[("surface", 20, "honey")]),
+    ("sloshing-tank", &[("surface", 60, "sloshing-tank")]),
+];
+
+/// The word `pictures`; names of scenes, or none for all.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let wanted = |scene: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == scene);
+    let known = |argument: &&String| PICTURES.iter().any(|(scene, _)| scene == argument);
+    ensure!(
+        arguments.iter().all(|argument| known(&argument)),
+        "pictures takes names of scenes: {}",
+        PICTURES.map(|(scene, _)| scene).join(", ")
+    );
+    setup::ensure_requirements()?;
+    let binary = process::build_release()?;
+    for (scene, pictures) in PICTURES.iter().filter(|(scene, _)| wanted(scene)) {
+        let out = format!("out/pictures/{scene}");
+        let last = pictures.iter().map(|(_, frame, _)| *frame).max().unwrap_or(0).to_string();
+        let mut kinds: Vec<&str> = pictures.iter().map(|(kind, ..)| *kind).collect();
+        kinds.dedup();
+        let mut command = process::command(&binary);
+        command.args(["run", scene, "--out", &out, "--frames", &last, "--formats", "none", "--no-film"]);
+        process::run(command.args(["--pictures", &kinds.join(",")]))?;
+        for (kind, frame, name) in *pictures {
+            let from = process::root().join(&out).join(format!("pictures/{kind}_{frame:04}.png"));
+            let to = process::root().join(format!("docs/pictures/{name}.png"));
+            fs::create_dir_all(to.with_file_name(""))?;
+            fs::copy(&from, &to).with_context(|| format!("cannot copy {}", from.display()))?;
+            say(format!("docs/pictures/{name}.png"));
+        }
+    }
+    Ok(())
+}
