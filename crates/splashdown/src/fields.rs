@@ -34,7 +34,7 @@ pub struct Fields {
     /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the resting arrays
     /// once the step is done.
     pub densities: Buffer<Vec2>,
-    /// Acceleration in m/s^2, and rate of density in kg/(m^3 s); order as `densities`.
+    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`.
     pub accelerations: Buffer<Vec4>,
     /// Normals for surface tension; order as `densities`. One entry where there is none.
     pub normals: Buffer<Vec4>,

@@ -6,6 +6,7 @@
 
 pub mod begin;
 pub mod cfl;
+pub mod continuity;
 pub mod density;
 pub mod integrate;
 pub mod momentum;
@@ -78,8 +79,8 @@ gpu_struct! {
         clamp_pressure: u32,
         /// Number of particles, dead ones included.
         particle_count: u32,
-        /// 1 if the density is integrated by the continuity equation instead of summed.
-        continuity: u32,
+        /// Fills the struct up to a multiple of 16 bytes.
+        padding: u32,
     }
 }
 
@@ -187,6 +188,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
     all.extend([
         &begin::BEGIN,
         &cfl::CFL,
+        &continuity::WENDLAND_C2,
+        &continuity::CUBIC_SPLINE,
         &density::WENDLAND_C2,
         &density::CUBIC_SPLINE,
         &density::POLY6,

@@ -5,16 +5,27 @@ use splashdown_gpu::{Grid as Extent, PassDesc, Recording};
 use super::Solver;
 use crate::cells::Cells;
 use crate::fields::Fields;
-use crate::passes::{density, momentum, normals, state_equation};
+use crate::passes::{continuity, density, momentum, normals};
 use crate::scene::KernelKind;
 
 impl Solver {
-    /// Density, by summation or as integrated, and pressure.
+    /// Density, by summation or by the continuity equation, and pressure.
     pub(super) fn wcsph_pressure(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
         if self.continuity {
-            let buffers =
-                [fields.params.id(), fields.state.id(), fields.sorted_velocities.id(), fields.densities.id()];
-            step.dispatch(&state_equation::STATE_EQUATION, all, &buffers);
+            step.dispatch(
+                self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE),
+                all,
+                &[
+                    fields.params.id(),
+                    cells.grid_uniform.id(),
+                    fields.state.id(),
+                    cells.cell_start.id(),
+                    fields.sorted_positions.id(),
+                    fields.sorted_velocities.id(),
+                    fields.wall_table.id(),
+                    fields.densities.id(),
+                ],
+            );
         } else {
             record_density(
                 step,

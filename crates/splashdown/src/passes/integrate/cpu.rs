@@ -72,7 +72,6 @@ fn advance(
         return (p, old);
     }
     let mut v = old.xyz() + dt * a.xyz();
-    let density = if params.continuity == 1 { old.w + dt * a.w } else { rho };
     let (step, most) = (v.length() * dt, 0.5 * params.particle_spacing);
     if step > most {
         v *= most / step;
@@ -90,7 +89,7 @@ fn advance(
     }
     let mut x = p.xyz() + dt * v;
     // `max` and `min` take the other operand of a NaN, so the sum of everything is asked, not only the result.
-    if !(x.is_finite() && a.is_finite() && density.is_finite()) {
+    if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
         found.non_finite += 1;
         return (p.xyz().extend(DEAD_NON_FINITE), Vec4::new(0.0, 0.0, 0.0, params.rest_density));
     }
@@ -106,5 +105,5 @@ fn advance(
     for (highest, value) in found.highest.iter_mut().zip(values) {
         *highest = highest.max(value);
     }
-    (x.extend(0.0), v.extend(density))
+    (x.extend(0.0), v.extend(rho))
 }

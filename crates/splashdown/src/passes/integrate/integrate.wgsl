@@ -34,7 +34,7 @@ fn advance(i: u32) {
     let dt = state.dt;
     let a = accelerations[i];
     let rho = densities[i].x;
-    v = vec4(v.xyz + dt * a.xyz, select(rho, v.w + dt * a.w, params.continuity == 1u));
+    v = vec4(v.xyz + dt * a.xyz, rho);
     let step = length(v.xyz) * dt;
     let most = 0.5 * params.particle_spacing;
     if (step > most) {

@@ -44,11 +44,10 @@ pub(super) fn momentum<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>
     };
     let out = accelerations.write::<Vec4>();
     // Columns and arithmetic that a scene does not ask for cost nothing: each combination is compiled by itself.
-    match (params.continuity == 1, params.surface_tension > 0.0) {
-        (false, false) => input.run::<K, 7, false, false>(out),
-        (true, false) => input.run::<K, 8, true, false>(out),
-        (false, true) => input.run::<K, 11, false, true>(out),
-        (true, true) => input.run::<K, 11, true, true>(out),
+    if params.surface_tension > 0.0 {
+        input.run::<K, 11, true>(out);
+    } else {
+        input.run::<K, 7, false>(out);
     }
 }
 
@@ -66,11 +65,11 @@ struct Input<'a> {
 }
 
 impl Input<'_> {
-    fn run<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool>(&self, out: &mut [Vec4]) {
+    fn run<K: Kernel, const F: usize, const TENSION: bool>(&self, out: &mut [Vec4]) {
         let body = self.params.body_acceleration(self.state.time);
         rows::for_each(self.grid, self.cell_start, out, |window, row, places, out| {
             let kernel = PhantomData;
-            vectorised(Row::<K, F, CONTINUITY, TENSION> { input: self, body, row, window, out, kernel });
+            vectorised(Row::<K, F, TENSION> { input: self, row, window, out, kernel });
             for (i, a) in places.zip(out) {
                 *a += body.extend(0.0);
                 if self.walls.near(self.positions[i].xyz()) {
@@ -80,7 +79,7 @@ impl Input<'_> {
         });
     }
 
-    /// The walls' pressure and friction, and their share of the rate of density.
+    /// The walls' pressure and friction.
     fn add_walls(&self, i: usize, body: Vec3, a: &mut Vec4) {
         let params = self.params;
         let terms = self.walls.terms(self.wall_table, self.positions[i].xyz());
@@ -99,7 +98,6 @@ impl Input<'_> {
             }
             let push = params.rest_density * pressure / (rho * rho) + behind / params.rest_density;
             a[axis] += push * terms.slope[axis] * scale * n;
-            a.w -= rho * scale * terms.density_slope[axis] * n * v[axis];
             let k = params.wall_friction * 2.0 * params.viscosity * terms.single[axis] * scale
                 / distance.max(0.25 * params.particle_spacing);
             let mut along = v;
@@ -118,18 +116,15 @@ fn cohesion(q: f32) -> f32 {
 }
 
 /// The sums over the neighbours of the particles in one row of cells.
-struct Row<'a, 'b, K, const F: usize, const CONTINUITY: bool, const TENSION: bool> {
+struct Row<'a, 'b, K, const F: usize, const TENSION: bool> {
     input: &'a Input<'b>,
-    body: Vec3,
     row: usize,
     window: &'a mut Window<F>,
     out: &'a mut [Vec4],
     kernel: PhantomData<K>,
 }
 
-impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Leaf
-    for Row<'_, '_, K, F, CONTINUITY, TENSION>
-{
+impl<K: Kernel, const F: usize, const TENSION: bool> Leaf for Row<'_, '_, K, F, TENSION> {
     type Output = ();
 
     #[inline(always)]
@@ -139,10 +134,8 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
             let (p, v, [rho, pressure]) = (positions[j], velocities[j], densities[j].to_array());
             let mut values = [0.0; F];
             values[..7].copy_from_slice(&[p.x, p.y, p.z, v.x, v.y, v.z, pressure / (rho * rho)]);
-            if CONTINUITY || TENSION {
-                values[7] = rho;
-            }
             if TENSION {
+                values[7] = rho;
                 values[8..].copy_from_slice(&normals[j].to_array()[..3]);
             }
             values
@@ -157,9 +150,7 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
         let volume = mass / params.rest_density;
         let laminar = 10.0 * params.viscosity * volume;
         let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
-        let diffusion = params.density_diffusion * support * params.sound_speed;
         let tension = -2.0 * params.surface_tension * params.rest_density;
-        let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * self.body;
 
         let first = cell_start[self.row] as usize;
         for (x, places) in rows::occupied(grid, cell_start, self.row) {
@@ -168,7 +159,7 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
                 let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
                 let specific = pressure / (rho * rho);
                 let n = if TENSION { normals[i].xyz() } else { Vec3::ZERO };
-                let mut sums = [[0.0; LANES]; 4];
+                let mut sums = [[0.0; LANES]; 3];
                 for k in 0..c[0].len() {
                     let (xs, ys, zs, us, vs, ws, ps) =
                         (&c[0][k], &c[1][k], &c[2][k], &c[3][k], &c[4][k], &c[5][k], &c[6][k]);
@@ -184,14 +175,6 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
                         sums[0][l] += along * dx;
                         sums[1][l] += along * dy;
                         sums[2][l] += along * dz;
-                        if CONTINUITY {
-                            // The padding has density zero; it must not divide.
-                            let other = max(c[7][k][l], f32::MIN_POSITIVE);
-                            let level = hydrostatic.x * dx + hydrostatic.y * dy + hydrostatic.z * dz;
-                            let excess = other - rho + level;
-                            let inside = if q < 1.0 { g * mass / other } else { 0.0 };
-                            sums[3][l] += inside * (rho * vx - diffusion * excess * r2 / soft_r2);
-                        }
                     }
                     if TENSION {
                         // A loop of its own: in one with the rest the compiler gives up vectorising.
@@ -208,8 +191,8 @@ impl<K: Kernel, const F: usize, const CONTINUITY: bool, const TENSION: bool> Lea
                         }
                     }
                 }
-                let [ax, ay, az, rate] = sums.map(rows::sum);
-                self.out[i - first] = Vec4::new(ax, ay, az, rate);
+                let [ax, ay, az] = sums.map(rows::sum);
+                self.out[i - first] = Vec4::new(ax, ay, az, 0.0);
             }
         }
     }

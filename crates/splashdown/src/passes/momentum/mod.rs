@@ -1,4 +1,4 @@
-//! Accelerations of weakly compressible SPH, and the rate of density where it is integrated.
+//! Accelerations of weakly compressible SPH.
 //!
 //! Per neighbour, with V = m / rho0, x = x_i - x_j, v = v_i - v_j and h = H / 2:
 //!
@@ -6,9 +6,7 @@
 //! * laminar viscosity: 10 nu V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 2005), which conserves angular momentum too;
 //!   rho0 in V instead of rho_j keeps each pair's two forces equal to the last bit that matters;
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
-//! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013);
-//! * rate of density: rho_i sum (m/rho_j) v.grad W, and the diffusion of Molteni & Colagrossi (2009) with the
-//!   hydrostatic part taken out (Fourtakas et al. 2019).
+//! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
 //! Walls push with -rho0 (p_i/rho_i^2 + p_b/rho0^2) G, where p_b continues the pressure hydrostatically into the wall
 //! (after Adami, Hu & Adams 2012), and rub with the closed form of the Morris operator over a half-space whose velocity

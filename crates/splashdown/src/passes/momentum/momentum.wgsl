@@ -46,8 +46,6 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
     let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
-    let diffusion = params.density_diffusion * support * params.sound_speed;
-    let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * body;
     let tension = params.surface_tension > 0.0;
     var own_normal = vec3(0.0);
     if (tension) {
@@ -55,7 +53,6 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
     }
 
     var a = vec3(0.0);
-    var rate = 0.0;
     for (var row = 0u; row < 9u; row++) {
         let range = row_range(cell, row);
         for (var j = range.x; j < range.y; j++) {
@@ -75,10 +72,6 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
                 let pull = mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
                 a += k * (pull * d + own_normal - normals[j].xyz);
             }
-            if (params.continuity == 1u) {
-                let excess = other.x - rho + dot(hydrostatic, d);
-                rate += g * mass / other.x * (rho * vx - diffusion * excess * r2 / (r2 + soft));
-            }
         }
     }
 
@@ -94,12 +87,11 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
         }
         let push = params.rest_density * specific + behind / params.rest_density;
         a[axis] += push * wall.slope[axis] * scale * n;
-        rate -= rho * scale * wall.density_slope[axis] * n * v[axis];
         let k = params.wall_friction * 2.0 * params.viscosity * wall.single[axis] * scale
             / max(wall.distance[axis], 0.25 * params.particle_spacing);
         var along = v;
         along[axis] = 0.0;
         a -= k / (1.0 + k * state.dt) * along;
     }
-    accelerations[i] = vec4(a + body, rate);
+    accelerations[i] = vec4(a + body, 0.0);
 }

@@ -1,4 +1,5 @@
-//! The pressure of a density that is integrated instead of summed, which travels in the velocities' fourth component.
+//! The pressure of a density that is integrated instead of summed, before the first step: what the first frame shows.
+//! The density travels in the velocities' fourth component.
 
 mod cpu;
 

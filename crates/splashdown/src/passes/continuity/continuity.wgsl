@@ -1,0 +1,53 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/walls
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> state: StepState;
+@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> wall_table: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> densities: array<vec2<f32>>;
+
+@compute @workgroup_size(64)
+fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= living()) {
+        return;
+    }
+    let x = sorted_positions[i].xyz;
+    let v = sorted_velocities[i].xyz;
+    let rho = sorted_velocities[i].w;
+    let cell = cell_of(x);
+    let support = params.support_radius;
+    let scale = 1.0 / support;
+    let factor = params.particle_mass * scale * scale * scale * scale * scale;
+    let reach = support * support;
+    let soft = 0.01 * reach;
+    let diffusion = params.density_diffusion * support * params.sound_speed;
+    let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * body_acceleration(state.time);
+
+    var rate = 0.0;
+    for (var row = 0u; row < 9u; row++) {
+        let range = row_range(cell, row);
+        for (var j = range.x; j < range.y; j++) {
+            let d = x - sorted_positions[j].xyz;
+            let r2 = dot(d, d);
+            if (r2 < reach) {
+                let other = sorted_velocities[j];
+                let psi = other.w - rho + dot(hydrostatic, d);
+                let flow = rho * dot(v - other.xyz, d) - diffusion * psi * r2 / (r2 + soft);
+                rate += kernel_g(sqrt(r2) * scale) * factor / other.w * flow;
+            }
+        }
+    }
+    let wall = wall_terms(x);
+    rate -= rho * scale * dot(wall.density_slope * wall.normal, v);
+    let next = rho + state.dt * rate;
+    densities[i] = vec2(next, pressure_at(next));
+}
