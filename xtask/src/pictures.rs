@@ -7,12 +7,24 @@ use anyhow::{Context, Result, ensure};
 use crate::process::{self, say};
 use crate::setup;
 
-/// A scene, and which of its pictures go where: kind, frame, name in `docs/pictures`.
-const PICTURES: [(&str, &[(&str, u32, &str)]); 4] = [
-    ("dam-break", &[("surface", 20, "dam-break"), ("particles", 12, "dam-break-particles")]),
-    ("falling-drop", &[("surface", 30, "falling-drop")]),
-    ("honey", &[("surface", 20, "honey")]),
-    ("sloshing-tank", &[("surface", 60, "sloshing-tank")]),
+/// One picture of the README.
+struct Shown {
+    kind: &'static str,
+    frame: u32,
+    /// Name in `docs/pictures`, without its ending.
+    name: &'static str,
+}
+
+const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
+    Shown { kind, frame, name }
+}
+
+/// Scenes and what is shown of them.
+const PICTURES: [(&str, &[Shown]); 4] = [
+    ("dam-break", &[shown("surface", 20, "dam-break"), shown("particles", 12, "dam-break-particles")]),
+    ("falling-drop", &[shown("surface", 30, "falling-drop")]),
+    ("honey", &[shown("surface", 20, "honey")]),
+    ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 
 /// The word `pictures`; names of scenes, or none for all.
@@ -28,13 +40,13 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let binary = process::build_release()?;
     for (scene, pictures) in PICTURES.iter().filter(|(scene, _)| wanted(scene)) {
         let out = format!("out/pictures/{scene}");
-        let last = pictures.iter().map(|(_, frame, _)| *frame).max().unwrap_or(0).to_string();
-        let mut kinds: Vec<&str> = pictures.iter().map(|(kind, ..)| *kind).collect();
+        let last = pictures.iter().map(|shown| shown.frame).max().unwrap_or(0).to_string();
+        let mut kinds: Vec<&str> = pictures.iter().map(|shown| shown.kind).collect();
         kinds.dedup();
         let mut command = process::command(&binary);
         command.args(["run", scene, "--out", &out, "--frames", &last, "--formats", "none", "--no-film"]);
         process::run(command.args(["--pictures", &kinds.join(",")]))?;
-        for (kind, frame, name) in *pictures {
+        for Shown { kind, frame, name } in *pictures {
             let from = process::root().join(&out).join(format!("pictures/{kind}_{frame:04}.png"));
             let to = process::root().join(format!("docs/pictures/{name}.png"));
             fs::create_dir_all(to.with_file_name(""))?;
