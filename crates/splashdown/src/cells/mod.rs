@@ -95,6 +95,7 @@ impl Cells {
                 grid,
                 state,
                 fields.positions.id(),
+                fields.velocities.id(),
                 cell_rank,
                 self.counts.id(),
                 fields.tally.id(),

@@ -7,9 +7,15 @@
 @group(0) @binding(1) var<uniform> grid: Grid;
 @group(0) @binding(2) var<storage, read> state: StepState;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read_write> cell_rank: array<vec2<u32>>;
-@group(0) @binding(5) var<storage, read_write> counts: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> tally: array<atomic<u32>>;
+@group(0) @binding(4) var<storage, read> velocities: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> cell_rank: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
+@group(0) @binding(7) var<storage, read_write> tally: array<atomic<u32>>;
+
+// A velocity (xyz) whose square has a value, and a density (w) that has one.
+fn is_moderate(v: vec4<f32>) -> bool {
+    return is_finite(vec3(dot(v.xyz, v.xyz), v.w, 0.0));
+}
 
 @compute @workgroup_size(64)
 fn count(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -22,6 +28,9 @@ fn count(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
     if (p.w == 0.0) {
         if (!is_finite(p.xyz)) {
             positions[i] = vec4(params.domain_min, DEAD_NON_FINITE);
+            atomicAdd(&tally[TALLY_NON_FINITE], 1u);
+        } else if (!is_moderate(velocities[i])) {
+            positions[i].w = DEAD_NON_FINITE;
             atomicAdd(&tally[TALLY_NON_FINITE], 1u);
         } else if (any(p.xyz < params.domain_min) || any(p.xyz > params.domain_max)) {
             positions[i].w = DEAD_ESCAPED;

@@ -10,17 +10,22 @@ use crate::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
 const CHUNK: usize = 4096;
 
 pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, positions, cell_rank, counts, tally] = slots else { unreachable!() };
+    let [params, grid, state, positions, velocities, cell_rank, counts, tally] = slots else {
+        unreachable!()
+    };
     let (params, grid) = (params.get::<Params>(), grid.get::<Grid>());
     let n = state.get::<StepState>().run_count as usize;
     let (counts, tally) = (counts.atomics(), tally.atomics());
-    let classify = |p: &mut Vec4| {
+    let classify = |p: &mut Vec4, v: Vec4| {
         let x = p.xyz();
         if p.w != 0.0 {
             return grid.cell_count;
         }
         if !x.is_finite() {
             *p = params.domain_min.extend(DEAD_NON_FINITE);
+            tally[Tally::NON_FINITE].fetch_add(1, Relaxed);
+        } else if !(v.xyz().length_squared() + v.w).is_finite() {
+            p.w = DEAD_NON_FINITE;
             tally[Tally::NON_FINITE].fetch_add(1, Relaxed);
         } else if x.cmplt(params.domain_min).any() || x.cmpgt(params.domain_max).any() {
             p.w = DEAD_ESCAPED;
@@ -32,9 +37,10 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
     };
     let positions = positions.write::<Vec4>()[..n].par_chunks_mut(CHUNK);
     let cell_rank = cell_rank.write::<UVec2>()[..n].par_chunks_mut(CHUNK);
-    positions.zip(cell_rank).for_each(|(positions, cell_rank)| {
-        for (p, out) in positions.iter_mut().zip(cell_rank) {
-            let cell = classify(p);
+    let velocities = velocities.read::<Vec4>()[..n].par_chunks(CHUNK);
+    positions.zip(velocities).zip(cell_rank).for_each(|((positions, velocities), cell_rank)| {
+        for ((p, &v), out) in positions.iter_mut().zip(velocities).zip(cell_rank) {
+            let cell = classify(p, v);
             *out = UVec2::new(cell, counts[cell as usize].fetch_add(1, Relaxed));
         }
     });

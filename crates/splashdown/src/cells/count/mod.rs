@@ -1,7 +1,8 @@
 //! Counts the particles of every cell, and notes each one's cell and the order of its arrival there.
 //!
 //! Dead particles go to one more cell behind the last, so that sorting puts them behind the living. Particles that are
-//! outside the domain or not finite are marked dead here, and counted.
+//! outside the domain, or whose position, velocity or density is not finite, are marked dead here, and counted: before
+//! their neighbours see them.
 
 mod cpu;
 
@@ -24,6 +25,7 @@ pub static COUNT: PassDesc = PassDesc {
         uniform::<Grid>("grid"),
         read::<StepState>("state"),
         write::<Vec4>("positions"),
+        read::<Vec4>("velocities"),
         write::<UVec2>("cell_rank"),
         write::<u32>("counts"),
         write::<u32>("tally"),

@@ -1,0 +1,29 @@
+//! The gate: every pass agrees with its WGSL, every WGSL file belongs to a pass, and every label is given once.
+
+use std::path::Path;
+
+use splashdown_gpu::testing;
+
+const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
+
+#[test]
+fn every_pass_agrees_with_its_wgsl_and_every_wgsl_has_a_pass() {
+    let wrong = testing::gate(Path::new(SOURCES), &splashdown::passes());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Control: what each pass needs is in the list, so a list without one pass leaves its file without an owner.
+#[test]
+fn a_pass_left_out_is_noticed() {
+    let passes = splashdown::passes();
+    let alone: Vec<_> = passes
+        .iter()
+        .filter(|pass| passes.iter().filter(|other| other.wgsl == pass.wgsl).count() == 1)
+        .collect();
+    assert!(alone.len() > 10, "{}", alone.len());
+    for left_out in alone {
+        let rest: Vec<_> = passes.iter().copied().filter(|pass| pass.label != left_out.label).collect();
+        let wrong = testing::gate(Path::new(SOURCES), &rest);
+        assert!(wrong.iter().any(|line| line.contains("no pass uses it")), "{}: {wrong:?}", left_out.label);
+    }
+}
