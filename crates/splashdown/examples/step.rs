@@ -21,11 +21,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let stats = simulation.advance(scene.frame_duration())?;
         let wall = begun.elapsed().as_secs_f64();
         let steps = f64::from(stats.steps_in_frame);
+        let velocities = simulation.particles()?.velocities;
+        let sum: f64 = velocities.iter().flatten().map(|&v| f64::from(v).powi(2)).sum();
         println!(
-            "t {:.4} s: {} steps, {:.2} ms each, dt {:.2e} s, density error {:.4}, max speed {:.3} m/s, limits {}, walls {}",
+            "t {:.4} s: {} steps, {:.2} ms each, rms speed {:.4} m/s, dt {:.2e} s, density error {:.4}, max speed {:.3} m/s, limits {}, walls {}",
             stats.time,
             stats.steps_in_frame,
             1e3 * wall / steps,
+            (sum / velocities.len().max(1) as f64).sqrt(),
             stats.dt,
             stats.density_error,
             stats.max_speed,

@@ -1,5 +1,6 @@
 //! What bounds the fluid: the box's closed sides.
 
+mod contact;
 mod walls;
 
 pub use walls::{KernelPair, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};

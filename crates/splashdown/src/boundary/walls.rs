@@ -116,8 +116,8 @@ fn spiky(q: f32) -> (f32, f32) {
 
 /// Integrates the overlap of two half-spaces at right angles; takes some milliseconds.
 ///
-/// Nodes of (D12, E12 of the density's kernel, D12, E12 of the gradient's), with E12 = -dD12/da, over (a, b) in
-/// [0, 1]^2; entry b * 33 + a.
+/// Nodes of (D12 of the density's kernel, D12 and E12 of the gradient's, 0), with E12 = -dD12/da, over (a, b) in [0, 1]^2;
+/// entry b * 33 + a.
 pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
     // The kernel integrated along the edge leaves a function of the distance from the edge, once per kernel.
     const FINE: usize = 512;
@@ -144,14 +144,17 @@ pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
         let end = (1.0 - b * b).max(0.0).sqrt();
         let d = simpson(end - a, |s| e(a + s, b));
         let e = e(a, b);
-        Vec4::new(d[0] as f32, e[0] as f32, d[1] as f32, e[1] as f32)
+        Vec4::new(d[0] as f32, d[1] as f32, e[1] as f32, 0.0)
     };
     (0..NODES * NODES).map(node).collect()
 }
 
-/// (D12, E12) of both kernels at (a, b), bilinear.
+/// A node's values at (a, b), bilinear; zero where the planes do not meet inside the support.
 #[inline]
 fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
+    if a * a + b * b >= 1.0 {
+        return Vec4::ZERO;
+    }
     let (x, y) = (a * TABLE_STEPS as f32, b * TABLE_STEPS as f32);
     let (i, j) = ((x as usize).min(TABLE_STEPS - 1), (y as usize).min(TABLE_STEPS - 1));
     let (fx, fy) = (x - i as f32, y - j as f32);
@@ -167,7 +170,8 @@ fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
 /// A lattice is not the continuum that the integral stands for: with the integral right at the side, the first layer is
 /// 5 % too dense (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at rest begins with
 /// a burst. With the offset, which solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the half-space) once, all
-/// three are right to within 0.3 %: the same wall as if the lattice went on behind it.
+/// three are right to within 0.3 %: the same wall as if the lattice went on behind it. The lattice's gradient, in turn, is
+/// that of the integral at the side (within 3 %; with the offset it would be 16 % too weak), so slopes go without.
 pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     let ratio = f64::from(support_ratio);
     let reach = support_ratio.ceil() as i32;
@@ -236,11 +240,9 @@ pub struct Walls {
 pub struct WallTerms {
     /// The density of the walls over the rest density.
     pub density: f32,
-    /// Coefficients c with G = -sum_k c_k / H * n_k, for the density's kernel.
-    pub density_slope: Vec3,
-    /// The same for the gradient's kernel.
+    /// Coefficients c with G = -sum_k c_k / H * n_k.
     pub slope: Vec3,
-    /// A of each single plane for the gradient's kernel, for friction.
+    /// A of each single plane, for friction.
     pub single: Vec3,
     /// Inward normals' sign per axis: +1 at the lower side, -1 at the upper.
     pub normal: Vec3,
@@ -248,23 +250,12 @@ pub struct WallTerms {
     pub distance: Vec3,
 }
 
-impl WallTerms {
-    const NONE: Self = Self {
-        density: 0.0,
-        density_slope: Vec3::ZERO,
-        slope: Vec3::ZERO,
-        single: Vec3::ZERO,
-        normal: Vec3::ONE,
-        distance: Vec3::INFINITY,
-    };
-}
-
 impl Walls {
     /// True if a wall is within the support at `x`.
     #[inline]
     pub fn near(&self, x: Vec3) -> bool {
         let (_, distance) = self.nearest(x);
-        distance.min_element() + self.offset < self.support_radius
+        distance.min_element() < self.support_radius
     }
 
     /// Signs of the normals and distances of the nearest closed side of each axis.
@@ -277,50 +268,50 @@ impl Walls {
         (Vec3::select(lower, Vec3::ONE, Vec3::NEG_ONE), Vec3::select(lower, low, high))
     }
 
-    /// The contributions at `x`, a point inside the box.
+    /// The contributions at `x`, a point inside the box. The density is that of solids which begin behind the sides by
+    /// [`wall_offset`]; their slopes are those of solids that begin at the sides, see there.
     pub fn terms(&self, table: &[Vec4], x: Vec3) -> WallTerms {
         let (normal, distance) = self.nearest(x);
-        let q = ((distance + self.offset).max(Vec3::ZERO) / self.support_radius).to_array();
-        if q.iter().all(|&q| q >= 1.0) {
-            return WallTerms { normal, distance, ..WallTerms::NONE };
-        }
-        let plane = |q: f32, f: fn(KernelPair, f32) -> (f32, f32)| {
-            if q < 1.0 { f(self.kernels, q) } else { (0.0, 0.0) }
-        };
-        let density = q.map(|q| plane(q, KernelPair::density));
-        let gradient = q.map(|q| plane(q, KernelPair::gradient));
-        let pair = |a: usize, b: usize| {
-            if q[a] * q[a] + q[b] * q[b] < 1.0 { look_up(table, q[a], q[b]) } else { Vec4::ZERO }
-        };
-        // Six look-ups: (a, b) gives the derivative by a.
-        let pairs = [[pair(0, 1), pair(0, 2)], [pair(1, 2), pair(1, 0)], [pair(2, 0), pair(2, 1)]];
-        let (delta, density_slope) = combine(density, pairs.map(|p| p.map(|v| [v.x, v.y])));
-        let (_, slope) = combine(gradient, pairs.map(|p| p.map(|v| [v.z, v.w])));
+        let q = (distance / self.support_radius).max(Vec3::ZERO).to_array();
+        let behind = ((distance + self.offset) / self.support_radius).max(Vec3::ZERO).to_array();
+        let planes = q.map(|q| if q < 1.0 { self.kernels.gradient(q) } else { (0.0, 0.0) });
         WallTerms {
-            density: delta,
-            density_slope,
-            slope,
-            single: Vec3::from_array(gradient.map(|(_, a)| a)),
+            density: self.density(table, behind),
+            slope: self.slope(table, q, planes),
+            single: Vec3::from_array(planes.map(|(_, a)| a)),
             normal,
             distance,
         }
     }
-}
 
-/// Inclusion and exclusion: the sum D and, per axis, -dD/dq. `pairs[k]` holds (D, E) of axis k with the two others.
-fn combine(planes: [(f32, f32); 3], pairs: [[[f32; 2]; 2]; 3]) -> (f32, Vec3) {
-    let [d12, d13, d23] = [pairs[0][0][0], pairs[0][1][0], pairs[1][0][0]];
-    let mut d = planes[0].0 + planes[1].0 + planes[2].0 - d12 - d13 - d23;
-    let mut slope = [0, 1, 2].map(|k| planes[k].1 - pairs[k][0][1] - pairs[k][1][1]);
-    if d12 > 0.0 && d13 > 0.0 && d23 > 0.0 {
-        let d123 = d12 * d13 * d23 / (planes[0].0 * planes[1].0 * planes[2].0);
-        d += d123;
-        for k in 0..3 {
-            let [[da, ea], [db, eb]] = pairs[k];
-            slope[k] += d123 * (ea / da + eb / db - planes[k].1 / planes[k].0);
-        }
+    /// Inclusion and exclusion of the solids' densities.
+    fn density(&self, table: &[Vec4], q: [f32; 3]) -> f32 {
+        let d = q.map(|q| if q < 1.0 { self.kernels.density(q).0 } else { 0.0 });
+        let pair = |a: usize, b: usize| look_up(table, q[a], q[b]).x;
+        let [d12, d13, d23] = [pair(0, 1), pair(0, 2), pair(1, 2)];
+        let sum = d[0] + d[1] + d[2] - d12 - d13 - d23;
+        if d12 > 0.0 && d13 > 0.0 && d23 > 0.0 { sum + d12 * d13 * d23 / (d[0] * d[1] * d[2]) } else { sum }
     }
-    (d, Vec3::from_array(slope))
+
+    /// Its derivative by minus the distance over H, per axis.
+    fn slope(&self, table: &[Vec4], q: [f32; 3], planes: [(f32, f32); 3]) -> Vec3 {
+        // (D, E) of axis k with the two others: (a, b) gives the derivative by a.
+        let pair = |a: usize, b: usize| {
+            let node = look_up(table, q[a], q[b]);
+            (node.y, node.z)
+        };
+        let pairs = [[pair(0, 1), pair(0, 2)], [pair(1, 2), pair(1, 0)], [pair(2, 0), pair(2, 1)]];
+        let [d12, d13, d23] = [pairs[0][0].0, pairs[0][1].0, pairs[1][0].0];
+        let mut slope = [0, 1, 2].map(|k| planes[k].1 - pairs[k][0].1 - pairs[k][1].1);
+        if d12 > 0.0 && d13 > 0.0 && d23 > 0.0 {
+            let d123 = d12 * d13 * d23 / (planes[0].0 * planes[1].0 * planes[2].0);
+            for (k, slope) in slope.iter_mut().enumerate() {
+                let [(da, ea), (db, eb)] = pairs[k];
+                *slope += d123 * (ea / da + eb / db - planes[k].1 / planes[k].0);
+            }
+        }
+        Vec3::from_array(slope)
+    }
 }
 
 #[cfg(test)]

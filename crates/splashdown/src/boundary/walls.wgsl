@@ -4,7 +4,6 @@ const WALL_STEPS: u32 = 32u;
 
 struct WallTerms {
     density: f32,
-    density_slope: vec3<f32>,
     slope: vec3<f32>,
     single: vec3<f32>,
     normal: vec3<f32>,
@@ -64,21 +63,36 @@ fn wall_pair(a: f32, b: f32) -> vec4<f32> {
     return low * (1.0 - fy) + high * fy;
 }
 
-// (D, slopes) by inclusion and exclusion; d and a of the planes, pair values of axis k with the two others.
-fn wall_combine(d: vec3<f32>, a: vec3<f32>, p01: vec2<f32>, p02: vec2<f32>, p12: vec2<f32>, p10: vec2<f32>, p20: vec2<f32>, p21: vec2<f32>) -> vec4<f32> {
-    var sum = d.x + d.y + d.z - p01.x - p02.x - p12.x;
+fn wall_open(bit: u32) -> f32 {
+    return select(1e30, 0.0, ((params.closed >> bit) & 1u) == 1u);
+}
+
+fn wall_density(q: vec3<f32>) -> f32 {
+    let d = vec3(wall_plane(q.x).x, wall_plane(q.y).x, wall_plane(q.z).x);
+    let pairs = vec3(wall_pair(q.x, q.y).x, wall_pair(q.x, q.z).x, wall_pair(q.y, q.z).x);
+    var sum = d.x + d.y + d.z - pairs.x - pairs.y - pairs.z;
+    if (all(pairs > vec3(0.0))) {
+        sum += pairs.x * pairs.y * pairs.z / (d.x * d.y * d.z);
+    }
+    return sum;
+}
+
+// Derivative by minus the distance over H, per axis.
+fn wall_slope(q: vec3<f32>, d: vec3<f32>, a: vec3<f32>) -> vec3<f32> {
+    // (D, E) of each axis with the two others.
+    let p01 = wall_pair(q.x, q.y).yz;
+    let p02 = wall_pair(q.x, q.z).yz;
+    let p12 = wall_pair(q.y, q.z).yz;
+    let p10 = wall_pair(q.y, q.x).yz;
+    let p20 = wall_pair(q.z, q.x).yz;
+    let p21 = wall_pair(q.z, q.y).yz;
     var slope = a - vec3(p01.y, p12.y, p20.y) - vec3(p02.y, p10.y, p21.y);
     if (p01.x > 0.0 && p02.x > 0.0 && p12.x > 0.0) {
         let corner = p01.x * p02.x * p12.x / (d.x * d.y * d.z);
-        sum += corner;
         slope += corner * (vec3(p01.y, p12.y, p20.y) / vec3(p01.x, p12.x, p20.x)
             + vec3(p02.y, p10.y, p21.y) / vec3(p02.x, p10.x, p21.x) - a / d);
     }
-    return vec4(slope, sum);
-}
-
-fn wall_open(bit: u32) -> f32 {
-    return select(1e30, 0.0, ((params.closed >> bit) & 1u) == 1u);
+    return slope;
 }
 
 fn wall_terms(x: vec3<f32>) -> WallTerms {
@@ -87,27 +101,43 @@ fn wall_terms(x: vec3<f32>) -> WallTerms {
     var terms: WallTerms;
     terms.normal = select(vec3(-1.0), vec3(1.0), low <= high);
     terms.distance = min(low, high);
-    let q = max(terms.distance + params.wall_offset, vec3(0.0)) / params.support_radius;
+    let q = max(terms.distance / params.support_radius, vec3(0.0));
     if (min(q.x, min(q.y, q.z)) >= 1.0) {
         return terms;
     }
-    let px = wall_plane(q.x);
-    let py = wall_plane(q.y);
-    let pz = wall_plane(q.z);
+    terms.density = wall_density(max((terms.distance + params.wall_offset) / params.support_radius, vec3(0.0)));
     let gx = wall_plane_gradient(q.x);
     let gy = wall_plane_gradient(q.y);
     let gz = wall_plane_gradient(q.z);
-    let p01 = wall_pair(q.x, q.y);
-    let p02 = wall_pair(q.x, q.z);
-    let p12 = wall_pair(q.y, q.z);
-    let p10 = wall_pair(q.y, q.x);
-    let p20 = wall_pair(q.z, q.x);
-    let p21 = wall_pair(q.z, q.y);
-    let density = wall_combine(vec3(px.x, py.x, pz.x), vec3(px.y, py.y, pz.y), p01.xy, p02.xy, p12.xy, p10.xy, p20.xy, p21.xy);
-    let gradient = wall_combine(vec3(gx.x, gy.x, gz.x), vec3(gx.y, gy.y, gz.y), p01.zw, p02.zw, p12.zw, p10.zw, p20.zw, p21.zw);
-    terms.density = density.w;
-    terms.density_slope = density.xyz;
-    terms.slope = gradient.xyz;
     terms.single = vec3(gx.y, gy.y, gz.y);
+    terms.slope = wall_slope(q, vec3(gx.x, gy.x, gz.x), terms.single);
     return terms;
+}
+
+// What walls do to a particle but for its own pressure; see `WallTerms::acceleration`.
+fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, pressed: bool, dt: f32) -> vec3<f32> {
+    let scale = 1.0 / params.support_radius;
+    var a = vec3(0.0);
+    if (pressed) {
+        a = -wall.density * body;
+    }
+    for (var axis = 0u; axis < 3u; axis++) {
+        let distance = wall.distance[axis];
+        if (distance >= params.support_radius) {
+            continue;
+        }
+        if (pressed) {
+            a[axis] -= wall.slope[axis] * scale * distance * body[axis];
+        }
+        let q = max(distance, 0.0) * scale;
+        let t = 1.0 - q;
+        let damping = 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
+        a[axis] -= damping / (1.0 + damping * dt) * v[axis];
+        let friction = params.wall_friction * 2.0 * params.viscosity * wall.single[axis] * scale
+            / max(distance, 0.25 * params.particle_spacing);
+        var along = v;
+        along[axis] = 0.0;
+        a -= friction / (1.0 + friction * dt) * along;
+    }
+    return a;
 }

@@ -47,7 +47,7 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
         }
     }
     let wall = wall_terms(x);
-    rate -= rho * scale * dot(wall.density_slope * wall.normal, v);
+    rate -= 2.0 * rho * scale * dot(wall.slope * wall.normal, v);
     let next = rho + state.dt * rate;
     densities[i] = vec2(next, pressure_at(next));
 }

@@ -41,7 +41,7 @@ pub(super) fn continuity<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'
             let mut rate = out.x;
             if walls.near(x) {
                 let terms = walls.terms(wall_table, x);
-                rate -= v.w * scale * (terms.density_slope * terms.normal).dot(v.xyz());
+                rate -= 2.0 * v.w * scale * (terms.slope * terms.normal).dot(v.xyz());
             }
             let next = v.w + state.dt * rate;
             *out = Vec2::new(next, params.pressure_at(next));

@@ -79,31 +79,16 @@ impl Input<'_> {
         });
     }
 
-    /// The walls' pressure and friction.
+    /// The walls' pressure, damping and friction.
     fn add_walls(&self, i: usize, body: Vec3, a: &mut Vec4) {
         let params = self.params;
         let terms = self.walls.terms(self.wall_table, self.positions[i].xyz());
-        let v = self.velocities[i].xyz();
         let [rho, pressure] = self.densities[i].to_array();
-        let scale = 1.0 / params.support_radius;
-        for axis in 0..3 {
-            let (distance, n) = (terms.distance[axis], terms.normal[axis]);
-            if distance >= params.support_radius {
-                continue;
-            }
-            let depth = distance + 0.5 * params.particle_spacing;
-            let mut behind = pressure - params.rest_density * body[axis] * n * depth;
-            if params.clamp_pressure == 1 {
-                behind = behind.max(0.0);
-            }
-            let push = params.rest_density * pressure / (rho * rho) + behind / params.rest_density;
-            a[axis] += push * terms.slope[axis] * scale * n;
-            let k = params.wall_friction * 2.0 * params.viscosity * terms.single[axis] * scale
-                / distance.max(0.25 * params.particle_spacing);
-            let mut along = v;
-            along[axis] = 0.0;
-            *a -= (k / (1.0 + k * self.state.dt) * along).extend(0.0);
-        }
+        let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+        let push = push / params.support_radius * terms.slope * terms.normal;
+        let pressed = pressure > 0.0 || params.clamp_pressure == 0;
+        let rest = terms.acceleration(params, self.velocities[i].xyz(), body, pressed, self.state.dt);
+        *a += (push + rest).extend(0.0);
     }
 }
 

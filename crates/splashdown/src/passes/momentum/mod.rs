@@ -8,9 +8,8 @@
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
 //! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
-//! Walls push with -rho0 (p_i/rho_i^2 + p_b/rho0^2) G, where p_b continues the pressure hydrostatically into the wall
-//! (after Adami, Hu & Adams 2012), and rub with the closed form of the Morris operator over a half-space whose velocity
-//! goes linearly through the wall, made implicit: -k v_t / (1 + k dt), k = 2 nu A / (H d).
+//! Walls push with the particle's own pressure mirrored, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else they do is in
+//! [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
 
 mod cpu;
 

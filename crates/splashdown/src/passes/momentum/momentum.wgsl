@@ -76,22 +76,8 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
     }
 
     let wall = wall_terms(x);
-    for (var axis = 0u; axis < 3u; axis++) {
-        if (wall.distance[axis] >= support) {
-            continue;
-        }
-        let n = wall.normal[axis];
-        var behind = pressure - params.rest_density * body[axis] * n * (wall.distance[axis] + 0.5 * params.particle_spacing);
-        if (params.clamp_pressure == 1u) {
-            behind = max(behind, 0.0);
-        }
-        let push = params.rest_density * specific + behind / params.rest_density;
-        a[axis] += push * wall.slope[axis] * scale * n;
-        let k = params.wall_friction * 2.0 * params.viscosity * wall.single[axis] * scale
-            / max(wall.distance[axis], 0.25 * params.particle_spacing);
-        var along = v;
-        along[axis] = 0.0;
-        a -= k / (1.0 + k * state.dt) * along;
-    }
+    let push = (params.rest_density * specific + pressure / params.rest_density) * scale;
+    a += push * wall.slope * wall.normal;
+    a += wall_acceleration(wall, v, body, pressure > 0.0 || params.clamp_pressure == 0u, state.dt);
     accelerations[i] = vec4(a + body, 0.0);
 }

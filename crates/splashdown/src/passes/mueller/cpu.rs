@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{KernelPair, Walls};
+use crate::boundary::KernelPair;
 use crate::cells::Grid;
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::rows::{self, Window};
@@ -26,48 +26,16 @@ pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
         vectorised(Row { params, grid, cell_start, positions, velocities, densities, row, window, out });
         for (i, a) in places.zip(out) {
             *a += body.extend(0.0);
-            let (x, v) = (positions[i].xyz(), velocities[i].xyz());
-            if walls.near(x) {
-                *a += wall_acceleration(params, state.dt, body, &walls, wall_table, x, v, densities[i])
-                    .extend(0.0);
+            if walls.near(positions[i].xyz()) {
+                let terms = walls.terms(wall_table, positions[i].xyz());
+                let [rho, pressure] = densities[i].to_array();
+                let push = pressure / rho / params.support_radius * terms.slope * terms.normal;
+                let pressed = pressure > 0.0 || params.clamp_pressure == 0;
+                let rest = terms.acceleration(params, velocities[i].xyz(), body, pressed, state.dt);
+                *a += (push + rest).extend(0.0);
             }
         }
     });
-}
-
-#[expect(clippy::too_many_arguments, reason = "one particle's state, spelled out")]
-fn wall_acceleration(
-    params: &Params,
-    dt: f32,
-    body: Vec3,
-    walls: &Walls,
-    table: &[Vec4],
-    x: Vec3,
-    v: Vec3,
-    density: Vec2,
-) -> Vec3 {
-    let terms = walls.terms(table, x);
-    let [rho, pressure] = density.to_array();
-    let scale = 1.0 / params.support_radius;
-    let mut a = Vec3::ZERO;
-    for axis in 0..3 {
-        let (distance, n) = (terms.distance[axis], terms.normal[axis]);
-        if distance >= params.support_radius {
-            continue;
-        }
-        let mut behind =
-            pressure - params.rest_density * body[axis] * n * (distance + 0.5 * params.particle_spacing);
-        if params.clamp_pressure == 1 {
-            behind = behind.max(0.0);
-        }
-        a[axis] += 0.5 * (pressure + behind) / rho * terms.slope[axis] * scale * n;
-        let k = params.wall_friction * 2.0 * params.viscosity * terms.single[axis] * scale
-            / distance.max(0.25 * params.particle_spacing);
-        let mut along = v;
-        along[axis] = 0.0;
-        a -= k / (1.0 + k * dt) * along;
-    }
-    a
 }
 
 /// The sums over the neighbours of the particles in one row of cells.
