@@ -164,19 +164,18 @@ fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
     low * (1.0 - fy) + high * fy
 }
 
-/// How far behind a closed side its solid has to begin, in spacings, so that a lattice that keeps half a spacing from the
-/// side has exactly the rest density.
+/// How far behind a closed side its solid begins as far as the density is concerned, in spacings: so that a lattice that
+/// keeps half a spacing from the side has exactly the rest density.
 ///
 /// A lattice is not the continuum that the integral stands for: with the integral right at the side, the first layer is
 /// 5 % too dense (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at rest begins with
 /// a burst. With the offset, which solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the half-space) once, all
 /// three are right to within 0.3 %: the same wall as if the lattice went on behind it. The lattice's gradient, in turn, is
-/// that of the integral at the side (within 3 %; with the offset it would be 16 % too weak), so slopes go without.
+/// that of the integral right at the side (within 3 %; with the offset it would be 16 % too weak), so slopes go without.
 pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     let ratio = f64::from(support_ratio);
-    let reach = support_ratio.ceil() as i32;
     let (mut whole, mut behind) = (0.0, 0.0);
-    for (x, y, z) in cube(reach) {
+    for (x, y, z) in cube(support_ratio.ceil() as i32) {
         let q = f64::from(x * x + y * y + z * z).sqrt() / ratio;
         if q < 1.0 {
             let [w, _] = kernels.w(q);
@@ -226,7 +225,7 @@ pub struct Walls {
     pub max: Vec3,
     /// Bit 2 * axis + side is set if that side is closed.
     pub closed: u32,
-    /// How far behind a closed side its solid begins, in metres.
+    /// How far behind a closed side its solid begins, in metres, as far as the density is concerned.
     pub offset: f32,
     /// Support radius in metres.
     pub support_radius: f32,
@@ -242,8 +241,10 @@ pub struct WallTerms {
     pub density: f32,
     /// Coefficients c with G = -sum_k c_k / H * n_k.
     pub slope: Vec3,
-    /// A of each single plane, for friction.
-    pub single: Vec3,
+    /// The plain half-space integrals D of each single plane.
+    pub plane: Vec3,
+    /// Their A = -dD/dq.
+    pub plane_slope: Vec3,
     /// Inward normals' sign per axis: +1 at the lower side, -1 at the upper.
     pub normal: Vec3,
     /// Distances to the nearest closed sides in metres; infinite where there is none.
@@ -268,20 +269,25 @@ impl Walls {
         (Vec3::select(lower, Vec3::ONE, Vec3::NEG_ONE), Vec3::select(lower, low, high))
     }
 
-    /// The contributions at `x`, a point inside the box. The density is that of solids which begin behind the sides by
-    /// [`wall_offset`]; their slopes are those of solids that begin at the sides, see there.
+    /// The contributions at `x`, a point inside the box.
     pub fn terms(&self, table: &[Vec4], x: Vec3) -> WallTerms {
         let (normal, distance) = self.nearest(x);
         let q = (distance / self.support_radius).max(Vec3::ZERO).to_array();
         let behind = ((distance + self.offset) / self.support_radius).max(Vec3::ZERO).to_array();
-        let planes = q.map(|q| if q < 1.0 { self.kernels.gradient(q) } else { (0.0, 0.0) });
+        let planes = q.map(|q| self.plane(q));
         WallTerms {
             density: self.density(table, behind),
             slope: self.slope(table, q, planes),
-            single: Vec3::from_array(planes.map(|(_, a)| a)),
+            plane: Vec3::from_array(planes.map(|(d, _)| d)),
+            plane_slope: Vec3::from_array(planes.map(|(_, a)| a)),
             normal,
             distance,
         }
+    }
+
+    /// (D, A) of one plane for the gradient's kernel.
+    fn plane(&self, q: f32) -> (f32, f32) {
+        if q < 1.0 { self.kernels.gradient(q) } else { (0.0, 0.0) }
     }
 
     /// Inclusion and exclusion of the solids' densities.

@@ -5,7 +5,8 @@ const WALL_STEPS: u32 = 32u;
 struct WallTerms {
     density: f32,
     slope: vec3<f32>,
-    single: vec3<f32>,
+    plane: vec3<f32>,
+    plane_slope: vec3<f32>,
     normal: vec3<f32>,
     distance: vec3<f32>,
 }
@@ -105,35 +106,39 @@ fn wall_terms(x: vec3<f32>) -> WallTerms {
     if (min(q.x, min(q.y, q.z)) >= 1.0) {
         return terms;
     }
+    let px = wall_plane_gradient(q.x);
+    let py = wall_plane_gradient(q.y);
+    let pz = wall_plane_gradient(q.z);
+    terms.plane = vec3(px.x, py.x, pz.x);
+    terms.plane_slope = vec3(px.y, py.y, pz.y);
+    terms.slope = wall_slope(q, terms.plane, terms.plane_slope);
     terms.density = wall_density(max((terms.distance + params.wall_offset) / params.support_radius, vec3(0.0)));
-    let gx = wall_plane_gradient(q.x);
-    let gy = wall_plane_gradient(q.y);
-    let gz = wall_plane_gradient(q.z);
-    terms.single = vec3(gx.y, gy.y, gz.y);
-    terms.slope = wall_slope(q, vec3(gx.x, gy.x, gz.x), terms.single);
     return terms;
 }
 
-// What walls do to a particle but for its own pressure; see `WallTerms::acceleration`.
-fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, pressed: bool, dt: f32) -> vec3<f32> {
+// The acceleration by neighbours and walls; see `WallTerms::acceleration`.
+fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, fluid: vec3<f32>, push: f32, dt: f32) -> vec3<f32> {
     let scale = 1.0 / params.support_radius;
-    var a = vec3(0.0);
-    if (pressed) {
-        a = -wall.density * body;
-    }
+    let open = vec3(1.0) - wall.plane;
+    let others = vec3(open.y * open.z, open.z * open.x, open.x * open.y);
+    var a = fluid / others;
     for (var axis = 0u; axis < 3u; axis++) {
-        let distance = wall.distance[axis];
+        let distance = max(wall.distance[axis], 0.0);
         if (distance >= params.support_radius) {
             continue;
         }
-        if (pressed) {
-            a[axis] -= wall.slope[axis] * scale * distance * body[axis];
+        var own = push * wall.slope[axis] * scale * wall.normal[axis];
+        if (push > 0.0) {
+            own -= (wall.plane[axis] + wall.plane_slope[axis] * scale * distance) * body[axis];
         }
-        let q = max(distance, 0.0) * scale;
-        let t = 1.0 - q;
-        let damping = 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
-        a[axis] -= damping / (1.0 + damping * dt) * v[axis];
-        let friction = params.wall_friction * 2.0 * params.viscosity * wall.single[axis] * scale
+        a[axis] += own / others[axis];
+        if (v[axis] * wall.normal[axis] < 0.0) {
+            let q = distance * scale;
+            let t = 1.0 - q;
+            let damping = params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
+            a[axis] -= damping / (1.0 + damping * dt) * v[axis];
+        }
+        let friction = params.wall_friction * 2.0 * params.viscosity * wall.plane_slope[axis] * scale
             / max(distance, 0.25 * params.particle_spacing);
         var along = v;
         along[axis] = 0.0;

@@ -79,8 +79,8 @@ gpu_struct! {
         clamp_pressure: u32,
         /// Number of particles, dead ones included.
         particle_count: u32,
-        /// Fills the struct up to a multiple of 16 bytes.
-        padding: u32,
+        /// Damping of the speed towards closed sides: 1 where the density is summed, 0 where it is integrated.
+        wall_damping: f32,
     }
 }
 

@@ -24,7 +24,7 @@ struct Params {
     closed: u32,
     clamp_pressure: u32,
     particle_count: u32,
-    padding: u32,
+    wall_damping: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -36,7 +36,8 @@ impl Solver {
         Self {
             method: scene.solver.method,
             kernel: scene.solver.kernel,
-            continuity: scene.solver.density == DensityMode::Continuity,
+            continuity: scene.solver.method == Method::Wcsph
+                && scene.solver.density == DensityMode::Continuity,
             tension: scene.solver.surface_tension == SurfaceTension::Akinci2013,
         }
     }
@@ -137,7 +138,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         (shake.amplitude * rate * rate, rate)
     });
     let closed = scene.domain.closed.as_flattened();
-    let walls = Solver::new(scene).walls();
+    let kind = Solver::new(scene);
     let numerical_viscosity = match solver.method {
         Method::Wcsph => 0.0,
         Method::Mueller2003 => MUELLER_VISCOSITY * derived.sound_speed * support_radius,
@@ -153,7 +154,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         shake_rate,
         rest_density,
         sound_speed: derived.sound_speed,
-        wall_offset: scene.fluid.particle_spacing * wall_offset(walls, solver.support_ratio),
+        wall_offset: scene.fluid.particle_spacing * wall_offset(kind.walls(), solver.support_ratio),
         exponent: solver.exponent,
         viscosity: material.viscosity + numerical_viscosity,
         artificial_viscosity: solver.artificial_viscosity,
@@ -172,6 +173,6 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
         clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
         particle_count: particles,
-        padding: 0,
+        wall_damping: if kind.continuity { 0.0 } else { 1.0 },
     }
 }

@@ -71,24 +71,22 @@ impl Input<'_> {
             let kernel = PhantomData;
             vectorised(Row::<K, F, TENSION> { input: self, row, window, out, kernel });
             for (i, a) in places.zip(out) {
-                *a += body.extend(0.0);
                 if self.walls.near(self.positions[i].xyz()) {
                     self.add_walls(i, body, a);
                 }
+                *a += body.extend(0.0);
             }
         });
     }
 
-    /// The walls' pressure, damping and friction.
+    /// Turns what the neighbours do into what neighbours and walls do.
     fn add_walls(&self, i: usize, body: Vec3, a: &mut Vec4) {
         let params = self.params;
         let terms = self.walls.terms(self.wall_table, self.positions[i].xyz());
         let [rho, pressure] = self.densities[i].to_array();
         let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
-        let push = push / params.support_radius * terms.slope * terms.normal;
-        let pressed = pressure > 0.0 || params.clamp_pressure == 0;
-        let rest = terms.acceleration(params, self.velocities[i].xyz(), body, pressed, self.state.dt);
-        *a += (push + rest).extend(0.0);
+        let v = self.velocities[i].xyz();
+        *a = terms.acceleration(params, v, body, a.xyz(), push, self.state.dt).extend(0.0);
     }
 }
 

@@ -75,9 +75,7 @@ fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
         }
     }
 
-    let wall = wall_terms(x);
-    let push = (params.rest_density * specific + pressure / params.rest_density) * scale;
-    a += push * wall.slope * wall.normal;
-    a += wall_acceleration(wall, v, body, pressure > 0.0 || params.clamp_pressure == 0u, state.dt);
+    let push = params.rest_density * specific + pressure / params.rest_density;
+    a = wall_acceleration(wall_terms(x), v, body, a, push, state.dt);
     accelerations[i] = vec4(a + body, 0.0);
 }

@@ -25,15 +25,13 @@ pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
     rows::for_each(grid, cell_start, accelerations.write::<Vec4>(), |window, row, places, out| {
         vectorised(Row { params, grid, cell_start, positions, velocities, densities, row, window, out });
         for (i, a) in places.zip(out) {
-            *a += body.extend(0.0);
             if walls.near(positions[i].xyz()) {
                 let terms = walls.terms(wall_table, positions[i].xyz());
                 let [rho, pressure] = densities[i].to_array();
-                let push = pressure / rho / params.support_radius * terms.slope * terms.normal;
-                let pressed = pressure > 0.0 || params.clamp_pressure == 0;
-                let rest = terms.acceleration(params, velocities[i].xyz(), body, pressed, state.dt);
-                *a += (push + rest).extend(0.0);
+                let v = velocities[i].xyz();
+                *a = terms.acceleration(params, v, body, a.xyz(), pressure / rho, state.dt).extend(0.0);
             }
+            *a += body.extend(0.0);
         }
     });
 }

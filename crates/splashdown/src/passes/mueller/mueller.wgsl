@@ -62,8 +62,6 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     }
     var a = force / rho;
 
-    let wall = wall_terms(x);
-    a += pressure / rho * scale * wall.slope * wall.normal;
-    a += wall_acceleration(wall, v, body, pressure > 0.0 || params.clamp_pressure == 0u, state.dt);
+    a = wall_acceleration(wall_terms(x), v, body, a, pressure / rho, state.dt);
     accelerations[i] = vec4(a + body, 0.0);
 }
