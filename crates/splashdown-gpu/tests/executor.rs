@@ -1,10 +1,11 @@
 //! What both executors promise: order, bounds, refusals, resizing, read-back and times.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use splashdown_gpu::{
-    Buffer, CpuExecutor, Executor, Flag, GpuError, Grid, PassDesc, Recording, gpu_struct, testing, uniform,
-    wgsl, write,
+    Buffer, CpuExecutor, Executor, Flag, GpuError, GpuExecutor, Grid, PassDesc, Recording, gpu_struct,
+    testing, uniform, wgsl, write,
 };
 
 gpu_struct! {
@@ -227,7 +228,7 @@ fn a_shader_that_does_not_compile_is_an_error_with_its_name() {
     let Some(gpu) = testing::gpu_or_skip("a_shader_that_does_not_compile_is_an_error_with_its_name") else {
         return;
     };
-    let mut executor = Executor::from(splashdown_gpu::GpuExecutor::new(gpu));
+    let mut executor = Executor::from(GpuExecutor::new(gpu));
     let [a, b] = [1, 2].map(|len| executor.create::<u32>("buffer", len).unwrap().id());
     let mut recording = Recording::new("bad");
     recording.dispatch(&TWICE, Grid::Items(1), &[a, b]);
@@ -273,7 +274,7 @@ fn a_buffer_that_is_too_large_is_refused_with_what_fits() {
     }
     if let Some(gpu) = testing::gpu_or_skip("a_buffer_that_is_too_large_is_refused_with_what_fits") {
         let most = gpu.largest_buffer() / 4;
-        let mut executor = Executor::from(splashdown_gpu::GpuExecutor::new(gpu));
+        let mut executor = Executor::from(GpuExecutor::new(gpu));
         if let Ok(len) = u32::try_from(most + 1) {
             let error = executor.create::<u32>("positions", len as usize).unwrap_err();
             assert!(matches!(error, GpuError::TooLarge { fits, .. } if fits == most), "{error}");
@@ -288,7 +289,7 @@ fn new_buffers_are_zero_or_poisoned() {
         assert!(executor.read(poisoned).unwrap().iter().all(|value| value.is_nan()), "{name}");
         let mut executor = match executor.gpu().cloned() {
             None => Executor::from(CpuExecutor::new()),
-            Some(gpu) => Executor::from(splashdown_gpu::GpuExecutor::new(gpu)),
+            Some(gpu) => Executor::from(GpuExecutor::new(gpu)),
         };
         let zero = executor.create::<f32>("zero", 3).unwrap();
         assert_eq!(executor.read(zero).unwrap(), [0.0; 3], "{name}");
@@ -354,4 +355,21 @@ fn more_dispatches_than_can_be_timed_still_run() {
             assert_eq!(count, if name == "CPU" { 2100 } else { 2048 }, "{name}");
         }
     }
+}
+
+#[test]
+fn two_threads_read_back_from_one_device() {
+    let Some(gpu) = testing::gpu_or_skip("two_threads_read_back_from_one_device") else { return };
+    std::thread::scope(|scope| {
+        for first in [1_u32, 1000] {
+            let gpu = Arc::clone(&gpu);
+            scope.spawn(move || {
+                let mut executor = Executor::from(GpuExecutor::new(gpu));
+                for i in first..first + 300 {
+                    let buffer = executor.create_from("numbers", &[i, i + 1]).unwrap();
+                    assert_eq!(executor.read(buffer).unwrap(), [i, i + 1]);
+                }
+            });
+        }
+    });
 }

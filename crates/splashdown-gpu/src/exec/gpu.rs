@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::pipeline::Pipeline;
+use super::readback::Mapping;
 use super::table::{Meta, Table};
 use super::{Readback, readback};
 use crate::{
@@ -295,12 +296,8 @@ impl GpuExecutor {
             mapped_at_creation: false,
         });
         encoder.copy_buffer_to_buffer(&timer.resolved, 0, &staging, 0, staging.size());
-        self.gpu.queue.submit([encoder.finish()]);
-        staging.map_async(wgpu::MapMode::Read, .., |_| {});
-        self.wait()?;
-        let lost = |_| GpuError::DeviceLost { reason: "the pass times could not be read".into() };
-        let view = staging.get_mapped_range(..).map_err(lost)?;
-        let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&view);
+        let submission = self.gpu.queue.submit([encoder.finish()]);
+        let stamps: Vec<u64> = Mapping::new(staging, submission).wait(self)?;
         let period = f64::from(self.gpu.queue.get_timestamp_period());
         if let Some(timer) = &mut self.timer {
             for (label, pair) in timed.iter().zip(stamps.chunks_exact(2)) {
