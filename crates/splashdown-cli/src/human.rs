@@ -13,6 +13,22 @@ pub fn count(number: u64) -> String {
     text
 }
 
+/// A count with its noun: 1 frame, 2 frames, 65,536 particles.
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{} {noun}{}", count(number), if number == 1 { "" } else { "s" })
+}
+
+/// A volume: 2.00 m^3, 66.6 l, 0.960 mm^3.
+pub fn volume(cubic_metres: f64) -> String {
+    let (factor, unit) = match cubic_metres.abs() {
+        x if x >= 0.9995 => (1.0, "m^3"),
+        x if x >= 0.999_5e-3 || x == 0.0 => (1e3, "l"),
+        x if x >= 0.999_5e-6 => (1e6, "ml"),
+        _ => (1e9, "mm^3"),
+    };
+    format!("{} {unit}", three_digits(cubic_metres * factor))
+}
+
 /// Bytes in powers of 1000: 1.2 GB.
 pub fn bytes(number: u64) -> String {
     if number < 1000 { format!("{number} B") } else { format!("{}B", scaled(number as f64)) }
@@ -79,7 +95,7 @@ pub fn parse_count(text: &str) -> Result<u32, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{bytes, count, duration, parse_count, scaled, three_digits};
+    use super::{counted, volume, bytes, count, duration, parse_count, scaled, three_digits};
 
     #[test]
     fn digits_come_in_threes() {
@@ -98,6 +114,22 @@ mod tests {
         assert_eq!(bytes(12), "12 B");
         assert_eq!(three_digits(0.0), "0");
         assert_eq!(three_digits(0.000_12), "1.20e-4");
+    }
+
+    #[test]
+    fn nouns_follow_their_count() {
+        assert_eq!(counted(1, "frame"), "1 frame");
+        assert_eq!(counted(0, "frame"), "0 frames");
+        assert_eq!(counted(66_560, "particle"), "66,560 particles");
+    }
+
+    #[test]
+    fn volumes_choose_their_units() {
+        assert_eq!(volume(1.95e6), "1950000 m^3");
+        assert_eq!(volume(0.2538), "254 l");
+        assert_eq!(volume(1.2e-5), "12.0 ml");
+        assert_eq!(volume(9.6e-13), "9.60e-4 mm^3");
+        assert_eq!(volume(0.0), "0 l");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use splashdown::scene::{Choice, PictureKind};
+use splashdown::scene::{Choice, Format, PictureKind, Scene};
 use splashdown_io::{IoError, prepare_folder};
 
 /// The names of all files of a run.
@@ -71,23 +71,25 @@ impl Layout {
         self.root.join(folder).join(format!("{stem}_{frame:0digits$}.{ending}", digits = self.digits))
     }
 
-    /// Makes the folders that are wanted and finds out whether they can be written. Where an earlier run left its report,
-    /// the files that a run writes are removed, and only those: frames of two runs in one series would be read as one.
+    /// Makes the folders that are wanted and finds out whether they can be written.
     ///
     /// # Errors
     /// [`IoError::Write`].
-    pub fn prepare(&self, particles: bool, mesh: bool, pictures: bool) -> Result<Earlier, IoError> {
+    pub fn make(&self, wanted: Folders) -> Result<(), IoError> {
         prepare_folder(&self.root)?;
-        let earlier = if self.report().exists() { self.remove_earlier() } else { Earlier { files: 0 } };
-        for ((folder, ..), wanted) in FOLDERS.iter().zip([particles, mesh, pictures]) {
-            if wanted {
-                prepare_folder(&self.root.join(folder))?;
-            }
+        let wanted = [wanted.particles, wanted.mesh, wanted.pictures];
+        for ((folder, ..), _) in FOLDERS.iter().zip(wanted).filter(|(_, wanted)| *wanted) {
+            prepare_folder(&self.root.join(folder))?;
         }
-        Ok(earlier)
+        Ok(())
     }
 
-    fn remove_earlier(&self) -> Earlier {
+    /// Where an earlier run left its report, the files that a run writes are removed, and only those: frames of two runs in
+    /// one series would be read as one. Returns their number.
+    pub fn remove_earlier(&self) -> usize {
+        if !self.report().exists() {
+            return 0;
+        }
         let mut files = 0;
         // What cannot be removed cannot be overwritten either, and that is then reported with its name.
         let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
@@ -106,15 +108,31 @@ impl Layout {
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
         }
-        Earlier { files }
+        files
     }
 }
 
-/// What an earlier run had left.
+/// The folders that a run needs below its output folder.
 #[derive(Clone, Copy, Debug)]
-pub struct Earlier {
-    /// Files removed.
-    pub files: usize,
+pub struct Folders {
+    /// For particles.
+    pub particles: bool,
+    /// For the surface.
+    pub mesh: bool,
+    /// For pictures.
+    pub pictures: bool,
+}
+
+impl Folders {
+    /// Those that the scene's formats need.
+    pub fn of(scene: &Scene, surface: bool, pictures: bool) -> Self {
+        let any = |wanted: [Format; 2]| scene.output.formats.iter().any(|format| wanted.contains(format));
+        Self {
+            particles: any([Format::Ply, Format::Vtu]),
+            mesh: surface && any([Format::Ply, Format::Obj]),
+            pictures,
+        }
+    }
 }
 
 /// True for `stem_0123.ending` with at least four digits.
@@ -128,7 +146,7 @@ fn is_frame(name: &str, stems: &[&str], endings: &[&str]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Layout, is_frame};
+    use super::{Folders, Layout, is_frame};
     use splashdown::scene::PictureKind;
     use std::fs;
 
@@ -161,17 +179,16 @@ mod tests {
     fn an_earlier_run_is_removed_and_nothing_else() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
         let layout = Layout::new(folder.path().to_owned(), 10);
-        layout.prepare(true, true, true)?;
+        layout.make(Folders { particles: true, mesh: true, pictures: true })?;
         let mine = folder.path().join("particles/notes.txt");
         let frame = layout.particles(3, "ply");
         fs::write(&mine, "mine")?;
         fs::write(&frame, "old")?;
         // Without a report the folder is not known to be ours.
-        layout.prepare(true, true, true)?;
+        assert_eq!(layout.remove_earlier(), 0);
         assert!(frame.exists());
         fs::write(layout.report(), "{}")?;
-        let earlier = layout.prepare(true, true, true)?;
-        assert_eq!(earlier.files, 2);
+        assert_eq!(layout.remove_earlier(), 2);
         assert!(!frame.exists() && mine.exists());
         Ok(())
     }

@@ -14,7 +14,7 @@ pub fn numbers(summary: &Summary) -> String {
     let stats = &summary.stats;
     let particles = human::count(stats.particles.into());
     let mut rows = vec![
-        ("simulated", format!("{:.4} s in {} frames", stats.time, summary.frames)),
+        ("simulated", format!("{:.4} s in {}", stats.time, human::counted(summary.frames.into(), "frame"))),
         ("wall time", human::duration(summary.wall)),
         ("steps", format!("{}, the last of {:.3e} s", human::count(stats.steps), stats.dt)),
         (
@@ -46,13 +46,13 @@ pub fn numbers(summary: &Summary) -> String {
     if stats.escaped > 0 {
         rows.push((
             "left the domain",
-            format!("{} particles, through open sides", human::count(stats.escaped.into())),
+            format!("{}, through open sides", human::counted(stats.escaped.into(), "particle")),
         ));
     }
     if stats.non_finite > 0 {
         let [x, y, z] = stats.non_finite_place;
-        let text =
-            format!("{} particles, the first near ({x}, {y}, {z}) m", human::count(stats.non_finite.into()));
+        let count = human::counted(stats.non_finite.into(), "particle");
+        let text = format!("{count}, the first near ({x}, {y}, {z}) m");
         rows.push(("became NaN", text));
     }
     if stats.wall_corrections > 0 {
@@ -66,16 +66,15 @@ pub fn numbers(summary: &Summary) -> String {
 }
 
 fn volume(summary: &Summary) -> String {
-    let litres = |cubic_metres: f64| format!("{} l", human::three_digits(1000.0 * cubic_metres));
-    let particles = litres(summary.particle_volume);
+    let particles = human::volume(summary.particle_volume);
     match summary.volume {
         None => format!("{particles} (particles)"),
         Some([first, last]) => {
             let first_share = change(first, summary.particle_volume);
             format!(
                 "{particles} (particles); inside the surface {} at first ({first_share}), {} at last ({})",
-                litres(first),
-                litres(last),
+                human::volume(first),
+                human::volume(last),
                 change(last, summary.particle_volume)
             )
         }

@@ -59,9 +59,9 @@ impl Teller {
     /// The run begins.
     pub fn started(&mut self, started: &Started) {
         self.note(&format!(
-            "{} particles, {} frames, {} of memory, on {}",
-            human::count(started.particles.into()),
-            human::count(started.frames.into()),
+            "{}, {}, {} of memory, on {}",
+            human::counted(started.particles.into(), "particle"),
+            human::counted(started.frames.into(), "frame"),
             human::bytes(started.memory),
             started.device
         ));

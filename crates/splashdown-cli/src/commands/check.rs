@@ -93,7 +93,7 @@ fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> Str
         ),
         ("particles", format!("{}, {} m apart", human::count(derived.particles), fluid.particle_spacing)),
         ("particle mass", format!("{:.4e} kg", derived.particle_mass)),
-        ("volume", format!("{} m^3", human::three_digits(derived.volume.into()))),
+        ("volume", human::volume(derived.volume.into())),
         ("solver", format!("{}, support radius {} m", scene.solver.method, derived.support_radius)),
         (
             "speed",
@@ -104,9 +104,9 @@ fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> Str
         (
             "steps",
             format!(
-                "about {} in {} frames, {} s",
+                "about {} in {}, {} s",
                 human::count(derived.steps_estimate),
-                derived.frames,
+                human::counted(derived.frames.into(), "frame"),
                 scene.duration
             ),
         ),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use splashdown::scene::{Format, PictureKind, Scene};
+use splashdown::scene::{PictureKind, Scene};
 use splashdown::{Event, Run, RunOptions};
 use splashdown_io::Film;
 
@@ -13,12 +13,12 @@ use crate::console::{self, Verbosity};
 use crate::exit::{Exit, Failure};
 use crate::files::Files;
 use crate::interrupt::{Interrupt, Wish};
-use crate::layout::Layout;
+use crate::layout::{Folders, Layout};
 use crate::lines::Line;
 use crate::pictures::{self, Pictures};
 use crate::report::Report;
 use crate::teller::Teller;
-use crate::{memory, scene_file};
+use crate::{human, memory, scene_file};
 
 /// Runs a scene to its end, or as far as it goes.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -69,7 +69,8 @@ impl Session {
         for warning in &scene.warnings {
             teller.warn(&warning.to_string());
         }
-        prepare(&scene, &layout, options.surface, !kinds.is_empty(), &teller)?;
+        let wanted = Folders::of(&scene, options.surface, !kinds.is_empty());
+        layout.make(wanted)?;
 
         let timing = options.timing;
         let run = Run::new(&scene, options)?;
@@ -90,7 +91,21 @@ impl Session {
             }
             Ok(()) => {}
         }
+        // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than room for its own.
+        session.replace_earlier(&scene, wanted)?;
         Ok(session)
+    }
+
+    /// Removes what an earlier run left, and leaves the first word of this one.
+    fn replace_earlier(&self, scene: &Scene, wanted: Folders) -> Result<(), Failure> {
+        let files = self.layout.remove_earlier();
+        if files > 0 {
+            let what = human::counted(files as u64, "file");
+            self.teller.note(&format!("Removed {what} of an earlier run in {}.", self.layout.root().display()));
+        }
+        self.layout.make(wanted)?;
+        Report::begin(scene).write(&self.layout)?;
+        Ok(())
     }
 
     fn start_pictures(
@@ -206,13 +221,26 @@ impl Session {
 fn scene_as_wanted(arguments: &RunArguments) -> Result<Scene, Failure> {
     let mut scene = scene_file::load(&arguments.scene)?;
     if let Some(formats) = &arguments.formats {
-        scene.output.formats = formats.iter().flatten().copied().collect();
-        scene.output.formats.dedup();
+        if formats.contains(&None) && formats.iter().any(Option::is_some) {
+            let message = "--formats: `none` stands alone; leave it out to write the others";
+            return Err(Failure::new(Exit::Usage, message));
+        }
+        scene.output.formats = once_each(formats.iter().flatten().copied());
     }
     if let Some(pictures) = &arguments.pictures {
-        scene.output.pictures = pictures.clone();
+        scene.output.pictures = once_each(pictures.iter().copied());
     }
     Ok(scene)
+}
+
+/// A file that is asked for twice is written once: two writers of one name would race.
+fn once_each<T: PartialEq>(list: impl Iterator<Item = T>) -> Vec<T> {
+    list.fold(Vec::new(), |mut found, item| {
+        if !found.contains(&item) {
+            found.push(item);
+        }
+        found
+    })
 }
 
 /// The pictures to draw; those of the surface need one.
@@ -222,7 +250,6 @@ fn pictures_wanted(
     arguments: &RunArguments,
 ) -> Result<Vec<PictureKind>, Failure> {
     let mut kinds = if arguments.no_pictures { Vec::new() } else { scene.output.pictures.clone() };
-    kinds.dedup();
     if surface || !kinds.contains(&PictureKind::Surface) {
         return Ok(kinds);
     }
@@ -233,29 +260,6 @@ fn pictures_wanted(
     }
     kinds.retain(|&kind| kind != PictureKind::Surface);
     Ok(kinds)
-}
-
-/// Makes the folders before the first step, so that a run that cannot write fails at once.
-fn prepare(
-    scene: &Scene,
-    layout: &Layout,
-    surface: bool,
-    pictures: bool,
-    teller: &Teller,
-) -> Result<(), Failure> {
-    let formats = &scene.output.formats;
-    let particles = formats.iter().any(|format| matches!(format, Format::Ply | Format::Vtu));
-    let mesh = surface && formats.iter().any(|format| matches!(format, Format::Ply | Format::Obj));
-    let earlier = layout.prepare(particles, mesh, pictures)?;
-    if earlier.files > 0 {
-        teller.note(&format!(
-            "Removed {} files of an earlier run in {}.",
-            earlier.files,
-            layout.root().display()
-        ));
-    }
-    Report::begin(scene).write(layout)?;
-    Ok(())
 }
 
 /// Ends the films; one that failed costs a warning, the pictures are what matters.

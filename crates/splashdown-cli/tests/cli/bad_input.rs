@@ -107,6 +107,25 @@ fn unknown_devices_are_refused_with_the_names_there_are() -> Outcome {
 }
 
 #[test]
+fn a_refused_run_leaves_the_frames_of_an_earlier_one() -> Outcome {
+    let place = Place::new()?;
+    assert!(place.run_small(&[]).output()?.status.success());
+    let earlier = crate::place::names(&place.path("out/particles"))?;
+    assert_eq!(earlier.len(), 3);
+    let run = |more: &[&str]| {
+        place.splashdown(&[&["run", "small.toml", "--out", "out", "--no-pictures"], more].concat()).output()
+    };
+    assert_refused(&run(&["--device", "no-such-card"])?, 4, &["no-such-card"]);
+    assert_refused(&run(&["--formats", "none,ply"])?, 2, &["none"]);
+    assert_eq!(crate::place::names(&place.path("out/particles"))?, earlier);
+    assert!(place.path("out/run.json").exists());
+    // Control: a run that is not refused does replace them.
+    assert!(run(&["--device", "cpu", "--frames", "1"])?.status.success());
+    assert_eq!(crate::place::names(&place.path("out/particles"))?.len(), 2);
+    Ok(())
+}
+
+#[test]
 fn frames_before_a_failure_stay_valid() -> Outcome {
     let place = Place::new()?;
     // A folder where the third frame's file should go.
