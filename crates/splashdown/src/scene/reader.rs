@@ -15,7 +15,7 @@ use super::source::Source;
 use super::spec::{Kind, Table};
 use super::suggest;
 use super::values::{
-    Wrong, describe, kind_of, list_words, one_integer, one_number, one_word, several, wrong_type,
+    Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_word, several, wrong_type,
 };
 
 /// A file with more problems than this is not a scene; reading on would cost time and memory for nothing.
@@ -172,26 +172,36 @@ impl<'r> Section<'r> {
     }
 
     /// Reads a key; its kind in the table must be the one that `convert` expects.
-    fn read<T>(&self, name: &str, convert: impl FnOnce(&DeValue<'r>, Kind) -> Result<T, Wrong>) -> Read<T> {
+    fn read<T, E: Into<Wrongs>>(
+        &self,
+        name: &str,
+        convert: impl FnOnce(&DeValue<'r>, Kind) -> Result<T, E>,
+    ) -> Read<T> {
         let Some(key) = self.spec.key(name) else {
             unreachable!("{name} is read but not declared in keys.rs");
         };
         let Some(value) = self.value(name) else {
             return if key.required { Err(Reported) } else { Ok(None) };
         };
-        convert(value.get_ref(), key.kind).map(Some).map_err(|wrong| {
-            let (index, span) = wrong
-                .item
-                .map_or((String::new(), value.span()), |(index, span)| (format!("[{index}]"), span));
-            let key = format!("{}{index}", self.key_path(name));
-            let message = format!("{key} {}", wrong.message);
-            self.reader.report(SceneProblem {
-                given: Some(self.reader.source.excerpt(span.clone())),
-                allowed: (!wrong.allowed.is_empty()).then_some(wrong.allowed),
-                hint: wrong.hint,
-                ..self.reader.source.problem(span, key, message)
-            })
+        convert(value.get_ref(), key.kind).map(Some).map_err(|wrongs| {
+            for wrong in wrongs.into().0 {
+                self.report_wrong(name, value.span(), wrong);
+            }
+            Reported
         })
+    }
+
+    fn report_wrong(&self, name: &str, span: Span<usize>, wrong: Wrong) {
+        let (index, span) =
+            wrong.item.map_or((String::new(), span), |(index, span)| (format!("[{index}]"), span));
+        let key = format!("{}{index}", self.key_path(name));
+        let message = format!("{key} {}", wrong.message);
+        self.reader.report(SceneProblem {
+            given: Some(self.reader.source.excerpt(span.clone())),
+            allowed: (!wrong.allowed.is_empty()).then_some(wrong.allowed),
+            hint: wrong.hint,
+            ..self.reader.source.problem(span, key, message)
+        });
     }
 
     pub fn number(&self, name: &str) -> Read<f32> {
@@ -206,7 +216,7 @@ impl<'r> Section<'r> {
             Kind::Numbers(count, range) if count == N => {
                 several(value, N, range, one_number).map(|list| std::array::from_fn(|i| list[i] as f32))
             }
-            _ => Err(undeclared(kind)),
+            _ => Err(undeclared(kind).into()),
         })
     }
 
@@ -222,7 +232,7 @@ impl<'r> Section<'r> {
             Kind::Integers(count, range) if count == N => {
                 several(value, N, range, one_integer).map(|list| std::array::from_fn(|i| list[i] as u32))
             }
-            _ => Err(undeclared(kind)),
+            _ => Err(undeclared(kind).into()),
         })
     }
 
@@ -271,21 +281,32 @@ impl<'r> Section<'r> {
 
     pub fn choices<C: Choice>(&self, name: &str) -> Read<Vec<C>> {
         self.read(name, |value, kind| {
-            let Kind::Words(words) = kind else { return Err(undeclared(kind)) };
+            let Kind::Words(words) = kind else { return Err(undeclared(kind).into()) };
             let words = words();
             let DeValue::Array(list) = value else {
                 let mut wrong = wrong_type(value, "a list", list_words(&words));
                 wrong.hint = value.as_str().map(|text| format!("write it in brackets: [{text:?}]"));
-                return Err(wrong);
+                return Err(wrong.into());
             };
-            let mut found: Vec<&'static str> = Vec::new();
-            for item in list.iter() {
-                let word = one_word(item.get_ref(), &words)?;
-                if found.contains(&word) {
-                    let message = format!("names {word:?} twice");
-                    return Err(Wrong { message, allowed: list_words(&words), hint: None, item: None });
-                }
-                found.push(word);
+            let (mut found, mut wrongs): (Vec<&'static str>, _) = (Vec::new(), Vec::new());
+            for (index, item) in list.iter().enumerate() {
+                let wrong = match one_word(item.get_ref(), &words) {
+                    Ok(word) if found.contains(&word) => Wrong {
+                        message: format!("names {word:?} twice"),
+                        allowed: list_words(&words),
+                        hint: None,
+                        item: None,
+                    },
+                    Ok(word) => {
+                        found.push(word);
+                        continue;
+                    }
+                    Err(wrong) => wrong,
+                };
+                wrongs.push(Wrong { item: Some((index, item.span())), ..wrong });
+            }
+            if !wrongs.is_empty() {
+                return Err(Wrongs(wrongs));
             }
             Ok(found.into_iter().filter_map(C::from_name).collect())
         })

@@ -14,6 +14,15 @@ pub(crate) struct Wrong {
     pub item: Option<(usize, std::ops::Range<usize>)>,
 }
 
+/// Everything that is wrong with the value of one key: of a list, each item may be.
+pub(crate) struct Wrongs(pub Vec<Wrong>);
+
+impl From<Wrong> for Wrongs {
+    fn from(wrong: Wrong) -> Self {
+        Self(vec![wrong])
+    }
+}
+
 pub(crate) fn kind_of(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a text",
@@ -99,29 +108,25 @@ pub(crate) fn several(
     count: usize,
     range: Range,
     one: fn(&DeValue<'_>, Range) -> Result<f64, Wrong>,
-) -> Result<Vec<f64>, Wrong> {
+) -> Result<Vec<f64>, Wrongs> {
     let allowed = format!("{count} numbers, each {range}");
     let DeValue::Array(list) = value else {
-        return Err(wrong_type(value, &format!("a list of {count} numbers"), allowed));
+        return Err(wrong_type(value, &format!("a list of {count} numbers"), allowed).into());
     };
     if list.len() != count {
-        return Err(Wrong {
-            message: format!("has {} numbers", list.len()),
-            allowed,
-            hint: None,
-            item: None,
-        });
+        let message = format!("has {} numbers", list.len());
+        return Err(Wrong { message, allowed, hint: None, item: None }.into());
     }
-    let mut numbers = Vec::with_capacity(count);
+    let (mut numbers, mut wrongs) = (Vec::with_capacity(count), Vec::new());
     for (index, item) in list.iter().enumerate() {
-        let number = one(item.get_ref(), range).map_err(|wrong| Wrong {
-            allowed: allowed.clone(),
-            item: Some((index, item.span())),
-            ..wrong
-        })?;
-        numbers.push(number);
+        match one(item.get_ref(), range) {
+            Ok(number) => numbers.push(number),
+            Err(wrong) => {
+                wrongs.push(Wrong { allowed: allowed.clone(), item: Some((index, item.span())), ..wrong })
+            }
+        }
     }
-    Ok(numbers)
+    if wrongs.is_empty() { Ok(numbers) } else { Err(Wrongs(wrongs)) }
 }
 
 pub(crate) fn one_word(value: &DeValue<'_>, words: &[Word]) -> Result<&'static str, Wrong> {

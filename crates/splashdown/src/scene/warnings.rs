@@ -47,6 +47,18 @@ pub(crate) fn check(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>) {
             &format!("the density may vary by about {percent:.0} %; ten times keeps it within 1 %"),
         );
     }
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let width = scene.domain.size()[axis];
+        // Rounding of a domain that is just two supports wide is no fault.
+        if scene.domain.closed[axis] == [true; 2] && width < 1.999 * derived.support_radius {
+            let message = format!(
+                "the domain is {width} m wide along {name}, less than two support radii of {} m: \
+                 particles feel only the nearer of two closed sides",
+                derived.support_radius
+            );
+            fluid.warn("particle_spacing", message, "use a finer particle_spacing, or open one of the sides");
+        }
+    }
     let spacing = f64::from(scene.fluid.particle_spacing);
     for (index, block) in scene.fluid.blocks.iter().enumerate() {
         let Shape::Box { size, .. } = block.shape else { continue };
