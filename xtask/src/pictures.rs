@@ -21,7 +21,7 @@ const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
 
 /// Scenes and what is shown of them.
 const PICTURES: [(&str, &[Shown]); 4] = [
-    ("dam-break", &[shown("surface", 20, "dam-break"), shown("particles", 12, "dam-break-particles")]),
+    ("dam-break", &[shown("surface", 38, "dam-break"), shown("particles", 34, "dam-break-particles")]),
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
     ("honey", &[shown("surface", 20, "honey")]),
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
