@@ -95,7 +95,7 @@ pub fn parse_count(text: &str) -> Result<u32, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{counted, volume, bytes, count, duration, parse_count, scaled, three_digits};
+    use super::{bytes, count, counted, duration, parse_count, scaled, three_digits, volume};
 
     #[test]
     fn digits_come_in_threes() {

@@ -101,7 +101,8 @@ impl Session {
         let files = self.layout.remove_earlier();
         if files > 0 {
             let what = human::counted(files as u64, "file");
-            self.teller.note(&format!("Removed {what} of an earlier run in {}.", self.layout.root().display()));
+            self.teller
+                .note(&format!("Removed {what} of an earlier run in {}.", self.layout.root().display()));
         }
         self.layout.make(wanted)?;
         Report::begin(scene).write(&self.layout)?;
