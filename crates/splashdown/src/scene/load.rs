@@ -6,6 +6,8 @@ use std::path::Path;
 
 use super::errors::{SceneErrors, SceneProblem};
 use super::parse;
+use super::presets::presets;
+use super::suggest;
 use super::types::Scene;
 
 /// Longest scene file in bytes; a larger file is surely not one.
@@ -30,12 +32,10 @@ impl Scene {
         }
         let opened = File::open(path).map_err(|error| {
             let hint = match error.kind() {
-                std::io::ErrorKind::NotFound => {
-                    "`splashdown scenes` lists the scenes that come with the program"
-                }
-                _ => "",
+                std::io::ErrorKind::NotFound => not_found_hint(path),
+                _ => String::new(),
             };
-            refuse(format!("cannot open the scene file: {error}"), hint)
+            refuse(format!("cannot open the scene file: {error}"), &hint)
         })?;
         let mut bytes = Vec::new();
         opened
@@ -83,4 +83,12 @@ impl Scene {
             }
         }
     }
+}
+
+/// What a missing file may have been meant to be.
+fn not_found_hint(path: &Path) -> String {
+    let list = "`splashdown scenes` lists the scenes that come with the program";
+    let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();
+    let meant = path.file_stem().and_then(|stem| suggest::closest(&stem.to_string_lossy(), &names));
+    meant.map_or_else(|| list.to_owned(), |name| format!("did you mean {name:?}? {list}"))
 }

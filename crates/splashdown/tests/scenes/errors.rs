@@ -86,6 +86,7 @@ snapshot!(
 );
 snapshot!(film_without_pictures, format!("{CUBE}[output]\npictures = []\nfilm = true\n"));
 snapshot!(coarse_surface, format!("{CUBE}[surface]\ncell_size = 0.5\n"));
+snapshot!(coarse_surface_warning, format!("{CUBE}[surface]\ncell_size = 0.08\n"));
 snapshot!(unusable_name, changed("\"cube\"", "\"../cube\""));
 snapshot!(
     overlap_warning,

@@ -39,6 +39,18 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
             &hint,
         ));
     }
+    if surface.enabled && surface.cell_size > 1.001 * spacing {
+        let message = format!(
+            "surface.cell_size = {} m is coarser than the particles, {spacing} m apart: thin sheets and corners go missing, and \
+             the surface encloses less than the fluid's volume",
+            surface.cell_size
+        );
+        section.warn(
+            "cell_size",
+            message,
+            &format!("half the spacing is a good choice: {}", rounded(spacing * 0.5)),
+        );
+    }
     Ok(surface)
 }
 
