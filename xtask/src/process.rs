@@ -13,9 +13,16 @@ pub fn say(text: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout().lock(), "{}", text.as_ref());
 }
 
-/// The folder that holds the workspace.
+/// The folder that holds the workspace. Cargo names it to what it runs; what it named when this was built may be another
+/// clone, if they share a target folder.
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let find = || {
+        let package =
+            std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+        Path::new(&package).parent().unwrap_or(Path::new(".")).to_owned()
+    };
+    FOLDER.get_or_init(find)
 }
 
 /// A command that starts in the repository's root.

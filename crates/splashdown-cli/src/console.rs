@@ -2,7 +2,8 @@
 //! words, not the work: the files are what a run is for.
 
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
+use std::sync::OnceLock;
 
 use serde::Serialize;
 
@@ -17,26 +18,38 @@ pub enum Verbosity {
     Verbose,
 }
 
+/// Why results are missing on stdout: the first failure that is not a reader who left.
+static LOST: OnceLock<io::Error> = OnceLock::new();
+
+/// Why results are missing on stdout, if they are: a full disk, say. A closed pipe is no failure.
+pub fn lost() -> Option<&'static io::Error> {
+    LOST.get()
+}
+
 /// Prints text to stdout, with a line end.
 pub fn print(text: impl Display) {
-    // Nobody is left to tell if stdout is closed.
-    let _ = writeln!(io::stdout().lock(), "{text}");
+    print_raw(format!("{text}\n").as_bytes());
 }
 
-/// Prints text to stdout as it is.
+/// Prints text to stdout as it is. Everything is flushed: programs read along, and failures show now or never.
 pub fn print_raw(text: &[u8]) {
-    let _ = io::stdout().lock().write_all(text);
+    let mut out = io::stdout().lock();
+    if let Err(error) = out.write_all(text).and_then(|()| out.flush())
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        // Only the first one counts.
+        let _ = LOST.set(error);
+    }
 }
 
-/// Prints one JSON object in one line. Each line is flushed: programs read along.
+/// Prints one JSON object in one line.
 pub fn print_json(value: &impl Serialize) {
-    let mut out = io::stdout().lock();
     let Ok(mut line) = serde_json::to_vec(value) else {
         // Plain structs of numbers and text always serialise; a NaN becomes null.
         return;
     };
     line.push(b'\n');
-    let _ = out.write_all(&line).and_then(|()| out.flush());
+    print_raw(&line);
 }
 
 /// Prints a JSON value over several lines.

@@ -38,12 +38,24 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::Exit::Usage as u8));
         }
     };
-    match dispatch(&arguments.command) {
+    match dispatch(&arguments.command).and_then(all_said) {
         Ok(code) => code,
         Err(failure) => {
             console::note(format!("error: {}", failure.message.trim_start_matches("error: ")));
             failure.code()
         }
+    }
+}
+
+/// Results that did not reach stdout are missing for whoever asked for them; a reader that left has asked for no more.
+fn all_said(code: ExitCode) -> Result<ExitCode, Failure> {
+    match console::lost() {
+        Some(error) if code == ExitCode::SUCCESS => {
+            let message =
+                format!("the standard output could not be written: {error}; what was printed is incomplete");
+            Err(Failure::new(exit::Exit::Files, message))
+        }
+        _ => Ok(code),
     }
 }
 

@@ -4,6 +4,7 @@ use std::process::{Command, Stdio};
 
 use serde::Serialize;
 use splashdown::memory_forecast;
+use splashdown::sample::MAX_PARTICLES;
 use splashdown::scene::{Derived, Scene, presets};
 use splashdown_gpu::{AdapterReport, MISSING_DRIVER_HINT, list_adapters};
 
@@ -98,7 +99,8 @@ fn adapter(report: &AdapterReport) -> Adapter {
         },
         driver: format!("{} {}", report.info.driver, report.info.driver_info).trim().to_owned(),
         largest_buffer: report.largest_buffer(),
-        largest_particle_count: splashdown::largest_particle_count(report.largest_buffer()),
+        largest_particle_count: splashdown::largest_particle_count(report.largest_buffer())
+            .min(MAX_PARTICLES),
         largest_workgroup: limits.max_compute_invocations_per_workgroup,
         workgroups_per_dimension: limits.max_compute_workgroups_per_dimension,
         storage_buffers_per_stage: limits.max_storage_buffers_per_shader_stage,
@@ -114,7 +116,9 @@ fn cpu() -> Cpu {
         features: features(),
         memory: memory::total(),
         memory_available,
-        largest_particle_count: memory_available.zip(bytes_per_particle()).map(|(bytes, each)| bytes / each),
+        largest_particle_count: memory_available
+            .zip(bytes_per_particle())
+            .map(|(bytes, each)| (bytes / each).min(MAX_PARTICLES)),
     }
 }
 

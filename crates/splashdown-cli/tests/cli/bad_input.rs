@@ -56,6 +56,7 @@ fn a_missing_scene_and_a_folder_are_told_apart() -> Outcome {
         3,
         &["nowhere.toml", "splashdown scenes"],
     );
+    assert_refused(&place.splashdown(&["run", "dam-brake"]).output()?, 3, &["did you mean \"dam-break\""]);
     assert_refused(&place.splashdown(&["run", "."]).output()?, 3, &["folder"]);
     let json = place.splashdown(&["run", "nowhere.toml", "--json"]).output()?;
     assert_eq!(lines(&json)?[0]["exit_code"], 3);
@@ -205,6 +206,25 @@ mod linux {
 
         assert_refused(&run(&["--pictures", "surface"])?, 4, &["apt-get install mesa-vulkan-drivers"]);
         assert_refused(&run(&["--device", "gpu"])?, 4, &["driver"]);
+        Ok(())
+    }
+
+    #[test]
+    fn results_that_do_not_fit_on_the_disk_are_an_error() -> Outcome {
+        let place = Place::new()?;
+        for arguments in [
+            &["scenes"][..],
+            &["scenes", "schema"],
+            &["check", "small.toml"],
+            &["run", "small.toml", "--json", "--no-pictures", "--device", "cpu"],
+        ] {
+            let mut command = Command::new(assert_cmd::cargo::cargo_bin!("splashdown"));
+            command.current_dir(place.path(".")).args(arguments);
+            let full = std::fs::File::options().write(true).open("/dev/full")?;
+            assert_refused(&command.stdout(full).output()?, 5, &["standard output"]);
+        }
+        // The run itself is complete.
+        assert!(place.path("out/small/particles/particles_0002.ply").exists());
         Ok(())
     }
 
