@@ -26,18 +26,26 @@ pub fn run(arguments: &[String]) -> Result<()> {
         filtered(command.env("SPLASHDOWN_FULL", "1").env("SPLASHDOWN_FIGURES", &folder), filter)
     });
     say("\n=== Figures");
-    for table in tables(&folder) {
+    for table in left(&folder, "txt") {
         say(table.trim_end());
     }
-    say(format!("\nAlso as JSON, a file per case, in {FIGURES}."));
+    // Every file holds an array; one array of all their entries needs no more than the brackets' removal.
+    let cases = left(&folder, "json");
+    let entries: Vec<&str> =
+        cases.iter().filter_map(|case| Some(case.trim().strip_prefix('[')?.strip_suffix(']')?.trim())).collect();
+    let all = folder.join("report.json");
+    std::fs::create_dir_all(&folder)?;
+    std::fs::write(&all, format!("[\n  {}\n]\n", entries.join(",\n  ")))
+        .with_context(|| format!("cannot write {}", all.display()))?;
+    say(format!("\nAlso as JSON: {FIGURES}/report.json, and a file per case beside it."));
     report.close()
 }
 
-/// What the cases left, in the order of their names.
-fn tables(folder: &Path) -> Vec<String> {
+/// What the cases left in files that end so, in the order of their names.
+fn left(folder: &Path, ending: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();
-    files.retain(|file| file.extension().is_some_and(|end| end == "txt"));
+    files.retain(|file| file.extension().is_some_and(|end| end == ending));
     files.sort();
     files.iter().filter_map(|file| std::fs::read_to_string(file).ok()).collect()
 }

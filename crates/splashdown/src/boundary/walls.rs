@@ -103,9 +103,10 @@ fn cubic_spline(q: f32) -> (f32, f32) {
 }
 
 fn poly6(q: f32) -> (f32, f32) {
-    let (q2, s) = (q * q, 1.0 - q * q);
-    let inner = 1.0 + q2 * (-4.0 / 3.0 + q2 * (6.0 / 5.0 + q2 * (-4.0 / 7.0 + q2 / 9.0)));
-    (0.5 - 315.0 / 256.0 * q * inner, 315.0 / 256.0 * s * s * s * s)
+    // In t = 1 - q, so that D stays positive near q = 1, where corners divide by it.
+    let (t, s) = (1.0 - q, 1.0 - q * q);
+    let inner = 16.0 / 5.0 + t * (-16.0 / 3.0 + t * (24.0 / 7.0 + t * (t / 9.0 - 1.0)));
+    (315.0 / 256.0 * t * t * t * t * t * inner, 315.0 / 256.0 * s * s * s * s)
 }
 
 fn spiky(q: f32) -> (f32, f32) {
@@ -294,9 +295,8 @@ impl Walls {
     fn density(&self, table: &[Vec4], q: [f32; 3]) -> f32 {
         let d = q.map(|q| if q < 1.0 { self.kernels.density(q).0 } else { 0.0 });
         let pair = |a: usize, b: usize| look_up(table, q[a], q[b]).x;
-        let [d12, d13, d23] = [pair(0, 1), pair(0, 2), pair(1, 2)];
-        let sum = d[0] + d[1] + d[2] - d12 - d13 - d23;
-        if d12 > 0.0 && d13 > 0.0 && d23 > 0.0 { sum + d12 * d13 * d23 / (d[0] * d[1] * d[2]) } else { sum }
+        let pairs = [pair(0, 1), pair(0, 2), pair(1, 2)];
+        d.iter().sum::<f32>() - pairs.iter().sum::<f32>() + corner(d, pairs)
     }
 
     /// Its derivative by minus the distance over H, per axis.
@@ -307,10 +307,9 @@ impl Walls {
             (node.y, node.z)
         };
         let pairs = [[pair(0, 1), pair(0, 2)], [pair(1, 2), pair(1, 0)], [pair(2, 0), pair(2, 1)]];
-        let [d12, d13, d23] = [pairs[0][0].0, pairs[0][1].0, pairs[1][0].0];
+        let d123 = corner(planes.map(|(d, _)| d), [pairs[0][0].0, pairs[0][1].0, pairs[1][0].0]);
         let mut slope = [0, 1, 2].map(|k| planes[k].1 - pairs[k][0].1 - pairs[k][1].1);
-        if d12 > 0.0 && d13 > 0.0 && d23 > 0.0 {
-            let d123 = d12 * d13 * d23 / (planes[0].0 * planes[1].0 * planes[2].0);
+        if d123 > 0.0 {
             for (k, slope) in slope.iter_mut().enumerate() {
                 let [(da, ea), (db, eb)] = pairs[k];
                 *slope += d123 * (ea / da + eb / db - planes[k].1 / planes[k].0);
@@ -318,6 +317,19 @@ impl Walls {
         }
         Vec3::from_array(slope)
     }
+}
+
+/// D123, the overlap of three solids, from those of each plane and of the pairs 12, 13 and 23.
+///
+/// Where a plane or a pair hardly reaches in, there is none: there the closed forms are differences that may round to zero,
+/// and the table's straight lines may be above what they interpolate.
+fn corner(d: [f32; 3], pairs: [f32; 3]) -> f32 {
+    if d.iter().any(|&d| d <= 1e-5) || pairs.iter().any(|&d| d <= 1e-9) {
+        return 0.0;
+    }
+    let [d12, d13, d23] =
+        [pairs[0].min(d[0].min(d[1])), pairs[1].min(d[0].min(d[2])), pairs[2].min(d[1].min(d[2]))];
+    d12 * d13 * d23 / (d[0] * d[1] * d[2])
 }
 
 #[cfg(test)]

@@ -31,8 +31,8 @@ fn wall_plane(q: f32) -> vec2<f32> {
         return vec2(d, 1.4 + q2 * (-8.0 + q2 * (24.0 - 96.0 / 5.0 * q)));
     }
     let s = 1.0 - q2;
-    let inner = 1.0 + q2 * (-4.0 / 3.0 + q2 * (6.0 / 5.0 + q2 * (-4.0 / 7.0 + q2 / 9.0)));
-    return vec2(0.5 - 315.0 / 256.0 * q * inner, 315.0 / 256.0 * s * s * s * s);
+    let inner = 16.0 / 5.0 + t * (-16.0 / 3.0 + t * (24.0 / 7.0 + t * (t / 9.0 - 1.0)));
+    return vec2(315.0 / 256.0 * t * t * t * t * t * inner, 315.0 / 256.0 * s * s * s * s);
 }
 
 // (D, A) of the gradient's kernel.
@@ -72,10 +72,16 @@ fn wall_density(q: vec3<f32>) -> f32 {
     let d = vec3(wall_plane(q.x).x, wall_plane(q.y).x, wall_plane(q.z).x);
     let pairs = vec3(wall_pair(q.x, q.y).x, wall_pair(q.x, q.z).x, wall_pair(q.y, q.z).x);
     var sum = d.x + d.y + d.z - pairs.x - pairs.y - pairs.z;
-    if (all(pairs > vec3(0.0))) {
-        sum += pairs.x * pairs.y * pairs.z / (d.x * d.y * d.z);
+    return sum + wall_corner(d, pairs);
+}
+
+// The overlap of three solids; see `corner` in walls.rs.
+fn wall_corner(d: vec3<f32>, pairs: vec3<f32>) -> f32 {
+    if (any(d <= vec3(1e-5)) || any(pairs <= vec3(1e-9))) {
+        return 0.0;
     }
-    return sum;
+    let bounded = min(pairs, min(vec3(d.x, d.x, d.y), vec3(d.y, d.z, d.z)));
+    return bounded.x * bounded.y * bounded.z / (d.x * d.y * d.z);
 }
 
 // Derivative by minus the distance over H, per axis.
@@ -88,8 +94,8 @@ fn wall_slope(q: vec3<f32>, d: vec3<f32>, a: vec3<f32>) -> vec3<f32> {
     let p20 = wall_pair(q.z, q.x).yz;
     let p21 = wall_pair(q.z, q.y).yz;
     var slope = a - vec3(p01.y, p12.y, p20.y) - vec3(p02.y, p10.y, p21.y);
-    if (p01.x > 0.0 && p02.x > 0.0 && p12.x > 0.0) {
-        let corner = p01.x * p02.x * p12.x / (d.x * d.y * d.z);
+    let corner = wall_corner(d, vec3(p01.x, p02.x, p12.x));
+    if (corner > 0.0) {
         slope += corner * (vec3(p01.y, p12.y, p20.y) / vec3(p01.x, p12.x, p20.x)
             + vec3(p02.y, p10.y, p21.y) / vec3(p02.x, p10.x, p21.x) - a / d);
     }

@@ -140,3 +140,22 @@ fn a_lattice_half_a_spacing_from_the_sides_has_the_rest_density() {
         }
     }
 }
+
+#[test]
+fn where_a_third_side_hardly_reaches_in_all_terms_stay_small() {
+    for kernels in ALL {
+        let (walls, table) = (Walls { offset: 0.05, ..corner_box(kernels) }, wall_table(kernels));
+        for near in [1e-3, 0.14, 0.3] {
+            let beside = walls.terms(&table, Vec3::new(near, near, 2.0));
+            for far in (0..4000).map(|i| 0.9 + 3e-5 * i as f32) {
+                let terms = walls.terms(&table, Vec3::new(near, near, far));
+                // The third side's share of the ball is below 1e-3 here.
+                let change = (terms.density - beside.density)
+                    .abs()
+                    .max((terms.slope - beside.slope).truncate().length());
+                assert!(change < 0.01, "{kernels:?} {near} {far}: {terms:?}");
+                assert!((-1e-3..0.02).contains(&terms.slope.z), "{kernels:?} {near} {far}: {terms:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! The passes without neighbours: the frame's begin and end, the equation of state, the motion.
+
+use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
+use splashdown::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
+use splashdown_gpu::{Grid as Extent, testing};
+
+use super::harness::{Case, Check, Compare, Data, close, exact, wide};
+use super::oracle;
+use super::sort_cases::pass;
+use super::world::{SPACING, World, params, state};
+
+pub fn cases() -> Vec<Case> {
+    let mut cases =
+        vec![begin("a frame", 0.02), begin("shorter than a step", 1e-5), begin("of length zero", 0.0)];
+    cases.extend(cfl_cases());
+    for (name, exponent, clamp_pressure) in [
+        ("exponent 7", 7.0, 0),
+        ("exponent 7, clamped", 7.0, 1),
+        ("exponent 1", 1.0, 0),
+        ("exponent 4.5", 4.5, 0),
+    ] {
+        cases.push(state_equation(name, Params { exponent, clamp_pressure, ..params(2.0) }));
+    }
+    cases.push(integrate("closed", params(2.0)));
+    cases.push(integrate("open above and at one side", Params { closed: 0b110101, ..params(2.0) }));
+    cases
+}
+
+fn state_of(data: &Data) -> StepState {
+    let Data::State(state) = data else { panic!("no state") };
+    *state
+}
+
+/// Times, limits and maxima to some roundings each; counters to the last bit.
+fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
+    let counters = |s: &StepState| [s.done, s.run_count, s.steps, s.too_small];
+    exact("done, run_count, steps, too_small", &counters(a), &counters(b))?;
+    let floats = |s: &StepState| {
+        [
+            s.dt,
+            s.stable_dt,
+            s.time,
+            s.remaining,
+            s.max_speed,
+            s.max_acceleration,
+            s.density_error,
+            s.frame_duration,
+        ]
+    };
+    let expected = wide(&floats(b));
+    // Five roundings, and square root and division that a GPU may take less strictly.
+    let tolerance: Vec<f64> = expected.iter().map(|v| 2e-6 * v.abs() + 1e-12).collect();
+    close("dt, stable_dt, time, remaining, maxima, duration", &floats(a), &expected, &tolerance)
+}
+
+fn compare_states() -> Compare {
+    Box::new(|a, b| {
+        same_state(&state_of(&a[0]), &state_of(&b[0]))?;
+        a.iter().zip(b).skip(1).try_for_each(|(a, b)| exact("tally", a.words(), b.words()))
+    })
+}
+
+fn begin(name: &str, length: f32) -> Case {
+    let params = Params { particle_count: 1234, ..params(2.0) };
+    let old = StepState { done: 1, run_count: 0, steps: 77, ..state(1234) };
+    let expected = StepState {
+        frame_duration: length,
+        remaining: length,
+        dt: if length < 5e-4 { length } else { 5e-4 },
+        done: 0,
+        run_count: 1234,
+        steps: 0,
+        density_error: 0.0,
+        ..old
+    };
+    Case {
+        pass: pass("begin"),
+        name: name.into(),
+        extent: Extent::Groups(1),
+        input: vec![Data::Params(params), Data::F32(vec![length]), Data::State(old)],
+        compare: compare_states(),
+        oracle: Box::new(move |out| same_state(&state_of(&out[0]), &expected)),
+        control: |input| {
+            let Data::F32(duration) = &mut input[1] else { panic!("no duration") };
+            duration[0] = duration[0] * 1.00001 + 1e-9;
+        },
+    }
+}
+
+fn cfl_cases() -> Vec<Case> {
+    let state = state(100);
+    let calm = [0.5, 10.0, 0.002];
+    let ways: [(&str, StepState, [f32; 3], Params); 9] = [
+        ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
+        ("limited by sound", state, calm, params(2.0)),
+        ("limited by acceleration", state, [0.5, 1e6, 0.0], params(2.0)),
+        ("limited by speed", state, [300.0, 10.0, 0.2], Params { sound_speed: 0.1, ..params(2.0) }),
+        ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
+        ("below the smallest", state, [0.5, 1e9, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
+        ("before the last but one", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
+        ("before the last", StepState { remaining: 7e-4, ..state }, calm, params(2.0)),
+        ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
+    ];
+    let mut cases: Vec<Case> =
+        ways.map(|(name, state, maxima, params)| cfl(name, state, maxima, params)).into();
+    // A frame that is complete: nothing changes. The control wakes it up.
+    let mut complete = cfl("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
+    complete.control = |input| {
+        let Data::State(state) = &mut input[1] else { panic!("no state") };
+        state.run_count = 1;
+    };
+    cases.push(complete);
+    cases
+}
+
+fn cfl(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
+    let mut tally = vec![5, 6, 7, 8, 0, 0, 0, 0];
+    for (k, value) in maxima.iter().enumerate() {
+        tally[Tally::MAX_SPEED + k] = value.to_bits();
+    }
+    let (expected, left) = if state.run_count == 0 {
+        (state, tally.clone())
+    } else {
+        (next_state(&params, &state, maxima.map(f64::from)), vec![5, 6, 7, 8, 0, 0, 0, 0])
+    };
+    let oracle: Check = Box::new(move |out| {
+        same_state(&state_of(&out[0]), &expected)?;
+        exact("tally", out[1].words(), &left)
+    });
+    Case {
+        pass: pass("cfl"),
+        name: name.into(),
+        extent: Extent::Groups(1),
+        input: vec![Data::Params(params), Data::State(state), Data::U32(tally)],
+        compare: compare_states(),
+        oracle,
+        // A step longer or shorter by a hundred-thousandth.
+        control: |input| {
+            let Data::State(state) = &mut input[1] else { panic!("no state") };
+            state.dt *= 1.00001;
+            state.time *= 1.00001;
+        },
+    }
+}
+
+/// Monaghan's and Morris's limits, in f64.
+fn next_state(params: &Params, state: &StepState, [speed, acceleration, excess]: [f64; 3]) -> StepState {
+    let p = |value: f32| f64::from(value);
+    let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
+    let limits = [
+        1.1 * p(state.stable_dt),
+        p(params.max_dt),
+        factor * h / (p(params.sound_speed) + speed),
+        factor * (h / acceleration).sqrt(),
+        factor * 0.4 * p(params.particle_spacing) / speed,
+        0.125 * h * h / p(params.viscosity),
+    ];
+    let least = limits.into_iter().fold(f64::INFINITY, f64::min);
+    let stable = least.max(p(params.min_dt));
+    // As the pass does it: what is left is a difference, and would not survive another rounding.
+    let remaining = state.remaining - state.dt;
+    let complete = remaining <= 1e-6 * state.frame_duration;
+    let dt = match p(remaining) {
+        _ if complete => p(state.dt),
+        left if left <= stable => left,
+        left if left < 2.0 * stable => 0.5 * left,
+        _ => stable,
+    };
+    StepState {
+        dt: dt as f32,
+        stable_dt: stable as f32,
+        time: state.time + state.dt,
+        remaining,
+        done: u32::from(complete),
+        run_count: if complete { 0 } else { state.run_count },
+        steps: state.steps + 1,
+        too_small: u32::from(least < p(params.min_dt)),
+        max_speed: speed as f32,
+        max_acceleration: acceleration as f32,
+        density_error: state.density_error.max(excess as f32),
+        ..*state
+    }
+}
+
+fn state_equation(name: &str, params: Params) -> Case {
+    let world = World::new(params, 500);
+    let n = world.len();
+    // (rho / rho0)^exponent rounds a few times, and rho0 c0^2 / exponent turns that into Pa.
+    let stiffness = f64::from(params.rest_density * params.sound_speed * params.sound_speed);
+    let expected: Vec<f64> = world
+        .velocities
+        .iter()
+        .flat_map(|v| [f64::from(v.w), oracle::pressure(&world, f64::from(v.w))])
+        .collect();
+    let tolerance: Vec<f64> = (0..n).flat_map(|_| [0.0, 3e-6 * stiffness]).collect();
+    let (for_oracle, for_both) = (tolerance.clone(), tolerance);
+    Case {
+        pass: pass("state_equation"),
+        name: name.into(),
+        extent: Extent::Items(n as u32),
+        input: vec![
+            Data::Params(params),
+            Data::State(state(n)),
+            Data::Vec4(world.velocities.clone()),
+            Data::Vec2(vec![Vec2::ZERO; n]).poison(),
+        ],
+        compare: Box::new(move |a, b| close("densities", a[0].floats(), &wide(b[0].floats()), &for_both)),
+        oracle: Box::new(move |out| close("densities", out[0].floats(), &expected, &for_oracle)),
+        control: |input| input[0].params().sound_speed *= 1.001,
+    }
+}
+
+/// Positions to two roundings; velocities to what these are worth in a step, as contacts divide by it.
+fn motion_tolerance(dt: f64, velocities: &[f64]) -> (f64, Vec<f64>) {
+    let position = 1.3e-7;
+    (position, velocities.iter().map(|v| position / dt + 1e-5 * v.abs()).collect())
+}
+
+fn same_motion(out: &[Data], positions: &[f64], velocities: &[f64], tally: &[u32]) -> Result<(), String> {
+    let (position, velocity) = motion_tolerance(4e-4, velocities);
+    close("positions", out[0].floats(), positions, &vec![position; positions.len()])?;
+    close("velocities", out[1].floats(), velocities, &velocity)?;
+    let (counters, maxima) = out[2].words().split_at(Tally::MAX_SPEED);
+    exact("counters", counters, &tally[..Tally::MAX_SPEED])?;
+    let floats = |words: &[u32]| words.iter().map(|&w| f32::from_bits(w)).collect::<Vec<f32>>();
+    let expected = wide(&floats(&tally[Tally::MAX_SPEED..]));
+    let tolerance: Vec<f64> = expected.iter().map(|v| 1e-5 * v).collect();
+    close("maxima", &floats(maxima), &expected, &tolerance)
+}
+
+fn integrate(name: &str, params: Params) -> Case {
+    let mut world = World::new(params, 1500);
+    let (living, n) = (world.living(), world.len());
+    let signed = |i: usize| testing::noise(i as u32 + 9) as f32 / (u32::MAX / 2) as f32 - 1.0;
+    let mut accelerations: Vec<Vec4> =
+        (0..n).map(|i| 50.0 * Vec4::new(signed(3 * i), signed(3 * i + 1), signed(3 * i + 2), 0.0)).collect();
+    for (i, a) in accelerations.iter_mut().enumerate().take(living) {
+        match i % 50 {
+            // Faster than half a spacing per step, some of them by far.
+            7 => world.velocities[i].x = 80.0 * signed(i),
+            8 => a.y = 1e7 * signed(i),
+            // What must be taken out.
+            21 if i % 100 < 50 => a.z = f32::NAN,
+            21 => a.x = f32::INFINITY,
+            // Behind a closed wall by a little, or through an open side.
+            33 => world.positions[i].x = params.domain_min.x - 1e-3,
+            34 => world.positions[i].y = params.domain_max.y + 2e-3,
+            _ => {}
+        }
+    }
+    let input = vec![
+        Data::Params(params),
+        Data::State(world.state),
+        Data::Vec4(world.positions.clone()),
+        Data::Vec4(world.velocities.clone()),
+        Data::Vec2(world.densities.clone()),
+        Data::Vec4(accelerations.clone()),
+        Data::Vec4(vec![Vec4::ZERO; n]).poison(),
+        Data::Vec4(vec![Vec4::ZERO; n]).poison(),
+        Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0]),
+    ];
+    let (positions, velocities, tally) = moved(&world, &accelerations);
+    assert!((1..4).all(|k| tally[k] > 5) || params.closed != 0b111111, "{tally:?}");
+    Case {
+        pass: pass("integrate"),
+        name: name.into(),
+        extent: Extent::Items(n as u32),
+        input,
+        compare: Box::new(|a, b| same_motion(a, &wide(b[0].floats()), &wide(b[1].floats()), b[2].words())),
+        oracle: Box::new(move |out| same_motion(out, &positions, &velocities, &tally)),
+        // One particle is pushed a little harder.
+        control: |input| {
+            let Data::Vec4(accelerations) = &mut input[5] else { panic!("no accelerations") };
+            accelerations[100].y += 4.0;
+            accelerations[101].y -= 4.0;
+        },
+    }
+}
+
+/// Symplectic Euler with its limits, particle by particle in f64.
+fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>) {
+    let (params, dt) = (&world.params, f64::from(world.state.dt));
+    let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
+    let closed = |axis: usize, side: usize| params.closed >> (2 * axis + side) & 1 == 1;
+    let (mut positions, mut velocities) = (Vec::new(), Vec::new());
+    let mut tally = [0, 3, 1, 2, 0, 0, 0, 0];
+    let mut highest = [0.0_f64; 3];
+    for (i, &p) in world.positions.iter().enumerate() {
+        let (old, a) = (world.velocities[i], accelerations[i].xyz().as_dvec3());
+        let rho = f64::from(world.densities[i].x);
+        if p.w != 0.0 {
+            positions.extend(wide(&p.to_array()));
+            velocities.extend(wide(&old.to_array()));
+            continue;
+        }
+        let x = p.xyz().as_dvec3();
+        let mut v = old.xyz().as_dvec3() + dt * a;
+        let most = 0.5 * f64::from(SPACING) / dt;
+        if v.length() > most {
+            v *= most / v.length();
+            tally[Tally::LIMITED] += 1;
+        }
+        if !a.is_finite() {
+            tally[Tally::NON_FINITE] += 1;
+            positions.extend(wide(&p.xyz().extend(DEAD_NON_FINITE).to_array()));
+            velocities.extend([0.0, 0.0, 0.0, f64::from(params.rest_density)]);
+            continue;
+        }
+        // No nearer to a closed side than a quarter of a spacing, and nearer not at all for who is.
+        let near = 0.25 * f64::from(SPACING);
+        for axis in 0..3 {
+            if closed(axis, 0) {
+                v[axis] = v[axis].max(-(x[axis] - min[axis] - near).max(0.0) / dt);
+            }
+            if closed(axis, 1) {
+                v[axis] = v[axis].min((max[axis] - x[axis] - near).max(0.0) / dt);
+            }
+        }
+        let mut next = x + dt * v;
+        for axis in 0..3 {
+            if (closed(axis, 0) && next[axis] < min[axis]) || (closed(axis, 1) && next[axis] > max[axis]) {
+                next[axis] = next[axis].clamp(min[axis], max[axis]);
+                v[axis] = 0.0;
+                tally[Tally::CORRECTIONS] += 1;
+            }
+        }
+        let excess = (rho / f64::from(params.rest_density) - 1.0).max(0.0);
+        for (highest, value) in highest.iter_mut().zip([v.length(), a.length(), excess]) {
+            *highest = highest.max(value);
+        }
+        let push = |out: &mut Vec<f64>, v: DVec3, w: f64| out.extend([v.x, v.y, v.z, w]);
+        push(&mut positions, next, 0.0);
+        push(&mut velocities, v, rho);
+    }
+    for (k, value) in highest.iter().enumerate() {
+        tally[Tally::MAX_SPEED + k] = (*value as f32).to_bits();
+    }
+    (positions, velocities, tally.to_vec())
+}

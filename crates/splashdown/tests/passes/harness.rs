@@ -1,0 +1,205 @@
+//! Runs one pass from given buffers on an executor, and compares what it leaves.
+
+use glam::{UVec2, Vec2, Vec4};
+use splashdown::cells::Grid;
+use splashdown::passes::{Params, StepState};
+use splashdown_gpu::{
+    Access, Buffer, BufferId, Executor, GpuElement, Grid as Extent, PassDesc, Recording, bytemuck,
+};
+
+/// The content of one binding.
+#[derive(Clone, Debug)]
+pub enum Data {
+    U32(Vec<u32>),
+    F32(Vec<f32>),
+    Vec2(Vec<Vec2>),
+    Vec4(Vec<Vec4>),
+    UVec2(Vec<UVec2>),
+    Params(Params),
+    Grid(Grid),
+    State(StepState),
+}
+
+impl Data {
+    /// The words of the content.
+    pub fn words(&self) -> &[u32] {
+        match self {
+            Self::U32(v) => v,
+            Self::F32(v) => bytemuck::cast_slice(v),
+            Self::Vec2(v) => bytemuck::cast_slice(v),
+            Self::Vec4(v) => bytemuck::cast_slice(v),
+            Self::UVec2(v) => bytemuck::cast_slice(v),
+            Self::Params(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Grid(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::State(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+        }
+    }
+
+    /// The words as floats.
+    pub fn floats(&self) -> &[f32] {
+        bytemuck::cast_slice(self.words())
+    }
+
+    /// As many words of all ones (NaN), as a poisoned buffer has them.
+    pub fn poison(&self) -> Self {
+        let mut poisoned = self.clone();
+        poisoned.words_mut().fill(u32::MAX);
+        poisoned
+    }
+
+    pub fn words_mut(&mut self) -> &mut [u32] {
+        match self {
+            Self::U32(v) => v,
+            Self::F32(v) => bytemuck::cast_slice_mut(v),
+            Self::Vec2(v) => bytemuck::cast_slice_mut(v),
+            Self::Vec4(v) => bytemuck::cast_slice_mut(v),
+            Self::UVec2(v) => bytemuck::cast_slice_mut(v),
+            Self::Params(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Grid(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::State(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+        }
+    }
+
+    pub fn params(&mut self) -> &mut Params {
+        let Self::Params(params) = self else { panic!("no params") };
+        params
+    }
+}
+
+/// What is compared with what the pass leaves, per written binding in order.
+pub type Check = Box<dyn Fn(&[Data]) -> Result<(), String>>;
+
+/// Compares what two executors left.
+pub type Compare = Box<dyn Fn(&[Data], &[Data]) -> Result<(), String>>;
+
+/// One pass with its input, and what to expect of it.
+pub struct Case {
+    pub pass: &'static PassDesc,
+    /// What is special about the input.
+    pub name: String,
+    pub extent: Extent,
+    /// One entry per binding.
+    pub input: Vec<Data>,
+    /// GPU against CPU.
+    pub compare: Compare,
+    /// Against brute force in f64.
+    pub oracle: Check,
+    /// The smallest wrong change to the input: both comparisons must notice it.
+    pub control: fn(&mut [Data]),
+}
+
+impl Case {
+    pub fn title(&self) -> String {
+        format!("{}, {}", self.pass.label, self.name)
+    }
+
+    /// What the pass leaves in the bindings that it writes.
+    pub fn run(&self, executor: &mut Executor) -> Vec<Data> {
+        self.run_with(executor, &self.input)
+    }
+
+    /// What it leaves from the spoiled input.
+    pub fn run_control(&self, executor: &mut Executor) -> Vec<Data> {
+        let mut input = self.input.clone();
+        (self.control)(&mut input);
+        self.run_with(executor, &input)
+    }
+
+    fn run_with(&self, executor: &mut Executor, input: &[Data]) -> Vec<Data> {
+        assert_eq!(input.len(), self.pass.bindings.len(), "{}", self.title());
+        let mut ids = Vec::new();
+        let mut readers: Vec<Reader> = Vec::new();
+        for (data, binding) in input.iter().zip(self.pass.bindings) {
+            let uniform = binding.access == Access::Uniform;
+            let (id, reader) = upload(executor, binding.name, data, uniform);
+            ids.push(id);
+            if binding.access == Access::ReadWrite {
+                readers.push(reader);
+            }
+        }
+        let mut recording = Recording::new(self.title());
+        recording.dispatch(self.pass, self.extent, &ids);
+        executor.run(&recording).unwrap_or_else(|error| panic!("{}: {error}", self.title()));
+        readers.iter().map(|read| read(executor)).collect()
+    }
+}
+
+type Reader = Box<dyn Fn(&mut Executor) -> Data>;
+
+fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (BufferId, Reader) {
+    fn array<T: GpuElement>(
+        executor: &mut Executor,
+        name: &str,
+        values: &[T],
+        wrap: fn(Vec<T>) -> Data,
+    ) -> (BufferId, Reader) {
+        let buffer: Buffer<T> = executor.create_from(name, values).unwrap();
+        (buffer.id(), Box::new(move |executor| wrap(executor.read(buffer).unwrap())))
+    }
+    match data {
+        Data::U32(v) => array(executor, name, v, Data::U32),
+        Data::F32(v) => array(executor, name, v, Data::F32),
+        Data::Vec2(v) => array(executor, name, v, Data::Vec2),
+        Data::Vec4(v) => array(executor, name, v, Data::Vec4),
+        Data::UVec2(v) => array(executor, name, v, Data::UVec2),
+        Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
+        Data::Params(v) => {
+            assert!(uniform, "{name} is no uniform");
+            (
+                executor.create_uniform(name, v).unwrap().id(),
+                Box::new(|_| unreachable!("uniforms are not written")),
+            )
+        }
+        Data::Grid(v) => {
+            assert!(uniform, "{name} is no uniform");
+            (
+                executor.create_uniform(name, v).unwrap().id(),
+                Box::new(|_| unreachable!("uniforms are not written")),
+            )
+        }
+    }
+}
+
+/// Equal to the last bit.
+pub fn exact(what: &str, a: &[u32], b: &[u32]) -> Result<(), String> {
+    match a.iter().zip(b).position(|(a, b)| a != b) {
+        Some(k) => Err(format!("{what}: word {k} is {:#x} and {:#x}", a[k], b[k])),
+        None if a.len() != b.len() => Err(format!("{what}: {} and {} words", a.len(), b.len())),
+        None => Ok(()),
+    }
+}
+
+/// |a - b| <= tolerance, entry by entry; poison (the same NaN) equals itself.
+pub fn close(what: &str, a: &[f32], b: &[f64], tolerance: &[f64]) -> Result<(), String> {
+    assert!(
+        a.len() == b.len() && a.len() == tolerance.len(),
+        "{what}: {} {} {}",
+        a.len(),
+        b.len(),
+        tolerance.len()
+    );
+    let far = |k: &usize| {
+        let (a, b) = (f64::from(a[*k]), b[*k]);
+        !((a - b).abs() <= tolerance[*k] || (a.is_nan() && b.is_nan()) || a == b)
+    };
+    let wrong: Vec<usize> = (0..a.len()).filter(far).collect();
+    let Some(&worst) = wrong.iter().max_by(|&&i, &&j| {
+        let excess = |k: usize| (f64::from(a[k]) - b[k]).abs() / tolerance[k];
+        excess(i).total_cmp(&excess(j))
+    }) else {
+        return Ok(());
+    };
+    Err(format!(
+        "{what}: {} of {} differ by more than allowed; the worst, {worst}, is {} and {} (allowed {:e})",
+        wrong.len(),
+        a.len(),
+        a[worst],
+        b[worst],
+        tolerance[worst]
+    ))
+}
+
+/// Floats as f64.
+pub fn wide(values: &[f32]) -> Vec<f64> {
+    values.iter().map(|&v| f64::from(v)).collect()
+}

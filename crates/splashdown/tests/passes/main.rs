@@ -1,0 +1,75 @@
+//! Every pass: on the GPU against the CPU from equal input, and both against brute force in f64.
+//!
+//! SPH is chaotic, so whole runs are never compared; single passes are, from equal buffers with poisoned output. Each
+//! comparison has a control: one input changed by as little as must be noticed. The surface's passes have their own tests.
+
+mod cases;
+mod harness;
+mod neighbour_cases;
+mod oracle;
+mod sort_cases;
+mod walls;
+mod whole_step;
+mod world;
+
+use std::collections::BTreeSet;
+
+use harness::Case;
+use splashdown_gpu::{CpuExecutor, Executor, testing};
+
+fn all_cases() -> Vec<Case> {
+    [sort_cases::cases(), cases::cases(), neighbour_cases::cases()].into_iter().flatten().collect()
+}
+
+fn cpu() -> Executor {
+    let mut executor = Executor::from(CpuExecutor::new());
+    executor.poison();
+    executor
+}
+
+#[test]
+fn no_pass_is_forgotten() {
+    let passes = splashdown::passes();
+    let expected: BTreeSet<&str> =
+        passes.iter().map(|pass| pass.label).filter(|label| !label.starts_with("surface")).collect();
+    let tested: BTreeSet<&str> = all_cases().iter().map(|case| case.pass.label).collect();
+    assert_eq!(tested, expected);
+    assert!(expected.len() > 15, "{expected:?}");
+}
+
+#[test]
+fn every_pass_agrees_with_brute_force() {
+    let mut wrong = Vec::new();
+    for case in all_cases() {
+        if let Err(what) = (case.oracle)(&case.run(&mut cpu())) {
+            wrong.push(format!("{}: {what}", case.title()));
+        }
+        if (case.oracle)(&case.run_control(&mut cpu())).is_ok() {
+            wrong.push(format!("{}: the control is not noticed", case.title()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_pass_on_the_gpu_agrees_with_the_cpu() {
+    let mut executors = testing::executors("every_pass_on_the_gpu_agrees_with_the_cpu");
+    let Some((_, mut gpu)) = executors.drain(1..).next() else { return };
+    let mut wrong = Vec::new();
+    for case in all_cases() {
+        let on_gpu = case.run(&mut gpu);
+        let results = [
+            ("against the CPU", (case.compare)(&on_gpu, &case.run(&mut cpu()))),
+            ("against brute force", (case.oracle)(&on_gpu)),
+        ];
+        for (against, result) in results {
+            if let Err(what) = result {
+                wrong.push(format!("{}, {against}: {what}", case.title()));
+            }
+        }
+        if (case.compare)(&on_gpu, &case.run_control(&mut cpu())).is_ok() {
+            wrong.push(format!("{}: the control is not noticed", case.title()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

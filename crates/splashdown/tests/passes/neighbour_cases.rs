@@ -1,0 +1,266 @@
+//! The sums over neighbours, on random clouds with particles at walls, in edges and corners, twice in one place, and dead.
+
+use glam::{Vec2, Vec4};
+use splashdown::boundary::{KernelPair, wall_table};
+use splashdown::passes::Params;
+use splashdown_gpu::Grid as Extent;
+
+use super::harness::{Case, Data, close, wide};
+use super::oracle::{self, Kernel, Sum};
+use super::sort_cases::pass;
+use super::walls::{Kernels, Wall};
+use super::world::{World, params};
+
+/// A term of a sum is good to a dozen roundings, of which the steep flanks of the kernels make ten times as much; a
+/// hundred terms add up like a random walk. GPUs may divide and take roots to 2.5 units in the last place.
+const ROUNDING: f64 = 2e-5;
+/// The tables of edges interpolate linearly over a thirty-second of the support; in corners the overlap of three solids is
+/// a product formula, tested beside it to 6e-3.
+const WALL_TABLE: [f64; 4] = [2e-6, 2e-6, 3e-3, 1e-2];
+
+const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
+const CUBIC: Kernels = Kernels { density: Kernel::CubicSpline, gradient: Kernel::CubicSpline };
+const MUELLER: Kernels = Kernels { density: Kernel::Poly6, gradient: Kernel::Spiky };
+
+fn pair(kernels: Kernels) -> KernelPair {
+    match kernels.density {
+        Kernel::WendlandC2 => KernelPair::WendlandC2,
+        Kernel::CubicSpline => KernelPair::CubicSpline,
+        _ => KernelPair::Mueller,
+    }
+}
+
+fn word(kernels: Kernels) -> &'static str {
+    if kernels.density == Kernel::WendlandC2 { "wendland_c2" } else { "cubic_spline" }
+}
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let rich = Params { exponent: 1.0, clamp_pressure: 1, closed: 0b110111, ..params(2.5) };
+    for kernels in [C2, CUBIC, MUELLER] {
+        cases.push(density("closed", kernels, params(2.0)));
+        cases.push(density("wider support, clamped, open above", kernels, rich));
+    }
+    for kernels in [C2, CUBIC] {
+        cases.push(continuity("closed", kernels, params(2.0)));
+        cases.push(continuity("wider support, open above", kernels, Params { clamp_pressure: 0, ..rich }));
+        cases.push(normals("closed", kernels, params(2.0)));
+        let tension = Params { surface_tension: 0.4, ..params(2.0) };
+        for (name, params) in [
+            ("pressure, viscosities, walls", params(2.0)),
+            ("surface tension", tension),
+            ("wider support, clamped, open above", rich),
+            ("no friction", Params { wall_friction: 0.0, viscosity: 0.0, ..params(2.0) }),
+        ] {
+            cases.push(momentum(name, kernels, params));
+        }
+    }
+    let tension = Params { surface_tension: 7.0, exponent: 1.0, ..params(2.0) };
+    cases.push(mueller("pressure, viscosity, walls", Params { exponent: 1.0, ..params(2.0) }));
+    cases.push(mueller("surface tension", tension));
+    cases.push(mueller("wider support, clamped, open above", Params { surface_tension: 7.0, ..rich }));
+    cases
+}
+
+fn world(params: Params) -> World {
+    World::new(params, 1500)
+}
+
+fn table(kernels: Kernels) -> Data {
+    Data::Vec4(wall_table(pair(kernels)))
+}
+
+/// Expected values with what they may miss, for the executors against each other and against the oracle.
+struct Expected {
+    values: Vec<f64>,
+    rounding: Vec<f64>,
+    tables: Vec<f64>,
+}
+
+impl Expected {
+    /// `poison` entries behind the living stay as they were.
+    fn new() -> Self {
+        Self { values: Vec::new(), rounding: Vec::new(), tables: Vec::new() }
+    }
+
+    /// One component: its value, the size of its terms, and of what the walls' tables give.
+    fn push(&mut self, value: f64, size: f64, by_walls: f64) {
+        self.values.push(value);
+        self.rounding.push(ROUNDING * size);
+        self.tables.push(ROUNDING * size + by_walls);
+    }
+
+    fn vector(&mut self, sum: &Sum, by_walls: f64) {
+        for k in 0..3 {
+            self.push(sum.value[k], sum.size, by_walls);
+        }
+        self.push(0.0, 0.0, 0.0);
+    }
+
+    fn case(
+        mut self,
+        label: String,
+        name: &str,
+        world: &World,
+        mut input: Vec<Data>,
+        output: Data,
+        control: fn(&mut [Data]),
+    ) -> Case {
+        let total = output.words().len();
+        for list in [&mut self.values, &mut self.rounding, &mut self.tables] {
+            list.resize(total, f64::NAN);
+        }
+        input.push(output.poison());
+        let Self { values, rounding, tables } = self;
+        Case {
+            pass: pass(&label),
+            name: name.into(),
+            extent: Extent::Items(world.len() as u32),
+            input,
+            compare: Box::new(move |a, b| close("GPU, CPU", a[0].floats(), &wide(b[0].floats()), &rounding)),
+            oracle: Box::new(move |out| close("sums", out[0].floats(), &values, &tables)),
+            control,
+        }
+    }
+}
+
+/// A mass that is wrong by one in five hundred.
+fn heavier(input: &mut [Data]) {
+    input[0].params().particle_mass *= 1.002;
+}
+
+fn base(world: &World) -> Vec<Data> {
+    vec![Data::Params(world.params), Data::Grid(world.grid)]
+}
+
+/// Slope of the equation of state at a density, in Pa per kg/m^3, and its scale in Pa.
+fn stiffness(world: &World, rho: f64) -> (f64, f64) {
+    let p = &world.params;
+    let c2 = f64::from(p.sound_speed).powi(2);
+    let rest = f64::from(p.rest_density);
+    (c2 * (rho / rest).powf(f64::from(p.exponent) - 1.0), rest * c2)
+}
+
+fn push_density(expected: &mut Expected, world: &World, rho: f64, size: f64, by_walls: f64) {
+    let (slope, scale) = stiffness(world, rho + by_walls);
+    expected.push(rho, size, by_walls);
+    expected.push(oracle::pressure(world, rho), slope * size + 0.2 * scale, slope * by_walls);
+}
+
+fn density(name: &str, kernels: Kernels, params: Params) -> Case {
+    let world = world(params);
+    let walls = oracle::walls(&world, kernels);
+    let mut expected = Expected::new();
+    for (rho, wall) in oracle::density(&world, kernels.density, &walls).into_iter().zip(&walls) {
+        push_density(&mut expected, &world, rho, rho, 1000.0 * WALL_TABLE[wall.near]);
+    }
+    let label = if kernels.density == Kernel::Poly6 { "poly6" } else { word(kernels) };
+    let mut input = base(&world);
+    input.extend([Data::U32(world.cell_start.clone()), Data::Vec4(world.positions.clone()), table(kernels)]);
+    let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
+    expected.case(format!("density.{label}"), name, &world, input, output, heavier)
+}
+
+fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
+    let world = world(params);
+    let walls = oracle::walls(&world, kernels);
+    let mut expected = Expected::new();
+    let dt = f64::from(world.state.dt);
+    for (i, sum) in oracle::continuity(&world, kernels.gradient, &walls).into_iter().enumerate() {
+        let v = world.velocities[i];
+        let scale =
+            2.0 * dt * f64::from(v.w) * f64::from(v.truncate().length()) / f64::from(params.support_radius);
+        push_density(&mut expected, &world, sum.value.x, sum.size, scale * WALL_TABLE[walls[i].near]);
+    }
+    let mut input = base(&world);
+    input.extend([
+        Data::State(world.state),
+        Data::U32(world.cell_start.clone()),
+        Data::Vec4(world.positions.clone()),
+        Data::Vec4(world.velocities.clone()),
+        table(kernels),
+    ]);
+    let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
+    // A step moves the density by little: the mass must be wrong by more than elsewhere to show.
+    let control = |input: &mut [Data]| input[0].params().particle_mass *= 1.2;
+    expected.case(format!("continuity.{}", word(kernels)), name, &world, input, output, control)
+}
+
+fn normals(name: &str, kernels: Kernels, params: Params) -> Case {
+    let world = world(params);
+    let mut expected = Expected::new();
+    for sum in oracle::normals(&world, kernels.gradient) {
+        expected.vector(&sum, 0.0);
+    }
+    let mut input = base(&world);
+    input.extend([
+        Data::U32(world.cell_start.clone()),
+        Data::Vec4(world.positions.clone()),
+        Data::Vec2(world.densities.clone()),
+    ]);
+    let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
+    expected.case(format!("normals.{}", word(kernels)), name, &world, input, output, heavier)
+}
+
+/// What an error of the walls' tables is worth in an acceleration.
+fn push_error(world: &World, wall: &Wall, i: usize) -> f64 {
+    let (p, density) = (&world.params, world.densities[i].as_dvec2());
+    let support = f64::from(p.support_radius);
+    let push = density.y.abs() * (1.0 / density.x + density.x / 1e6) / 500.0;
+    // Push by the slope's error over H; body forces by the density's and by slope times distance over H.
+    let body = 2.0 * f64::from(p.gravity.length() + p.shake.length());
+    WALL_TABLE[wall.near] * (push * 500.0 / support + body)
+}
+
+fn momentum(name: &str, kernels: Kernels, params: Params) -> Case {
+    let world = world(params);
+    let walls = oracle::walls(&world, kernels);
+    let mut expected = Expected::new();
+    for (i, sum) in oracle::momentum(&world, kernels.gradient, &walls).iter().enumerate() {
+        expected.vector(sum, push_error(&world, &walls[i], i));
+    }
+    let mut input = base(&world);
+    input.extend(pair_input(&world));
+    input.push(if params.surface_tension > 0.0 {
+        Data::Vec4(world.normals.clone())
+    } else {
+        // As a simulation without surface tension has it.
+        Data::Vec4(vec![Vec4::NAN])
+    });
+    input.push(table(kernels));
+    let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
+    expected.case(format!("momentum.{}", word(kernels)), name, &world, input, output, heavier)
+}
+
+fn pair_input(world: &World) -> [Data; 5] {
+    [
+        Data::State(world.state),
+        Data::U32(world.cell_start.clone()),
+        Data::Vec4(world.positions.clone()),
+        Data::Vec4(world.velocities.clone()),
+        Data::Vec2(world.densities.clone()),
+    ]
+}
+
+fn mueller(name: &str, params: Params) -> Case {
+    let world = world(params);
+    let walls = oracle::walls(&world, MUELLER);
+    let mut expected = Expected::new();
+    let mut undecided = 0;
+    let sums = oracle::mueller(&world, &walls);
+    for (i, (sum, steepness)) in sums.iter().enumerate() {
+        if params.surface_tension > 0.0 && (steepness.0 - 1.0).abs() < 1e-4 {
+            // On the threshold rounding decides; such a particle says nothing.
+            undecided += 1;
+            expected.vector(&Sum { size: f64::INFINITY, ..*sum }, 0.0);
+        } else {
+            expected.vector(sum, push_error(&world, &walls[i], i));
+        }
+    }
+    assert!(undecided * 100 < sums.len(), "{undecided} of {} are on the threshold", sums.len());
+    let mut input = base(&world);
+    input.extend(pair_input(&world));
+    input.push(table(MUELLER));
+    let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
+    expected.case("mueller".into(), name, &world, input, output, heavier)
+}

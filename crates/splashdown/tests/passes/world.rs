@@ -1,0 +1,185 @@
+//! Random clouds of particles in a box, sorted the plain way, with everything the passes read.
+
+use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown::cells::Grid;
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState};
+use splashdown_gpu::{bytemuck, testing};
+
+pub const SPACING: f32 = 0.05;
+
+/// A cloud with constants. The arrays are as after a sort: by cell, then by id, the dead behind.
+#[derive(Clone)]
+pub struct World {
+    pub params: Params,
+    pub grid: Grid,
+    pub state: StepState,
+    pub cell_start: Vec<u32>,
+    pub positions: Vec<Vec4>,
+    /// The fourth component is a density.
+    pub velocities: Vec<Vec4>,
+    pub ids: Vec<u32>,
+    /// Density and pressure.
+    pub densities: Vec<Vec2>,
+    pub normals: Vec<Vec4>,
+}
+
+fn unit(i: usize) -> f32 {
+    testing::noise(i as u32) as f32 / u32::MAX as f32
+}
+
+pub fn params(support_ratio: f32) -> Params {
+    Params {
+        gravity: Vec3::new(0.5, -9.81, 0.25),
+        support_radius: support_ratio * SPACING,
+        domain_min: Vec3::new(-0.3, 0.0, 0.1),
+        particle_spacing: SPACING,
+        domain_max: Vec3::new(0.3, 0.5, 0.7),
+        particle_mass: 1000.0 * SPACING.powi(3),
+        shake: Vec3::new(1.5, 0.0, -0.5),
+        shake_rate: 3.0,
+        rest_density: 1000.0,
+        sound_speed: 20.0,
+        wall_offset: 0.11 * SPACING,
+        exponent: 7.0,
+        viscosity: 0.01,
+        artificial_viscosity: 0.1,
+        density_diffusion: 0.1,
+        surface_tension: 0.0,
+        wall_friction: 1.0,
+        cfl_factor: 0.3,
+        max_dt: 0.005,
+        min_dt: 1e-7,
+        closed: 0b111111,
+        clamp_pressure: 0,
+        wall_damping: 1.0,
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+pub fn state(particles: usize) -> StepState {
+    StepState {
+        dt: 4e-4,
+        stable_dt: 5e-4,
+        time: 0.7,
+        remaining: 0.01,
+        done: 0,
+        run_count: particles as u32,
+        steps: 3,
+        too_small: 0,
+        max_speed: 1.0,
+        max_acceleration: 9.0,
+        density_error: 0.01,
+        frame_duration: 0.02,
+    }
+}
+
+/// Points of a box: everywhere, crowded at walls, edges and corners, on them, and twice in one place.
+pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
+    let (min, max) = (params.domain_min, params.domain_max);
+    let inside = |i: usize| Vec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2));
+    let mut points: Vec<Vec3> = (0..n).map(|i| min + (max - min) * inside(i)).collect();
+    for (i, x) in points.iter_mut().enumerate().take(n / 6) {
+        // Pulled towards one, two or three sides, to less than a spacing and a half.
+        for axis in (0..3).filter(|axis| i >> axis & 1 == 1 || i % 3 == *axis) {
+            let away = 1.5 * SPACING * unit(7 * i + axis + 100_000);
+            x[axis] = if i & 8 == 0 { min[axis] + away } else { max[axis] - away };
+        }
+    }
+    let corners =
+        [min, max, min.with_x(max.x), min.with_x(0.0), max.with_y(0.2), min.with_z(0.4).with_y(0.25)];
+    points.splice(0..6, corners);
+    // In a corner, where the third side's solid just begins to reach in: its integral there is a difference near zero.
+    for i in 0..60 {
+        let depth = (params.support_radius - if i % 2 == 0 { 0.0 } else { params.wall_offset })
+            * (1.0 - 1e-7 * (1 << (i / 3)) as f32);
+        let mut x = Vec3::splat(0.14 * SPACING + 1e-4 * i as f32);
+        x[i % 3] = depth;
+        points[n / 2 + 8 + i] = min + x;
+    }
+    for i in (20..n / 2).step_by(50) {
+        points[i] = points[i + 1];
+    }
+    points
+}
+
+impl World {
+    /// A cloud of about `n` particles, a few of them dead.
+    pub fn new(params: Params, n: usize) -> Self {
+        let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
+        let mut positions: Vec<Vec4> = points(&params, n).iter().map(|x| x.extend(0.0)).collect();
+        let dead = [
+            Vec4::new(f32::NAN, 0.1, 0.2, DEAD_NON_FINITE),
+            Vec4::new(9.0, 9.0, 9.0, DEAD_ESCAPED),
+            params.domain_min.extend(DEAD_NON_FINITE),
+        ];
+        positions.splice(n / 2..n / 2, dead);
+        let n = positions.len();
+        let mut ids: Vec<u32> = (0..n as u32).map(|i| 3 * i + 1).collect();
+        // Ids in no relation to the places.
+        for i in 0..n {
+            ids.swap(i, testing::noise(i as u32 + 77) as usize % n);
+        }
+        let mut order: Vec<usize> = (0..n).collect();
+        let cell = |p: Vec4| if p.w == 0.0 { grid.cell_of(p.xyz()) } else { grid.cell_count };
+        order.sort_by_key(|&i| (cell(positions[i]), ids[i]));
+        let sorted: Vec<Vec4> = order.iter().map(|&i| positions[i]).collect();
+        let starts = (0..=grid.cell_count + 1).map(|c| sorted.partition_point(|&p| cell(p) < c) as u32);
+        let signed = |i: usize, k: usize| 2.0 * unit(5 * i + k + 50_000) - 1.0;
+        let velocities = |i: usize| {
+            Vec3::new(signed(i, 0), signed(i, 1), signed(i, 2)).extend(1000.0 + 60.0 * signed(i, 3))
+        };
+        let densities = |i: usize| Vec2::new(1000.0 + 100.0 * signed(i, 4), 2e4 * (signed(i, 5) + 0.7));
+        Self {
+            params,
+            grid,
+            state: state(n),
+            cell_start: starts.collect(),
+            positions: sorted.clone(),
+            velocities: (0..n).map(velocities).collect(),
+            ids: order.iter().map(|&i| ids[i]).collect(),
+            densities: (0..n).map(densities).collect(),
+            normals: (0..n)
+                .map(|i| Vec3::new(signed(i, 6), signed(i, 7), signed(i, 8)).extend(0.0))
+                .collect(),
+        }
+    }
+
+    /// Number of the living.
+    pub fn living(&self) -> usize {
+        self.cell_start[self.grid.cell_count as usize] as usize
+    }
+
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Cell and rank of unsorted particles: the sorted ones in another order.
+    pub fn shuffled(&self) -> Shuffled {
+        let n = self.len();
+        let mut order: Vec<u32> = (0..n as u32).collect();
+        for i in 0..n {
+            order.swap(i, testing::noise(i as u32 + 4242) as usize % n);
+        }
+        let cell = |k: usize| self.cell_start.partition_point(|&start| start as usize <= k) as u32 - 1;
+        let mut arrived = vec![0; self.cell_start.len()];
+        let cell_rank = order.iter().map(|&k| {
+            let c = cell(k as usize);
+            arrived[c as usize] += 1;
+            UVec2::new(c, arrived[c as usize] - 1)
+        });
+        Shuffled { cell_rank: cell_rank.collect(), order }
+    }
+}
+
+/// The particles before the sort.
+pub struct Shuffled {
+    pub cell_rank: Vec<UVec2>,
+    /// Which sorted particle stands at each place.
+    pub order: Vec<u32>,
+}
+
+impl Shuffled {
+    pub fn of<T: Copy>(&self, sorted: &[T]) -> Vec<T> {
+        self.order.iter().map(|&k| sorted[k as usize]).collect()
+    }
+}

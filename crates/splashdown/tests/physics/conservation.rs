@@ -1,0 +1,170 @@
+//! What an isolated blob of fluid keeps: momentum, angular momentum, its particles; and what viscosity takes.
+
+use glam::DVec3;
+use splashdown::scene::Scene;
+use splashdown::{Simulation, sample};
+use splashdown_gpu::{Executor, testing};
+use splashdown_io::Particles;
+
+use super::figures::Figures;
+use super::{angular_sum, cpu, rms_speed, scene, square_sum, velocity_sum};
+
+const STEPS: u64 = 1000;
+/// Pair forces are equal and opposite to the last bit that matters; a thousand steps of rounding are left.
+const MOMENTUM: f64 = 1e-5;
+/// Positions are rounded to 3e-8 m in every step, and each rounding is a small lever.
+const ANGULAR_MOMENTUM: f64 = 1e-4;
+
+/// A ball of 500 particles in an open box without gravity.
+fn blob(gravity: f32, fluid: &str, solver: &str) -> Scene {
+    scene(&format!(
+        r#"
+        [scene]
+        name = "blob"
+        duration = 1.0
+        gravity = [0, {gravity}, 0]
+        [domain]
+        min = [-0.5, -0.5, -0.5]
+        max = [0.5, 0.5, 0.5]
+        open = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
+        [fluid]
+        particle_spacing = 0.02
+        {fluid}
+        [[fluid.block]]
+        shape = "sphere"
+        center = [0, 0, 0]
+        radius = 0.1
+        [solver]
+        sound_speed = 10
+        {solver}
+        "#
+    ))
+}
+
+fn noise(i: usize) -> f32 {
+    testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5
+}
+
+/// The ball off its lattice, every particle with a velocity of its own of up to 0.25 m/s per axis.
+fn stirred(scene: &Scene) -> Particles {
+    let mut particles = sample::particles(scene).unwrap();
+    for (i, x) in particles.positions.iter_mut().flatten().enumerate() {
+        *x += 0.2 * 0.02 * noise(i);
+    }
+    for (i, v) in particles.velocities.iter_mut().flatten().enumerate() {
+        *v = 0.5 * noise(10_000 + i);
+    }
+    particles
+}
+
+/// Runs a thousand steps; nothing may be lost, limited or corrected on the way.
+fn run(scene: &Scene, executor: Executor, start: &Particles) -> Particles {
+    let mut simulation = Simulation::with_particles(scene, executor, start).unwrap();
+    while simulation.stats().steps < STEPS {
+        let stats = simulation.advance(0.02).unwrap();
+        assert_eq!(stats.particles as usize, start.positions.len(), "{stats:?}");
+        assert_eq!(
+            (stats.escaped, stats.non_finite, stats.wall_corrections, stats.speed_limits),
+            (0, 0, 0, 0)
+        );
+    }
+    simulation.particles().unwrap()
+}
+
+/// The change of momentum over mass times the root mean square of the speeds.
+fn momentum_drift(start: &Particles, end: &Particles) -> f64 {
+    let change = velocity_sum(end) - velocity_sum(start);
+    change.length() / start.positions.len() as f64 / rms_speed(start)
+}
+
+const SUMMATION: &str = "method = \"wcsph\"\nartificial_viscosity = 0.1";
+const CONTINUITY: &str = "method = \"wcsph\"\ndensity = \"continuity\"\nartificial_viscosity = 0.1";
+const TENSION: &str = "method = \"wcsph\"\nsurface_tension = \"akinci2013\"";
+const MUELLER: &str = "method = \"mueller2003\"";
+const MUELLER_TENSION: &str = "method = \"mueller2003\"\nsurface_tension = \"mueller2003\"";
+
+#[test]
+fn an_isolated_blob_keeps_its_momentum_and_its_particles() {
+    let fluid = "viscosity = 0.001\nsurface_tension = 1.0";
+    // With a = f / rho_i and equal masses the pressure and viscosity of Mueller 2003 are antisymmetric too.
+    let ways =
+        [("summation", SUMMATION), ("continuity", CONTINUITY), ("akinci", TENSION), ("mueller", MUELLER)];
+    for (word, solver) in ways {
+        for (name, executor) in testing::executors("an_isolated_blob_keeps_its_momentum") {
+            let scene = blob(0.0, fluid, solver);
+            let start = stirred(&scene);
+            let end = run(&scene, executor, &start);
+            let mut figures = Figures::new(format!("momentum, {word}, {name}"));
+            figures.at_most("change over M v_rms in 1000 steps", momentum_drift(&start, &end), MOMENTUM);
+            figures.close();
+        }
+    }
+    // Controls: a millionth of the earth's gravity, and forces that are no pair forces.
+    let mut figures = Figures::new("momentum, controls, CPU");
+    let scene = blob(-1e-5, fluid, SUMMATION);
+    let start = stirred(&scene);
+    let end = run(&scene, cpu(), &start);
+    figures.control("gravity of 1e-5 m/s^2", momentum_drift(&start, &end), MOMENTUM);
+    let scene = blob(0.0, fluid, MUELLER_TENSION);
+    let end = run(&scene, cpu(), &start);
+    figures.control("colour field's tension, which is no pair force", momentum_drift(&start, &end), MOMENTUM);
+    figures.close();
+}
+
+#[test]
+fn a_spinning_blob_keeps_its_angular_momentum() {
+    let drift = |solver: &str, fluid: &str, executor: Executor| {
+        let scene = blob(0.0, fluid, solver);
+        let mut start = stirred(&scene);
+        let spin = DVec3::new(0.6, 2.0, -0.4);
+        for (x, v) in start.positions.iter().zip(&mut start.velocities) {
+            let turn = spin.cross(super::vec(*x)).as_vec3().to_array();
+            *v = std::array::from_fn(|k| turn[k] + 0.2 * v[k]);
+        }
+        let end = run(&scene, executor, &start);
+        (angular_sum(&end) - angular_sum(&start)).length() / angular_sum(&start).length()
+    };
+    for (word, solver) in [("summation", SUMMATION), ("continuity", CONTINUITY)] {
+        for (name, executor) in testing::executors("a_spinning_blob_keeps_its_angular_momentum") {
+            let mut figures = Figures::new(format!("angular momentum, {word}, {name}"));
+            let measured = drift(solver, "viscosity = 0.001", executor);
+            figures.at_most("change over its size in 1000 steps", measured, ANGULAR_MOMENTUM);
+            figures.close();
+        }
+    }
+    // Control and report: Mueller's viscosity acts along the difference of velocities, not along the line of the pair.
+    let mut figures = Figures::new("angular momentum, controls, CPU");
+    figures.control("mueller 2003", drift(MUELLER, "viscosity = 0.01", cpu()), ANGULAR_MOMENTUM);
+    figures.close();
+}
+
+#[test]
+fn viscosity_only_takes_energy() {
+    // Next to no pressure, so that all that happens is friction; a step may round up by what one rounding is worth.
+    let rise = |solver: &str, viscosity: f32| {
+        let mut scene = blob(0.0, "", solver);
+        scene.solver.sound_speed = Some(1e-3);
+        scene.solver.max_dt = 0.002;
+        scene.fluid.material.viscosity = viscosity;
+        let start = stirred(&scene);
+        let mut simulation = Simulation::with_particles(&scene, cpu(), &start).unwrap();
+        let (first, mut last, mut worst) = (square_sum(&start), square_sum(&start), f64::NEG_INFINITY);
+        for _ in 0..100 {
+            simulation.advance(0.001).unwrap();
+            let energy = square_sum(&simulation.particles().unwrap());
+            worst = worst.max((energy - last) / first);
+            last = energy;
+        }
+        (worst, last / first)
+    };
+    for (word, solver) in [("laminar", SUMMATION), ("continuity", CONTINUITY), ("mueller", MUELLER)] {
+        let mut figures = Figures::new(format!("energy, {word}, CPU"));
+        let (worst, left) = rise(solver, 0.01);
+        figures.at_most("largest rise in a step, of the first energy", worst, 1e-6);
+        figures.at_most("energy left after 0.1 s, of the first", left, 0.5);
+        // Control: without friction the energy stays; the decay is the viscosity's.
+        let (_, inviscid) = rise(solver.replace("0.1", "0.0").as_str(), 0.0);
+        figures.control("energy left without viscosity", inviscid, 0.5);
+        figures.close();
+    }
+}

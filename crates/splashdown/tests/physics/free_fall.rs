@@ -1,0 +1,82 @@
+//! Free fall: symplectic Euler gives exactly y0 + v0 t - g t (t + dt) / 2.
+
+use splashdown::Simulation;
+use splashdown_gpu::testing;
+use splashdown_io::Particles;
+
+use super::figures::Figures;
+use super::scene;
+
+const DT: f32 = 0.002;
+const STEPS: u32 = 100;
+
+/// A hundred roundings of positions near one, half a unit in the last place each, add up like a random walk to 3e-7.
+const TOLERANCE: f64 = 1e-6;
+
+fn text(method: &str) -> String {
+    format!(
+        r#"
+        [scene]
+        name = "free-fall"
+        duration = 1.0
+        [domain]
+        min = [-4, -4, -4]
+        max = [4, 4, 4]
+        [fluid]
+        particle_spacing = 0.1
+        [[fluid.block]]
+        position = [0, 0, 0]
+        size = [0.5, 0.5, 0.5]
+        [solver]
+        method = "{method}"
+        sound_speed = 10
+        max_dt = {DT}
+        "#
+    )
+}
+
+#[test]
+fn lone_particles_and_a_block_fall_as_symplectic_euler_says() {
+    for method in ["mueller2003", "wcsph"] {
+        for (name, executor) in testing::executors("free_fall") {
+            let scene = scene(&text(method));
+            // Lone particles, further from each other than a support, with velocities of their own; then the block.
+            let lone = |i: u32| [-3.0 + 0.5 * i as f32, 1.0 + 0.25 * (i % 3) as f32, -2.0];
+            let mut particles = Particles {
+                positions: (0..12).map(lone).collect(),
+                velocities: (0..12).map(|i| [0.25, 0.5 * i as f32 - 2.0, -0.125]).collect(),
+                ..Particles::default()
+            };
+            let lone = particles.positions.len();
+            let block = splashdown::sample::particles(&scene).unwrap();
+            particles.positions.extend(&block.positions);
+            particles.velocities.extend(&block.velocities);
+            let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
+            for _ in 0..STEPS {
+                assert_eq!(simulation.advance(DT).unwrap().steps_in_frame, 1);
+            }
+            let after = simulation.particles().unwrap();
+            let dt = f64::from(DT);
+            let t = dt * f64::from(STEPS);
+            let fall = |i: usize, last: f64| {
+                let (y, v) = (f64::from(particles.positions[i][1]), f64::from(particles.velocities[i][1]));
+                y + v * t - 0.5 * 9.81 * t * (t + last)
+            };
+            let worst = |last: f64| {
+                let error = |i: usize| (f64::from(after.positions[i][1]) - fall(i, last)).abs();
+                (0..lone).map(error).fold(0.0, f64::max)
+            };
+            let mean = |of: &Particles| {
+                of.positions[lone..].iter().map(|x| f64::from(x[1])).sum::<f64>()
+                    / block.positions.len() as f64
+            };
+            let centre = mean(&after) - mean(&particles) + 0.5 * 9.81 * t * (t + dt);
+            let mut figures = Figures::new(format!("free fall, {method}, {name}"));
+            figures.at_most("worst lone particle, m", worst(dt), TOLERANCE);
+            figures.at_most("centre of the block, m", centre.abs(), TOLERANCE);
+            // Control: the exact parabola differs by half a step's worth.
+            figures.control("against the parabola, m", worst(0.0), TOLERANCE);
+            figures.close();
+        }
+    }
+}

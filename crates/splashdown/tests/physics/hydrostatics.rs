@@ -1,0 +1,222 @@
+//! A tank at rest: p = rho g (surface - y), the level, the load on the walls (after 2 s).
+//!
+//! The tank starts with the densities of water at rest, as numbers where the density is integrated, by closer layers
+//! where it is summed: water let go without pressure rings like a bell, for H / c0 is short and its viscosity little. The
+//! continuity form, which is there to measure with, has a support of three spacings; at two, the kernel itself gives a
+//! lattice's pressure gradient 5 % too little. The summation form and mueller2003 run as scenes have them, and their
+//! pressure is told rather than judged.
+
+use splashdown::scene::{DensityMode, Method};
+use splashdown::{Simulation, sample};
+use splashdown_gpu::{Executor, testing};
+
+use super::figures::{Figures, full};
+use super::{cpu, rms_speed, scene};
+
+const GRAVITY: f64 = 9.81;
+
+struct Tank {
+    /// Particles along x, y and z.
+    size: [u32; 3],
+    spacing: f64,
+    solver: &'static str,
+    /// What the tank feels, while the figures are measured against 9.81 m/s^2.
+    gravity: f64,
+}
+
+struct Rest {
+    pressure: f64,
+    level: f64,
+    rms_speed: f64,
+    max_speed: f64,
+    load: f64,
+    /// The particles' mass over that of the water in their volume.
+    mass: f64,
+    floor: f64,
+    corrections: u32,
+}
+
+const CONTINUITY: &str =
+    "method = \"wcsph\"\ndensity = \"continuity\"\nartificial_viscosity = 0.1\nsupport_ratio = 3";
+const SUMMATION: &str = "method = \"wcsph\"\nartificial_viscosity = 0.1";
+const MUELLER: &str = "method = \"mueller2003\"";
+
+impl Tank {
+    fn height(&self) -> f64 {
+        f64::from(self.size[1]) * self.spacing
+    }
+
+    fn simulation(&self, executor: Executor) -> Simulation {
+        let [x, y, z] = self.size.map(|n| f64::from(n) * self.spacing);
+        // The viscosity of light oil for mueller2003, which has no artificial one: c0 h / 100, as alpha = 0.1 gives.
+        let viscosity = if self.solver == MUELLER { 0.01 } else { 1e-6 };
+        let scene = scene(&format!(
+            r#"
+            [scene]
+            name = "tank"
+            duration = 2.0
+            gravity = [0, {}, 0]
+            [domain]
+            min = [0, 0, 0]
+            max = [{x}, {}, {z}]
+            open = ["y_max"]
+            [fluid]
+            particle_spacing = {}
+            viscosity = {viscosity}
+            [[fluid.block]]
+            position = [0, 0, 0]
+            size = [{x}, {y}, {z}]
+            [solver]
+            {}
+            "#,
+            -self.gravity,
+            1.5 * y,
+            self.spacing,
+            self.solver
+        ));
+        let mut particles = sample::particles(&scene).unwrap();
+        let params = splashdown::solver::params(&scene, 0);
+        // A linear equation of state will do: the densities differ by a part in a hundred.
+        let (height, per_depth) = (self.height() as f32, self.gravity as f32 / params.sound_speed.powi(2));
+        if scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity {
+            let density = |x: &[f32; 3]| params.rest_density * (1.0 + per_depth * (height - x[1]));
+            particles.densities = particles.positions.iter().map(density).collect();
+        } else {
+            for x in &mut particles.positions {
+                x[1] -= per_depth * (height * x[1] - 0.5 * x[1] * x[1]);
+            }
+        }
+        Simulation::with_particles(&scene, executor, &particles).unwrap()
+    }
+
+    /// Lets the tank settle for `seconds` and measures it.
+    fn settle(&self, executor: Executor, seconds: f32) -> Rest {
+        let mut simulation = self.simulation(executor);
+        assert_eq!(simulation.stats().particles, self.size.iter().product::<u32>());
+        simulation.advance(0.7 * seconds).unwrap();
+        // The load swings with the last sound waves: its mean over many of them.
+        let samples = 100;
+        let mut load = 0.0;
+        for _ in 0..samples {
+            simulation.advance(0.3 * seconds / samples as f32).unwrap();
+            load += self.load(&mut simulation) / f64::from(samples);
+        }
+        let particles = simulation.particles().unwrap();
+        let rest_density = f64::from(simulation.params().rest_density);
+        let volume_mass = rest_density * self.spacing.powi(3);
+        let exact = |y: f64| rest_density * GRAVITY * (self.height() - y).max(0.0);
+        let (mut error, mut norm, mut bottom) = (0.0, 0.0, (0.0, 0.0));
+        for (x, &p) in particles.positions.iter().zip(&particles.pressures) {
+            let (y, p) = (f64::from(x[1]), f64::from(p));
+            error += (p - exact(y)).powi(2);
+            norm += exact(y).powi(2);
+            if y < self.spacing {
+                bottom = (bottom.0 + p + rest_density * GRAVITY * y, bottom.1 + 1.0);
+            }
+        }
+        let wave = (GRAVITY * self.height()).sqrt();
+        let stats = simulation.stats();
+        assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
+        Rest {
+            pressure: (error / norm).sqrt(),
+            level: (self.level(&particles.positions) - self.height()) / self.spacing,
+            rms_speed: rms_speed(&particles) / wave,
+            max_speed: f64::from(stats.max_speed) / wave,
+            load,
+            mass: f64::from(simulation.params().particle_mass) / volume_mass,
+            floor: bottom.0 / bottom.1 / exact(0.0),
+            corrections: stats.wall_corrections,
+        }
+    }
+
+    /// The walls' vertical force on the fluid over the particles' weight: what the accelerations hold beside gravity and
+    /// the forces of pairs, which cancel.
+    fn load(&self, simulation: &mut Simulation) -> f64 {
+        let accelerations = simulation.fields().accelerations;
+        let accelerations = simulation.executor().read(accelerations).unwrap();
+        let sum: f64 = accelerations.iter().map(|a| f64::from(a.y) + self.gravity).sum();
+        sum / (accelerations.len() as f64 * GRAVITY)
+    }
+
+    /// The mean over the columns of the highest particle's upper side.
+    fn level(&self, positions: &[[f32; 3]]) -> f64 {
+        let [nx, _, nz] = self.size.map(|n| n as usize);
+        let mut tops = vec![0.0_f64; nx * nz];
+        for x in positions {
+            let column = |x: f32, n: usize| ((f64::from(x) / self.spacing) as usize).min(n - 1);
+            let top = &mut tops[column(x[2], nz) * nx + column(x[0], nx)];
+            *top = top.max(f64::from(x[1]) + 0.5 * self.spacing);
+        }
+        tops.iter().sum::<f64>() / tops.len() as f64
+    }
+}
+
+impl Rest {
+    /// The figures with the gates of whoever means to be right: still to `speed`, level, and carried.
+    fn judged(&self, case: &str, speed: f64) -> Figures {
+        let mut figures = self.told(case, speed);
+        figures.within("level - fill, spacings", self.level, -0.5, 0.5);
+        figures.within("vertical wall force over particles' weight", self.load, 0.99, 1.01);
+        figures
+    }
+
+    /// The figures with the one gate that all must hold: it comes to rest, and nothing has to be put back.
+    fn told(&self, case: &str, speed: f64) -> Figures {
+        let mut figures = Figures::new(case);
+        figures.at_most("speed, rms over sqrt(gH)", self.rms_speed, speed);
+        figures.at_most("corrections at walls", f64::from(self.corrections), 0.0);
+        figures.report("speed, largest over sqrt(gH)", self.max_speed);
+        figures.report("pressure at the floor over rho g H", self.floor);
+        figures.report("pressure, L2 relative", self.pressure);
+        figures.report("particles' mass over the volume's", self.mass);
+        figures
+    }
+
+    /// Where the pressure is for moving the fluid, not for measuring it. Its walls carry less than the weight by what the
+    /// contact in the motion carries of particles that the pressure lets sink to a quarter of a spacing.
+    fn told_of_mueller(&self, case: &str) {
+        let mut figures = self.told(case, 0.05);
+        figures.report("level - fill, spacings", self.level);
+        figures.report("vertical wall force over particles' weight", self.load);
+        figures.close();
+    }
+}
+
+fn tank(solver: &'static str) -> Tank {
+    let size = if full() { [20, 20, 20] } else { [12, 16, 12] };
+    Tank { size, spacing: 0.025, solver, gravity: GRAVITY }
+}
+
+#[test]
+fn a_tank_at_rest_has_the_hydrostatic_pressure() {
+    let rest = tank(CONTINUITY).settle(cpu(), 2.0);
+    let mut figures = rest.judged("hydrostatics, continuity, CPU", 0.01);
+    figures.at_most("pressure, L2 relative, gate", rest.pressure, 0.03);
+    figures.within("vertical wall force over the volume's weight", rest.load * rest.mass, 0.99, 1.01);
+    figures.close();
+    // Control: a tenth less gravity must not pass for the whole.
+    let light = Tank { gravity: 0.9 * GRAVITY, size: [7, 8, 7], ..tank(CONTINUITY) }.settle(cpu(), 1.0);
+    let mut figures = Figures::new("hydrostatics, controls, CPU");
+    figures.control("pressure, L2 relative, with 0.9 g", light.pressure, 0.03);
+    figures.control("wall force off the weight, with 0.9 g", (light.load - 1.0).abs(), 0.01);
+    figures.close();
+}
+
+#[test]
+fn a_tank_with_summed_densities_comes_to_rest() {
+    tank(SUMMATION).settle(cpu(), 2.0).judged("hydrostatics, summation, CPU", 0.05).close();
+    tank(MUELLER).settle(cpu(), 2.0).told_of_mueller("hydrostatics, mueller, CPU");
+}
+
+/// A tank small enough for software Vulkan: seven particles from wall to wall, eight deep.
+#[test]
+fn a_small_tank_rests_on_every_executor() {
+    for (name, executor) in testing::executors("a_small_tank_rests_on_every_executor") {
+        let tank = Tank { size: [7, 8, 7], ..tank(CONTINUITY) };
+        tank.settle(executor, 0.5).judged(&format!("small tank, continuity, {name}"), 0.05).close();
+    }
+    for (name, executor) in testing::executors("a_small_tank_rests_on_every_executor") {
+        let tank = Tank { size: [7, 8, 7], ..tank(MUELLER) };
+        tank.settle(executor, 0.5).told_of_mueller(&format!("small tank, mueller, {name}"));
+    }
+}

@@ -1,0 +1,47 @@
+//! Physics: whole runs against closed formulas, conservation laws and measurements.
+//!
+//! The gates were set before the first run. With `SPLASHDOWN_FULL=1` the cases run at the resolution of the published
+//! checks; with `SPLASHDOWN_FIGURES=DIR` they leave their figures there as JSON (`cargo xtask validate` does both).
+
+mod conservation;
+mod dam_break;
+mod figures;
+mod free_fall;
+mod hydrostatics;
+
+use glam::DVec3;
+use splashdown::scene::Scene;
+use splashdown_gpu::{CpuExecutor, Executor};
+use splashdown_io::Particles;
+
+fn cpu() -> Executor {
+    CpuExecutor::new().into()
+}
+
+/// A scene from its text, as a user writes it.
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, "physics.toml").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn vec(v: [f32; 3]) -> DVec3 {
+    DVec3::from_array(v.map(f64::from))
+}
+
+/// The sum of the velocities: momentum over the mass of a particle.
+fn velocity_sum(particles: &Particles) -> DVec3 {
+    particles.velocities.iter().map(|&v| vec(v)).sum()
+}
+
+/// The sum of x cross v: angular momentum about the origin over the mass of a particle.
+fn angular_sum(particles: &Particles) -> DVec3 {
+    particles.positions.iter().zip(&particles.velocities).map(|(&x, &v)| vec(x).cross(vec(v))).sum()
+}
+
+/// The sum of |v|^2: twice the kinetic energy over the mass of a particle.
+fn square_sum(particles: &Particles) -> f64 {
+    particles.velocities.iter().map(|&v| vec(v).length_squared()).sum()
+}
+
+fn rms_speed(particles: &Particles) -> f64 {
+    (square_sum(particles) / particles.velocities.len() as f64).sqrt()
+}
