@@ -37,17 +37,24 @@ pub enum SimulationError {
     },
     /// The time step that stability asks for is below the scene's smallest.
     #[error(
-        "at {time:.4} s the time step that keeps the simulation stable is {wanted:.3e} s, below solver.min_dt = {min_dt:.3e} s \
-         (largest speed {max_speed:.3e} m/s): look for particles placed inside one another, or lower the speeds or min_dt"
+        "at {time:.4} s the time step that keeps the simulation stable is below solver.min_dt = {min_dt:.3e} s (largest speed \
+         {max_speed:.3e} m/s, acceleration {max_acceleration:.3e} m/s^2): look for particles placed inside one another, or \
+         lower the speeds or min_dt"
     )]
     StepTooSmall {
         /// Simulated time in seconds.
         time: f64,
-        /// The step asked for in seconds.
-        wanted: f32,
-        /// The smallest allowed in seconds.
+        /// The smallest step allowed in seconds.
         min_dt: f32,
         /// The largest speed in m/s.
         max_speed: f32,
+        /// The largest acceleration in m/s^2.
+        max_acceleration: f32,
+    },
+    /// A frame's length is negative, infinite or NaN.
+    #[error("a simulation cannot advance by {seconds} s: give a finite number of seconds, zero or more")]
+    BadDuration {
+        /// The seconds given.
+        seconds: f32,
     },
 }

@@ -43,3 +43,8 @@ pub use stats::Stats;
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
     [passes::passes(), surface::passes()].concat()
 }
+
+/// The examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,5 +1,6 @@
 //! A whole run as one stream of events, which command line, window and Python read.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -118,7 +119,7 @@ pub struct Summary {
     pub density_error: f32,
     /// Enclosed volume of the first and the last surface in m^3.
     pub volume: Option<[f64; 2]>,
-    /// The volume of the particles, count times mass over rest density, in m^3.
+    /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
     pub particle_volume: f64,
     /// Time per pass, if asked for.
     pub timings: Timings,
@@ -154,7 +155,7 @@ pub struct Run {
     density_error: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
-    waiting: Vec<Event>,
+    waiting: VecDeque<Event>,
     stats_before: Stats,
 }
 
@@ -204,7 +205,7 @@ impl Run {
             density_error: 0.0,
             volume: None,
             particle_volume,
-            waiting: Vec::new(),
+            waiting: VecDeque::new(),
             stats_before: simulation.stats(),
             simulation,
         })
@@ -258,7 +259,7 @@ impl Run {
         let before = std::mem::replace(&mut self.stats_before, *stats);
         let mut tell = |more: u32, what: &str| {
             if more > 0 {
-                self.waiting.push(Event::Warning(format!("at {:.4} s: {more} {what}", stats.time)));
+                self.waiting.push_back(Event::Warning(format!("at {:.4} s: {more} {what}", stats.time)));
             }
         };
         tell(stats.escaped - before.escaped, "particles left through open sides and were taken out");
@@ -333,7 +334,7 @@ impl Iterator for Run {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(event) = self.waiting.pop() {
+            if let Some(event) = self.waiting.pop_front() {
                 return Some(Ok(event));
             }
             let outcome = match self.stage {

@@ -91,14 +91,13 @@ impl Simulation {
         let params = solver::params(scene, n as u32);
         let solver = Solver::new(scene);
         let (min, max) = (scene.domain.min, scene.domain.max);
-        // One grid for the motion and the surface.
-        let reach = params.support_radius.max(scene.surface.support_ratio * params.particle_spacing);
-        let grid = Grid::new(min, max, reach).ok_or_else(|| SimulationError::TooMany {
-            what: "grid cells",
-            given: u64::MAX,
-            allowed: 1 << 31,
-            advice: "make the domain smaller or particle_spacing larger".into(),
-        })?;
+        let grid =
+            Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
+                what: "grid cells",
+                given: u64::MAX,
+                allowed: 1 << 31,
+                advice: "make the domain smaller or particle_spacing larger".into(),
+            })?;
         let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
         let cells = Cells::new(&mut executor, grid, n as u32, scene.solver.sort)?;
         upload(&mut executor, &fields, particles, params.rest_density)?;
@@ -136,7 +135,8 @@ impl Simulation {
     /// Simulates `seconds`, in as many steps as stability asks for, and waits for the end.
     ///
     /// # Errors
-    /// [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`], and those of the device.
+    /// [`SimulationError::BadDuration`], [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`], and those of
+    /// the device.
     pub fn advance(&mut self, seconds: f32) -> Result<Stats, SimulationError> {
         self.begin(seconds)?;
         loop {
@@ -146,11 +146,20 @@ impl Simulation {
         }
     }
 
-    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it.
+    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it. A frame of no length is
+    /// complete at once, without a step.
     ///
     /// # Errors
-    /// Those of the device.
+    /// [`SimulationError::BadDuration`] if that is not a length of time, and those of the device.
     pub fn begin(&mut self, seconds: f32) -> Result<(), SimulationError> {
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            return Err(SimulationError::BadDuration { seconds });
+        }
+        if seconds == 0.0 {
+            self.frame = None;
+            self.stats.steps_in_frame = 0;
+            return Ok(());
+        }
         self.executor.write(self.fields.duration, &[seconds])?;
         self.executor.run(&self.begin)?;
         self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
@@ -164,7 +173,11 @@ impl Simulation {
     /// As [`advance`](Self::advance).
     pub fn continue_frame(&mut self) -> Result<Option<Stats>, SimulationError> {
         let Some(mut frame) = self.frame.take() else { return Ok(Some(self.stats)) };
-        let expected = (frame.duration / self.stable_dt).ceil() as u32 + 1;
+        // What is known is one batch old, or nothing yet; one step more meets the frame's end.
+        let (steps, remaining) =
+            frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
+        let to_come = (remaining / self.stable_dt).ceil() as u32;
+        let expected = steps.saturating_add(to_come).saturating_add(1);
         let most = if self.executor.gpu().is_some() { MOST_STEPS } else { CPU_STEPS };
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
         let power = left.ilog2();
@@ -181,7 +194,8 @@ impl Simulation {
             let state = readback.wait(&mut self.executor)?[0];
             self.stable_dt = state.stable_dt;
             frame.state = Some(state);
-            if state.done != 0 {
+            // A step too small for the scene would take for ever to reach the frame's end.
+            if state.done != 0 || state.too_small != 0 {
                 return self.end_frame(state).map(Some);
             }
         }
@@ -191,8 +205,10 @@ impl Simulation {
 
     fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
         let last = self.stats;
+        let passed =
+            if state.done != 0 { state.frame_duration } else { state.frame_duration - state.remaining };
         self.stats = Stats {
-            time: last.time + f64::from(state.frame_duration),
+            time: last.time + f64::from(passed),
             steps: last.steps + u64::from(state.steps),
             steps_in_frame: state.steps,
             dt: state.stable_dt,
@@ -204,9 +220,9 @@ impl Simulation {
         if state.too_small != 0 {
             return Err(SimulationError::StepTooSmall {
                 time: self.stats.time,
-                wanted: state.stable_dt,
                 min_dt: self.params.min_dt,
                 max_speed: state.max_speed,
+                max_acceleration: state.max_acceleration,
             });
         }
         if self.stats.particles == 0 && self.params.particle_count > 0 {
@@ -289,11 +305,13 @@ impl Simulation {
         Ok((sum / densities.len().max(1) as f64) as f32)
     }
 
-    /// Sorts the particles as they are now by cell, without a step: input of the surface.
+    /// Sorts the particles as they are now by cell, without a step: input of the surface. For between two frames: one
+    /// that has begun and is not complete is given up.
     ///
     /// # Errors
     /// Those of the device.
     pub fn sort(&mut self) -> Result<(), SimulationError> {
+        self.frame = None;
         let mut recording = Recording::new("sort");
         recording.append(&self.begin);
         self.cells.record(&mut recording, &self.fields);
@@ -306,14 +324,7 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub fn surface(&mut self, settings: &SurfaceSettings) -> Result<Surface, SimulationError> {
-        let spacing = self.params.particle_spacing;
-        let params = SurfaceParams {
-            particle_spacing: spacing,
-            support_radius: settings.support_ratio * spacing,
-            cell_size: settings.cell_size,
-            iso_level: settings.iso_level,
-            smoothing_iterations: settings.smoothing_iterations,
-        };
+        let params = SurfaceParams::of_scene(settings, self.params.particle_spacing);
         let input = SurfaceInput {
             positions: self.fields.sorted_positions,
             cell_start: self.cells.cell_start,
@@ -324,7 +335,8 @@ impl Simulation {
         Ok(Surface::new(&mut self.executor, params, input)?)
     }
 
-    /// Extracts the surface of the particles as they are now; it stays on the device.
+    /// Extracts the surface of the particles as they are now; it stays on the device. For between two frames, as
+    /// [`sort`](Self::sort).
     ///
     /// # Errors
     /// Those of the device.

@@ -206,8 +206,66 @@ fn a_time_step_below_the_smallest_is_an_error() {
         let error = (0..20).find_map(|_| simulation.advance(0.01).err());
         let Some(SimulationError::StepTooSmall { min_dt, .. }) = error else { panic!("{name}: {error:?}") };
         assert_eq!(min_dt, 0.002);
+        // The next frame is judged by itself.
+        let error = simulation.advance(0.01).err();
+        assert!(matches!(error, Some(SimulationError::StepTooSmall { .. })), "{name}: {error:?}");
         // Control: the same scene with a sensible smallest step runs.
         scene.solver.min_dt = 1e-7;
         Simulation::new(&scene, &Device::Cpu).unwrap().advance(0.01).unwrap();
+    }
+}
+
+#[test]
+fn a_frame_has_a_length() {
+    for (name, executor) in testing::executors("a_frame_has_a_length") {
+        let mut simulation = Simulation::with_executor(&scene(0.0625, "", SOLVERS[0]), executor).unwrap();
+        for seconds in [-0.01, f32::NAN, f32::INFINITY] {
+            let error = simulation.advance(seconds).unwrap_err();
+            assert!(matches!(error, SimulationError::BadDuration { .. }), "{name}: {error}");
+        }
+        let before = simulation.particles().unwrap();
+        let stats = simulation.advance(0.0).unwrap();
+        assert_eq!((stats.steps, stats.steps_in_frame, stats.time), (0, 0, 0.0), "{name}");
+        assert_eq!(simulation.particles().unwrap().positions, before.positions, "{name}");
+        // Control: the refusals and the empty frame leave a simulation that goes on.
+        let stats = simulation.advance(0.01).unwrap();
+        assert!(stats.steps > 0 && (stats.time - 0.01).abs() < 1e-6, "{name}: {stats:?}");
+    }
+}
+
+#[test]
+fn no_particle_and_one_particle_are_simulations_too() {
+    for (name, executor) in testing::executors("no_particle_and_one_particle") {
+        let scene = scene(0.0625, "", SOLVERS[0]);
+        let mut nothing = Simulation::with_particles(&scene, executor, &Particles::default()).unwrap();
+        let stats = nothing.advance(0.01).unwrap();
+        assert_eq!((stats.particles, nothing.particles().unwrap().positions.len()), (0, 0), "{name}");
+        assert!((stats.time - 0.01).abs() < 1e-6, "{name}: {stats:?}");
+    }
+    for (name, executor) in testing::executors("no_particle_and_one_particle") {
+        let scene = scene(0.0625, "", SOLVERS[0]);
+        let one = Particles { positions: vec![[0.7, 0.5, 0.3]], ..Particles::default() };
+        let mut simulation = Simulation::with_particles(&scene, executor, &one).unwrap();
+        let stats = simulation.advance(0.1).unwrap();
+        let fallen = 0.5 - simulation.particles().unwrap().positions[0][1];
+        // Free fall, and what symplectic steps of the length dt add: g t dt / 2.
+        assert!((fallen - 0.5 * 9.81 * 0.01).abs() < 9.81 * 0.1 * stats.dt, "{name}: {fallen}");
+    }
+}
+
+#[test]
+fn a_crowd_of_dead_disturbs_neither_the_living_nor_the_device() {
+    for (name, executor) in testing::executors("a_crowd_of_dead") {
+        let scene = scene(0.0625, "", SOLVERS[0]);
+        let mut particles = sample::particles(&scene).unwrap();
+        let living = particles.positions.len();
+        // More than the GPU puts into order: comparing each with each would take 10^10 comparisons a step.
+        particles.positions.extend(vec![[0.0, 9.0, 0.0]; 100_000]);
+        particles.ids = (0..particles.positions.len() as u32).collect();
+        particles.velocities.resize(particles.positions.len(), [0.0; 3]);
+        let mut crowded = Simulation::with_particles(&scene, executor, &particles).unwrap();
+        let stats = crowded.advance(0.002).unwrap();
+        assert_eq!((stats.particles as usize, stats.escaped), (living, 100_000), "{name}");
+        assert_eq!(crowded.particles().unwrap().ids, (0..living as u32).collect::<Vec<_>>(), "{name}");
     }
 }

@@ -101,7 +101,7 @@ gpu_struct! {
         run_count: u32,
         /// Steps of this frame.
         steps: u32,
-        /// 1 if stability asked for less than `min_dt`.
+        /// 1 if stability asked for less than `min_dt` in this frame; `min_dt` was taken then.
         too_small: u32,
         /// Largest speed of the last step in m/s.
         max_speed: f32,

@@ -47,9 +47,8 @@ impl<const F: usize> Window<F> {
             for side in [cell - plane, cell, cell + plane] {
                 for neighbour in [side - width, side, side + width] {
                     for j in cell_start[neighbour] as usize..cell_start[neighbour + 1] as usize {
-                        let values = load(j);
-                        for f in 0..F {
-                            self.columns[f].push(values[f]);
+                        for (column, value) in self.columns.iter_mut().zip(load(j)) {
+                            column.push(value);
                         }
                     }
                 }

@@ -148,6 +148,25 @@ impl Buffers {
     }
 }
 
+/// Bytes in the buffers of [`Surface::new`], before anything has grown.
+///
+/// # Errors
+/// As [`Surface::new`].
+pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> Result<u64, SurfaceError> {
+    let lattice = Lattice::new(params, grid, particles, u64::MAX)?;
+    let (table, blocks) = (u64::from(lattice.block_count), u64::from(lattice.block_capacity));
+    let (vertices, triangles) = (u64::from(lattice.vertex_capacity), u64::from(lattice.triangle_capacity));
+    // Samples and crowding; marks, their sums and slots; values, signs and rows of nodes; vertices and normals.
+    let whole = u64::from(particles) * 20
+        + table * 12
+        + blocks * (4 + 4 * NODES as u64 + 12 * ROWS as u64 + 4 * 4)
+        + vertices * 32
+        + triangles * 12;
+    // Valences, starts of rings, relaxed vertices; rings.
+    let smoothing = vertices * (4 + 4 + 16) + triangles * 24;
+    Ok(whole + if params.smoothing_iterations > 0 { smoothing } else { 0 })
+}
+
 impl Surface {
     /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when
     /// needed.

@@ -54,6 +54,7 @@ mod tests;
 mod volume;
 
 pub use error::SurfaceError;
+pub(crate) use mesh::forecast;
 pub use mesh::{Surface, SurfaceInput, SurfaceStats};
 pub use params::{Status, SurfaceParams};
 pub use reconstruct::reconstruct;

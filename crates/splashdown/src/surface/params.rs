@@ -5,6 +5,7 @@ use splashdown_gpu::gpu_struct;
 
 use super::SurfaceError;
 use crate::cells::Grid;
+use crate::scene::SurfaceSettings;
 
 /// Nodes along a block's side.
 pub(crate) const SIDE: u32 = 8;
@@ -44,6 +45,17 @@ impl SurfaceParams {
             cell_size: 0.5 * particle_spacing,
             iso_level: 0.6,
             smoothing_iterations: 0,
+        }
+    }
+
+    /// A scene's settings for its particle spacing.
+    pub fn of_scene(settings: &SurfaceSettings, particle_spacing: f32) -> Self {
+        Self {
+            particle_spacing,
+            support_radius: settings.support_ratio * particle_spacing,
+            cell_size: settings.cell_size,
+            iso_level: settings.iso_level,
+            smoothing_iterations: settings.smoothing_iterations,
         }
     }
 

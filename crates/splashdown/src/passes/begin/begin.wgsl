@@ -13,5 +13,6 @@ fn begin() {
     state.done = 0u;
     state.run_count = params.particle_count;
     state.steps = 0u;
+    state.too_small = 0u;
     state.density_error = 0.0;
 }

@@ -12,5 +12,6 @@ pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
     state.done = 0;
     state.run_count = params.get::<Params>().particle_count;
     state.steps = 0;
+    state.too_small = 0;
     state.density_error = 0.0;
 }

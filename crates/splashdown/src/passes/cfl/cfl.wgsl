@@ -7,7 +7,8 @@
 
 @compute @workgroup_size(1)
 fn cfl() {
-    if (state.run_count == 0u) {
+    // A frame that is complete. Without any particle time goes on.
+    if (state.done != 0u && state.run_count == 0u) {
         return;
     }
     let speed = bitcast<f32>(tally[TALLY_MAX_SPEED]);

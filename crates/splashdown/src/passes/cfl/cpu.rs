@@ -6,7 +6,7 @@ pub(super) fn cfl(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, tally] = slots else { unreachable!() };
     let params = params.get::<Params>();
     let state = &mut state.write::<StepState>()[0];
-    if state.run_count == 0 {
+    if state.done != 0 && state.run_count == 0 {
         return;
     }
     let tally = tally.write::<u32>();

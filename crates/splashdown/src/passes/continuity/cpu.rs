@@ -86,6 +86,10 @@ impl<K: Kernel> Leaf for Row<'_, K> {
             for i in places {
                 let (p, v) = (positions[i], velocities[i]);
                 let mut sum = [0.0; LANES];
+                #[expect(
+                    clippy::needless_range_loop,
+                    reason = "all columns are read at k; zips do not vectorise"
+                )]
                 for k in 0..c[0].len() {
                     let (xs, ys, zs, us) = (&c[0][k], &c[1][k], &c[2][k], &c[3][k]);
                     let (vs, ws, rhos, weights) = (&c[4][k], &c[5][k], &c[6][k], &c[7][k]);

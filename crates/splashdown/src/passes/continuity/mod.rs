@@ -1,8 +1,12 @@
 //! Density by the continuity equation, and the pressure that follows from it.
 //!
-//! d rho_i / dt = rho_i sum (m/rho_j) v.grad W + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
-//! + 2 rho_i v_i.G, with x = x_i - x_j, v = v_i - v_j and h = H / 2: the diffusion of Molteni & Colagrossi (2009), where
-//! psi_ij = rho_j - rho_i less what hydrostatics alone makes of it (Fourtakas et al. 2019). The walls' share is
+//! ```text
+//! d rho_i / dt = rho_i sum (m/rho_j) v.grad W
+//!              + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
+//!              + 2 rho_i v_i.G
+//! ```
+//!
+//! with v = v_i - v_j and h = H / 2: the diffusion of Molteni & Colagrossi (2009), where psi_ij = rho_j - rho_i less what hydrostatics alone makes of it (Fourtakas et al. 2019). The walls' share is
 //! twice the v_i.G of a solid at rest: behind a wall stands an image of the particle, which answers its pressure in
 //! [`momentum`](super::momentum) and moves when it moves.
 //!

@@ -143,6 +143,10 @@ impl<K: Kernel, const F: usize, const TENSION: bool> Leaf for Row<'_, '_, K, F, 
                 let specific = pressure / (rho * rho);
                 let n = if TENSION { normals[i].xyz() } else { Vec3::ZERO };
                 let mut sums = [[0.0; LANES]; 3];
+                #[expect(
+                    clippy::needless_range_loop,
+                    reason = "all columns are read at k; zips do not vectorise"
+                )]
                 for k in 0..c[0].len() {
                     let (xs, ys, zs, us, vs, ws, ps) =
                         (&c[0][k], &c[1][k], &c[2][k], &c[3][k], &c[4][k], &c[5][k], &c[6][k]);

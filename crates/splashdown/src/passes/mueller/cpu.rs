@@ -69,6 +69,10 @@ impl Leaf for Row<'_> {
             for i in places {
                 let (p, v, [rho, pressure]) = (positions[i], velocities[i], densities[i].to_array());
                 let mut sums = [[0.0; LANES]; 7];
+                #[expect(
+                    clippy::needless_range_loop,
+                    reason = "all columns are read at k; zips do not vectorise"
+                )]
                 for k in 0..c[0].len() {
                     // One simple loop per quantity: the compiler vectorises each, and gives up on all of them in one.
                     let (xs, ys, zs, us) = (&c[0][k], &c[1][k], &c[2][k], &c[3][k]);

@@ -2,8 +2,8 @@
 //!
 //! f_p = -sum m_j (p_i + p_j) / (2 rho_j) grad W_spiky; f_v = nu rho0 sum m_j (v_j - v_i) / rho_j lap W_visc; with the
 //! colour field c = sum (m_j / rho_j) W_poly6 and n = grad c, f_s = -sigma lap c n / |n| where |n| > 0.5 / H. The
-//! acceleration is the force density over rho_i. Its surface tension does not
-//! conserve momentum: use it to compare with the thesis, not to measure.
+//! acceleration is the force density over rho_i. Its surface tension does not conserve momentum: use it to compare with
+//! the thesis, not to measure.
 
 mod cpu;
 
