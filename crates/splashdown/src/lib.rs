@@ -12,7 +12,7 @@
 //!
 //! Whole runs, with the surface of every frame, come as one stream of events: [`Run`].
 //!
-//! A step is a list of passes ([`solver`]), each of which is one folder ([`passes`]) with its equation, its WGSL and its
+//! A step is a list of passes ([`solver`]), each of which is one folder ([`mod@passes`]) with its equation, its WGSL and its
 //! Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
 
 pub mod boundary;

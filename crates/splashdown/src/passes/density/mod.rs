@@ -1,7 +1,7 @@
 //! Density by summation, and the pressure that follows from it.
 //!
 //! rho_i = m sum_j W(x_i - x_j) (j = i included) + rho0 D(x_i), with D the walls' share
-//! ([`boundary`](crate::boundary)); p_i by the equation of state (Batchelor 1967; Monaghan 1994).
+//! ([`crate::boundary`]); p_i by the equation of state (Batchelor 1967; Monaghan 1994).
 
 mod cpu;
 
