@@ -76,8 +76,8 @@ impl Simulation {
     }
 
     /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
-    /// `densities`, if given, are where the continuity equation starts. Particles that lie outside the domain or are not
-    /// finite are taken out and counted.
+    /// `densities`, if given, are where the continuity equation starts, in kg/m^3. Particles that lie outside the domain,
+    /// are not finite, or have a density that is not positive are taken out and counted.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -410,7 +410,9 @@ fn upload(
 ) -> Result<(), SimulationError> {
     let n = particles.positions.len();
     let positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
-    let density = |i: usize| particles.densities.get(i).copied().unwrap_or(rest_density);
+    // Passes divide by densities: one that is not positive is as good as none, and its particle is taken out as such.
+    let positive = |rho: f32| if rho > 0.0 { rho } else { f32::NAN };
+    let density = |i: usize| particles.densities.get(i).map_or(rest_density, |&rho| positive(rho));
     let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
     let velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
     let ids: Vec<u32> =

@@ -269,3 +269,22 @@ fn a_crowd_of_dead_disturbs_neither_the_living_nor_the_device() {
         assert_eq!(crowded.particles().unwrap().ids, (0..living as u32).collect::<Vec<_>>(), "{name}");
     }
 }
+
+#[test]
+fn a_density_that_divides_nothing_is_taken_out_before_it_spreads() {
+    for (name, executor) in testing::executors("a_density_that_divides_nothing") {
+        let scene = scene(0.0625, "", SOLVERS[1]);
+        let mut particles = sample::particles(&scene).unwrap();
+        particles.densities = vec![1000.0; particles.positions.len()];
+        particles.densities[100] = 0.0;
+        particles.densities[200] = -1000.0;
+        let n = particles.positions.len() as u32;
+        let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
+        let stats = simulation.advance(0.002).unwrap();
+        assert_eq!((stats.particles, stats.non_finite), (n - 2, 2), "{name}: {stats:?}");
+        assert!(
+            simulation.particles().unwrap().velocities.as_flattened().iter().all(|v| v.is_finite()),
+            "{name}"
+        );
+    }
+}
