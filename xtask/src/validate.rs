@@ -31,8 +31,10 @@ pub fn run(arguments: &[String]) -> Result<()> {
     }
     // Every file holds an array; one array of all their entries needs no more than the brackets' removal.
     let cases = left(&folder, "json");
-    let entries: Vec<&str> =
-        cases.iter().filter_map(|case| Some(case.trim().strip_prefix('[')?.strip_suffix(']')?.trim())).collect();
+    let entries: Vec<&str> = cases
+        .iter()
+        .filter_map(|case| Some(case.trim().strip_prefix('[')?.strip_suffix(']')?.trim()))
+        .collect();
     let all = folder.join("report.json");
     std::fs::create_dir_all(&folder)?;
     std::fs::write(&all, format!("[\n  {}\n]\n", entries.join(",\n  ")))

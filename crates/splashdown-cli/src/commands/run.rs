@@ -57,7 +57,6 @@ impl Session {
         let mut options = RunOptions::new(&scene);
         options.device = arguments.device.device.clone();
         options.frames = arguments.frames;
-        options.surface &= !arguments.no_surface;
         options.timing = arguments.timing;
         let kinds = pictures_wanted(&scene, options.surface, arguments)?;
         memory::check(&scene, &options.device)?;
@@ -221,6 +220,7 @@ impl Session {
 /// The scene with the command line's wishes in place of its own.
 fn scene_as_wanted(arguments: &RunArguments) -> Result<Scene, Failure> {
     let mut scene = scene_file::load(&arguments.scene)?;
+    scene.surface.enabled &= !arguments.no_surface;
     if let Some(formats) = &arguments.formats {
         if formats.contains(&None) && formats.iter().any(Option::is_some) {
             let message = "--formats: `none` stands alone; leave it out to write the others";
