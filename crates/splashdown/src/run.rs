@@ -146,6 +146,7 @@ pub struct Run {
     simulation: Simulation,
     surface: Option<Surface>,
     frames: u32,
+    frame_rate: f32,
     frame_duration: f32,
     duration: f64,
     stage: Stage,
@@ -196,6 +197,7 @@ impl Run {
         Ok(Self {
             surface,
             frames,
+            frame_rate: scene.frame_rate,
             frame_duration,
             duration: f64::from(frames) * f64::from(frame_duration),
             stage: Stage::Start,
@@ -303,8 +305,10 @@ impl Run {
             Stage::Finish
         };
         self.clock.frames += begun.elapsed();
-        let stats = self.simulation.stats();
-        Ok(Frame { index, time: stats.time, stats, particles, mesh: mesh.map(Arc::new), volume })
+        // The sum of frames in single precision would read 0.0199999996.
+        let time = f64::from(index) / f64::from(self.frame_rate);
+        let stats = Stats { time, ..self.simulation.stats() };
+        Ok(Frame { index, time, stats, particles, mesh: mesh.map(Arc::new), volume })
     }
 
     fn finish(&mut self) -> Event {
