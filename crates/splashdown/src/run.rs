@@ -259,26 +259,30 @@ impl Run {
     /// Puts into words what was lost since the last frame.
     fn warn(&mut self, stats: &Stats) {
         let before = std::mem::replace(&mut self.stats_before, *stats);
-        let mut tell = |more: u32, what: &str| {
+        let mut tell = |more: u32, thing: &str, what: &str| {
             if more > 0 {
-                self.waiting.push_back(Event::Warning(format!("at {:.4} s: {more} {what}", stats.time)));
+                let plural = if more == 1 { "" } else { "s" };
+                let text = format!("at {:.4} s: {more} {thing}{plural} {what}", stats.time);
+                self.waiting.push_back(Event::Warning(text));
             }
         };
-        tell(stats.escaped - before.escaped, "particles left through open sides and were taken out");
+        tell(stats.escaped - before.escaped, "particle", "left through open sides and taken out");
         let [x, y, z] = stats.non_finite_place;
         let lost = format!(
-            "particles became NaN or infinite and were taken out; the first, id {}, was last at ({x:.4}, {y:.4}, {z:.4}) m. \
+            "NaN or infinite and taken out; the first, id {}, was last at ({x:.4}, {y:.4}, {z:.4}) m. \
              Lower solver.cfl_factor, or look for particles placed inside one another",
             stats.non_finite_id
         );
-        tell(stats.non_finite - before.non_finite, &lost);
+        tell(stats.non_finite - before.non_finite, "particle", &lost);
         tell(
             stats.wall_corrections - before.wall_corrections,
-            "times a particle was put back through a closed wall",
+            "time",
+            "a particle was put back through a closed wall",
         );
         tell(
             stats.speed_limits - before.speed_limits,
-            "times a particle was slowed down to half a spacing per step: the time step is too long for this motion. \
+            "time",
+            "a particle was slowed down to half a spacing per step: the time step is too long for this motion. \
              Lower solver.cfl_factor, or raise solver.sound_speed",
         );
     }
