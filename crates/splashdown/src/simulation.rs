@@ -294,17 +294,6 @@ impl Simulation {
         Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
     }
 
-    /// Density errors max(0, rho/rho0 - 1) averaged over the living particles.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn mean_density_error(&mut self) -> Result<f32, SimulationError> {
-        let densities = self.particles()?.densities;
-        let rest = f64::from(self.params.rest_density);
-        let sum: f64 = densities.iter().map(|&rho| (f64::from(rho) / rest - 1.0).max(0.0)).sum();
-        Ok((sum / densities.len().max(1) as f64) as f32)
-    }
-
     /// Sorts the particles as they are now by cell, without a step: input of the surface. For between two frames: one
     /// that has begun and is not complete is given up.
     ///

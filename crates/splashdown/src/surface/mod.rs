@@ -26,8 +26,8 @@
 //! | 0.5 | 25 rounds | 57,272 | 34 ms | 155 ms | 79 ms |
 //! | 0.25 | none | 231,858 | 79 ms | 516 ms | 432 ms |
 //!
-//! These are the passes alone; with [`reconstruct`]'s sorting and copying see the test `surface_times`, which
-//! prints both. Two thirds are the field's square roots.
+//! These are the passes alone; with [`reconstruct`]'s sorting and copying see `examples/surface_times.rs`,
+//! which prints both. Two thirds are the field's square roots.
 //!
 //! # Why not the other way
 //!

@@ -48,8 +48,6 @@ impl Tank {
 
     fn simulation(&self, executor: Executor) -> Simulation {
         let [x, y, z] = self.size.map(|n| f64::from(n) * self.spacing);
-        // The viscosity of light oil for mueller2003, which has no artificial one: c0 h / 100, as alpha = 0.1 gives.
-        let viscosity = if self.solver == MUELLER { 0.01 } else { 1e-6 };
         let scene = scene(&format!(
             r#"
             [scene]
@@ -62,7 +60,7 @@ impl Tank {
             open = ["y_max"]
             [fluid]
             particle_spacing = {}
-            viscosity = {viscosity}
+            viscosity = 1e-6
             [[fluid.block]]
             position = [0, 0, 0]
             size = [{x}, {y}, {z}]
