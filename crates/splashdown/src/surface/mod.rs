@@ -22,9 +22,9 @@
 //!
 //! | cells, in spacings | smoothing | vertices | CPU | software Vulkan | splashsurf, not smoothed |
 //! |---|---|---|---|---|---|
-//! | 0.5 | none | 57,272 | 21 ms | 104 ms | 79 ms |
-//! | 0.5 | 25 rounds | 57,272 | 34 ms | 155 ms | 79 ms |
-//! | 0.25 | none | 231,858 | 79 ms | 516 ms | 432 ms |
+//! | 0.5 | none | 57,272 | 25 ms | 110 ms | 79 ms |
+//! | 0.5 | 25 rounds | 57,272 | 42 ms | 156 ms | 81 ms |
+//! | 0.25 | none | 231,858 | 92 ms | 533 ms | 245 ms |
 //!
 //! These are the passes alone; with [`reconstruct`]'s sorting and copying see `examples/surface_times.rs`,
 //! which prints both. Two thirds are the field's square roots.
