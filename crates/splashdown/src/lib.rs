@@ -15,6 +15,7 @@
 //! A step is a list of passes ([`solver`]), each of which is one folder ([`mod@passes`]) with its equation, its WGSL and its
 //! Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
 
+pub mod bodies;
 pub mod boundary;
 pub mod cells;
 mod device;
@@ -31,6 +32,7 @@ pub mod solver;
 mod stats;
 pub mod surface;
 
+pub use bodies::{BodyMesh, BodyState};
 pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;

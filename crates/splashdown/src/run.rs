@@ -9,7 +9,7 @@ use splashdown_io::{Mesh, Particles};
 
 use crate::scene::Scene;
 use crate::surface::Surface;
-use crate::{Device, Simulation, SimulationError, Stats};
+use crate::{BodyMesh, BodyState, Device, Simulation, SimulationError, Stats};
 
 /// What to compute beside the particles' motion.
 #[derive(Clone, Debug)]
@@ -96,6 +96,8 @@ pub struct Frame {
     pub mesh: Option<Arc<Mesh>>,
     /// The volume that the surface encloses in m^3.
     pub volume: Option<f64>,
+    /// The bodies, in the order of [`Run::bodies`].
+    pub bodies: Arc<[BodyState]>,
 }
 
 /// The whole run in a few numbers.
@@ -218,6 +220,11 @@ impl Run {
         self.simulation.gpu()
     }
 
+    /// The bodies' meshes, in the order of the scene.
+    pub fn bodies(&self) -> &[BodyMesh] {
+        self.simulation.body_meshes()
+    }
+
     fn start(&mut self) -> Event {
         self.stage = Stage::Fetch(0);
         Event::Started(Started {
@@ -312,7 +319,15 @@ impl Run {
         // The sum of frames in single precision would read 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
         let stats = Stats { time, ..self.simulation.stats() };
-        Ok(Frame { index, time, stats, particles, mesh: mesh.map(Arc::new), volume })
+        Ok(Frame {
+            index,
+            time,
+            stats,
+            particles,
+            mesh: mesh.map(Arc::new),
+            volume,
+            bodies: self.simulation.body_states()?.into(),
+        })
     }
 
     fn finish(&mut self) -> Event {

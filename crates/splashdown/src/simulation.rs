@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{Executor, Flag, Gpu, Readback, Recording, Timings};
 use splashdown_io::{Mesh, Particles};
 
+use crate::bodies::{BodyMesh, BodyState};
 use crate::cells::{Cells, Grid};
 use crate::fields::Fields;
 use crate::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
@@ -46,6 +47,7 @@ pub struct Simulation {
     /// What `stable_dt` was when last heard of, in seconds.
     stable_dt: f32,
     frame: Option<FrameInProgress>,
+    body_meshes: Vec<BodyMesh>,
 }
 
 /// A frame that has begun.
@@ -125,6 +127,7 @@ impl Simulation {
             stats: Stats::default(),
             stable_dt,
             frame: None,
+            body_meshes: Vec::new(),
         };
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
@@ -292,6 +295,19 @@ impl Simulation {
         let (positions, velocities) = (positions.wait(executor)?, velocities.wait(executor)?);
         let densities = densities.wait(executor)?;
         Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
+    }
+
+    /// The meshes of the scene's bodies, in its order.
+    pub fn body_meshes(&self) -> &[BodyMesh] {
+        &self.body_meshes
+    }
+
+    /// Where the scene's bodies are and what the fluid does to them, in its order.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn body_states(&mut self) -> Result<Vec<BodyState>, SimulationError> {
+        Ok(Vec::new())
     }
 
     /// Sorts the particles as they are now by cell, without a step: input of the surface. For between two frames: one

@@ -36,7 +36,13 @@ pub(crate) fn check(
         sound = sound.and(fits);
     }
     let whole: Vec<Block> = blocks.iter().filter_map(|(block, _)| block.as_ref().ok().cloned()).collect();
-    let fluid = Fluid { particle_spacing: spacing, material: Material::water(), blocks: whole };
+    let fluid = Fluid {
+        particle_spacing: spacing,
+        material: Material::water(),
+        blocks: whole,
+        meshes: Vec::new(),
+        files: Vec::new(),
+    };
     let count = sample::estimate(&fluid);
     if count > MAX_PARTICLES {
         let fitting = rounded(sample::fitting_spacing(spacing, count));

@@ -38,9 +38,11 @@ mod parse;
 mod presets;
 mod reader;
 mod schema;
+mod script;
 mod source;
 mod spec;
 mod suggest;
+mod things;
 mod types;
 mod values;
 mod warnings;
@@ -51,8 +53,13 @@ pub use errors::{SceneErrors, SceneProblem, SceneWarning};
 pub use materials::{KnownMaterial, MATERIALS};
 pub use presets::presets;
 pub use schema::{reference, schema};
+pub use script::{Keyframe, Pose, Script};
+pub use things::{
+    Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink, SinkRegion,
+    UpAxis,
+};
 pub use types::{
-    Block, Camera, ColourBy, DensityMode, Domain, Fluid, Format, KernelKind, Material, Method,
-    NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort, SurfaceSettings,
+    Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, Format, KernelKind, Material,
+    Method, NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort, SurfaceSettings,
     SurfaceTension,
 };

@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use super::choice::choices;
 use super::errors::SceneWarning;
+use super::things::{Body, Emitter, MeshSource, Probe, Sink};
 
 /// A whole scene: what to simulate, how, and what to write.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +26,14 @@ pub struct Scene {
     pub domain: Domain,
     /// The fluid and where it starts.
     pub fluid: Fluid,
+    /// Solids that it meets.
+    pub bodies: Vec<Body>,
+    /// Sources of more fluid.
+    pub emitters: Vec<Emitter>,
+    /// Where fluid leaves for good.
+    pub sinks: Vec<Sink>,
+    /// What is measured while running.
+    pub probes: Vec<Probe>,
     /// How it is computed.
     pub solver: Solver,
     /// How its surface is extracted.
@@ -108,8 +117,12 @@ pub struct Fluid {
     pub particle_spacing: f32,
     /// What it is made of.
     pub material: Material,
-    /// Where it starts; never empty in a checked scene.
+    /// Where it starts; may be empty where meshes, files or emitters bring fluid.
     pub blocks: Vec<Block>,
+    /// Closed meshes that are filled with fluid at the start.
+    pub meshes: Vec<FluidMesh>,
+    /// Files of particles that are there at the start.
+    pub files: Vec<FluidFile>,
 }
 
 impl Fluid {
@@ -139,6 +152,24 @@ pub struct Block {
     pub shape: Shape,
     /// Starting velocity of all its particles, in m/s.
     pub velocity: Vec3,
+}
+
+/// A closed mesh filled with fluid at t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FluidMesh {
+    /// The mesh and its place.
+    pub mesh: MeshSource,
+    /// Starting velocity in m/s.
+    pub velocity: Vec3,
+}
+
+/// A file of particles at t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FluidFile {
+    /// PLY, VTK, VTU, NPY or BGEO.
+    pub path: PathBuf,
+    /// Added to every position, in m.
+    pub offset: Vec3,
 }
 
 /// The shape of a [`Block`].

@@ -68,7 +68,13 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         let sound = geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
         let blocks: Vec<geometry::ReadBlock<'_>> = blocks?;
         let blocks = blocks.into_iter().map(|(block, _)| block).collect::<Part<Vec<_>>>()?;
-        let fluid = Fluid { particle_spacing: spacing?.ok_or(Reported)?, material: material?, blocks };
+        let fluid = Fluid {
+            particle_spacing: spacing?.ok_or(Reported)?,
+            material: material?,
+            blocks,
+            meshes: Vec::new(),
+            files: Vec::new(),
+        };
         sound.map(|()| fluid)
     });
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
@@ -89,6 +95,10 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         gravity: header.gravity,
         domain: domain?,
         fluid: fluid?,
+        bodies: Vec::new(),
+        emitters: Vec::new(),
+        sinks: Vec::new(),
+        probes: Vec::new(),
         solver: solver?,
         surface: surface?,
         camera: camera?,
