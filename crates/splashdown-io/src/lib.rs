@@ -6,7 +6,7 @@
 //! | data | formats | opens in |
 //! |---|---|---|
 //! | [`Particles`] | PLY ([`ply`], also read), VTU ([`vtu`]) with an index of the series ([`pvd`]) | ParaView, Blender, Houdini, MeshLab |
-//! | [`Mesh`] | PLY ([`ply`], also read), OBJ ([`obj`]) | every 3-D program |
+//! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), all also read by [`read_mesh`]; glTF ([`gltf`], read) | every 3-D program |
 //! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
 //! | positions | NPY ([`npy`], read) | numpy |
 //!
@@ -72,6 +72,7 @@ compile_error!(
 pub mod atomic;
 pub mod error;
 pub mod film;
+pub mod gltf;
 pub mod mesh;
 pub mod npy;
 pub mod obj;
@@ -79,6 +80,8 @@ pub mod particles;
 pub mod picture;
 pub mod ply;
 pub mod pvd;
+pub mod read;
+pub mod stl;
 pub mod topology;
 pub mod vtu;
 pub mod writer;
@@ -89,5 +92,6 @@ pub use film::{Film, FilmError, FilmOptions};
 pub use mesh::Mesh;
 pub use particles::Particles;
 pub use picture::Picture;
+pub use read::{MESH_FORMATS_READ, read_mesh};
 pub use topology::Topology;
 pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

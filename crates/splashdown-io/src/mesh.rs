@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::error::IoError;
 use crate::particles::{check_count, extension};
 use crate::topology::{MAX_TRIANGLES, Topology};
-use crate::{obj, ply};
+use crate::{obj, ply, stl};
 
 /// A triangle mesh with shared vertices. Seen from outside, the corners of a triangle run counter-clockwise.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Mesh {
 }
 
 /// File name endings that [`write()`] understands.
-pub const FORMATS: &[&str] = &[".ply", ".obj"];
+pub const FORMATS: &[&str] = &[".ply", ".obj", ".stl"];
 
 impl Mesh {
     /// Number of triangles.
@@ -102,15 +102,15 @@ impl Mesh {
     }
 }
 
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -122,6 +122,7 @@ pub fn write(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
     match extension(path).as_deref() {
         Some("ply") => ply::write_mesh(path, mesh),
         Some("obj") => obj::write_mesh(path, mesh),
+        Some("stl") => stl::write_mesh(path, mesh),
         _ => Err(IoError::UnknownFormat { path: path.to_owned(), allowed: FORMATS }),
     }
 }

@@ -86,6 +86,6 @@ fn the_ending_of_the_name_picks_the_format() {
     let path = folder.path().join("cube.OBJ");
     mesh::write(&path, &cube).unwrap();
     assert_eq!(corners(&std::fs::read(&path).unwrap()), expected(&cube));
-    let message = mesh::write(&folder.path().join("cube.stl"), &cube).unwrap_err().to_string();
-    assert!(message.contains("cube.stl") && message.contains(".ply, .obj"), "{message}");
+    let message = mesh::write(&folder.path().join("cube.xyz"), &cube).unwrap_err().to_string();
+    assert!(message.contains("cube.xyz") && message.contains(".ply, .obj, .stl"), "{message}");
 }

@@ -101,8 +101,14 @@ impl<'a> PlyFile<'a> {
     fn element(&self, name: &str) -> Result<&ElementDef, IoError> {
         let known = || self.header.elements.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         let found = self.header.elements.get(name);
-        let element = found
-            .ok_or_else(|| malformed(self.path, format!("it has no element `{name}`, only: {}", known())))?;
+        // The points of a scan or of a particle file are what is mistaken for a mesh most often.
+        let points = match self.header.elements.get("vertex") {
+            Some(vertex) if name == "face" => format!(" ({} points): points are no mesh", vertex.count),
+            _ => String::new(),
+        };
+        let element = found.ok_or_else(|| {
+            malformed(self.path, format!("it has no element `{name}`, only: {}{points}", known()))
+        })?;
         for axis in if name == "vertex" { ["x", "y", "z"].as_slice() } else { &[] } {
             if !element.properties.contains_key(*axis) {
                 return Err(malformed(self.path, format!("its vertices have no property `{axis}`")));

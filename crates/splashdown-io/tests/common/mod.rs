@@ -1,6 +1,8 @@
 //! Meshes and particles that several tests use.
 #![expect(dead_code, reason = "each test binary uses its own part of these helpers")]
 
+pub mod gltf_files;
+
 use std::path::{Path, PathBuf};
 
 use splashdown_io::{Mesh, Particles};

@@ -1,0 +1,172 @@
+//! The arrays of a glTF file: where their bytes are, and how they are read from there with every number checked.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use super::document::{Accessor, Document, shown};
+use crate::error::IoError;
+use crate::read::content;
+
+/// The types of an array's numbers, as the format counts them.
+const U8: u32 = 5121;
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// The buffers of a file, read when they are first asked for: those of pictures and animations never are.
+pub(super) struct Buffers<'a> {
+    path: &'a Path,
+    document: &'a Document,
+    blob: Option<&'a [u8]>,
+    loaded: Vec<Option<Cow<'a, [u8]>>>,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn new(path: &'a Path, document: &'a Document, blob: Option<&'a [u8]>) -> Self {
+        Self { path, document, blob, loaded: vec![None; document.buffers.len()] }
+    }
+
+    /// Positions: three floats each.
+    pub(super) fn positions(&mut self, index: usize) -> Result<Vec<[f32; 3]>, IoError> {
+        let accessor = self.accessor(index)?;
+        if (accessor.component_type, accessor.shape.as_str()) != (F32, "VEC3") {
+            return Err(self.not_read(index, "positions", "VEC3 of type 5126 (float)"));
+        }
+        self.rows(index, 12, bytemuck::pod_read_unaligned)
+    }
+
+    /// Vertex numbers of any of the three sizes.
+    pub(super) fn indices(&mut self, index: usize) -> Result<Vec<u32>, IoError> {
+        let accessor = self.accessor(index)?;
+        match (accessor.component_type, accessor.shape.as_str()) {
+            (U8, "SCALAR") => self.rows(index, 1, |row| row[0].into()),
+            (U16, "SCALAR") => self.rows(index, 2, |row| bytemuck::pod_read_unaligned::<u16>(row).into()),
+            (U32, "SCALAR") => self.rows(index, 4, bytemuck::pod_read_unaligned),
+            _ => Err(self.not_read(index, "vertex numbers", "SCALAR of type 5121, 5123 or 5125 (unsigned)")),
+        }
+    }
+
+    fn accessor(&self, index: usize) -> Result<&'a Accessor, IoError> {
+        let accessors = &self.document.accessors;
+        accessors.get(index).ok_or_else(|| {
+            self.malformed(format!("it names array {index}, but holds {} (from 0)", accessors.len()))
+        })
+    }
+
+    fn not_read(&self, index: usize, what: &str, read: &str) -> IoError {
+        let (kind, shape) =
+            self.document.accessors.get(index).map_or((0, ""), |a| (a.component_type, &a.shape));
+        let shape = shown(shape);
+        self.malformed(format!(
+            "the {what} in array {index} are {shape} of type {kind}, only {read} are read"
+        ))
+    }
+
+    /// The rows of an array, each handed to `read` with its `size` bytes. The numbers are the file's, so all of it is
+    /// in checked arithmetic.
+    fn rows<T>(&mut self, index: usize, size: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, IoError> {
+        let accessor = self.accessor(index)?;
+        let (count, offset) = (accessor.count, accessor.byte_offset);
+        if accessor.sparse.is_some() {
+            return Err(
+                self.malformed(format!("array {index} is sparse, which is not read; export it plain"))
+            );
+        }
+        let view = accessor.buffer_view.and_then(|view| self.document.buffer_views.get(view));
+        let Some(view) = view else {
+            return Err(self.malformed(format!("array {index} has no data")));
+        };
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let stride = view.byte_stride.unwrap_or(size);
+        let needed = (count - 1)
+            .checked_mul(stride)
+            .and_then(|bytes| bytes.checked_add(size)?.checked_add(offset))
+            .filter(|&needed| stride >= size && needed <= view.byte_length);
+        let bytes = self.bytes(view.buffer)?;
+        let part = view.byte_offset.checked_add(view.byte_length);
+        let part = part.and_then(|end| bytes.get(view.byte_offset..end));
+        let (Some(part), Some(_)) = (part, needed) else {
+            let held = bytes.len();
+            return Err(self.malformed(format!(
+                "array {index} ({count} of {size} bytes) does not fit into its part of buffer {}, which has {held} bytes",
+                view.buffer
+            )));
+        };
+        Ok((0..count).map(|row| offset + row * stride).map(|at| read(&part[at..at + size])).collect())
+    }
+
+    fn bytes(&mut self, index: usize) -> Result<&[u8], IoError> {
+        let Some(buffer) = self.document.buffers.get(index) else {
+            return Err(
+                self.malformed(format!("it names buffer {index}, but holds {} (from 0)", self.loaded.len()))
+            );
+        };
+        if self.loaded[index].is_none() {
+            let bytes = match &buffer.uri {
+                Some(uri) => Cow::Owned(self.fetch(index, uri)?),
+                // The binary form's own buffer is the first.
+                None => Cow::Borrowed(
+                    self.blob
+                        .filter(|_| index == 0)
+                        .ok_or_else(|| self.malformed(format!("buffer {index} is missing from the file")))?,
+                ),
+            };
+            if bytes.len() < buffer.byte_length {
+                return Err(self.malformed(format!(
+                    "buffer {index} has {} of its {} bytes: it was cut short",
+                    bytes.len(),
+                    buffer.byte_length
+                )));
+            }
+            self.loaded[index] = Some(bytes);
+        }
+        Ok(self.loaded[index].as_deref().unwrap_or_default())
+    }
+
+    /// A buffer in the JSON itself, or in a file beside it.
+    fn fetch(&self, index: usize, uri: &str) -> Result<Vec<u8>, IoError> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
+            let encoded =
+                encoded.ok_or_else(|| self.malformed(format!("buffer {index} is not encoded in base64")))?;
+            return STANDARD.decode(encoded).map_err(|e| self.malformed(format!("in buffer {index}: {e}")));
+        }
+        if uri.contains("://") {
+            return Err(self.malformed(format!(
+                "buffer {index} lies at `{}`; put the file beside and name it alone",
+                shown(uri)
+            )));
+        }
+        content(&self.path.with_file_name(unescaped(uri)))
+    }
+
+    /// An error about the file.
+    pub(super) fn malformed(&self, reason: String) -> IoError {
+        IoError::malformed(self.path, "glTF", reason)
+    }
+}
+
+/// A file name as it is, from one in which other bytes than letters and digits may be written `%20`.
+fn unescaped(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        let digits = tail.get(..2).filter(|_| *first == b'%').and_then(|two| std::str::from_utf8(two).ok());
+        match digits.and_then(|two| u8::from_str_radix(two, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &tail[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

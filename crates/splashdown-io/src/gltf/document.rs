@@ -1,0 +1,149 @@
+//! What is needed of a glTF file's JSON, and the frame of the binary form around it.
+
+use serde::Deserialize;
+
+/// The parts of a document that place and hold triangles. Everything else in the JSON is passed over.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Document {
+    asset: Asset,
+    pub(super) scene: Option<usize>,
+    #[serde(default)]
+    pub(super) scenes: Vec<SceneNodes>,
+    #[serde(default)]
+    pub(super) nodes: Vec<Node>,
+    #[serde(default)]
+    pub(super) meshes: Vec<Primitives>,
+    #[serde(default)]
+    pub(super) accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub(super) buffer_views: Vec<View>,
+    #[serde(default)]
+    pub(super) buffers: Vec<Buffer>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct SceneNodes {
+    #[serde(default)]
+    pub(super) nodes: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Node {
+    pub(super) mesh: Option<usize>,
+    #[serde(default)]
+    pub(super) children: Vec<usize>,
+    pub(super) matrix: Option<[f64; 16]>,
+    pub(super) translation: Option<[f64; 3]>,
+    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) scale: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Primitives {
+    pub(super) primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Primitive {
+    pub(super) attributes: Attributes,
+    pub(super) indices: Option<usize>,
+    pub(super) mode: Option<u32>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Attributes {
+    #[serde(rename = "POSITION")]
+    pub(super) position: Option<usize>,
+}
+
+/// An array inside a part of a buffer.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub(super) buffer_view: Option<usize>,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+    pub(super) component_type: u32,
+    pub(super) count: usize,
+    #[serde(rename = "type")]
+    pub(super) shape: String,
+    pub(super) sparse: Option<serde::de::IgnoredAny>,
+}
+
+/// A part of a buffer.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct View {
+    pub(super) buffer: usize,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+    pub(super) byte_length: usize,
+    pub(super) byte_stride: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    pub(super) uri: Option<String>,
+    pub(super) byte_length: usize,
+}
+
+impl Document {
+    /// Reads a file of either form; returns the document and the buffer of the binary form.
+    pub(super) fn parse(bytes: &[u8]) -> Result<(Self, Option<&[u8]>), String> {
+        let (json, blob) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
+        let document: Self = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+        let version = &document.asset.version;
+        if !version.starts_with("2.") {
+            return Err(format!("its version is `{}`, version 2 is read", shown(version)));
+        }
+        // Of the extensions that a file may require only these change where its triangles are.
+        let changes = |name: &&String| name.contains("compression") || name.contains("quantization");
+        if let Some(name) = document.extensions_required.iter().find(changes) {
+            let name = shown(name);
+            return Err(format!("its geometry is packed by `{name}`, which is not read; export it without"));
+        }
+        Ok((document, blob))
+    }
+}
+
+/// The JSON and the buffer of the binary form: a header of 12 bytes, then chunks of length, kind and data.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    let cut = || format!("it was cut short: its parts need more than its {} bytes", bytes.len());
+    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..at.checked_add(4)?)?.first_chunk()?));
+    let (version, total) = (word(4).ok_or_else(cut)?, word(8).ok_or_else(cut)? as usize);
+    if version != 2 {
+        return Err(format!("the version of its binary form is {version}, version 2 is read"));
+    }
+    if total > bytes.len() {
+        return Err(cut());
+    }
+    let (mut json, mut blob, mut at) = (None, None, 12);
+    while at < total {
+        let length = word(at).ok_or_else(cut)? as usize;
+        let kind = bytes.get(at + 4..at + 8).ok_or_else(cut)?;
+        let end = (at + 8).checked_add(length).filter(|&end| end <= total).ok_or_else(cut)?;
+        let data = &bytes[at + 8..end];
+        match kind {
+            b"JSON" => json = json.or(Some(data)),
+            b"BIN\0" => blob = blob.or(Some(data)),
+            // A reader has to pass over kinds it does not know.
+            _ => {}
+        }
+        at = end;
+    }
+    Ok((json.ok_or("it holds no JSON")?, blob))
+}
+
+/// The beginning of a word that may be a megabyte of garbage.
+pub(super) fn shown(word: &str) -> String {
+    word.chars().take(80).collect()
+}

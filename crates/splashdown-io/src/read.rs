@@ -1,0 +1,143 @@
+//! Reading any mesh or particle file by the ending of its name, and what the readers share.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use crate::error::IoError;
+use crate::mesh::Mesh;
+use crate::particles::extension;
+use crate::{gltf, obj, ply, stl};
+
+/// File name endings that [`read_mesh`] understands.
+pub const MESH_FORMATS_READ: &[&str] = &[".obj", ".stl", ".ply", ".gltf", ".glb"];
+
+/// The most triangles or vertices of one mesh that are read: some gigabytes. A small file can name a large mesh many
+/// times (glTF), and must not take all memory.
+pub(crate) const MOST: usize = 1 << 27;
+
+/// One format's reader.
+type MeshReader = fn(&Path) -> Result<Mesh, IoError>;
+
+/// Reads a triangle mesh in the format that the name's ending tells ([`MESH_FORMATS_READ`]).
+///
+/// Coordinates come back as they stand in the file, without any unit or up-axis applied. Polygons are cut into fans
+/// of triangles and normals are dropped: what a solid is made of are its triangles. Corners at the same place become
+/// one vertex in formats that keep none in common (STL) or cut them apart for their textures (glTF). A mesh that is
+/// returned has at least one triangle, its vertices are finite and its indices in range; whether it is closed is told
+/// by [`Mesh::topology`].
+///
+/// # Errors
+/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] where the file cannot be read;
+/// [`IoError::Malformed`] where it is broken, cut short, without triangles or with coordinates that are not finite;
+/// [`IoError::TooMany`].
+pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
+    let (format, read): (_, MeshReader) = match extension(path).as_deref() {
+        Some("obj") => ("OBJ", obj::read_mesh),
+        Some("stl") => ("STL", stl::read_mesh),
+        Some("ply") => ("PLY", ply::read_mesh),
+        Some("gltf" | "glb") => ("glTF", gltf::read_mesh),
+        _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: MESH_FORMATS_READ }),
+    };
+    regular(path)?;
+    let mut mesh = read(path)?;
+    mesh.normals = Vec::new();
+    usable(&mesh).map_err(|reason| IoError::malformed(path, format, reason))?;
+    for (what, given) in [("vertices", mesh.vertices.len()), ("triangles", mesh.len())] {
+        if given > MOST {
+            return Err(IoError::TooMany { what, given, limit: MOST });
+        }
+    }
+    mesh.check().map_err(|error| IoError::malformed(path, format, error.to_string()))?;
+    Ok(mesh)
+}
+
+/// Whether there is a triangle and every vertex is a place.
+fn usable(mesh: &Mesh) -> Result<(), String> {
+    let vertices = mesh.vertices.len();
+    if mesh.is_empty() {
+        return Err(format!("it has no triangles ({vertices} vertices, no faces): a mesh needs some"));
+    }
+    let is_bad = |vertex: &[f32; 3]| !vertex.iter().all(|component| component.is_finite());
+    let bad = mesh.vertices.iter().filter(|vertex| is_bad(vertex)).count();
+    if let Some(first) = mesh.vertices.iter().position(is_bad) {
+        let [x, y, z] = mesh.vertices[first];
+        return Err(format!(
+            "{bad} of its {vertices} vertices are not finite, the first is vertex {first} (from 0) at ({x}, {y}, {z})"
+        ));
+    }
+    Ok(())
+}
+
+/// A pipe or device may never end.
+pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
+    let metadata = fs::metadata(path).map_err(|error| IoError::read(path, &error))?;
+    if metadata.is_file() {
+        return Ok(());
+    }
+    let what = if metadata.is_dir() { "it is a folder, not a file" } else { "it is not a regular file" };
+    Err(IoError::Read { path: path.to_owned(), detail: what.to_owned() })
+}
+
+/// All bytes of a regular file.
+pub(crate) fn content(path: &Path) -> Result<Vec<u8>, IoError> {
+    regular(path)?;
+    fs::read(path).map_err(|error: io::Error| IoError::read(path, &error))
+}
+
+/// Cuts a polygon into triangles that share its first corner.
+pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result<(), String> {
+    match corners {
+        [first, rest @ ..] if rest.len() >= 2 => {
+            triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+            Ok(())
+        }
+        _ => Err(format!("a face with {} corners, at least 3 are needed", corners.len())),
+    }
+}
+
+/// Collects loose triangles into a mesh in which equal places are one vertex.
+#[derive(Default)]
+pub(crate) struct Welder {
+    mesh: Mesh,
+    known: HashMap<[u32; 3], u32>,
+}
+
+impl Welder {
+    /// The number of the vertex at this place. Bits are compared, with both zeros the same.
+    pub(crate) fn vertex(&mut self, position: [f32; 3]) -> u32 {
+        let position = position.map(|component| component + 0.0);
+        // The files that are read stay below 2^32 corners: they are checked against their size or `MOST`.
+        let next = self.mesh.vertices.len() as u32;
+        let index = *self.known.entry(position.map(f32::to_bits)).or_insert(next);
+        if index == next {
+            self.mesh.vertices.push(position);
+        }
+        index
+    }
+
+    pub(crate) fn triangle(&mut self, corners: [[f32; 3]; 3]) {
+        let triangle = corners.map(|corner| self.vertex(corner));
+        self.mesh.triangles.push(triangle);
+    }
+
+    /// Adds a triangle of vertices that have their numbers from [`Self::vertex`].
+    pub(crate) fn push(&mut self, triangle: [u32; 3]) {
+        self.mesh.triangles.push(triangle);
+    }
+
+    /// Vertices collected so far.
+    pub(crate) fn vertices(&self) -> usize {
+        self.mesh.vertices.len()
+    }
+
+    /// Triangles collected so far.
+    pub(crate) fn triangles(&self) -> usize {
+        self.mesh.len()
+    }
+
+    pub(crate) fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+}

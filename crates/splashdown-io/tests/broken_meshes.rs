@@ -1,0 +1,302 @@
+//! Mesh files that are broken, cut, foreign or hostile: an error that names the file and the reason, never a panic.
+
+mod common;
+
+use std::fs;
+use std::path::PathBuf;
+
+use common::gltf_files::{CUBE_AT_ORIGIN, Cube, glb, glb_of, gltf_inside};
+use proptest::prelude::*;
+use splashdown_io::{IoError, MESH_FORMATS_READ, mesh, read_mesh};
+use tempfile::TempDir;
+
+/// Writes `contents` and returns its place with the folder that keeps it alive.
+fn file(name: &str, contents: &[u8]) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, contents).unwrap();
+    (folder, path)
+}
+
+/// The message of a file that must not be read.
+fn message(name: &str, contents: &[u8]) -> String {
+    let (_keep, path) = file(name, contents);
+    let message = match read_mesh(&path) {
+        Ok(mesh) => panic!("{name} was read as {} triangles", mesh.len()),
+        Err(error) => error.to_string(),
+    };
+    assert!(message.contains(name) && !message.contains('\n'), "{message}");
+    message
+}
+
+#[track_caller]
+fn refused(name: &str, contents: &[u8], reason: &str) {
+    let message = message(name, contents);
+    assert!(message.contains(reason), "wanted `{reason}`, got: {message}");
+}
+
+/// One small mesh as the bytes of each format.
+fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
+    let torus = common::torus(1.0, 0.25, 6, 5);
+    let mut files: Vec<_> = ["whole.obj", "whole.stl", "whole.ply"]
+        .into_iter()
+        .map(|name| {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join(name);
+            mesh::write(&path, &torus).unwrap();
+            (name, fs::read(path).unwrap())
+        })
+        .collect();
+    let text = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n";
+    files.push(("text.stl", text.repeat(9).into_bytes()));
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+    files.push(("text.ply", text.into()));
+    files.push(("whole.gltf", gltf_inside(&Cube::new(CUBE_AT_ORIGIN)).into_bytes()));
+    files.push(("whole.glb", glb(&Cube::new(CUBE_AT_ORIGIN))));
+    files
+}
+
+#[test]
+fn what_is_no_mesh_file_at_all_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = read_mesh(&folder.path().join("absent.obj")).unwrap_err();
+    assert!(
+        matches!(missing, IoError::Read { .. }) && missing.to_string().contains("absent.obj"),
+        "{missing}"
+    );
+    let unknown = read_mesh(&folder.path().join("boat.fbx")).unwrap_err().to_string();
+    assert!(MESH_FORMATS_READ.iter().all(|ending| unknown.contains(ending)), "{unknown}");
+    assert!(matches!(read_mesh(&folder.path().join("boat")), Err(IoError::UnknownFormat { .. })));
+    for name in ["folder.obj", "folder.stl", "folder.ply", "folder.glb"] {
+        let path = folder.path().join(name);
+        fs::create_dir(&path).unwrap();
+        let message = read_mesh(&path).unwrap_err().to_string();
+        assert!(message.contains("it is a folder"), "{message}");
+    }
+    for (name, _) in whole_files() {
+        message(name, b"");
+        message(name, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x02\0");
+        message(name, &[0xff; 300]);
+        message(name, "just some words\nin two lines\n".as_bytes());
+        message(name, &vec![b'{'; 100_000]);
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_device_is_not_read_for_ever() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["endless.obj", "endless.stl", "endless.ply", "endless.glb"] {
+        let path = folder.path().join(name);
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        let message = read_mesh(&path).unwrap_err().to_string();
+        assert!(message.contains("not a regular file"), "{message}");
+    }
+}
+
+#[test]
+fn broken_obj_files_name_the_line() {
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (rest, reason) in [
+        ("", "no triangles (3 vertices"),
+        ("f 1 2\n", "line 4: a face with 2 corners"),
+        ("f\n", "line 4: a face with 0 corners"),
+        ("f 1 2 4\n", "line 4: a face uses vertex 4, but the file has 3 vertices (numbered from 1)"),
+        ("\n# x\nf 1 2 0\n", "line 6: vertex 0: the vertices of an OBJ file count from 1"),
+        ("f 1 2 -4\n", "line 4: a face uses vertex -4, but there are 3 vertices"),
+        ("f 1 2 -9223372036854775808\n", "line 4: a face uses vertex -9223372036854775808"),
+        ("f 1 2 9223372036854775807\n", "line 4: a face uses vertex 9223372036854775807"),
+        ("f 1 2 99999999999999999999\n", "line 4: `99999999999999999999` is not a vertex number"),
+        ("f 1 2 4294967296\n", "line 4: a face uses vertex 4294967296"),
+        ("f 1 2 c\n", "line 4: `c` is not a vertex number"),
+        ("v 1 2\n", "line 4: a vertex needs three coordinates"),
+        ("v 1 2 3,5\n", "line 4: `3,5` is not a coordinate"),
+        (
+            "v NaN 0 0\nv 0 inf 0\nf 1 2 3\n",
+            "2 of its 5 vertices are not finite, the first is vertex 3 (from 0)",
+        ),
+        ("v 1e99 0 0\nf 1 2 3\n", "1 of its 4 vertices are not finite"),
+    ] {
+        refused("given.obj", format!("{corners}{rest}").as_bytes(), reason);
+    }
+    refused("given.obj", b"one\ntwo\n\nthree", "none of its 3 lines is a vertex");
+    // The control: the same vertices with a face in order.
+    let (_keep, path) = file("given.obj", format!("{corners}f 1 2 3\n").as_bytes());
+    assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
+}
+
+#[test]
+fn broken_stl_files_name_the_line_or_the_missing_bytes() {
+    let (name, whole) = (
+        "given.stl",
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+    );
+    for (from, to, reason) in [
+        ("vertex 1 0 0\n", "", "line 7: a facet with 2 corners"),
+        ("vertex 1 0 0\n", "vertex 1 0\n", "line 5: a vertex needs three numbers"),
+        ("vertex 1 0 0\n", "vertex 1 0 zero\n", "line 5: a vertex needs three numbers"),
+        ("vertex 1 0 0\n", "vertex 1 0 nan\n", "1 of its 3 vertices are not finite"),
+        ("endfacet\nendsolid\n", "", "without `endsolid`"),
+        ("endsolid\n", "", "without `endsolid`"),
+        ("endfacet\n", "facet normal 0 0 1\n", "line 8: a facet begins inside another"),
+        ("outer loop", "inner loop", "line 3: `inner` is no word of STL"),
+    ] {
+        refused(name, whole.replacen(from, to, 1).as_bytes(), reason);
+    }
+    refused(name, b"solid empty\nendsolid empty\n", "no triangles (0 vertices");
+    refused(name, &[0; 84], "no triangles (0 vertices");
+    refused(name, &[0; 83], "nor has it the 84 bytes of a binary header: it has 83 bytes");
+    refused(
+        name,
+        &[0xff; 84],
+        "promises 4294967295 triangles, which need 214748364834 bytes, but the file has 84",
+    );
+}
+
+#[test]
+fn a_ply_of_points_is_no_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.ply");
+    splashdown_io::particles::write(&path, &common::particles(7)).unwrap();
+    let message = read_mesh(&path).unwrap_err().to_string();
+    assert!(
+        message.contains("no element `face`") && message.contains("(7 points): points are no mesh"),
+        "{message}"
+    );
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uint uint vertex_indices\nend_header\n";
+    // A list that promises 4 * 10^9 entries must not be given memory for them.
+    refused("given.ply", &[header.as_bytes(), &[0xff; 8]].concat(), "in element `face`");
+}
+
+#[test]
+fn broken_gltf_files_tell_what_is_wrong() {
+    let json = Cube::new(CUBE_AT_ORIGIN).json("");
+    let buffer = Cube::new(CUBE_AT_ORIGIN).buffer;
+    for (from, to, reason) in [
+        ("\"count\": 24", "\"count\": 25", "does not fit"),
+        ("\"count\": 24", "\"count\": 18446744073709551615", "does not fit"),
+        ("\"count\": 24", "\"count\": 0", "a triangle uses vertex"),
+        ("\"count\": 24", "\"count\": 20", "in mesh 0: a triangle uses vertex 20, but there are 20 vertices"),
+        ("\"count\": 36", "\"count\": 35", "no whole number of triangles"),
+        ("\"count\": 36", "\"count\": 0", "no triangles (8 vertices"),
+        ("\"byteOffset\": 288", "\"byteOffset\": 18446744073709551615", "does not fit"),
+        ("5126", "5125", "5126 (float)"),
+        ("5123", "5122", "(unsigned)"),
+        ("5123", "9999", "(unsigned)"),
+        ("\"VEC3\"", "\"VEC2\"", "5126 (float)"),
+        ("\"mode\": 4", "\"mode\": 1", "no triangles"),
+        ("\"POSITION\": 0", "\"POSITION\": 9", "names array 9, but holds 2"),
+        ("\"buffer\": 0", "\"buffer\": 7", "names buffer 7, but holds 1"),
+        ("\"mesh\": 0", "\"mesh\": 1", "names mesh 1, but holds 1"),
+        ("\"mesh\": 0", "\"mesh\": 0, \"children\": [0]", "below itself"),
+        ("\"nodes\": [0]", "\"nodes\": [0, 0]", "more than one node"),
+        ("\"scene\": 0, \"scenes\": [{\"nodes\": [0]}],", "", "holds 0"),
+        (
+            "\"mesh\": 0",
+            "\"mesh\": 0, \"scale\": [1e38, 1e38, 1e38], \"translation\": [3e38, 0, 3e38]",
+            "not finite",
+        ),
+        (
+            "\"version\": \"2.0\"}",
+            "\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_draco_mesh_compression\"]",
+            "KHR_draco_mesh_compression",
+        ),
+        ("\"byteLength\": 360", "\"byteLength\": 364", "360 of its 364 bytes"),
+        ("\"byteLength\": 360", "\"uri\": \"absent.bin\", \"byteLength\": 360", "absent.bin"),
+        (
+            "\"byteLength\": 360",
+            "\"uri\": \"https://example.org/a.bin\", \"byteLength\": 360",
+            "https://example.org/a.bin",
+        ),
+        ("\"byteLength\": 360", "\"uri\": \"data:,abc\", \"byteLength\": 360", "base64"),
+        ("\"byteLength\": 360", "\"uri\": \"data:x;base64,@@@@\", \"byteLength\": 360", "in buffer 0"),
+    ] {
+        let changed = json.replacen(from, to, 1);
+        assert_ne!(changed, json, "{from}");
+        let (_keep, path) = file("given.glb", &glb_of(&changed, &buffer));
+        let message = match read_mesh(&path) {
+            Ok(mesh) => panic!("{to}: read as {} triangles", mesh.len()),
+            Err(error) => error.to_string(),
+        };
+        assert!(message.contains(reason), "{to}: wanted `{reason}`, got: {message}");
+    }
+    // The header's length is subtracted from: none below 12 may reach the library.
+    for length in [0_u32, 11, 12, u32::MAX] {
+        let mut bytes = glb_of(&json, &buffer);
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        message("given.glb", &bytes);
+    }
+}
+
+#[test]
+fn a_binary_file_cut_at_any_byte_is_refused_and_a_text_never_a_panic() {
+    for (name, whole) in whole_files() {
+        let (keep, path) = file(name, &whole);
+        assert!(read_mesh(&path).is_ok(), "{name}: {:?}", read_mesh(&path));
+        let mut read = 0;
+        for length in 0..whole.len() {
+            fs::write(&path, &whole[..length]).unwrap();
+            match read_mesh(&path) {
+                Ok(mesh) => {
+                    read += 1;
+                    assert!(mesh.check().is_ok() && !mesh.is_empty());
+                }
+                Err(error) => assert!(error.to_string().contains(name), "{error}"),
+            }
+        }
+        drop(keep);
+        match name {
+            // A shorter OBJ file is an OBJ file; the text of the others may miss its last digits or line break.
+            "whole.obj" => assert!(read > 0),
+            // Every solid but the last may be missing.
+            "text.stl" => assert!(read <= 6 * 9, "{read}"),
+            "text.ply" | "whole.gltf" => assert!(read <= 2, "{name}: {read}"),
+            // The padding behind the buffer may be missing... but then its length is wrong.
+            _ => assert_eq!(read, 0, "{name}"),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_file_with_changed_bytes_is_never_a_panic(
+        which in 0_usize..7,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let (name, mut bytes) = whole_files().swap_remove(which);
+        for (at, to) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = to;
+        }
+        let (_keep, path) = file(name, &bytes);
+        // Either outcome is right; what comes back holds together.
+        if let Ok(mesh) = read_mesh(&path) {
+            prop_assert!(mesh.check().is_ok() && !mesh.is_empty());
+            prop_assert!(mesh.vertices.iter().flatten().all(|v| v.is_finite()));
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_gltf_replaced_by_others_are_never_a_panic(
+        at in any::<prop::sample::Index>(),
+        to in prop_oneof![Just("-1"), Just("0"), Just("1"), Just("2"), Just("7"), Just("4294967295"), Just("18446744073709551615"), Just("1e300"), Just("null"), Just("[]"), Just("\"x\"")],
+    ) {
+        let cube = Cube::new(CUBE_AT_ORIGIN);
+        let json = cube.json("");
+        let numbers: Vec<(usize, usize)> = json
+            .match_indices(|c: char| c.is_ascii_digit())
+            .filter(|&(i, _)| !json[..i].ends_with(|c: char| c.is_ascii_digit()))
+            .map(|(i, _)| (i, i + json[i..].find(|c: char| !c.is_ascii_digit()).unwrap()))
+            .collect();
+        let (start, end) = numbers[at.index(numbers.len())];
+        let changed = format!("{}{to}{}", &json[..start], &json[end..]);
+        let (_keep, path) = file("given.glb", &glb_of(&changed, &cube.buffer));
+        if let Ok(mesh) = read_mesh(&path) {
+            prop_assert!(mesh.check().is_ok() && !mesh.is_empty());
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Reading meshes of every format: the same mesh comes back from each, and against independent readers.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::gltf_files::{CUBE_AT_ORIGIN, glb, gltf_beside, gltf_inside};
+use splashdown_io::{Mesh, mesh, read_mesh};
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// The corners' places of every triangle, whatever the vertices' numbers, each triangle turned to begin with its
+/// smallest corner (which keeps its orientation), sorted.
+fn places(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
+    let ordered = |v: [f32; 3]| v.map(|c| (c + 0.0).to_bits());
+    let mut triangles: Vec<_> = mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let mut corners = t.map(|index| ordered(mesh.vertices[index as usize]));
+            let first = (0..3).min_by_key(|&i| corners[i]).unwrap();
+            corners.rotate_left(first);
+            corners
+        })
+        .collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+#[test]
+fn a_mesh_comes_back_the_same_from_every_format_it_is_written_in() {
+    let folder = folder();
+    let torus = common::torus(1.0, 0.3, 24, 16);
+    let mut turned = torus.clone();
+    turned.triangles[5].swap(0, 1);
+    assert_ne!(places(&turned), places(&torus), "the comparison sees one turned triangle");
+    for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL"] {
+        let path = folder.path().join(name);
+        let bytes = mesh::write(&path, &torus).unwrap();
+        assert_eq!(bytes, fs::metadata(&path).unwrap().len());
+        let read = read_mesh(&path).unwrap();
+        assert_eq!(places(&read), places(&torus), "{name}");
+        assert_eq!(read.vertices.len(), torus.vertices.len(), "{name}");
+        assert!(read.normals.is_empty() && read.topology().unwrap().is_watertight(), "{name}");
+        assert!((read.volume() - torus.volume()).abs() < 1e-9, "{name}");
+    }
+}
+
+/// What `stl_io` makes of a file.
+fn by_stl_io(path: &Path) -> Mesh {
+    let read = stl_io::read_stl(&mut fs::File::open(path).unwrap()).unwrap();
+    Mesh {
+        vertices: read.vertices.iter().map(|v| v.0).collect(),
+        normals: Vec::new(),
+        triangles: read.faces.iter().map(|f| f.vertices.map(|index| index as u32)).collect(),
+    }
+}
+
+fn ascii_stl(mesh: &Mesh) -> String {
+    let facets = mesh.triangles.iter().map(|t| {
+        let corner = |i: usize| {
+            let [x, y, z] = mesh.vertices[t[i] as usize];
+            format!("vertex {x} {y} {z:e}\n")
+        };
+        format!(
+            "facet normal 0 0 0\n outer loop\n{}{}{} endloop\nendfacet\n",
+            corner(0),
+            corner(1),
+            corner(2)
+        )
+    });
+    format!("solid some name\n{}endsolid some name\n", facets.collect::<String>())
+}
+
+#[test]
+fn stl_is_read_and_written_as_the_independent_crate_does() {
+    let folder = folder();
+    let torus = common::torus(0.5, 0.2, 12, 10);
+    let (text, binary) = (folder.path().join("text.stl"), folder.path().join("binary.stl"));
+    fs::write(&text, ascii_stl(&torus)).unwrap();
+    mesh::write(&binary, &torus).unwrap();
+    for path in [text, binary] {
+        assert_eq!(places(&read_mesh(&path).unwrap()), places(&by_stl_io(&path)));
+        assert_eq!(places(&read_mesh(&path).unwrap()), places(&torus));
+    }
+}
+
+#[test]
+fn the_normals_of_a_written_stl_point_outwards() {
+    let folder = folder();
+    let path = folder.path().join("cube.stl");
+    mesh::write(&path, &common::cube([-1.0; 3], 2.0)).unwrap();
+    for triangle in
+        stl_io::create_stl_reader(&mut fs::File::open(&path).unwrap()).unwrap().map(Result::unwrap)
+    {
+        let centre: [f32; 3] = std::array::from_fn(|i| triangle.vertices.iter().map(|v| v.0[i]).sum::<f32>());
+        let dot: f32 = (0..3).map(|i| centre[i] * triangle.normal.0[i]).sum();
+        assert!((dot - 3.0).abs() < 1e-6, "{triangle:?}");
+    }
+}
+
+#[test]
+fn stl_files_that_trip_other_readers_are_read() {
+    let folder = folder();
+    let path = folder.path().join("odd.stl");
+    let cube = common::cube([0.0; 3], 1.0);
+    // A binary file whose free text begins like the text form.
+    mesh::write(&path, &cube).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[..12].copy_from_slice(b"solid part 1");
+    fs::write(&path, bytes).unwrap();
+    assert_eq!(places(&read_mesh(&path).unwrap()), places(&cube));
+    // No name, capitals, Windows line ends, two solids, a minus before zero.
+    let one = ascii_stl(&cube).replace(" some name", "").replace("vertex 0", "vertex -0");
+    let two = ascii_stl(&common::cube([2.0; 3], 1.0));
+    fs::write(&path, format!("{}{two}", one.to_uppercase()).replace('\n', "\r\n")).unwrap();
+    let read = read_mesh(&path).unwrap();
+    assert_eq!(read.len(), 24);
+    assert_eq!(read.topology().unwrap().components, 2);
+    assert!(read.topology().unwrap().is_watertight());
+}
+
+#[test]
+fn obj_is_read_as_the_independent_crate_does() {
+    for name in ["spot.obj", "penguin.obj", "BoxOpenedHole.obj", "spot_ugly.obj", "plane_holes.obj"] {
+        let Some(path) = common::shared_data(&format!("meshes/{name}")) else { continue };
+        let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
+        let (models, _) = tobj::load_obj(&path, &options).unwrap();
+        let by_tobj = models.iter().fold(Mesh::default(), |all, model| {
+            let one = Mesh {
+                vertices: model.mesh.positions.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
+                normals: Vec::new(),
+                triangles: model.mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            };
+            common::joined(all, &one)
+        });
+        let read = read_mesh(&path).unwrap();
+        assert_eq!(read.len(), by_tobj.len(), "{name}");
+        assert!((read.area() - by_tobj.area()).abs() <= 1e-6 * by_tobj.area(), "{name}");
+        assert!((read.volume() - by_tobj.volume()).abs() <= 1e-6 * by_tobj.volume().abs(), "{name}");
+    }
+}
+
+#[test]
+fn the_shared_meshes_are_what_their_table_says() {
+    for (name, closed) in
+        [("spot", true), ("penguin", true), ("cube_no_bottom", false), ("plane_holes", false)]
+    {
+        let Some(path) = common::shared_data(&format!("meshes/{name}.obj")) else { continue };
+        let topology = read_mesh(&path).unwrap().topology().unwrap();
+        assert_eq!(topology.is_closed(), closed, "{name}: {topology}");
+        if closed {
+            assert_eq!(topology.euler_characteristic, 2, "{name}: {topology}");
+        }
+    }
+}
+
+#[test]
+fn obj_groups_share_vertices_and_odd_lines_are_understood() {
+    let folder = folder();
+    let path = folder.path().join("tetra.obj");
+    let text = "# a tetrahedron of two groups\r\nmtllib none.mtl\r\no T\u{e4}st\r\nv 0 0 0 1.0\r\nv 1. 0 0\r\n\
+        v 0 1e0 0 0.2 0.3 0.4\nvn 0 0 1\ng one\nf 1/1/1 3/2/1 2//1\nv 0 0 \\\n +1\nvt 0 0\ng two\nusemtl x\n\
+        f -4 -3 -1\ns off\nf 2 3 4\nl 1 2\nf 1 4 3";
+    fs::write(&path, text).unwrap();
+    let mesh = read_mesh(&path).unwrap();
+    assert_eq!(mesh.vertices.len(), 4);
+    assert_eq!(mesh.triangles, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
+    assert!(mesh.topology().unwrap().is_watertight());
+    assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-12);
+    // A polygon becomes a fan; a face may come before its vertices.
+    fs::write(&path, "f 1 2 3 4 5\nv 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\n").unwrap();
+    assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+}
+
+#[test]
+fn gltf_is_read_from_inside_from_beside_and_binary() {
+    let folder = folder();
+    let cube = common::cube([0.0; 3], 1.0);
+    let files = common::gltf_files::Cube::new(CUBE_AT_ORIGIN);
+    for name in ["cube.gltf", "beside.gltf", "cube.glb"] {
+        let path = folder.path().join(name);
+        match name {
+            "cube.gltf" => fs::write(&path, gltf_inside(&files)).unwrap(),
+            "beside.gltf" => fs::write(&path, gltf_beside(&files, folder.path(), "the cube.bin")).unwrap(),
+            _ => fs::write(&path, glb(&files)).unwrap(),
+        }
+        let read = read_mesh(&path).unwrap();
+        assert_eq!(places(&read), places(&cube), "{name}");
+        assert_eq!(read.vertices.len(), 8, "{name}: the 24 vertices of the file are 8 places");
+        assert!(read.topology().unwrap().is_watertight(), "{name}");
+    }
+}
+
+#[test]
+fn gltf_nodes_place_turn_and_mirror() {
+    let folder = folder();
+    let path = folder.path().join("tree.glb");
+    // A parent that moves, below it a child that stretches; beside them one that mirrors, and one without a mesh.
+    let nodes = r#"[
+        {"translation": [10, 0, 0], "children": [1]},
+        {"mesh": 0, "scale": [1, 2, 3], "rotation": [0, 0.70710678, 0, 0.70710678]},
+        {"mesh": 0, "matrix": [-1,0,0,0, 0,1,0,0, 0,0,1,0, -5,0,0,1]},
+        {"name": "camera"}, {"mesh": 0, "translation": [99, 99, 99]}
+    ]"#;
+    fs::write(&path, glb(&common::gltf_files::Cube::new(nodes).scene("[0, 2, 3]"))).unwrap();
+    let mesh = read_mesh(&path).unwrap();
+    let topology = mesh.topology().unwrap();
+    assert_eq!(topology.components, 2, "the node that is in no scene is left out");
+    assert!(topology.is_watertight(), "{topology}");
+    // 1 x 2 x 3 and 1: the mirrored cube counts with the same sign only if its triangles were turned.
+    assert!((mesh.volume() - 7.0).abs() < 1e-5, "{}", mesh.volume());
+    let range = |axis: usize| {
+        let values = mesh.vertices.iter().map(|v| v[axis]);
+        (values.clone().fold(f32::MAX, f32::min), values.fold(f32::MIN, f32::max))
+    };
+    // A quarter turn about y takes z to x: the stretched cube spans 10..13 in x and -1..0 in z.
+    let (near, far) = range(0);
+    assert!((near + 6.0).abs() < 1e-5 && (far - 13.0).abs() < 1e-5, "{near} {far}");
+    let (low, high) = range(2);
+    assert!((low + 1.0).abs() < 1e-5 && (high - 1.0).abs() < 1e-5, "{low} {high}");
+}
+
+#[test]
+fn gltf_strips_and_fans_become_triangles() {
+    let folder = folder();
+    let path = folder.path().join("strip.glb");
+    for (mode, corners) in [(5, "0 1 2 3"), (6, "0 1 3 2")] {
+        let corners: Vec<u16> = corners.split(' ').map(|c| c.parse().unwrap()).collect();
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        fs::write(&path, glb(&common::gltf_files::Cube::of(CUBE_AT_ORIGIN, &square, &corners).mode(mode)))
+            .unwrap();
+        let mesh = read_mesh(&path).unwrap();
+        assert_eq!(mesh.len(), 2);
+        // Both turn the same way, so the square has area 1 and no flipped edge.
+        assert_eq!(mesh.topology().unwrap().flipped_edges, 0, "mode {mode}");
+        assert!((mesh.area() - 1.0).abs() < 1e-6);
+    }
+}
