@@ -109,6 +109,17 @@ pub enum IoError {
         given: u64,
     },
 
+    /// A row of a table has more or fewer numbers than the table has columns.
+    #[error("a row of `{}` has {given} numbers for {expected} columns: give one for each, NaN for none", path.display())]
+    Columns {
+        /// The table's file.
+        path: PathBuf,
+        /// Numbers in the row.
+        given: usize,
+        /// Columns of the table.
+        expected: usize,
+    },
+
     /// The background writer ended before its work was done (it panicked, or could not be started).
     #[error("the background writer stopped: {reason}; the files written before are complete")]
     WriterStopped {

@@ -8,6 +8,7 @@
 //! | [`Particles`] | PLY ([`ply`], also read), VTU ([`vtu`]) with an index of the series ([`pvd`]) | ParaView, Blender, Houdini, MeshLab |
 //! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), all also read by [`read_mesh`]; glTF ([`gltf`], read) | every 3-D program |
 //! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
+//! | a growing table | CSV ([`CsvLog`]) | every spreadsheet, `pandas` |
 //! | positions | NPY ([`npy`], read) | numpy |
 //!
 //! ```
@@ -70,6 +71,7 @@ compile_error!(
 );
 
 pub mod atomic;
+pub mod csv;
 pub mod error;
 pub mod film;
 pub mod gltf;
@@ -87,6 +89,7 @@ pub mod vtu;
 pub mod writer;
 
 pub use atomic::prepare_folder;
+pub use csv::CsvLog;
 pub use error::{IoError, WriteCause};
 pub use film::{Film, FilmError, FilmOptions};
 pub use mesh::Mesh;

@@ -1,0 +1,78 @@
+//! The growing table: read while it grows, odd names and numbers, and disks that are full.
+
+use std::fs;
+use std::path::Path;
+
+use splashdown_io::{CsvLog, IoError, WriteCause};
+
+#[test]
+fn every_row_is_in_the_file_when_the_call_returns() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("probe.csv");
+    fs::write(&path, "something older and longer than the new header").unwrap();
+    let mut log = CsvLog::create(&path, &["time (s)", "p (Pa)", "at 1,2 \"left\""]).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "time (s),p (Pa),\"at 1,2 \"\"left\"\"\"\n");
+    log.row(&[0.0, -1234.5, 0.1]).unwrap();
+    log.row(&[1e-9, f64::NAN, f64::INFINITY]).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().nth(1), Some("0.0,-1234.5,0.1"));
+    let fields: Vec<&str> = text.lines().nth(2).unwrap().split(',').collect();
+    assert_eq!(fields[0].parse(), Ok(1e-9));
+    assert_eq!(fields[1..], ["", "inf"]);
+    assert!(text.ends_with('\n') && log.path() == path);
+}
+
+#[test]
+fn numbers_come_back_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("numbers.csv");
+    let mut log = CsvLog::create(&path, &["x"]).unwrap();
+    let values = [0.1 + 0.2, f64::MAX, f64::MIN_POSITIVE, 5e-324, -0.0, 1.0 / 3.0, 123_456_789.123_456_78];
+    values.iter().for_each(|&value| log.row(&[value]).unwrap());
+    log.row(&[f64::NAN]).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let read: Vec<f64> = text.lines().skip(1).filter_map(|line| line.parse().ok()).collect();
+    assert_eq!(read.map_bits(), values.to_vec().map_bits());
+    assert_eq!(text.lines().last(), Some("\"\""));
+}
+
+trait Bits {
+    fn map_bits(self) -> Vec<u64>;
+}
+
+impl Bits for Vec<f64> {
+    fn map_bits(self) -> Vec<u64> {
+        self.into_iter().map(f64::to_bits).collect()
+    }
+}
+
+#[test]
+fn a_row_of_another_length_is_refused_and_leaves_no_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("probe.csv");
+    let mut log = CsvLog::create(&path, &["a", "b"]).unwrap();
+    for row in [&[][..], &[1.0], &[1.0, 2.0, 3.0]] {
+        let error = log.row(row).unwrap_err();
+        assert!(matches!(error, IoError::Columns { expected: 2, .. }));
+        assert!(error.to_string().contains("probe.csv"), "{error}");
+    }
+    log.row(&[1.0, 2.0]).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "a,b\n1.0,2.0\n");
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_reported() {
+    let error = CsvLog::create(Path::new("no/such/folder/probe.csv"), &["a"]).unwrap_err();
+    assert!(matches!(error, IoError::Write { cause: WriteCause::MissingFolder, .. }), "{error}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_reported() {
+    let error = CsvLog::create(Path::new("/dev/full"), &["a"]).unwrap_err();
+    assert!(matches!(error, IoError::Write { cause: WriteCause::DiskFull, .. }), "{error}");
+    assert!(
+        error.to_string().contains("/dev/full") && error.to_string().contains("free some space"),
+        "{error}"
+    );
+}
