@@ -12,6 +12,9 @@ pub enum SimulationError {
     /// Particles could not be placed.
     #[error(transparent)]
     Sample(#[from] crate::sample::SampleError),
+    /// A body.
+    #[error(transparent)]
+    Body(#[from] crate::bodies::BodyError),
     /// The surface.
     #[error(transparent)]
     Surface(#[from] crate::surface::SurfaceError),

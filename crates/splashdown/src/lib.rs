@@ -23,11 +23,13 @@ mod error;
 mod fields;
 pub mod kernel;
 mod memory;
+pub mod models;
 pub mod passes;
 mod run;
 pub mod sample;
 pub mod scene;
 mod simulation;
+pub mod solid;
 pub mod solver;
 mod stats;
 pub mod surface;
@@ -43,7 +45,7 @@ pub use stats::Stats;
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
-    [passes::passes(), surface::passes()].concat()
+    [passes::passes(), bodies::passes(), surface::passes()].concat()
 }
 
 /// The examples of the README.

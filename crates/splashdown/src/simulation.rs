@@ -7,14 +7,14 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{Executor, Flag, Gpu, Readback, Recording, Timings};
 use splashdown_io::{Mesh, Particles};
 
-use crate::bodies::{BodyMesh, BodyState};
+use crate::bodies::{Bodies, BodyMesh, BodyState, LoadedBody};
 use crate::cells::{Cells, Grid};
 use crate::fields::Fields;
 use crate::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
 use crate::scene::{Derived, Scene, SurfaceSettings};
 use crate::solver::{self, Solver};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
-use crate::{Device, SimulationError, Stats, memory, sample};
+use crate::{Device, SimulationError, Stats, bodies, memory, sample, solid};
 
 /// Most steps in one submission to a device: a bound on how long it does not answer.
 const MOST_STEPS: u32 = 64;
@@ -47,7 +47,7 @@ pub struct Simulation {
     /// What `stable_dt` was when last heard of, in seconds.
     stable_dt: f32,
     frame: Option<FrameInProgress>,
-    body_meshes: Vec<BodyMesh>,
+    bodies: Option<Bodies>,
 }
 
 /// A frame that has begun.
@@ -74,7 +74,8 @@ impl Simulation {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
-        Self::with_particles(scene, executor, &sample::particles(scene)?)
+        let bodies = Self::load_bodies(scene)?;
+        Self::with_bodies(scene, executor, &sample::particles(scene)?, bodies)
     }
 
     /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
@@ -85,8 +86,23 @@ impl Simulation {
     /// As [`new`](Self::new).
     pub fn with_particles(
         scene: &Scene,
+        executor: Executor,
+        particles: &Particles,
+    ) -> Result<Self, SimulationError> {
+        Self::with_bodies(scene, executor, particles, Self::load_bodies(scene)?)
+    }
+
+    fn load_bodies(scene: &Scene) -> Result<Vec<LoadedBody>, SimulationError> {
+        let kernels = Solver::new(scene).walls();
+        let params = solver::params(scene, 0);
+        Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), &|_, _| {})?)
+    }
+
+    fn with_bodies(
+        scene: &Scene,
         mut executor: Executor,
         particles: &Particles,
+        loaded: Vec<LoadedBody>,
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
         memory::check(n as u64, executor.largest_buffer())?;
@@ -102,12 +118,17 @@ impl Simulation {
             })?;
         let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
         let cells = Cells::new(&mut executor, grid, n as u32, scene.solver.sort)?;
+        let bodies = if loaded.is_empty() {
+            None
+        } else {
+            Some(Bodies::new(&mut executor, loaded, &params, solver.walls(), &scene.domain)?)
+        };
         upload(&mut executor, &fields, particles, params.rest_density)?;
         let stable_dt = Derived::new(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
 
-        let step = solver.step(&cells, &fields, n as u32);
+        let step = solver.step(&cells, &fields, bodies.as_ref(), n as u32);
         let done = Flag::new(fields.state, offset_of!(StepState, done));
         let batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
@@ -118,7 +139,7 @@ impl Simulation {
             .collect();
         let mut simulation = Self {
             begin: solver::begin_frame(&fields),
-            prime: solver.prime(&cells, &fields, n as u32),
+            prime: solver.prime(&cells, &fields, bodies.as_ref(), n as u32),
             executor,
             params,
             fields,
@@ -127,7 +148,7 @@ impl Simulation {
             stats: Stats::default(),
             stable_dt,
             frame: None,
-            body_meshes: Vec::new(),
+            bodies,
         };
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
@@ -163,6 +184,9 @@ impl Simulation {
             self.stats.steps_in_frame = 0;
             return Ok(());
         }
+        if let Some(bodies) = &self.bodies {
+            bodies.begin_frame(&mut self.executor, self.stats.time, f64::from(seconds))?;
+        }
         self.executor.write(self.fields.duration, &[seconds])?;
         self.executor.run(&self.begin)?;
         self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
@@ -181,14 +205,16 @@ impl Simulation {
             frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
         let to_come = (remaining / self.stable_dt).ceil() as u32;
         let expected = steps.saturating_add(to_come).saturating_add(1);
-        let most = if self.executor.gpu().is_some() { MOST_STEPS } else { CPU_STEPS };
+        let collide = self.bodies.as_ref().is_some_and(Bodies::collide);
+        let most = if self.executor.gpu().is_some() && !collide { MOST_STEPS } else { CPU_STEPS };
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
         let power = left.ilog2();
         self.executor.run(&self.batches[power as usize])?;
         frame.submitted += 1 << power;
         let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
-        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never is.
-        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() {
+        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never is. Bodies that
+        // may collide are looked at before they go on.
+        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || collide {
             frame.pending.take()
         } else {
             behind
@@ -196,6 +222,12 @@ impl Simulation {
         if let Some(readback) = answer {
             let state = readback.wait(&mut self.executor)?[0];
             self.stable_dt = state.stable_dt;
+            if let Some(bodies) = &mut self.bodies
+                && collide
+            {
+                let passed = remaining - state.remaining;
+                bodies.resolve_collisions(&mut self.executor, passed)?;
+            }
             frame.state = Some(state);
             // A step too small for the scene would take for ever to reach the frame's end.
             if state.done != 0 || state.too_small != 0 {
@@ -299,7 +331,7 @@ impl Simulation {
 
     /// The meshes of the scene's bodies, in its order.
     pub fn body_meshes(&self) -> &[BodyMesh] {
-        &self.body_meshes
+        self.bodies.as_ref().map_or(&[], Bodies::meshes)
     }
 
     /// Where the scene's bodies are and what the fluid does to them, in its order.
@@ -307,7 +339,10 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub fn body_states(&mut self) -> Result<Vec<BodyState>, SimulationError> {
-        Ok(Vec::new())
+        match &self.bodies {
+            Some(bodies) => Ok(bodies.states(&mut self.executor)?),
+            None => Ok(Vec::new()),
+        }
     }
 
     /// Sorts the particles as they are now by cell, without a step: input of the surface. For between two frames: one

@@ -1,9 +1,36 @@
-//! Bodies that the fluid meets.
+//! Bodies that the fluid meets: meshes that stand, move as written, or are carried.
+//!
+//! *How it works.* A body's solid ([`crate::solid`]) is a grid of distances in the frame of its mesh. In every step each particle near a
+//! body looks its place up ([`contacts`]), the body takes part in the density ([`share`]) and in the forces ([`push`]), the
+//! reactions are summed on the device, and the body moves ([`motion`]), all without asking the host. Between batches of steps
+//! the host lets bodies that touch one another or the box collide ([`rigid`]).
+
+mod contacts;
+mod field;
+mod load;
+mod motion;
+mod push;
+mod rigid;
+mod share;
+mod types;
+
+pub use load::{BodyError, LoadedBody, load};
+pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
 
 use std::sync::Arc;
 
-use glam::{Quat, Vec3};
-use splashdown_io::Mesh;
+use glam::{Quat, UVec3, Vec2, Vec3, Vec4};
+use splashdown_gpu::{Buffer, BufferId, Executor, GpuError, Grid as Extent, PassDesc, Recording};
+use splashdown_io::{Mesh, Particles};
+
+use crate::SimulationError;
+use crate::boundary::KernelPair;
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::passes::Params;
+use crate::scene::{Domain, Script};
+use crate::solid::DistanceField;
+use rigid::Rigid;
 
 /// A body's shape.
 #[derive(Clone, Debug)]
@@ -31,4 +58,291 @@ pub struct BodyState {
     pub force: Vec3,
     /// Its torque about the centre of mass (dynamic bodies) or the mesh's origin, in N m.
     pub torque: Vec3,
+}
+
+impl BodyState {
+    /// From the mesh's frame into the world, in m.
+    pub fn world(&self, y: Vec3) -> Vec3 {
+        self.position + self.orientation * y
+    }
+}
+
+/// The passes of this module.
+pub fn passes() -> Vec<&'static PassDesc> {
+    vec![
+        &contacts::WENDLAND_C2,
+        &contacts::CUBIC_SPLINE,
+        &contacts::MUELLER,
+        &share::SUMMATION,
+        &share::CONTINUITY,
+        &push::WENDLAND_C2,
+        &push::CUBIC_SPLINE,
+        &push::MUELLER,
+        &motion::MOTION,
+    ]
+}
+
+/// The bodies of a simulation, on its device and on the host.
+pub struct Bodies {
+    kernels: KernelPair,
+    /// One per body.
+    pub bodies: Buffer<Body>,
+    /// Distances, effective distances and boundary particles of all bodies.
+    pub maps: Buffer<Vec2>,
+    /// Two per particle.
+    pub contacts: Buffer<Contact>,
+    /// Reactions; [`SUM_WORDS`] words per body.
+    pub sums: Buffer<u32>,
+    scripts: Buffer<ScriptSample>,
+    /// One per scripted body.
+    written: Vec<Script>,
+    meshes: Vec<BodyMesh>,
+    /// For the host's own count of particles inside.
+    fields: Vec<DistanceField>,
+    rigid: Option<Rigid>,
+}
+
+impl Bodies {
+    /// Places bodies on a device.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn new(
+        executor: &mut Executor,
+        loaded: Vec<LoadedBody>,
+        params: &Params,
+        kernels: KernelPair,
+        domain: &Domain,
+    ) -> Result<Self, SimulationError> {
+        let mut maps = Vec::new();
+        let mut states = Vec::new();
+        let mut written = Vec::new();
+        for body in &loaded {
+            let mut state = body.state;
+            place_map(body, params, &mut state, &mut maps);
+            if let Some(script) = &body.script {
+                state.script = written.len() as u32;
+                written.push(script.clone());
+            }
+            states.push(state);
+        }
+        let rigid = Rigid::new(&loaded, &states, domain);
+        let scripts = vec![bytemuck::Zeroable::zeroed(); written.len().max(1) * SCRIPT_SAMPLES];
+        Ok(Self {
+            kernels,
+            bodies: executor.create_from("bodies", &states)?,
+            maps: executor.create_from("maps", &maps)?,
+            contacts: executor.create("contacts", 2 * params.particle_count.max(1) as usize)?,
+            sums: executor.create_from("sums", &vec![0; SUM_WORDS * states.len()])?,
+            scripts: executor.create_from("scripts", &scripts)?,
+            written,
+            meshes: loaded
+                .iter()
+                .map(|body| BodyMesh {
+                    name: body.name.clone(),
+                    mesh: Arc::new(body.solid.mesh.clone()),
+                    colour: body.colour,
+                })
+                .collect(),
+            fields: loaded.into_iter().map(|body| body.solid.field).collect(),
+            rigid,
+        })
+    }
+
+    /// Appends the look-up; needs the sorted positions.
+    pub fn record_contacts(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        let pass = self.by_kernels(&contacts::WENDLAND_C2, &contacts::CUBIC_SPLINE, &contacts::MUELLER);
+        let buffers = [
+            fields.params.id(),
+            cells.cell_start.id(),
+            self.bodies.id(),
+            self.maps.id(),
+            fields.sorted_positions.id(),
+            self.contacts.id(),
+            fields.tally.id(),
+        ];
+        step.dispatch(pass, all, &buffers);
+    }
+
+    /// Appends the bodies' part in the density; needs the particles' own.
+    pub fn record_share(
+        &self,
+        step: &mut Recording,
+        cells: &Cells,
+        fields: &Fields,
+        all: Extent,
+        continuity: bool,
+    ) {
+        let pass = if continuity { &share::CONTINUITY } else { &share::SUMMATION };
+        let buffers = [
+            fields.params.id(),
+            fields.state.id(),
+            cells.cell_start.id(),
+            self.bodies.id(),
+            self.contacts.id(),
+            fields.sorted_positions.id(),
+            fields.sorted_velocities.id(),
+            fields.densities.id(),
+        ];
+        step.dispatch(pass, all, &buffers);
+    }
+
+    /// Appends the forces between bodies and particles; needs the accelerations by neighbours and walls.
+    pub fn record_push(&self, step: &mut Recording, fields: &Fields, all: Extent) {
+        let buffers = [
+            fields.params.id(),
+            fields.state.id(),
+            self.bodies.id(),
+            self.contacts.id(),
+            fields.sorted_positions.id(),
+            fields.sorted_velocities.id(),
+            fields.densities.id(),
+            fields.accelerations.id(),
+            self.sums.id(),
+        ];
+        step.dispatch(
+            self.by_kernels(&push::WENDLAND_C2, &push::CUBIC_SPLINE, &push::MUELLER),
+            all,
+            &buffers,
+        );
+    }
+
+    /// Appends the bodies' own motion.
+    pub fn record_motion(&self, step: &mut Recording, fields: &Fields) {
+        let buffers: [BufferId; 6] = [
+            fields.params.id(),
+            fields.state.id(),
+            self.scripts.id(),
+            self.bodies.id(),
+            self.sums.id(),
+            fields.tally.id(),
+        ];
+        step.dispatch(&motion::MOTION, Extent::Items(self.bodies.len()), &buffers);
+    }
+
+    fn by_kernels(
+        &self,
+        wendland_c2: &'static PassDesc,
+        cubic_spline: &'static PassDesc,
+        mueller: &'static PassDesc,
+    ) -> &'static PassDesc {
+        match self.kernels {
+            KernelPair::WendlandC2 => wendland_c2,
+            KernelPair::CubicSpline => cubic_spline,
+            KernelPair::Mueller => mueller,
+        }
+    }
+
+    /// Writes down where the scripted bodies will be during a frame, in seconds.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn begin_frame(&self, executor: &mut Executor, start: f64, duration: f64) -> Result<(), GpuError> {
+        if self.written.is_empty() {
+            return Ok(());
+        }
+        let mut samples = Vec::with_capacity(self.written.len() * SCRIPT_SAMPLES);
+        for script in &self.written {
+            for k in 0..SCRIPT_SAMPLES {
+                let time = start + duration * k as f64 / (SCRIPT_SAMPLES - 1) as f64;
+                let pose = script.pose(time);
+                samples.push(ScriptSample {
+                    position: pose.position,
+                    orientation: Vec4::from(pose.orientation),
+                    velocity: pose.velocity,
+                    angular_velocity: pose.angular_velocity,
+                    ..bytemuck::Zeroable::zeroed()
+                });
+            }
+        }
+        executor.write(self.scripts, &samples)
+    }
+
+    /// True if bodies may touch one another: then the host looks at them between batches of steps.
+    pub fn collide(&self) -> bool {
+        self.rigid.is_some()
+    }
+
+    /// Lets the bodies collide with what happened in the last `seconds`.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn resolve_collisions(&mut self, executor: &mut Executor, seconds: f32) -> Result<(), GpuError> {
+        let Some(rigid) = &mut self.rigid else { return Ok(()) };
+        let mut states = executor.read(self.bodies)?;
+        if rigid.resolve(&mut states, seconds) {
+            executor.write(self.bodies, &states)?;
+        }
+        Ok(())
+    }
+
+    /// The meshes, in the order of the scene.
+    pub fn meshes(&self) -> &[BodyMesh] {
+        &self.meshes
+    }
+
+    /// Where the bodies are, in the order of the scene.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn states(&self, executor: &mut Executor) -> Result<Vec<BodyState>, GpuError> {
+        Ok(executor.read(self.bodies)?.iter().map(state_of).collect())
+    }
+
+    /// How many of these particles lie inside a body, by the host's own look-up.
+    pub fn inside(&self, states: &[BodyState], particles: &Particles) -> u32 {
+        let within = |x: Vec3| {
+            self.fields.iter().zip(states).any(|(field, state)| {
+                field.distance(state.orientation.conjugate() * (x - state.position)) < 0.0
+            })
+        };
+        particles.positions.iter().filter(|&&x| within(x.into())).count() as u32
+    }
+}
+
+fn state_of(body: &Body) -> BodyState {
+    let orientation = body.rotation();
+    let arm = orientation * -body.center;
+    BodyState {
+        position: body.position + arm,
+        orientation,
+        velocity: body.velocity + body.angular_velocity.cross(arm),
+        angular_velocity: body.angular_velocity,
+        force: body.force,
+        torque: body.torque,
+    }
+}
+
+/// Appends a body's distances and, where it has them, its boundary particles.
+fn place_map(body: &LoadedBody, params: &Params, state: &mut Body, maps: &mut Vec<Vec2>) {
+    let field = &body.solid.field;
+    state.first_node = maps.len() as u32;
+    state.field_min = field.min;
+    state.cell_size = field.cell_size;
+    [state.nodes_x, state.nodes_y, state.nodes_z] = field.nodes;
+    maps.extend_from_slice(&field.values);
+    if body.samples.is_empty() {
+        return;
+    }
+    let extent = (UVec3::from_array(field.nodes) - UVec3::ONE).as_vec3() * field.cell_size;
+    let cells = (extent / params.support_radius).ceil().as_uvec3().max(UVec3::ONE);
+    [state.samples_x, state.samples_y, state.samples_z] = cells.to_array();
+    let cell_of = |x: Vec3| {
+        let c = ((x - field.min) / params.support_radius).as_uvec3().min(cells - UVec3::ONE);
+        (c.z * cells.y + c.y) * cells.x + c.x
+    };
+    let mut sorted: Vec<(u32, Vec4)> = body.samples.iter().map(|s| (cell_of(s.truncate()), *s)).collect();
+    sorted.sort_by_key(|(cell, _)| *cell);
+    state.first_sample_cell = maps.len() as u32;
+    let count = (cells.x * cells.y * cells.z) as usize;
+    // Samples lie behind the cells, two entries each, on an even place.
+    let first = (maps.len() + count).div_ceil(2);
+    for cell in 0..count as u32 {
+        let [begin, end] = [cell, cell + 1].map(|c| first + sorted.partition_point(|(s, _)| *s < c));
+        maps.push(Vec2::new(f32::from_bits(begin as u32), f32::from_bits(end as u32)));
+    }
+    maps.resize(2 * first, Vec2::ZERO);
+    for (_, s) in sorted {
+        maps.extend([Vec2::new(s.x, s.y), Vec2::new(s.z, s.w)]);
+    }
 }

@@ -59,7 +59,17 @@ impl KernelPair {
         }
     }
 
-    fn w(self, q: f64) -> [f64; 2] {
+    /// The kernel of the density times H^3, at q in [0, 1].
+    pub fn w(self, q: f32) -> f32 {
+        self.both(f64::from(q))[0] as f32
+    }
+
+    /// The kernel of the gradient times H^3, at q in [0, 1].
+    pub fn w_gradient(self, q: f32) -> f32 {
+        self.both(f64::from(q))[1] as f32
+    }
+
+    fn both(self, q: f64) -> [f64; 2] {
         let q = q as f32;
         let [density, gradient] = match self {
             Self::WendlandC2 => [WendlandC2::w(q); 2],
@@ -126,7 +136,7 @@ pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
         .map(|i| {
             let rho = i as f64 / FINE as f64;
             let half = (1.0 - rho * rho).max(0.0).sqrt();
-            simpson(half, |z| kernels.w((rho * rho + z * z).sqrt())).map(|integral| 2.0 * integral)
+            simpson(half, |z| kernels.both((rho * rho + z * z).sqrt())).map(|integral| 2.0 * integral)
         })
         .collect();
     let along_edge = |rho: f64| {
@@ -179,7 +189,7 @@ pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     for (x, y, z) in cube(support_ratio.ceil() as i32) {
         let q = f64::from(x * x + y * y + z * z).sqrt() / ratio;
         if q < 1.0 {
-            let [w, _] = kernels.w(q);
+            let [w, _] = kernels.both(q);
             whole += w;
             behind += if x < 0 { w } else { 0.0 };
         }

@@ -5,6 +5,7 @@ mod wcsph;
 
 use splashdown_gpu::{Grid as Extent, Recording};
 
+use crate::bodies::Bodies;
 use crate::boundary::{KernelPair, wall_offset};
 use crate::cells::Cells;
 use crate::fields::Fields;
@@ -57,15 +58,29 @@ impl Solver {
     }
 
     /// One step: sort, density and pressure, accelerations, motion, next time step.
-    pub fn step(&self, cells: &Cells, fields: &Fields, particles: u32) -> Recording {
+    pub fn step(&self, cells: &Cells, fields: &Fields, bodies: Option<&Bodies>, particles: u32) -> Recording {
         let mut step = Recording::new("step");
         let all = Extent::Items(particles);
         cells.record(&mut step, fields);
         // The resting arrays take the sorted order when the step integrates back into them.
         step.copy(fields.sorted_ids, fields.ids);
+        if let Some(bodies) = bodies {
+            bodies.record_contacts(&mut step, cells, fields, all);
+        }
         match self.method {
-            Method::Wcsph => self.wcsph(&mut step, cells, fields, all),
-            Method::Mueller2003 => self.mueller2003(&mut step, cells, fields, all),
+            Method::Wcsph => self.wcsph_pressure(&mut step, cells, fields, all),
+            Method::Mueller2003 => self.mueller2003_pressure(&mut step, cells, fields, all),
+        }
+        if let Some(bodies) = bodies {
+            bodies.record_share(&mut step, cells, fields, all, self.continuity);
+        }
+        match self.method {
+            Method::Wcsph => self.wcsph_forces(&mut step, cells, fields, all),
+            Method::Mueller2003 => self.mueller2003_forces(&mut step, cells, fields, all),
+        }
+        if let Some(bodies) = bodies {
+            bodies.record_push(&mut step, fields, all);
+            bodies.record_motion(&mut step, fields);
         }
         step.dispatch(
             &integrate::INTEGRATE,
@@ -91,14 +106,29 @@ impl Solver {
     }
 
     /// Sort, density and pressure without motion: what the first frame shows.
-    pub fn prime(&self, cells: &Cells, fields: &Fields, particles: u32) -> Recording {
+    pub fn prime(
+        &self,
+        cells: &Cells,
+        fields: &Fields,
+        bodies: Option<&Bodies>,
+        particles: u32,
+    ) -> Recording {
         let mut prime = Recording::new("prime");
         prime.append(&begin_frame(fields));
         cells.record(&mut prime, fields);
         prime.copy(fields.sorted_ids, fields.ids);
+        let all = Extent::Items(particles);
+        if let Some(bodies) = bodies {
+            bodies.record_contacts(&mut prime, cells, fields, all);
+        }
         prime.copy(fields.sorted_positions, fields.positions);
         prime.copy(fields.sorted_velocities, fields.velocities);
-        self.pressure(&mut prime, cells, fields, Extent::Items(particles));
+        self.pressure(&mut prime, cells, fields, all);
+        if let Some(bodies) = bodies
+            && !self.continuity
+        {
+            bodies.record_share(&mut prime, cells, fields, all, false);
+        }
         prime
     }
 

@@ -20,9 +20,14 @@ impl Solver {
         record_density(step, &density::POLY6, cells, fields, all);
     }
 
-    /// Density, pressure, and the force densities.
-    pub(super) fn mueller2003(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
-        self.mueller2003_pressure(step, cells, fields, all);
+    /// The force densities.
+    pub(super) fn mueller2003_forces(
+        &self,
+        step: &mut Recording,
+        cells: &Cells,
+        fields: &Fields,
+        all: Extent,
+    ) {
         step.dispatch(
             &mueller::MUELLER,
             all,

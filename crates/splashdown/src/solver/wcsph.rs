@@ -37,9 +37,8 @@ impl Solver {
         }
     }
 
-    /// Density, pressure, and all accelerations in one visit of the neighbours.
-    pub(super) fn wcsph(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
-        self.wcsph_pressure(step, cells, fields, all);
+    /// All accelerations in one visit of the neighbours.
+    pub(super) fn wcsph_forces(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
         if self.tension {
             step.dispatch(
                 self.by_kernel(&normals::WENDLAND_C2, &normals::CUBIC_SPLINE),
@@ -72,7 +71,7 @@ impl Solver {
         );
     }
 
-    fn by_kernel(
+    pub(super) fn by_kernel(
         &self,
         wendland_c2: &'static PassDesc,
         cubic_spline: &'static PassDesc,

@@ -13,7 +13,7 @@ fn solid_integral(kernels: KernelPair, q: [f64; 3]) -> [f64; 2] {
                 let y = [at(i), at(j), at(k)];
                 let r = (y[0] * y[0] + y[1] * y[1] + y[2] * y[2]).sqrt();
                 if r < 1.0 && (0..3).any(|a| y[a] < -q[a]) {
-                    let w = kernels.w(r);
+                    let w = kernels.both(r);
                     sum[0] += w[0];
                     sum[1] += w[1];
                 }
@@ -120,7 +120,7 @@ fn a_lattice_half_a_spacing_from_the_sides_has_the_rest_density() {
             cube(ratio.ceil() as i32)
                 .map(|(i, j, k)| (x + Vec3::new(i as f32, j as f32, k as f32), i * i + j * j + k * k))
                 .filter(|(y, _)| !inside || y.min_element() > 0.0)
-                .map(|(_, r2)| kernels.w(f64::from(r2).sqrt() / f64::from(ratio))[0])
+                .map(|(_, r2)| kernels.both(f64::from(r2).sqrt() / f64::from(ratio))[0])
                 .sum()
         };
         for x in [

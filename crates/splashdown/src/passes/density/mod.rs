@@ -13,7 +13,8 @@ use crate::boundary::{self, KernelPair};
 use crate::cells::{GRID, Grid};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
 
-const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::WGSL];
+const IMPORTS: &[WgslModule] =
+    &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::WGSL];
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

@@ -1,0 +1,72 @@
+// Mirrors types.rs.
+const BODY_STATIC: u32 = 0u;
+const BODY_SCRIPTED: u32 = 1u;
+const BODY_DYNAMIC: u32 = 2u;
+const BODY_PARTICLES: u32 = 1u;
+const NO_BODY: u32 = 0xffffffffu;
+const SCRIPT_SAMPLES: u32 = 65u;
+const SUM_WORDS: u32 = 12u;
+
+struct Body {
+    position: vec3<f32>,
+    kind: u32,
+    orientation: vec4<f32>,
+    velocity: vec3<f32>,
+    friction: f32,
+    angular_velocity: vec3<f32>,
+    adhesion: f32,
+    center: vec3<f32>,
+    inverse_mass: f32,
+    inertia: vec3<f32>,
+    way: u32,
+    inertia_products: vec3<f32>,
+    radius: f32,
+    inverse_inertia: vec3<f32>,
+    first_node: u32,
+    inverse_inertia_products: vec3<f32>,
+    nodes_x: u32,
+    field_min: vec3<f32>,
+    cell_size: f32,
+    force: vec3<f32>,
+    nodes_y: u32,
+    torque: vec3<f32>,
+    nodes_z: u32,
+    first_sample_cell: u32,
+    samples_x: u32,
+    samples_y: u32,
+    samples_z: u32,
+    reach: f32,
+    script: u32,
+    unused: vec2<f32>,
+}
+
+struct Contact {
+    slope: vec3<f32>,
+    density: f32,
+    normal: vec3<f32>,
+    distance: f32,
+    share: f32,
+    effective: f32,
+    body: u32,
+    unused: u32,
+}
+
+struct ScriptSample {
+    position: vec3<f32>,
+    unused: f32,
+    orientation: vec4<f32>,
+    velocity: vec3<f32>,
+    unused_2: f32,
+    angular_velocity: vec3<f32>,
+    unused_3: f32,
+}
+
+// A vector turned by a unit quaternion, and back.
+fn turned(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    let t = 2.0 * cross(q.xyz, v);
+    return v + q.w * t + cross(q.xyz, t);
+}
+
+fn turned_back(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    return turned(vec4(-q.xyz, q.w), v);
+}

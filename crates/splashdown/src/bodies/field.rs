@@ -1,0 +1,86 @@
+//! A body's map and boundary particles, looked up on the host's side; see [`contacts`](super::contacts).
+
+use glam::{UVec3, Vec2, Vec3, Vec4};
+
+use super::types::Body;
+use crate::kernel::Kernel;
+
+/// The map at a point.
+pub(super) struct Field {
+    /// Signed distance in m.
+    pub distance: f32,
+    /// Effective distance in m.
+    pub effective: f32,
+    /// Gradient of the first in the mesh's frame.
+    pub distance_gradient: Vec3,
+    /// Gradient of the second.
+    pub effective_gradient: Vec3,
+}
+
+/// The map at a point of the mesh's frame, if the body is felt there.
+#[inline]
+pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Field> {
+    let size = UVec3::new(body.nodes_x, body.nodes_y, body.nodes_z);
+    let high = body.field_min + (size - UVec3::ONE).as_vec3() * body.cell_size;
+    if y.cmple(body.field_min).any() || y.cmpge(high).any() {
+        return None;
+    }
+    let inverse = 1.0 / body.cell_size;
+    let at = (y - body.field_min) * inverse;
+    let cell = at.as_uvec3().min(size - UVec3::splat(2));
+    let f = at - cell.as_vec3();
+    let (row, plane) = (size.x as usize, (size.x * size.y) as usize);
+    let first = body.first_node as usize + cell.z as usize * plane + cell.y as usize * row + cell.x as usize;
+    let node = |k: usize| maps[first + k];
+    // Distances change by no more than a cell from node to node: most particles are done after one read.
+    if node(0).min_element() >= support + 3.0 * body.cell_size {
+        return None;
+    }
+    let (c000, c100, c010, c110) = (node(0), node(1), node(row), node(row + 1));
+    let (c001, c101, c011, c111) = (node(plane), node(plane + 1), node(plane + row), node(plane + row + 1));
+    let mix = |a: Vec2, b: Vec2, t: f32| a * (1.0 - t) + b * t;
+    let (x00, x10) = (mix(c000, c100, f.x), mix(c010, c110, f.x));
+    let (x01, x11) = (mix(c001, c101, f.x), mix(c011, c111, f.x));
+    let (y0, y1) = (mix(x00, x10, f.y), mix(x01, x11, f.y));
+    let value = mix(y0, y1, f.z);
+    if value.min_element() >= support {
+        return None;
+    }
+    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z) * inverse;
+    let dy = mix(x10 - x00, x11 - x01, f.z) * inverse;
+    let dz = (y1 - y0) * inverse;
+    Some(Field {
+        distance: value.x,
+        effective: value.y,
+        distance_gradient: Vec3::new(dx.x, dy.x, dz.x),
+        effective_gradient: Vec3::new(dx.y, dy.y, dz.y),
+    })
+}
+
+/// The boundary particles round a point of the mesh's frame: minus the gradient of their share, and the share.
+pub(super) fn sampled<K: Kernel>(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Vec4 {
+    let scale = 1.0 / support;
+    let scale3 = scale * scale * scale;
+    let size = UVec3::new(body.samples_x, body.samples_y, body.samples_z).as_ivec3();
+    let home = ((y - body.field_min) * scale).floor().as_ivec3();
+    let (low, high) = ((home - 1).max(glam::IVec3::ZERO), (home + 1).min(size - 1));
+    let mut sum = Vec4::ZERO;
+    for z in low.z..=high.z {
+        for row in low.y..=high.y {
+            for x in low.x..=high.x {
+                let cell = body.first_sample_cell as usize + ((z * size.y + row) * size.x + x) as usize;
+                let range = maps[cell];
+                for k in range.x.to_bits() as usize..range.y.to_bits() as usize {
+                    let (xy, zv) = (maps[2 * k], maps[2 * k + 1]);
+                    let d = y - xy.extend(zv.x);
+                    let q = d.length() * scale;
+                    if q < 1.0 {
+                        let slope = -K::g(q) * scale * scale * d;
+                        sum += zv.y * scale3 * slope.extend(K::w(q));
+                    }
+                }
+            }
+        }
+    }
+    sum
+}

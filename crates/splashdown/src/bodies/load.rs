@@ -1,0 +1,293 @@
+//! From a scene's bodies to solids with a mass.
+
+use std::path::PathBuf;
+
+use glam::{Mat3, Quat, Vec3, Vec4};
+use splashdown_io::{IoError, Mesh};
+
+use super::types::Body;
+use crate::boundary::{KernelPair, wall_offset};
+use crate::models;
+use crate::passes::Params;
+use crate::scene::{self, BoundaryKind, MeshShape, MeshSource, Motion, Script, UpAxis};
+use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
+
+/// Why a body could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BodyError {
+    /// Its file.
+    #[error("body {name:?}: {source}")]
+    File {
+        /// The body's name.
+        name: String,
+        /// What is wrong with the file.
+        source: IoError,
+    },
+    /// A model that does not come with the program.
+    #[error(
+        "body {name:?}: there is no model {model:?}; there are {}. A file's name needs its ending",
+        known()
+    )]
+    NoModel {
+        /// The body's name.
+        name: String,
+        /// The word given.
+        model: String,
+    },
+    /// Its shape.
+    #[error("body {name:?}: {source}")]
+    Solid {
+        /// The body's name.
+        name: String,
+        /// What is wrong with the shape.
+        source: SolidError,
+    },
+    /// A size that can hardly be meant.
+    #[error(
+        "body {name:?} is {size:.4} m long, the domain is {domain:.4} m: its mesh is probably in {unit}; give it scale = {scale}"
+    )]
+    Scale {
+        /// The body's name.
+        name: String,
+        /// Its longest edge in m.
+        size: f32,
+        /// The domain's longest edge in m.
+        domain: f32,
+        /// The unit that would fit.
+        unit: &'static str,
+        /// The scale that would fit.
+        scale: f32,
+    },
+}
+
+fn known() -> String {
+    models::names().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+}
+
+/// A body ready for a device.
+pub struct LoadedBody {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub solid: Solid,
+    /// Its state at t = 0, the places in the maps not yet filled in.
+    pub state: Body,
+    /// Boundary particles in the mesh's frame with their volumes in m^3; empty where the map is used.
+    pub samples: Vec<Vec4>,
+    /// Its motion, if that is written.
+    pub script: Option<Script>,
+    /// Linear RGB.
+    pub colour: Option<[f32; 3]>,
+}
+
+impl LoadedBody {
+    /// Where the mesh's origin is at t = 0, in m, and the mesh's rotation.
+    pub fn pose(&self) -> (Vec3, Quat) {
+        let rotation = self.state.rotation();
+        (self.state.position - rotation * self.state.center, rotation)
+    }
+}
+
+/// A mesh in metres, y up, in its own frame.
+///
+/// # Errors
+/// [`BodyError`] of the file or the model's name.
+pub fn mesh_of(name: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
+    let mut mesh = match &source.shape {
+        MeshShape::Model(model) => models::build(model)
+            .ok_or_else(|| BodyError::NoModel { name: name.into(), model: model.clone() })?,
+        MeshShape::File(path) => {
+            splashdown_io::read_mesh(path).map_err(|source| BodyError::File { name: name.into(), source })?
+        }
+    };
+    for v in &mut mesh.vertices {
+        let [x, y, z] = v.map(|c| c * source.scale);
+        *v = match source.up {
+            UpAxis::Y => [x, y, z],
+            UpAxis::Z => [x, z, -y],
+            UpAxis::X => [-y, x, z],
+        };
+    }
+    mesh.normals.clear();
+    Ok(mesh)
+}
+
+/// Loads a scene's bodies. `told` hears of each body when it begins and how far it is, in [0, 1].
+///
+/// # Errors
+/// [`BodyError`], the first.
+pub fn load(
+    scene: &scene::Scene,
+    params: &Params,
+    kernels: KernelPair,
+    cache: Option<PathBuf>,
+    told: &(dyn Fn(&str, f32) + Sync),
+) -> Result<Vec<LoadedBody>, BodyError> {
+    scene.bodies.iter().map(|body| load_one(scene, body, params, kernels, cache.clone(), told)).collect()
+}
+
+fn load_one(
+    scene: &scene::Scene,
+    body: &scene::Body,
+    params: &Params,
+    kernels: KernelPair,
+    cache: Option<PathBuf>,
+    told: &(dyn Fn(&str, f32) + Sync),
+) -> Result<LoadedBody, BodyError> {
+    let mesh = mesh_of(&body.name, &body.mesh)?;
+    check_scale(scene, body, &mesh)?;
+    let spacing = params.particle_spacing;
+    let settings = SolidSettings {
+        cell_size: cell_size(&mesh, spacing, params.support_radius),
+        support_radius: params.support_radius,
+        kernels,
+        half_thickness: body.half_thickness.unwrap_or(0.5 * spacing),
+        shell: body.shell,
+        cache,
+    };
+    let wrong = |source| BodyError::Solid { name: body.name.clone(), source };
+    let solid = Solid::build(&mesh, &settings, &|part| told(&body.name, part)).map_err(wrong)?;
+    let mut state = Body {
+        position: body.mesh.position,
+        orientation: Vec4::from(body.mesh.rotation),
+        friction: body.friction,
+        adhesion: body.adhesion,
+        way: if body.boundary == BoundaryKind::Particles { Body::PARTICLES } else { Body::MAP },
+        ..bytemuck::Zeroable::zeroed()
+    };
+    let mut script = None;
+    match &body.motion {
+        Motion::Static => {}
+        Motion::Scripted(written) => {
+            state.kind = Body::SCRIPTED;
+            let pose = written.pose(0.0);
+            state.position = pose.position;
+            state.orientation = Vec4::from(pose.orientation);
+            (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
+            script = Some(written.clone());
+        }
+        Motion::Dynamic { density, velocity, angular_velocity } => {
+            solid.require_volume().map_err(wrong)?;
+            let mass = solid.mass;
+            state.kind = Body::DYNAMIC;
+            state.center = mass.center;
+            state.position += body.mesh.rotation * mass.center;
+            state.inverse_mass = 1.0 / (density * mass.volume);
+            let inertia = mass.inertia * *density;
+            (state.inertia, state.inertia_products) = parts(inertia);
+            (state.inverse_inertia, state.inverse_inertia_products) = parts(inertia.inverse());
+            (state.velocity, state.angular_velocity) = (*velocity, *angular_velocity);
+        }
+    }
+    let farthest = |x: &[f32; 3]| Vec3::from(*x).distance(state.center);
+    state.reach = solid.mesh.vertices.iter().map(farthest).fold(0.0, f32::max);
+    state.radius = state.reach + params.support_radius + settings.half_thickness + 4.0 * settings.cell_size;
+    let samples = match body.boundary {
+        BoundaryKind::Map => Vec::new(),
+        BoundaryKind::Particles => boundary_particles(&solid, params, kernels),
+    };
+    Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour })
+}
+
+/// Diagonal, and xy, xz, yz.
+fn parts(m: Mat3) -> (Vec3, Vec3) {
+    (Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z), Vec3::new(m.y_axis.x, m.z_axis.x, m.z_axis.y))
+}
+
+/// Half a particle spacing, or more where the grid would have more than this many nodes.
+fn cell_size(mesh: &Mesh, spacing: f32, support: f32) -> f32 {
+    const MOST_NODES: f32 = 6e6;
+    let (low, high) = solid::bounds(mesh);
+    let volume = |cell: f32| ((high - low + 2.0 * support) / cell + 4.0).element_product();
+    let mut cell = 0.5 * spacing;
+    while volume(cell) > MOST_NODES && cell.is_finite() {
+        cell *= 1.1;
+    }
+    cell
+}
+
+fn check_scale(scene: &scene::Scene, body: &scene::Body, mesh: &Mesh) -> Result<(), BodyError> {
+    let (low, high) = solid::bounds(mesh);
+    let (size, domain) = ((high - low).max_element(), scene.domain.size().max_element());
+    let scale = body.mesh.scale;
+    let (unit, scale) = match size / domain {
+        ratio if ratio > 100.0 => ("millimetres", 0.001 * scale),
+        ratio if ratio > 0.0 && ratio < 0.001 => ("kilometres", 1000.0 * scale),
+        _ => return Ok(()),
+    };
+    Err(BodyError::Scale { name: body.name.clone(), size, domain, unit, scale })
+}
+
+/// Boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W (Akinci et al. 2012),
+/// scaled once so that half a spacing off the surface the density is what a plane wall's is.
+fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Vec<Vec4> {
+    let (spacing, support) = (params.particle_spacing, params.support_radius);
+    let shell = solid.kind == SolidKind::Shell;
+    let depth = if shell { 0.0 } else { 0.5 * spacing };
+    let places = solid.sample_surface(spacing, depth);
+    let near = Neighbours::new(&places, support);
+    let volumes: Vec<f32> =
+        places.iter().map(|&x| 1.0 / near.sum(x, |r| kernels.w(r / support) / support.powi(3))).collect();
+    let mut scale = 1.0;
+    if !shell {
+        let offset = spacing * wall_offset(kernels, support / spacing);
+        let wanted = kernels.density((0.5 * spacing + offset) / support).0;
+        let (mut share, mut count) = (0.0f64, 0.0f64);
+        for &x in &places {
+            let e = 0.5 * solid.field.cell_size;
+            let slope = |axis: Vec3| solid.field.distance(x + e * axis) - solid.field.distance(x - e * axis);
+            let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or_zero();
+            let outside = x + normal * (0.5 * spacing - solid.field.distance(x));
+            share +=
+                f64::from(near.weighted(outside, &volumes, |r| kernels.w(r / support) / support.powi(3)));
+            count += 1.0;
+        }
+        if share > 0.0 {
+            scale = (f64::from(wanted) * count / share) as f32;
+        }
+    }
+    places.iter().zip(volumes).map(|(x, v)| x.extend(v * scale)).collect()
+}
+
+/// Points in cells of a hash map, for sums over neighbours while loading.
+struct Neighbours<'a> {
+    points: &'a [Vec3],
+    cells: std::collections::HashMap<[i32; 3], Vec<u32>>,
+    reach: f32,
+}
+
+impl<'a> Neighbours<'a> {
+    fn new(points: &'a [Vec3], reach: f32) -> Self {
+        let mut cells: std::collections::HashMap<_, Vec<u32>> = std::collections::HashMap::new();
+        for (i, x) in points.iter().enumerate() {
+            cells.entry((x / reach).floor().as_ivec3().to_array()).or_default().push(i as u32);
+        }
+        Self { points, cells, reach }
+    }
+
+    fn for_each(&self, x: Vec3, mut f: impl FnMut(usize, f32)) {
+        let home = (x / self.reach).floor().as_ivec3();
+        for k in 0..27 {
+            let cell = home + glam::IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+            for &j in self.cells.get(&cell.to_array()).into_iter().flatten() {
+                let r = x.distance(self.points[j as usize]);
+                if r < self.reach {
+                    f(j as usize, r);
+                }
+            }
+        }
+    }
+
+    fn sum(&self, x: Vec3, w: impl Fn(f32) -> f32) -> f32 {
+        let mut sum = 0.0;
+        self.for_each(x, |_, r| sum += w(r));
+        sum
+    }
+
+    fn weighted(&self, x: Vec3, weights: &[f32], w: impl Fn(f32) -> f32) -> f32 {
+        let mut sum = 0.0;
+        self.for_each(x, |j, r| sum += weights[j] * w(r));
+        sum
+    }
+}

@@ -1,0 +1,31 @@
+//! Moves the bodies by a step: the dynamic ones by the fluid's force and gravity, the scripted ones as written.
+//!
+//! Rigid body motion by symplectic Euler: v += dt (F/M + g); omega += dt I^-1 (torque - omega x I omega); the orientation by the
+//! exponential of the rotation vector omega dt, so that it stays a unit quaternion. A scripted body follows a cubic between the
+//! moments that the host wrote down for the frame.
+
+mod cpu;
+
+use splashdown_gpu::{PassDesc, read, uniform, write};
+
+use super::types::{self, Body, ScriptSample};
+use crate::passes::{PARAMS, Params, STATE, StepState, TALLY};
+
+/// See the module.
+pub static MOTION: PassDesc = PassDesc {
+    label: "bodies.motion",
+    wgsl: include_str!("motion.wgsl"),
+    imports: &[STATE, PARAMS, TALLY, types::WGSL],
+    entry: "motion",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        read::<StepState>("state"),
+        read::<ScriptSample>("scripts"),
+        write::<Body>("bodies"),
+        write::<u32>("sums"),
+        write::<u32>("tally"),
+    ],
+    cpu: cpu::motion,
+};

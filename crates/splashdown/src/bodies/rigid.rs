@@ -1,0 +1,162 @@
+//! Collisions of bodies with one another and with the box, by `rapier3d`.
+//!
+//! *How it works.* The device moves every body in every step, collisions left out. After a batch of steps the host makes rapier's
+//! bodies go the same way, from where they were before the batch with the mean velocity that leads to where the device
+//! has them. Without a contact rapier arrives at the same place and its answer is dropped, so that free bodies are
+//! untouched. With one, its places are taken, and what the contact changed of the mean velocity is added to the device's.
+//!
+//! *Why not* rapier for all motion: the fluid's force changes in every step, and a host in every step is what the house avoids.
+//!
+//! Dynamic bodies collide as their convex hull where that is nearly their volume, else as a convex decomposition; what does not
+//! answer to forces as its triangles.
+
+use glam::{Quat, Vec3, Vec4};
+use rapier3d::prelude::{
+    ColliderBuilder, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Rotation, SharedShape, Vector,
+};
+
+use super::load::LoadedBody;
+use super::types::Body;
+use crate::scene::Domain;
+
+/// Friction between solids: wood on wood, roughly.
+const FRICTION: f32 = 0.4;
+/// Share of the approach speed that comes back.
+const RESTITUTION: f32 = 0.2;
+/// A hull this much larger than its body hides a hollow.
+const HOLLOW: f32 = 1.1;
+
+/// The bodies' twins in rapier's world.
+pub(super) struct Rigid {
+    world: PhysicsWorld,
+    /// One per body, in their order.
+    handles: Vec<RigidBodyHandle>,
+    /// Where they were after the last batch.
+    before: Vec<(Vec3, Quat)>,
+}
+
+impl Rigid {
+    /// `None` where nothing can collide.
+    pub fn new(loaded: &[LoadedBody], states: &[Body], domain: &Domain) -> Option<Self> {
+        if !states.iter().any(|body| body.kind == Body::DYNAMIC) {
+            return None;
+        }
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::ZERO;
+        let smallest = states.iter().filter(|body| body.kind == Body::DYNAMIC).map(|body| body.reach);
+        world.integration_parameters.length_unit = smallest.fold(f32::INFINITY, f32::min).max(1e-6);
+        let handles =
+            loaded.iter().zip(states).map(|(body, state)| insert(&mut world, body, state)).collect();
+        insert_box(&mut world, domain);
+        let before = states.iter().map(|state| (state.position, state.rotation())).collect();
+        Some(Self { world, handles, before })
+    }
+
+    /// Brings states up to date with the collisions of the last `seconds`; true if there were any.
+    pub fn resolve(&mut self, states: &mut [Body], seconds: f32) -> bool {
+        if seconds.is_nan() || seconds <= 0.0 {
+            return false;
+        }
+        let mut means = Vec::with_capacity(states.len());
+        for ((state, handle), &(position, rotation)) in states.iter().zip(&self.handles).zip(&self.before) {
+            let body = &mut self.world.bodies[*handle];
+            let velocity = (state.position - position) / seconds;
+            let turn = state.rotation() * rotation.conjugate();
+            let spin = if turn.w < 0.0 { -turn } else { turn }.to_scaled_axis() / seconds;
+            means.push((velocity, spin));
+            if state.kind == Body::DYNAMIC {
+                body.set_position(pose(position, rotation), true);
+                body.set_linvel(there(velocity), true);
+                body.set_angvel(there(spin), true);
+            } else if state.kind == Body::SCRIPTED {
+                body.set_next_kinematic_position(pose(state.position, state.rotation()));
+            }
+        }
+        self.world.integration_parameters.dt = seconds;
+        self.world.step();
+        let mut collided = false;
+        for (b, state) in states.iter_mut().enumerate() {
+            let handle = self.handles[b];
+            let body = &self.world.bodies[handle];
+            if state.kind == Body::DYNAMIC && self.touches(handle) {
+                collided = true;
+                let (velocity, spin) = means[b];
+                state.position = here(body.position().translation);
+                let [x, y, z, w] = body.position().rotation.to_array();
+                state.orientation = Vec4::new(x, y, z, w).normalize();
+                state.velocity += here(body.linvel()) - velocity;
+                state.angular_velocity += here(body.angvel()) - spin;
+            }
+            self.before[b] = (state.position, state.rotation());
+        }
+        collided
+    }
+
+    fn touches(&self, handle: RigidBodyHandle) -> bool {
+        self.world.bodies[handle].colliders().iter().any(|&collider| {
+            self.world.narrow_phase.contact_pairs_with(collider).any(|pair| pair.has_any_active_contact())
+        })
+    }
+}
+
+fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBodyHandle {
+    let builder = match state.kind {
+        Body::DYNAMIC => RigidBodyBuilder::dynamic(),
+        Body::SCRIPTED => RigidBodyBuilder::kinematic_position_based(),
+        _ => RigidBodyBuilder::fixed(),
+    };
+    let builder = builder.pose(pose(state.position, state.rotation())).can_sleep(false);
+    let handle = world.insert_body(builder);
+    let points: Vec<Vector> =
+        body.solid.mesh.vertices.iter().map(|&v| there(Vec3::from(v) - state.center)).collect();
+    let shape = if state.kind == Body::DYNAMIC {
+        convex(&points, &body.solid.mesh.triangles, body.solid.mass.volume)
+    } else {
+        SharedShape::trimesh(points.clone(), body.solid.mesh.triangles.clone()).ok()
+    };
+    // A mesh of which no solid can be made, for rapier, is its ball; it has been accepted as a body before.
+    let shape = shape.unwrap_or_else(|| SharedShape::ball(state.reach));
+    // The mass is that of the shape for rapier, whatever its volume: contacts with equal masses look the same.
+    let volume = shape.mass_properties(1.0).mass();
+    let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { 1.0 };
+    let density = if volume > 0.0 { mass / volume } else { 1.0 };
+    let collider = ColliderBuilder::new(shape).density(density).friction(FRICTION).restitution(RESTITUTION);
+    world.insert_collider(collider, Some(handle));
+    handle
+}
+
+fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<SharedShape> {
+    let hull = SharedShape::convex_hull(points)?;
+    if hull.mass_properties(1.0).mass() <= HOLLOW * volume {
+        return Some(hull);
+    }
+    Some(SharedShape::convex_decomposition(points, triangles))
+}
+
+fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {
+    for axis in 0..3 {
+        for (side, corner) in [domain.min, domain.max].into_iter().enumerate() {
+            if domain.closed[axis][side] {
+                let mut normal = Vec3::ZERO;
+                normal[axis] = 1.0 - 2.0 * side as f32;
+                let shape = SharedShape::halfspace(there(normal));
+                let place = pose(corner, Quat::IDENTITY);
+                let collider = ColliderBuilder::new(shape).position(place);
+                world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
+            }
+        }
+    }
+}
+
+/// Into rapier's vectors, which come from another release of the same crate.
+fn there(v: Vec3) -> Vector {
+    Vector::from_array(v.to_array())
+}
+
+fn here(v: Vector) -> Vec3 {
+    Vec3::from_array(v.to_array())
+}
+
+fn pose(position: Vec3, rotation: Quat) -> Pose {
+    Pose::from_parts(there(position), Rotation::from_array(rotation.to_array()))
+}

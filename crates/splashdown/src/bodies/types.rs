@@ -1,0 +1,171 @@
+//! What lies in the buffers of bodies.
+
+use glam::{Mat3, Quat, Vec3, Vec4};
+use splashdown_gpu::{WgslModule, gpu_struct};
+
+/// The WGSL side of this file.
+pub const WGSL: WgslModule = WgslModule { name: "sph/body", source: include_str!("body.wgsl") };
+
+gpu_struct! {
+    /// A body on the device. Its own frame is that of its mesh, moved so that `center` is the origin of rotation.
+    pub struct Body {
+        /// Where `center` is, in m.
+        position: Vec3,
+        /// How it moves: [`Body::STATIC`], [`Body::SCRIPTED`] or [`Body::DYNAMIC`].
+        kind: u32,
+        /// The mesh's rotation, a quaternion.
+        orientation: Vec4,
+        /// Velocity of `center` in m/s.
+        velocity: Vec3,
+        /// 0 for free slip, 1 for no slip.
+        friction: f32,
+        /// Angular velocity in rad/s.
+        angular_velocity: Vec3,
+        /// Acceleration in m/s^2 by which the fluid clings to it.
+        adhesion: f32,
+        /// The point of the mesh about which it turns, in m: the centre of mass of a dynamic body.
+        center: Vec3,
+        /// One over the mass in kg; 0 for what is moved by nothing.
+        inverse_mass: f32,
+        /// Diagonal of the inertia about `center` in the mesh's frame, in kg m^2.
+        inertia: Vec3,
+        /// How the fluid feels it: [`Body::MAP`] or [`Body::PARTICLES`].
+        way: u32,
+        /// The inertia's xy, xz, yz.
+        inertia_products: Vec3,
+        /// Nothing farther from `position` than this, in m, feels it.
+        radius: f32,
+        /// Diagonal of the inverse of the inertia.
+        inverse_inertia: Vec3,
+        /// Where its distances begin in the maps.
+        first_node: u32,
+        /// The inverse's xy, xz, yz.
+        inverse_inertia_products: Vec3,
+        /// Nodes of its grid along x.
+        nodes_x: u32,
+        /// Lower corner of its grid in the mesh's frame, in m.
+        field_min: Vec3,
+        /// Distance of its grid's nodes in m.
+        cell_size: f32,
+        /// Force of the fluid on it in the last step, in N.
+        force: Vec3,
+        /// Nodes of its grid along y.
+        nodes_y: u32,
+        /// Torque of that about `center`, in N m.
+        torque: Vec3,
+        /// Nodes of its grid along z.
+        nodes_z: u32,
+        /// Where its cells of boundary particles begin in the maps: as many as there are cells of the size of the support
+        /// radius over the grid, x fastest.
+        first_sample_cell: u32,
+        /// Cells of boundary particles along x.
+        samples_x: u32,
+        /// Cells of boundary particles along y.
+        samples_y: u32,
+        /// Cells of boundary particles along z.
+        samples_z: u32,
+        /// Distance of the farthest point of the mesh from `center`, in m.
+        reach: f32,
+        /// Its number among the scripted bodies.
+        script: u32,
+        /// Nothing; WGSL wants a multiple of sixteen bytes.
+        unused: [f32; 2],
+    }
+}
+
+gpu_struct! {
+    /// What one body does to one particle; two of these per particle.
+    pub struct Contact {
+        /// The gradient of the body's share of the kernel, pointing away from it, in 1/m.
+        slope: Vec3,
+        /// Its share of the density, over the rest density.
+        density: f32,
+        /// Unit normal of the nearest surface, pointing into the fluid.
+        normal: Vec3,
+        /// Distance from the surface in m, negative inside.
+        distance: f32,
+        /// Its share of the kernel.
+        share: f32,
+        /// Distance of the plane wall that would have this share, in m.
+        effective: f32,
+        /// Which body; [`Contact::NONE`] if there is none.
+        body: u32,
+        /// Nothing.
+        unused: u32,
+    }
+}
+
+gpu_struct! {
+    /// Where a scripted body is at one of [`SCRIPT_SAMPLES`] moments of a frame.
+    pub struct ScriptSample {
+        /// Position in m.
+        position: Vec3,
+        /// Nothing.
+        unused: f32,
+        /// Rotation, a quaternion.
+        orientation: Vec4,
+        /// Velocity in m/s.
+        velocity: Vec3,
+        /// Nothing.
+        unused_2: f32,
+        /// Angular velocity in rad/s.
+        angular_velocity: Vec3,
+        /// Nothing.
+        unused_3: f32,
+    }
+}
+
+/// Moments of a frame at which the host says where a scripted body is; between them motion is a cubic.
+pub const SCRIPT_SAMPLES: usize = 65;
+
+/// Words per body in the buffer of sums: force and torque, 64 bits each.
+pub const SUM_WORDS: usize = 12;
+
+impl Body {
+    /// Stands still.
+    pub const STATIC: u32 = 0;
+    /// Moves as written.
+    pub const SCRIPTED: u32 = 1;
+    /// Moves as it is driven.
+    pub const DYNAMIC: u32 = 2;
+    /// Felt by its map.
+    pub const MAP: u32 = 0;
+    /// Felt by its boundary particles.
+    pub const PARTICLES: u32 = 1;
+
+    /// Its rotation.
+    pub fn rotation(&self) -> Quat {
+        Quat::from_vec4(self.orientation)
+    }
+
+    /// From the world into the mesh's frame.
+    #[inline]
+    pub fn local(&self, x: Vec3) -> Vec3 {
+        self.rotation().conjugate() * (x - self.position) + self.center
+    }
+
+    /// Velocity of its material at a point of the world, in m/s.
+    #[inline]
+    pub fn velocity_at(&self, x: Vec3) -> Vec3 {
+        self.velocity + self.angular_velocity.cross(x - self.position)
+    }
+
+    /// The inertia about `center` in the mesh's frame.
+    pub fn inertia_matrix(&self) -> Mat3 {
+        symmetric(self.inertia, self.inertia_products)
+    }
+
+    /// Its inverse.
+    pub fn inverse_inertia_matrix(&self) -> Mat3 {
+        symmetric(self.inverse_inertia, self.inverse_inertia_products)
+    }
+}
+
+impl Contact {
+    /// No body.
+    pub const NONE: u32 = u32::MAX;
+}
+
+fn symmetric(d: Vec3, p: Vec3) -> Mat3 {
+    Mat3::from_cols(Vec3::new(d.x, p.x, p.y), Vec3::new(p.x, d.y, p.z), Vec3::new(p.y, p.z, d.z))
+}

@@ -1,0 +1,134 @@
+//! Solids on disk, found again by what they were made from.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use glam::{Vec2, Vec3};
+use splashdown_io::Mesh;
+
+use super::field::DistanceField;
+use super::{RepairReport, SolidSettings};
+
+/// Changes when the content of a file would change.
+const VERSION: u32 = 1;
+const MAGIC: &[u8; 8] = b"SDSOLID1";
+
+/// Where solids are kept unless told otherwise: `splashdown/solids` in the user's cache folder, if there is one.
+pub fn default_cache_folder() -> Option<PathBuf> {
+    let from = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let base = from("XDG_CACHE_HOME")
+        .or_else(|| from("LOCALAPPDATA"))
+        .or_else(|| from("HOME").map(|home| home.join(".cache")))?;
+    Some(base.join("splashdown").join("solids"))
+}
+
+/// The file for a mesh and settings.
+pub(super) fn file(folder: &Path, mesh: &Mesh, settings: &SolidSettings) -> PathBuf {
+    let mut hash = Fnv::default();
+    hash.add(&VERSION.to_le_bytes());
+    hash.add(bytemuck::cast_slice(&mesh.vertices));
+    hash.add(bytemuck::cast_slice(&mesh.triangles));
+    for number in [settings.cell_size, settings.support_radius, settings.half_thickness] {
+        hash.add(&number.to_le_bytes());
+    }
+    hash.add(&settings.kernels.id().to_le_bytes());
+    hash.add(&[match settings.shell {
+        None => 0,
+        Some(false) => 1,
+        Some(true) => 2,
+    }]);
+    folder.join(format!("{:032x}.solid", hash.0))
+}
+
+/// FNV-1a of 128 bits: a name, not a secret.
+struct Fnv(u128);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+}
+
+impl Fnv {
+    fn add(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+        }
+    }
+}
+
+/// What is stored beside the numbers.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Header {
+    report: RepairReport,
+    vertices: usize,
+    triangles: usize,
+    min: [f32; 3],
+    cell_size: f32,
+    nodes: [u32; 3],
+}
+
+/// Reads a solid back; `None` if there is none or it is damaged.
+pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
+    let bytes = fs::read(path).ok()?;
+    let rest = bytes.strip_prefix(MAGIC)?;
+    let (length, rest) = rest.split_first_chunk::<4>()?;
+    let (header, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+    let header: Header = serde_json::from_slice(header).ok()?;
+    let count = header.nodes.iter().try_fold(1usize, |n, &axis| n.checked_mul(axis as usize))?;
+    let (vertices, rest) = rest.split_at_checked(header.vertices.checked_mul(12)?)?;
+    let (triangles, rest) = rest.split_at_checked(header.triangles.checked_mul(12)?)?;
+    let (values, sum) = rest.split_at_checked(count.checked_mul(8)?)?;
+    let mut hash = Fnv::default();
+    hash.add(values);
+    if sum != hash.0.to_le_bytes() {
+        return None;
+    }
+    let mesh = Mesh {
+        vertices: bytemuck::pod_collect_to_vec(vertices),
+        normals: Vec::new(),
+        triangles: bytemuck::pod_collect_to_vec(triangles),
+    };
+    let field = DistanceField {
+        min: Vec3::from(header.min),
+        cell_size: header.cell_size,
+        nodes: header.nodes,
+        values: bytemuck::pod_collect_to_vec::<u8, Vec2>(values),
+    };
+    Some((mesh, header.report, field))
+}
+
+/// Writes a solid. A cache that cannot be written costs time, not the run: it is told to the log.
+pub(super) fn save(path: &Path, mesh: &Mesh, report: RepairReport, field: &DistanceField) {
+    let write = || -> std::io::Result<()> {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        fs::create_dir_all(folder)?;
+        let header = Header {
+            report,
+            vertices: mesh.vertices.len(),
+            triangles: mesh.triangles.len(),
+            min: field.min.to_array(),
+            cell_size: field.cell_size,
+            nodes: field.nodes,
+        };
+        let header = serde_json::to_vec(&header)?;
+        let values: &[u8] = bytemuck::cast_slice(&field.values);
+        let mut hash = Fnv::default();
+        hash.add(values);
+        let partial = path.with_extension(format!("{}.partial", std::process::id()));
+        let mut file = std::io::BufWriter::new(fs::File::create(&partial)?);
+        file.write_all(MAGIC)?;
+        file.write_all(&(header.len() as u32).to_le_bytes())?;
+        file.write_all(&header)?;
+        file.write_all(bytemuck::cast_slice(&mesh.vertices))?;
+        file.write_all(bytemuck::cast_slice(&mesh.triangles))?;
+        file.write_all(values)?;
+        file.write_all(&hash.0.to_le_bytes())?;
+        file.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        fs::rename(&partial, path).inspect_err(|_| drop(fs::remove_file(&partial)))
+    };
+    if let Err(error) = write() {
+        tracing::warn!("{}: the solid is not kept for the next run: {error}", path.display());
+    }
+}

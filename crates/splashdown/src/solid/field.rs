@@ -1,0 +1,228 @@
+//! Signed distances on a grid, and the share of the kernel that the solid fills.
+
+use glam::{UVec3, Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::bvh::Bvh;
+use crate::boundary::KernelPair;
+
+/// Distances on the nodes of a grid round a solid, in the frame of its mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistanceField {
+    /// The first node, in m.
+    pub min: Vec3,
+    /// Distance of the nodes in m.
+    pub cell_size: f32,
+    /// Nodes along each axis.
+    pub nodes: [u32; 3],
+    /// Per node, x fastest: the signed distance in m, negative inside; and the distance of the plane wall that would fill the
+    /// same share of the kernel.
+    pub values: Vec<Vec2>,
+}
+
+/// Nodes of a block that is settled at once where it is far from the surface.
+const BLOCK: u32 = 8;
+/// Points of the quadrature along the diameter of the kernel.
+const POINTS: i32 = 12;
+
+impl DistanceField {
+    /// Fills the grid. `half_thickness` makes a shell of the mesh; without it the winding number tells inside from outside.
+    pub(super) fn new(
+        bvh: &Bvh,
+        bounds: (Vec3, Vec3),
+        cell_size: f32,
+        support_radius: f32,
+        half_thickness: Option<f32>,
+        progress: &(dyn Fn(f32) + Sync),
+    ) -> Self {
+        let margin = support_radius + half_thickness.unwrap_or(0.0) + 2.0 * cell_size;
+        let min = bounds.0 - margin;
+        let nodes = ((bounds.1 - bounds.0 + 2.0 * margin) / cell_size).ceil().as_uvec3() + UVec3::ONE;
+        let mut field = Self { min, cell_size, nodes: nodes.to_array(), values: Vec::new() };
+        let band = support_radius + 4.0 * cell_size + half_thickness.unwrap_or(0.0);
+        let blocks = (nodes + UVec3::splat(BLOCK - 1)) / BLOCK;
+        let slabs: Vec<Vec<f32>> = (0..blocks.z)
+            .into_par_iter()
+            .map(|z| {
+                let slab = field.slab(bvh, z * BLOCK, band, half_thickness);
+                progress(0.5 / blocks.z as f32);
+                slab
+            })
+            .collect();
+        field.values = slabs.into_iter().flatten().map(Vec2::splat).collect();
+        field
+    }
+
+    /// Distances of the planes of nodes from `first_z`.
+    fn slab(&self, bvh: &Bvh, first_z: u32, band: f32, half_thickness: Option<f32>) -> Vec<f32> {
+        let [nx, ny, nz] = self.nodes;
+        let depth = BLOCK.min(nz - first_z);
+        let mut slab = vec![0.0; (nx * ny * depth) as usize];
+        let place = |x: u32, y: u32, z: u32| ((z * ny + y) * nx + x) as usize;
+        let half = 0.5 * BLOCK as f32 * self.cell_size;
+        for block_y in (0..ny).step_by(BLOCK as usize) {
+            for block_x in (0..nx).step_by(BLOCK as usize) {
+                let corner = UVec3::new(block_x, block_y, first_z);
+                let center = self.min + corner.as_vec3() * self.cell_size + half;
+                let at_center = bvh.distance(center, f32::INFINITY);
+                let nearest = at_center - 1.75 * half;
+                let far = nearest > band;
+                let sign =
+                    |x: Vec3| if half_thickness.is_none() && bvh.winding(x) > 0.5 { -1.0 } else { 1.0 };
+                let block_sign = if far { sign(center) } else { 1.0 };
+                for z in 0..depth {
+                    for y in block_y..(block_y + BLOCK).min(ny) {
+                        let (mut last, mut last_sign) = (f32::INFINITY, 0.0);
+                        for x in block_x..(block_x + BLOCK).min(nx) {
+                            slab[place(x, y, z)] = if far {
+                                block_sign * nearest
+                            } else {
+                                let p = self.node(UVec3::new(x, y, first_z + z));
+                                let d = bvh.distance(p, 1.001 * (last + self.cell_size));
+                                match half_thickness {
+                                    Some(half) => d - half,
+                                    None => {
+                                        // The surface cannot lie between nodes that are farther from it than from each other.
+                                        if last_sign == 0.0 || last.abs() <= self.cell_size {
+                                            last_sign = sign(p);
+                                        }
+                                        last = d;
+                                        last_sign * d
+                                    }
+                                }
+                            };
+                        }
+                    }
+                }
+            }
+        }
+        slab
+    }
+
+    /// Fills in the effective distances: H q with D(q) = the solid's share of the kernel.
+    ///
+    /// The share is a sum over points of the ball, each with the part of it that is inside, and is compared with what the
+    /// same sum gives for the plane wall at the same distance, whose exact share is known. So a plane comes out exact, and errors
+    /// of the quadrature cancel where shares are tiny.
+    pub(super) fn fill_effective(
+        &mut self,
+        support_radius: f32,
+        kernels: KernelPair,
+        progress: &(dyn Fn(f32) + Sync),
+    ) {
+        let step = 2.0 / POINTS as f32;
+        let axis = || (0..POINTS).map(move |k| -1.0 + (k as f32 + 0.5) * step);
+        let mut ball: Vec<(Vec3, f32)> = Vec::new();
+        for z in axis() {
+            for y in axis() {
+                for x in axis() {
+                    let r = Vec3::new(x, y, z);
+                    if r.length() < 1.0 {
+                        ball.push((r * support_radius, kernels.w_gradient(r.length())));
+                    }
+                }
+            }
+        }
+        let total: f32 = ball.iter().map(|(_, w)| w).sum();
+        ball.iter_mut().for_each(|(_, w)| *w /= total);
+        let grain = step * support_radius;
+        let plane = (self.nodes[0] * self.nodes[1]) as usize;
+        let slices = self.nodes[2];
+        let effective: Vec<Vec<f32>> = (0..slices)
+            .into_par_iter()
+            .map(|z| {
+                let slice = (0..plane as u32)
+                    .map(|k| {
+                        let at = UVec3::new(k % self.nodes[0], k / self.nodes[0], z);
+                        let phi = self.values[z as usize * plane + k as usize].x;
+                        if phi.abs() >= support_radius {
+                            return phi;
+                        }
+                        self.effective(at, phi, support_radius, kernels, &ball, grain)
+                    })
+                    .collect();
+                progress(0.5 / slices as f32);
+                slice
+            })
+            .collect();
+        for (value, effective) in self.values.iter_mut().zip(effective.into_iter().flatten()) {
+            value.y = effective;
+        }
+    }
+
+    fn effective(
+        &self,
+        at: UVec3,
+        phi: f32,
+        support: f32,
+        kernels: KernelPair,
+        ball: &[(Vec3, f32)],
+        grain: f32,
+    ) -> f32 {
+        let x = self.node(at);
+        let e = 0.5 * self.cell_size;
+        let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
+        let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or_zero();
+        let inside = |distance: f32| (0.5 - distance / grain).clamp(0.0, 1.0);
+        let (mut solid, mut plane) = (0.0, 0.0);
+        for &(r, w) in ball {
+            solid += w * inside(self.distance(x + r));
+            plane += w * inside(phi + normal.dot(r));
+        }
+        if plane <= 1e-7 {
+            return phi;
+        }
+        let exact = through(kernels, phi / support);
+        // Above one half the complement is what is small.
+        let share = if exact > 0.5 {
+            1.0 - (1.0 - exact) * ((1.0 - solid) / (1.0 - plane).max(1e-7))
+        } else {
+            exact * solid / plane
+        };
+        support * q_of(kernels, share.clamp(0.0, 1.0))
+    }
+
+    /// The place of a node in m.
+    pub fn node(&self, at: UVec3) -> Vec3 {
+        self.min + at.as_vec3() * self.cell_size
+    }
+
+    /// The signed distance in m at a point of the mesh's frame: trilinear; outside the grid that of the nearest point on its rim plus
+    /// the way there.
+    pub fn distance(&self, x: Vec3) -> f32 {
+        let size = UVec3::from_array(self.nodes);
+        let high = self.min + (size - UVec3::ONE).as_vec3() * self.cell_size;
+        let p = x.clamp(self.min, high);
+        let at = (p - self.min) / self.cell_size;
+        let cell = at.as_uvec3().min(size - UVec3::splat(2));
+        let f = at - cell.as_vec3();
+        let (row, plane) = (size.x as usize, (size.x * size.y) as usize);
+        let first = cell.z as usize * plane + cell.y as usize * row + cell.x as usize;
+        let node = |k: usize| self.values[first + k].x;
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let y0 = mix(mix(node(0), node(1), f.x), mix(node(row), node(row + 1), f.x), f.y);
+        let far = plane + row;
+        let y1 = mix(mix(node(plane), node(plane + 1), f.x), mix(node(far), node(far + 1), f.x), f.y);
+        mix(y0, y1, f.z) + p.distance(x)
+    }
+}
+
+/// D(q) on both sides of a wall.
+fn through(kernels: KernelPair, q: f32) -> f32 {
+    let d = if q.abs() < 1.0 { kernels.gradient(q.abs()).0 } else { 0.0 };
+    if q < 0.0 { 1.0 - d } else { d }
+}
+
+/// Its inverse.
+fn q_of(kernels: KernelPair, share: f32) -> f32 {
+    // Shares below one half are exact down to tiny ones, so those above are asked for by their complement.
+    if share > 0.5 {
+        return -q_of(kernels, 1.0 - share);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if through(kernels, middle) > share { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

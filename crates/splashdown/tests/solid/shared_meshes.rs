@@ -1,0 +1,81 @@
+//! The meshes that the project does not ship.
+
+use std::path::PathBuf;
+
+use glam::{UVec3, Vec3};
+use splashdown::boundary::KernelPair;
+use splashdown::solid::{Solid, SolidKind, SolidSettings};
+use splashdown_io::Mesh;
+
+fn shared(name: &str) -> Option<Mesh> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes").join(name);
+    if !path.exists() {
+        eprintln!("SKIPPED: {name} is not there");
+        return None;
+    }
+    Some(splashdown_io::read_mesh(&path).unwrap())
+}
+
+fn build(mesh: &Mesh, cells: f32) -> Solid {
+    let (low, high) = mesh
+        .vertices
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), &v| (l.min(v.into()), h.max(v.into())));
+    let cell_size = (high - low).max_element() / cells;
+    let settings = SolidSettings {
+        cell_size,
+        support_radius: 4.0 * cell_size,
+        kernels: KernelPair::WendlandC2,
+        half_thickness: cell_size,
+        shell: None,
+        cache: None,
+    };
+    let begun = std::time::Instant::now();
+    let solid = Solid::build(mesh, &settings, &|_| {}).unwrap();
+    println!("{:?}: {}", begun.elapsed(), solid.report);
+    solid
+}
+
+#[test]
+fn open_meshes_are_shells_and_closed_ones_solids() {
+    for (name, kind) in [
+        ("spot.obj", SolidKind::Volume),
+        ("spot_ugly.obj", SolidKind::Volume),
+        ("penguin.obj", SolidKind::Volume),
+        ("BoxOpenedHole.obj", SolidKind::Volume),
+        ("plane_holes.obj", SolidKind::Volume),
+        ("cube_no_bottom.obj", SolidKind::Shell),
+    ] {
+        let Some(mesh) = shared(name) else { continue };
+        let solid = build(&mesh, 40.0);
+        println!("{name}: {:?} volume {}", solid.kind, solid.mass.volume);
+        assert_eq!(solid.kind, kind, "{name}: {}", solid.report);
+    }
+}
+
+#[test]
+fn spot_damaged_has_the_distances_of_spot() {
+    let (Some(spot), Some(ugly)) = (shared("spot.obj"), shared("spot_ugly.obj")) else { return };
+    let good = build(&spot, 60.0);
+    let bad = build(&ugly, 60.0);
+    let cell = good.field.cell_size;
+    let [nx, ny, _] = good.field.nodes;
+    let (mut differing, mut inside, mut all) = (Vec::new(), 0, 0);
+    for (k, value) in good.field.values.iter().enumerate() {
+        let k = k as u32;
+        let x = good.field.node(UVec3::new(k % nx, k / nx % ny, k / (nx * ny)));
+        if value.x.abs() > 3.0 * cell {
+            continue;
+        }
+        all += 1;
+        inside += u32::from(value.x < 0.0);
+        if (bad.field.distance(x) - value.x).abs() > cell {
+            differing.push(x);
+        }
+    }
+    println!("{} of {all} nodes near the surface differ by more than a cell", differing.len());
+    assert!(inside > 1000);
+    let part = differing.len() as f32 / all as f32;
+    // Where they differ is the hole and what floats about.
+    assert!(part < 0.05, "{part}");
+}
