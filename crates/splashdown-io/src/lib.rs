@@ -5,11 +5,10 @@
 //!
 //! | data | formats | opens in |
 //! |---|---|---|
-//! | [`Particles`] | PLY ([`ply`], also read), VTU ([`vtu`]) with an index of the series ([`pvd`]) | ParaView, Blender, Houdini, MeshLab |
+//! | [`Particles`] | PLY ([`ply`]), VTU ([`vtu`]) with an index of the series ([`pvd`]); both also read by [`read_particles`], and VTK ([`vtk`]), BGEO ([`bgeo`]) and NPY ([`npy`]) | ParaView, Blender, Houdini, MeshLab |
 //! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), all also read by [`read_mesh`]; glTF ([`gltf`], read) | every 3-D program |
 //! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
 //! | a growing table | CSV ([`CsvLog`]) | every spreadsheet, `pandas` |
-//! | positions | NPY ([`npy`], read) | numpy |
 //!
 //! ```
 //! # fn main() -> Result<(), splashdown_io::IoError> {
@@ -71,6 +70,8 @@ compile_error!(
 );
 
 pub mod atomic;
+pub mod bgeo;
+mod columns;
 pub mod csv;
 pub mod error;
 pub mod film;
@@ -85,6 +86,7 @@ pub mod pvd;
 pub mod read;
 pub mod stl;
 pub mod topology;
+pub mod vtk;
 pub mod vtu;
 pub mod writer;
 
@@ -95,6 +97,6 @@ pub use film::{Film, FilmError, FilmOptions};
 pub use mesh::Mesh;
 pub use particles::Particles;
 pub use picture::Picture;
-pub use read::{MESH_FORMATS_READ, read_mesh};
+pub use read::{MESH_FORMATS_READ, PARTICLE_FORMATS_READ, read_mesh, read_particles};
 pub use topology::Topology;
 pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

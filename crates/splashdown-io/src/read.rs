@@ -7,18 +7,22 @@ use std::path::Path;
 
 use crate::error::IoError;
 use crate::mesh::Mesh;
-use crate::particles::extension;
-use crate::{gltf, obj, ply, stl};
+use crate::particles::{Particles, extension};
+use crate::{bgeo, gltf, npy, obj, ply, stl, vtk, vtu};
 
 /// File name endings that [`read_mesh`] understands.
 pub const MESH_FORMATS_READ: &[&str] = &[".obj", ".stl", ".ply", ".gltf", ".glb"];
 
-/// The most triangles or vertices of one mesh that are read: some gigabytes. A small file can name a large mesh many
+/// File name endings that [`read_particles`] understands.
+pub const PARTICLE_FORMATS_READ: &[&str] = &[".ply", ".npy", ".vtk", ".vtu", ".vtp", ".bgeo"];
+
+/// The most particles, or triangles or vertices of one mesh, that are read: some gigabytes. A small file can name a large mesh many
 /// times (glTF), and must not take all memory.
 pub(crate) const MOST: usize = 1 << 27;
 
-/// One format's reader.
+/// The readers of one format.
 type MeshReader = fn(&Path) -> Result<Mesh, IoError>;
+type ParticleReader = fn(&Path) -> Result<Particles, IoError>;
 
 /// Reads a triangle mesh in the format that the name's ending tells ([`MESH_FORMATS_READ`]).
 ///
@@ -53,21 +57,61 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     Ok(mesh)
 }
 
+/// Reads particles in the format that the name's ending tells ([`PARTICLE_FORMATS_READ`]; `.bgeo.gz` too).
+///
+/// There is at least one particle, and positions and velocities are finite; velocities, densities, pressures and ids
+/// are there if the file has them (a NPY file has positions only).
+///
+/// # Errors
+/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] where the file cannot be read;
+/// [`IoError::Malformed`] where it is broken, cut short, empty, or holds numbers that are not finite;
+/// [`IoError::TooMany`].
+pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    let ending = match extension(path).as_deref() {
+        // Of two endings the first tells what is inside.
+        Some("gz") => extension(&path.with_extension("")).filter(|inner| inner == "bgeo"),
+        _ => extension(path),
+    };
+    let (format, read): (_, ParticleReader) = match ending.as_deref() {
+        Some("ply") => ("PLY", ply::read_particles),
+        Some("npy") => {
+            ("NPY", |path| Ok(Particles { positions: npy::read_positions(path)?, ..Particles::default() }))
+        }
+        Some("vtk") => ("VTK", vtk::read_particles),
+        Some("vtu" | "vtp") => ("VTU", vtu::read_particles),
+        Some("bgeo") => ("BGEO", bgeo::read_particles),
+        _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: PARTICLE_FORMATS_READ }),
+    };
+    regular(path)?;
+    let particles = read(path)?;
+    let malformed = |reason: String| IoError::malformed(path, format, reason);
+    if particles.is_empty() {
+        return Err(malformed("it holds no particles".to_owned()));
+    }
+    particles.check().map_err(|error| malformed(error.to_string()))?;
+    finite("positions", &particles.positions).map_err(malformed)?;
+    finite("velocities", &particles.velocities).map_err(malformed)?;
+    Ok(particles)
+}
+
 /// Whether there is a triangle and every vertex is a place.
 fn usable(mesh: &Mesh) -> Result<(), String> {
     let vertices = mesh.vertices.len();
     if mesh.is_empty() {
         return Err(format!("it has no triangles ({vertices} vertices, no faces): a mesh needs some"));
     }
-    let is_bad = |vertex: &[f32; 3]| !vertex.iter().all(|component| component.is_finite());
-    let bad = mesh.vertices.iter().filter(|vertex| is_bad(vertex)).count();
-    if let Some(first) = mesh.vertices.iter().position(is_bad) {
-        let [x, y, z] = mesh.vertices[first];
-        return Err(format!(
-            "{bad} of its {vertices} vertices are not finite, the first is vertex {first} (from 0) at ({x}, {y}, {z})"
-        ));
-    }
-    Ok(())
+    finite("vertices", &mesh.vertices)
+}
+
+/// Whether every vector has finite components.
+fn finite(what: &str, vectors: &[[f32; 3]]) -> Result<(), String> {
+    let is_bad = |vector: &[f32; 3]| !vector.iter().all(|component| component.is_finite());
+    let Some(first) = vectors.iter().position(is_bad) else { return Ok(()) };
+    let (bad, all) = (vectors.iter().filter(|vector| is_bad(vector)).count(), vectors.len());
+    let [x, y, z] = vectors[first];
+    Err(format!(
+        "{bad} of its {all} {what} are not finite, the first is number {first} (from 0): ({x}, {y}, {z})"
+    ))
 }
 
 /// A pipe or device may never end.

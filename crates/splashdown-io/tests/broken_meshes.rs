@@ -114,7 +114,7 @@ fn broken_obj_files_name_the_line() {
         ("v 1 2 3,5\n", "line 4: `3,5` is not a coordinate"),
         (
             "v NaN 0 0\nv 0 inf 0\nf 1 2 3\n",
-            "2 of its 5 vertices are not finite, the first is vertex 3 (from 0)",
+            "2 of its 5 vertices are not finite, the first is number 3 (from 0)",
         ),
         ("v 1e99 0 0\nf 1 2 3\n", "1 of its 4 vertices are not finite"),
     ] {
@@ -236,8 +236,10 @@ fn a_binary_file_cut_at_any_byte_is_refused_and_a_text_never_a_panic() {
         let (keep, path) = file(name, &whole);
         assert!(read_mesh(&path).is_ok(), "{name}: {:?}", read_mesh(&path));
         let mut read = 0;
-        for length in 0..whole.len() {
-            fs::write(&path, &whole[..length]).unwrap();
+        // Shortened in place, which is hundreds of times as fast as writing each length.
+        let cut = fs::File::options().write(true).open(&path).unwrap();
+        for length in (0..whole.len()).rev() {
+            cut.set_len(length as u64).unwrap();
             match read_mesh(&path) {
                 Ok(mesh) => {
                     read += 1;

@@ -9,6 +9,7 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use crate::columns::whole;
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::particles::Particles;
@@ -288,11 +289,6 @@ impl Vertex {
         }
         PropertyAccessResult::Set
     }
-}
-
-/// A float that is a whole number in range, as some programs write ids.
-fn whole(value: f64) -> Option<u32> {
-    (value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0).then_some(value as u32)
 }
 
 /// One row of the `face` element.

@@ -1,11 +1,4 @@
-//! VTU, VTK's XML format for unstructured grids, as ParaView, VisIt and `pyvista` open it.
-//!
-//! Each particle is one `VTK_VERTEX` cell (not one `VTK_POLY_VERTEX` for all: thresholds and selections work on
-//! cells). Arrays follow the XML as raw little-endian bytes, each behind its length as UInt64, uncompressed:
-//! compression would take longer than the disk.
-//!
-//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) last moved in March 2025, wants its own copy of every
-//! array and offers much that is not needed; the need is these lines. Format: VTK User's Guide, "XML File Formats".
+//! The writer: declarations first, then all arrays.
 
 use std::io::{self, Write};
 use std::path::Path;

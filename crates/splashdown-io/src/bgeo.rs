@@ -1,0 +1,175 @@
+//! BGEO, Houdini's classic binary geometry (version 5), in which SPlisHSPlasH and `splashsurf` keep particles: a reader.
+//!
+//! Big-endian: counts, descriptions of the attributes, then one row for each point: x y z w and the attributes. Files
+//! may be packed by gzip as a whole, which SPlisHSPlasH does without saying so in the name. *Why own code:* no crate
+//! reads it but `splashsurf_lib`, which brings a whole surface reconstruction along; the tests hold a file of its writer.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::Path;
+
+use flate2::read::GzDecoder;
+
+use crate::columns::{Column, Number};
+use crate::error::IoError;
+use crate::particles::Particles;
+use crate::read::{MOST, regular};
+
+/// Most bytes of a row, and most attributes: far beyond any real file, so that the numbers of a broken one need no
+/// memory to speak of.
+const MOST_ROW: usize = 1 << 16;
+
+/// Rows that are decoded at a time.
+const ROWS: usize = 1024;
+
+/// Reads the points of a BGEO file: positions, and where they are there `velocity` (`v`), `density`, `pressure` and
+/// `id`. Primitives are passed over.
+///
+/// # Errors
+/// [`IoError::Read`]; [`IoError::Malformed`] where the file is another version or format, or cut short;
+/// [`IoError::TooMany`].
+pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    regular(path)?;
+    let failed = |error: io::Error| IoError::read(path, &error);
+    let mut file = File::open(path).map_err(failed)?;
+    let mut magic = [0; 2];
+    let packed = file.read(&mut magic).map_err(failed)? == 2 && magic == [0x1f, 0x8b];
+    io::Seek::rewind(&mut file).map_err(failed)?;
+    let file = BufReader::new(file);
+    let result = if packed { parse(&mut BufReader::new(GzDecoder::new(file))) } else { parse(&mut { file }) };
+    result.map_err(|reason| match reason {
+        Reason::Text(reason) => IoError::malformed(path, "BGEO", reason),
+        Reason::TooMany(given) => IoError::TooMany { what: "particles", given, limit: MOST },
+    })
+}
+
+enum Reason {
+    Text(String),
+    TooMany(usize),
+}
+
+impl From<String> for Reason {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// An attribute that means something here: which, where in the row, how many numbers, of which type.
+struct Wanted {
+    column: Column,
+    at: usize,
+    components: usize,
+    number: Number,
+}
+
+fn parse(file: &mut impl Read) -> Result<Particles, Reason> {
+    let magic: [u8; 4] = take(file, "its header")?;
+    if magic != *b"Bgeo" {
+        return Err(Reason::Text("it does not begin with `Bgeo`".to_owned()));
+    }
+    let [kind]: [u8; 1] = take(file, "its header")?;
+    let version = word(file, "its header")?;
+    if (kind, version) != (b'V', 5) {
+        return Err(Reason::Text(format!("its version is {version}, only the classic version 5 is read")));
+    }
+    let mut counts = [0; 8];
+    for count in &mut counts {
+        let given = word(file, "its header")?;
+        *count = usize::try_from(given).map_err(|_| format!("its header has a count of {given}"))?;
+    }
+    let [points, _, _, _, attributes, ..] = counts;
+    if points > MOST {
+        return Err(Reason::TooMany(points));
+    }
+    // A row begins with x, y, z and a weight.
+    let (mut row, mut wanted) = (16, Vec::new());
+    for number in 0..attributes {
+        row += attribute(file, number, row, &mut wanted)?;
+        if row > MOST_ROW {
+            return Err(Reason::Text(format!("its rows are more than {MOST_ROW} bytes long")));
+        }
+    }
+    rows(file, points, row, &wanted)
+}
+
+/// Reads the description of one attribute that begins at byte `at` of a row; returns its bytes in the row.
+fn attribute(
+    file: &mut impl Read,
+    number: usize,
+    at: usize,
+    wanted: &mut Vec<Wanted>,
+) -> Result<usize, String> {
+    let what = "its list of attributes";
+    let name = text(file, what)?;
+    let components = usize::from(u16::from_be_bytes(take(file, what)?));
+    let kind = match word(file, what)? {
+        0 | 5 => Some(Number::F32),
+        1 => Some(Number::I32),
+        // Numbers of strings, which follow instead of default values.
+        4 => None,
+        kind => {
+            return Err(format!("attribute {number} (`{name}`) is of type {kind}, known are 0, 1, 4 and 5"));
+        }
+    };
+    if let Some(kind) = kind {
+        for _ in 0..components {
+            word(file, what)?;
+        }
+        if let Some(column) = Column::named(&name, components) {
+            wanted.push(Wanted { column, at, components, number: kind });
+        }
+    } else {
+        for _ in 0..word(file, what)? {
+            text(file, what)?;
+        }
+    }
+    Ok(4 * components)
+}
+
+fn rows(file: &mut impl Read, points: usize, row: usize, wanted: &[Wanted]) -> Result<Particles, Reason> {
+    let mut particles = Particles::default();
+    let mut buffer = vec![0; ROWS * row];
+    for first in (0..points).step_by(ROWS) {
+        let bytes = &mut buffer[..row * ROWS.min(points - first)];
+        file.read_exact(bytes).map_err(|error| {
+            cut(
+                &error,
+                &format!("its header promises {points} points, the data ends after {first} or a few more"),
+            )
+        })?;
+        for bytes in bytes.chunks_exact(row) {
+            let [x, y, z] = [0, 4, 8]
+                .map(|at| f32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
+            particles.positions.push([x, y, z]);
+            for Wanted { column, at, components, number } in wanted {
+                let values = number.decode(&bytes[*at..at + 4 * components], true);
+                column.append(&mut particles, &values)?;
+            }
+        }
+    }
+    Ok(particles)
+}
+
+fn take<const N: usize>(file: &mut impl Read, what: &str) -> Result<[u8; N], String> {
+    let mut bytes = [0; N];
+    file.read_exact(&mut bytes).map_err(|error| cut(&error, &format!("it ends inside {what}")))?;
+    Ok(bytes)
+}
+
+fn word(file: &mut impl Read, what: &str) -> Result<i32, String> {
+    take(file, what).map(i32::from_be_bytes)
+}
+
+fn text(file: &mut impl Read, what: &str) -> Result<String, String> {
+    let mut bytes = vec![0; usize::from(u16::from_be_bytes(take(file, what)?))];
+    file.read_exact(&mut bytes).map_err(|error| cut(&error, &format!("it ends inside {what}")))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// An end too early, or what the gzip decoder says.
+fn cut(error: &io::Error, place: &str) -> String {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => format!("it was cut short: {place}"),
+        _ => format!("{place}: {error}"),
+    }
+}
