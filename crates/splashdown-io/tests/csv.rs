@@ -76,3 +76,38 @@ fn a_full_disk_is_reported() {
         "{error}"
     );
 }
+
+/// Names the file for the part of the next test that runs in a process of its own.
+const LIMITED: &str = "SPLASHDOWN_TEST_LIMITED_CSV";
+
+/// A limit on the size of files, as `ulimit` sets it for a child, cuts a row in the middle as a full disk does.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_row_that_does_not_fit_leaves_only_whole_rows() {
+    if let Some(path) = std::env::var_os(LIMITED) {
+        let mut log = CsvLog::create(Path::new(&path), &["x", "y"]).unwrap();
+        let error = (0..100_000).find_map(|n| log.row(&[f64::from(n), 0.123_456_789]).err()).unwrap();
+        assert!(matches!(error, IoError::Write { cause: WriteCause::TooLarge, .. }), "{error}");
+        // The next one fails too, and still there is no half row.
+        log.row(&[1.0 / 3.0, 2.0 / 3.0]).unwrap_err();
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("limited.csv");
+    let status = std::process::Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 4; exec \"$0\" --exact a_row_that_does_not_fit_leaves_only_whole_rows",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env(LIMITED, &path)
+        .stdout(std::process::Stdio::null())
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let text = fs::read_to_string(&path).unwrap();
+    // 4 blocks of 512 or 1024 bytes are no whole number of rows of these lengths.
+    assert!((1900..=4096).contains(&text.len()) && text.len() % 512 != 0, "{} bytes", text.len());
+    assert!(text.ends_with(",0.123456789\n"), "{text}");
+    assert!(text.lines().skip(1).enumerate().all(|(n, line)| line == format!("{n}.0,0.123456789")), "{text}");
+}
