@@ -6,11 +6,12 @@ use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
 use splashdown::scene::{ColourBy, Derived, PictureKind, Scene};
+use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture};
 use splashdown_render::{
-    Camera, ColourMap, Colouring, Domain, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, Quantity,
-    RenderError, Renderer, UploadedParticles, UploadedSurface,
+    Camera, ColourMap, Colouring, Domain, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody,
+    Quantity, RenderError, Renderer, UploadedBodies, UploadedParticles, UploadedSurface,
 };
 
 use crate::exit::Failure;
@@ -42,6 +43,7 @@ struct Drawn {
     time: f64,
     particles: Arc<Particles>,
     mesh: Option<Arc<Mesh>>,
+    bodies: Arc<[BodyState]>,
 }
 
 /// Opens something to draw with: the simulation's own GPU, else the best adapter there is, a software driver among them.
@@ -82,12 +84,20 @@ impl Pictures {
     pub fn start(
         gpu: Arc<Gpu>,
         scene: &Scene,
+        bodies: &[BodyMesh],
         kinds: Vec<PictureKind>,
         films: Vec<Arc<Film>>,
         layout: &Layout,
         writer: Arc<FrameWriter>,
     ) -> Result<Self, Failure> {
         let mut artist = Artist::new(gpu, scene, kinds.clone(), films.clone(), layout.clone(), writer)?;
+        artist.bodies = bodies
+            .iter()
+            .map(|body| {
+                let colour = body.colour.unwrap_or(PlacedBody::COLOUR);
+                PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
+            })
+            .collect::<Result<_, _>>()?;
         let (queue, frames) = sync_channel(QUEUE);
         let failure = Arc::new(OnceLock::new());
         let report = Arc::clone(&failure);
@@ -116,6 +126,7 @@ impl Pictures {
             time: frame.time,
             particles: Arc::clone(&frame.particles),
             mesh: frame.mesh.clone(),
+            bodies: Arc::clone(&frame.bodies),
         };
         // A thread that has failed has said why in `failure`.
         let _ = self.queue.send(drawn);
@@ -148,6 +159,7 @@ struct Artist {
     target: Offscreen,
     colouring: Colouring,
     liquid: Liquid,
+    bodies: Vec<PlacedBody>,
 }
 
 impl Artist {
@@ -177,6 +189,7 @@ impl Artist {
             target,
             colouring,
             liquid,
+            bodies: Vec::new(),
         })
     }
 
@@ -212,6 +225,13 @@ impl Artist {
             Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
             None => None,
         };
+        let placed = self.bodies.iter().zip(&*drawn.bodies);
+        let bodies = (!self.bodies.is_empty()).then(|| {
+            UploadedBodies::new(
+                device,
+                placed.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array())),
+            )
+        });
         let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
         let empty = Frame {
             camera: camera(&self.scene, drawn.time),
@@ -219,6 +239,7 @@ impl Artist {
             sun: Frame::SUN,
             particles: None,
             surface: None,
+            bodies: bodies.as_ref().map(UploadedBodies::buffers),
             caption: Some(&caption),
         };
         let mut tickets = Vec::new();

@@ -34,6 +34,21 @@ pub struct SurfaceBuffers<'a> {
     pub draw: Draw<'a>,
 }
 
+/// Solids on the GPU, all in one mesh in world space. [`UploadedBodies`](crate::UploadedBodies) makes them.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyBuffers<'a> {
+    /// `vec4<f32>` per vertex: position in metres, w ignored. Needs [`BufferUsages::VERTEX`].
+    pub vertices: &'a Buffer,
+    /// `vec4<f32>` per vertex: normal of any length, w ignored. Needs [`BufferUsages::VERTEX`].
+    pub normals: &'a Buffer,
+    /// `vec4<f32>` per vertex: linear colour, w ignored. Needs [`BufferUsages::VERTEX`].
+    pub colours: &'a Buffer,
+    /// Three `u32` per triangle. Needs [`BufferUsages::INDEX`].
+    pub indices: &'a Buffer,
+    /// How many of them to draw; [`Draw::Direct`].
+    pub draw: Draw<'a>,
+}
+
 /// Where the number of indices comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Draw<'a> {
@@ -53,6 +68,16 @@ impl ParticleBuffers<'_> {
         check_buffer("positions", self.positions, BufferUsages::STORAGE, 16 * count)?;
         check_buffer("velocities", self.velocities, BufferUsages::STORAGE, 16 * count)?;
         check_buffer("densities", self.densities, BufferUsages::STORAGE, 8 * count)
+    }
+}
+
+impl BodyBuffers<'_> {
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        check_buffer("vertices", self.vertices, BufferUsages::VERTEX, 0)?;
+        check_buffer("normals", self.normals, BufferUsages::VERTEX, 0)?;
+        check_buffer("colours", self.colours, BufferUsages::VERTEX, 0)?;
+        let Draw::Direct { index_count } = self.draw else { return Ok(()) };
+        check_buffer("indices", self.indices, BufferUsages::INDEX, 4 * u64::from(index_count))
     }
 }
 
@@ -194,7 +219,7 @@ fn padded(vectors: &[[f32; 3]]) -> Vec<[f32; 4]> {
     vectors.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect()
 }
 
-fn upload<T: Pod>(device: &Device, label: &str, values: &[T], usage: BufferUsages) -> Buffer {
+pub(crate) fn upload<T: Pod>(device: &Device, label: &str, values: &[T], usage: BufferUsages) -> Buffer {
     // WebGPU has no empty bindings; one element's worth of zeros stands for an empty buffer.
     let bytes = if values.is_empty() { &[0; 16] } else { bytemuck::cast_slice(values) };
     device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: bytes, usage })

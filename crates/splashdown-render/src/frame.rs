@@ -1,7 +1,7 @@
 //! What a picture shows.
 
 use crate::globals::{EdgeGlobals, Globals};
-use crate::{Camera, ColourMap, Domain, Liquid, ParticleBuffers, RenderError, SurfaceBuffers};
+use crate::{BodyBuffers, Camera, ColourMap, Domain, Liquid, ParticleBuffers, RenderError, SurfaceBuffers};
 use glam::{Vec2, Vec3};
 
 /// Everything about one picture.
@@ -19,6 +19,8 @@ pub struct Frame<'a> {
     pub particles: Option<DrawnParticles<'a>>,
     /// The liquid's surface.
     pub surface: Option<DrawnSurface<'a>>,
+    /// Solids.
+    pub bodies: Option<BodyBuffers<'a>>,
     /// A line of text in the lower left corner.
     pub caption: Option<&'a str>,
 }
@@ -115,6 +117,11 @@ impl Frame<'_> {
         }
         if let Some(particles) = &self.particles {
             particles.fill(&mut globals)?;
+        }
+        if let Some(bodies) = &self.bodies {
+            bodies.check()?;
+            // Solids let no light through; the liquid's own values, if there is one, take this place.
+            globals.shadow_absorption = [1.0; 3];
         }
         if let Some(surface) = &self.surface {
             surface.fill(&mut globals)?;
@@ -236,7 +243,7 @@ mod tests {
     fn frame() -> Frame<'static> {
         let domain = Domain::closed([0.0; 3], [2.0, 1.0, 1.0]);
         let camera = Camera::framing(&domain, 30.0, 20.0, 40.0, 1.5);
-        Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, caption: None }
+        Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, bodies: None, caption: None }
     }
 
     #[test]

@@ -25,6 +25,7 @@
 //!         },
 //!     }),
 //!     surface: None,
+//!     bodies: None,
 //!     caption: Some("t = 0.00 s"),
 //! };
 //! let rgba: Vec<u8> = target.render_to_rgba(&mut renderer, &frame)?;
@@ -40,6 +41,7 @@
 //! what WebGPU guarantees is asked for: at most 3 storage buffers per stage, 16-bit floats to blend into, 4 samples.
 
 mod background;
+mod bodies;
 mod buffers;
 mod camera;
 mod colour_map;
@@ -58,10 +60,11 @@ mod pipeline;
 mod renderer;
 mod shader;
 mod shadow;
+mod solids;
 mod surface;
 mod targets;
 
-pub use buffers::{Draw, ParticleBuffers, SurfaceBuffers, UploadedParticles, UploadedSurface};
+pub use buffers::{BodyBuffers, Draw, ParticleBuffers, SurfaceBuffers, UploadedParticles, UploadedSurface};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 #[cfg(not(target_arch = "wasm32"))]
@@ -72,3 +75,4 @@ pub use frame::{Colouring, DrawnParticles, DrawnSurface, Frame, Quantity};
 pub use liquid::Liquid;
 pub use offscreen::{Offscreen, Ticket};
 pub use renderer::Renderer;
+pub use solids::{PlacedBody, UploadedBodies};

@@ -1,6 +1,7 @@
 //! The order in which a picture comes together.
 
 use crate::background::Background;
+use crate::bodies::Bodies;
 use crate::edges::Edges;
 use crate::overlay::Overlay;
 use crate::particles::Particles;
@@ -20,7 +21,7 @@ use wgpu::{
 /// The passes of a picture, in their order:
 ///
 /// 1. the fluid's shadow on the floor (256 x 256, blurred);
-/// 2. background, hidden edges, particles; with a surface also its thickness, then a copy to look through, then the
+/// 2. background, hidden edges, solids, particles; with a surface also its thickness, then a copy to look through, then the
 ///    surface; near edges; several samples per pixel, resolved into the target;
 /// 3. colour bar and caption, pixel on pixel.
 #[derive(Debug)]
@@ -33,6 +34,7 @@ pub struct Renderer {
     shadow: Shadow,
     background: Background,
     edges: Edges,
+    bodies: Bodies,
     particles: Particles,
     surface: Surface,
     overlay: Overlay,
@@ -60,6 +62,7 @@ impl Renderer {
         Ok(Renderer {
             background: Background::new(device, layouts, format, sample_count),
             edges: Edges::new(device, [&globals_layout], format, sample_count),
+            bodies: Bodies::new(device, layouts, format, sample_count),
             particles: Particles::new(device, queue, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
@@ -113,6 +116,9 @@ impl Renderer {
             pass.set_bind_group(1, &self.shadow.environment, &[]);
             self.background.record(pass);
             self.edges.record(pass, 0..behind);
+            if let Some(bodies) = &frame.bodies {
+                self.bodies.record(pass, bodies);
+            }
             if !chunks.is_empty() {
                 self.particles.record(pass, &chunks);
             }
@@ -128,9 +134,18 @@ impl Renderer {
         };
         scene(&mut begin(encoder, "scene", targets, &targets.scene, Start::Clear, End::Keep));
         {
-            let mut pass = begin_thickness(encoder, targets);
+            // Further than anything, in 16 bits.
+            let nothing = Color { r: 60_000.0, ..Color::TRANSPARENT };
+            let mut pass = begin_half(encoder, "distance of bodies", &targets.solid, nothing);
+            if let Some(bodies) = &frame.bodies {
+                pass.set_bind_group(0, &globals, &[]);
+                self.bodies.record_distance(&mut pass, bodies);
+            }
+        }
+        {
+            let mut pass = begin_half(encoder, "thickness", &targets.thickness, Color::TRANSPARENT);
             pass.set_bind_group(0, &globals, &[]);
-            self.surface.record_thickness(&mut pass, &drawn.buffers);
+            self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
         }
         let group = self.surface.bind(&self.device, targets);
         {
@@ -219,14 +234,19 @@ fn begin<'a>(
     })
 }
 
-fn begin_thickness<'a>(encoder: &'a mut CommandEncoder, targets: &Targets) -> RenderPass<'a> {
+fn begin_half<'a>(
+    encoder: &'a mut CommandEncoder,
+    label: &str,
+    view: &TextureView,
+    clear: Color,
+) -> RenderPass<'a> {
     encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some("thickness"),
+        label: Some(label),
         color_attachments: &[Some(RenderPassColorAttachment {
-            view: &targets.thickness,
+            view,
             depth_slice: None,
             resolve_target: None,
-            ops: Operations { load: LoadOp::Clear(Color::TRANSPARENT), store: StoreOp::Store },
+            ops: Operations { load: LoadOp::Clear(clear), store: StoreOp::Store },
         })],
         ..Default::default()
     })

@@ -29,8 +29,10 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 9] = [
+    const ALL: [Shader; 11] = [
         crate::background::SHADER,
+        crate::bodies::SHADER,
+        crate::bodies::DISTANCE,
         crate::edges::SHADER,
         crate::particles::SHADER,
         crate::surface::THICKNESS,

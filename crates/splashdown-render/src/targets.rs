@@ -15,6 +15,8 @@ pub(crate) struct Targets {
     pub scene: TextureView,
     /// Metres of liquid, at half the resolution.
     pub thickness: TextureView,
+    /// Distance of the nearest solid, at half the resolution.
+    pub solid: TextureView,
 }
 
 impl Targets {
@@ -29,6 +31,7 @@ impl Targets {
             depth: make("depth", size, DEPTH, sample_count, drawn),
             scene: make("scene", size, format, 1, read),
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
+            solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
         }
     }
 }

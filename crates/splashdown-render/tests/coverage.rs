@@ -17,6 +17,7 @@ fn level_frame(distance: f32) -> Frame<'static> {
         sun: Frame::SUN,
         particles: None,
         surface: None,
+        bodies: None,
         caption: None,
     }
 }

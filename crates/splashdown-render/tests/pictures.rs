@@ -14,7 +14,7 @@ const ASPECT_RATIO: f32 = 1.4;
 
 fn frame(domain: Domain) -> Frame<'static> {
     let camera = Camera::framing(&domain, 28.0, 18.0, 35.0, ASPECT_RATIO);
-    Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, caption: None }
+    Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, bodies: None, caption: None }
 }
 
 fn moved(frame: Frame<'_>) -> Frame<'_> {

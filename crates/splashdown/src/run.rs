@@ -43,6 +43,8 @@ pub enum Event {
     Frame(Frame),
     /// Something the user should know; the run goes on.
     Warning(String),
+    /// Something the user may want to know.
+    Note(String),
     /// The last event.
     Finished(Summary),
 }
@@ -227,6 +229,14 @@ impl Run {
 
     fn start(&mut self) -> Event {
         self.stage = Stage::Fetch(0);
+        for (body, report) in self.simulation.body_meshes().iter().zip(self.simulation.body_reports()) {
+            self.waiting.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
+        }
+        let removed = self.simulation.removed();
+        if removed > 0 {
+            let text = format!("{removed} particles of the fluid were left out: they would be inside bodies");
+            self.waiting.push_back(Event::Note(text));
+        }
         Event::Started(Started {
             device: self.simulation.device_name(),
             particles: self.simulation.stats().particles,
@@ -284,7 +294,7 @@ impl Run {
         tell(
             stats.wall_corrections - before.wall_corrections,
             "time",
-            "a particle was put back through a closed wall",
+            "a particle was put back through a closed wall or the surface of a body",
         );
         tell(
             stats.speed_limits - before.speed_limits,
@@ -318,7 +328,13 @@ impl Run {
         self.clock.frames += begun.elapsed();
         // The sum of frames in single precision would read 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
-        let stats = Stats { time, ..self.simulation.stats() };
+        let inside_bodies = self.simulation.inside_bodies(&particles)?;
+        let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
+        if inside_bodies > 0 {
+            let plural = if inside_bodies == 1 { " is" } else { "s are" };
+            let text = format!("at {time:.4} s: {inside_bodies} particle{plural} inside a body");
+            self.waiting.push_back(Event::Warning(text));
+        }
         Ok(Frame {
             index,
             time,

@@ -12,9 +12,10 @@ use crate::cells::{Cells, Grid};
 use crate::fields::Fields;
 use crate::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
 use crate::scene::{Derived, Scene, SurfaceSettings};
+use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
-use crate::{Device, SimulationError, Stats, bodies, memory, sample, solid};
+use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 
 /// Most steps in one submission to a device: a bound on how long it does not answer.
 const MOST_STEPS: u32 = 64;
@@ -48,6 +49,7 @@ pub struct Simulation {
     stable_dt: f32,
     frame: Option<FrameInProgress>,
     bodies: Option<Bodies>,
+    removed: u32,
 }
 
 /// A frame that has begun.
@@ -75,7 +77,16 @@ impl Simulation {
     /// As [`new`](Self::new).
     pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene)?;
-        Self::with_bodies(scene, executor, &sample::particles(scene)?, bodies)
+        let mut particles = sample::particles(scene)?;
+        // Just under half a spacing, so that fluid that touches a body at half a spacing stays.
+        let clearance = 0.49 * scene.fluid.particle_spacing;
+        let removed = sample::remove_inside(&mut particles, &bodies, clearance);
+        if particles.positions.is_empty() {
+            return Err(sample::SampleError::AllInside { removed }.into());
+        }
+        let mut simulation = Self::with_bodies(scene, executor, &particles, bodies)?;
+        simulation.removed = removed;
+        Ok(simulation)
     }
 
     /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
@@ -149,6 +160,7 @@ impl Simulation {
             stable_dt,
             frame: None,
             bodies,
+            removed: 0,
         };
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
@@ -332,6 +344,26 @@ impl Simulation {
     /// The meshes of the scene's bodies, in its order.
     pub fn body_meshes(&self) -> &[BodyMesh] {
         self.bodies.as_ref().map_or(&[], Bodies::meshes)
+    }
+
+    /// How many particles of the scene were left out because they would have been inside a body.
+    pub fn removed(&self) -> u32 {
+        self.removed
+    }
+
+    /// What was found in the meshes of the scene's bodies and done about it, in its order.
+    pub fn body_reports(&self) -> &[RepairReport] {
+        self.bodies.as_ref().map_or(&[], Bodies::reports)
+    }
+
+    /// How many of these particles lie inside a body: zero in a sound run.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn inside_bodies(&mut self, particles: &Particles) -> Result<u32, SimulationError> {
+        let Some(bodies) = &self.bodies else { return Ok(0) };
+        let states = bodies.states(&mut self.executor)?;
+        Ok(bodies.inside(&states, particles))
     }
 
     /// Where the scene's bodies are and what the fluid does to them, in its order.

@@ -126,7 +126,15 @@ impl Session {
                 self.teller.warn(&obstacle);
             }
         }
-        self.pictures = Some(Pictures::start(gpu, scene, kinds, films, &self.layout, self.files.writer())?);
+        self.pictures = Some(Pictures::start(
+            gpu,
+            scene,
+            self.run.bodies(),
+            kinds,
+            films,
+            &self.layout,
+            self.files.writer(),
+        )?);
         Ok(())
     }
 
@@ -164,6 +172,7 @@ impl Session {
                 }
             }
             Event::Warning(message) => self.teller.warn(&message),
+            Event::Note(message) => self.teller.note(&message),
             Event::Finished(summary) => self.teller.finished(summary),
             // The library may learn to tell more than this program knows.
             _ => {}

@@ -16,7 +16,7 @@
 
 use crate::pipeline::{ADD, Bind, Recipe, bind_group, bind_group_layout, linear_sampler};
 use crate::shader::{GLOBALS, Shader};
-use crate::{DrawnParticles, DrawnSurface, Frame, particles, surface};
+use crate::{DrawnParticles, DrawnSurface, Frame, bodies, particles, surface};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, CommandEncoder, Device, PrimitiveTopology, RenderPipeline,
     TextureFormat, TextureUsages, TextureView,
@@ -35,6 +35,7 @@ pub(crate) const BLUR: Shader = Shader { label: "shadow blur", parts: &[include_
 #[derive(Debug)]
 pub(crate) struct Shadow {
     from_surface: RenderPipeline,
+    from_bodies: RenderPipeline,
     from_particles: RenderPipeline,
     particles_layout: BindGroupLayout,
     blurs: [RenderPipeline; 2],
@@ -63,6 +64,9 @@ impl Shadow {
             vertex_buffers: 1,
             ..Recipe::new(FROM_SURFACE, &surface_layouts, FORMAT)
         };
+        // A hundred metres of water let nothing through.
+        let solid = [("WEIGHT", 100.0)];
+        let from_bodies = Recipe { constants: &solid, ..from_surface };
         let particles_layout = bind_group_layout(device, "particle shadow", &[Bind::Storage]);
         let particle_layouts = [globals, &particles_layout];
         let from_particles = Recipe {
@@ -75,6 +79,7 @@ impl Shadow {
         let resources = [BindingResource::TextureView(&maps[0]), BindingResource::Sampler(&sampler)];
         Shadow {
             from_surface: from_surface.build(device),
+            from_bodies: from_bodies.build(device),
             from_particles: from_particles.build(device),
             environment: bind_group(device, "environment", &environment_layout, &resources),
             environment_layout,
@@ -107,8 +112,12 @@ impl Shadow {
                     pass.set_bind_group(1, &group, &[]);
                     pass.draw(0..count, 0..1);
                 }
-            } else {
+            } else if frame.bodies.is_none() {
                 return;
+            }
+            if let Some(buffers) = &frame.bodies {
+                pass.set_pipeline(&self.from_bodies);
+                bodies::draw(&mut pass, buffers);
             }
         }
         for (blur, source) in self.blurs.iter().zip([0, 1]) {

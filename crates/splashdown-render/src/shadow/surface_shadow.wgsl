@@ -1,5 +1,8 @@
 // Metres of liquid between the sun and each point of the floor, from a closed mesh. Needs globals.wgsl.
 
+// Metres of liquid that a metre counts for: solids are darker.
+override WEIGHT: f32 = 1.0;
+
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) height: f32,
@@ -19,5 +22,5 @@ fn vertex_main(@location(0) vertex: vec4f) -> Varying {
 @fragment
 fn fragment_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     // Seen from the sun, fronts are the upper ends of each stretch of liquid and backs the lower ones.
-    return vec4f(select(-in.height, in.height, front), 0.0, 0.0, 0.0);
+    return vec4f(WEIGHT * select(-in.height, in.height, front), 0.0, 0.0, 0.0);
 }

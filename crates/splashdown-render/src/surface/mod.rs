@@ -40,6 +40,7 @@ pub(crate) struct Surface {
     pipeline: RenderPipeline,
     thickness: RenderPipeline,
     layout: BindGroupLayout,
+    solid_layout: BindGroupLayout,
     sampler: Sampler,
 }
 
@@ -59,7 +60,8 @@ impl Surface {
             vertex_buffers: 2,
             ..Recipe::new(SHADER, &layouts, format)
         };
-        let thickness_layouts = [globals];
+        let solid_layout = bind_group_layout(device, "solid", &[Bind::Texture]);
+        let thickness_layouts = [globals, &solid_layout];
         let thickness = Recipe {
             blend: Some(ADD),
             vertex_buffers: 1,
@@ -69,6 +71,7 @@ impl Surface {
             pipeline: recipe.build(device),
             thickness: thickness.build(device),
             sampler: linear_sampler(device),
+            solid_layout,
             layout,
         }
     }
@@ -83,8 +86,17 @@ impl Surface {
     }
 
     /// Group 0 (globals) is set.
-    pub fn record_thickness(&self, pass: &mut RenderPass<'_>, buffers: &SurfaceBuffers<'_>) {
+    pub fn record_thickness(
+        &self,
+        device: &Device,
+        pass: &mut RenderPass<'_>,
+        targets: &Targets,
+        buffers: &SurfaceBuffers<'_>,
+    ) {
+        let solid = [BindingResource::TextureView(&targets.solid)];
+        let group = bind_group(device, "solid", &self.solid_layout, &solid);
         pass.set_pipeline(&self.thickness);
+        pass.set_bind_group(1, &group, &[]);
         draw(pass, buffers);
     }
 

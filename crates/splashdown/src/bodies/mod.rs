@@ -29,7 +29,7 @@ use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::passes::Params;
 use crate::scene::{Domain, Script};
-use crate::solid::DistanceField;
+use crate::solid::{DistanceField, RepairReport};
 use rigid::Rigid;
 
 /// A body's shape.
@@ -97,6 +97,7 @@ pub struct Bodies {
     /// One per scripted body.
     written: Vec<Script>,
     meshes: Vec<BodyMesh>,
+    reports: Vec<RepairReport>,
     /// For the host's own count of particles inside.
     fields: Vec<DistanceField>,
     rigid: Option<Rigid>,
@@ -144,6 +145,7 @@ impl Bodies {
                     colour: body.colour,
                 })
                 .collect(),
+            reports: loaded.iter().map(|body| body.solid.report).collect(),
             fields: loaded.into_iter().map(|body| body.solid.field).collect(),
             rigid,
         })
@@ -279,6 +281,11 @@ impl Bodies {
     /// The meshes, in the order of the scene.
     pub fn meshes(&self) -> &[BodyMesh] {
         &self.meshes
+    }
+
+    /// What was found in the meshes, in the order of the scene.
+    pub fn reports(&self) -> &[RepairReport] {
+        &self.reports
     }
 
     /// Where the bodies are, in the order of the scene.

@@ -83,7 +83,7 @@ impl Rigid {
                 let (velocity, spin) = means[b];
                 state.position = here(body.position().translation);
                 let [x, y, z, w] = body.position().rotation.to_array();
-                state.orientation = Vec4::new(x, y, z, w).normalize();
+                state.orientation = Vec4::new(x, y, z, w).normalize_or(state.orientation);
                 state.velocity += here(body.linvel()) - velocity;
                 state.angular_velocity += here(body.angvel()) - spin;
             }

@@ -7,8 +7,11 @@
 
 mod lattice;
 
+use glam::Vec3;
+use rayon::prelude::*;
 use splashdown_io::Particles;
 
+use crate::bodies::LoadedBody;
 use crate::scene::{Domain, Fluid, Scene};
 pub(crate) use lattice::Sampler;
 
@@ -38,6 +41,14 @@ pub enum SampleError {
     Empty {
         /// The spacing given, in m.
         spacing: f32,
+    },
+    /// Bodies take all the room.
+    #[error(
+        "no fluid is left: all {removed} particles would be inside bodies; move the bodies or the fluid, or check their scale"
+    )]
+    AllInside {
+        /// How many there were.
+        removed: u32,
     },
     /// A particle outside the domain.
     #[error(
@@ -123,4 +134,25 @@ pub(crate) fn fitting_spacing(spacing: f32, count: u64) -> f32 {
     let exact = f64::from(spacing) * (count as f64 / MAX_PARTICLES as f64).cbrt();
     let unit = 10f64.powf(exact.log10().floor() - 1.0);
     ((exact / unit * 1.001).ceil() * unit) as f32
+}
+
+/// Takes out the particles that lie inside bodies or nearer to one than `clearance` (m); how many. Ids count from 0 again.
+pub(crate) fn remove_inside(particles: &mut Particles, bodies: &[LoadedBody], clearance: f32) -> u32 {
+    let poses: Vec<_> = bodies.iter().map(LoadedBody::pose).collect();
+    let free = |x: Vec3| {
+        bodies.iter().zip(&poses).all(|(body, (position, rotation))| {
+            body.solid.field.distance(rotation.conjugate() * (x - position)) >= clearance
+        })
+    };
+    let kept: Vec<usize> = (0..particles.positions.len())
+        .into_par_iter()
+        .filter(|&i| free(particles.positions[i].into()))
+        .collect();
+    let removed = (particles.positions.len() - kept.len()) as u32;
+    if removed > 0 {
+        particles.positions = kept.iter().map(|&i| particles.positions[i]).collect();
+        particles.velocities = kept.iter().map(|&i| particles.velocities[i]).collect();
+        particles.ids = (0..kept.len() as u32).collect();
+    }
+    removed
 }

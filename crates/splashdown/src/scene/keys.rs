@@ -3,12 +3,17 @@
 use super::choice::{Choice, choices};
 use super::materials::MATERIALS;
 use super::spec::{Kind, Table, Word, a_number, a_vector, key, range, words};
+use super::things::{BoundaryKind, UpAxis};
 use super::types::{
     ColourBy, DensityMode, Format, KernelKind, Method, NegativePressure, PictureKind, Sort, SurfaceTension,
 };
 
 /// Coordinates beyond this many metres are surely a mistake.
 const FAR: f64 = 10_000.0;
+/// Most bodies in a scene.
+const MAX_BODIES: usize = 1024;
+/// Most keyframes of a body.
+const MAX_KEYFRAMES: usize = 4096;
 /// Most blocks in a scene.
 const MAX_BLOCKS: usize = 256;
 
@@ -27,6 +32,15 @@ choices! {
         ZMin = "z_min",
         /// The side at max z.
         ZMax = "z_max",
+    }
+    /// The word for a body's motion.
+    MotionWord {
+        /// It stands still.
+        Static = "static",
+        /// It moves as keyframes or formulas say.
+        Scripted = "scripted",
+        /// The fluid, gravity and contacts move it.
+        Dynamic = "dynamic",
     }
     /// The word for a block's shape.
     ShapeWord {
@@ -55,6 +69,8 @@ pub(crate) static ROOT: Table = Table {
         key("scene", Kind::Table(&SCENE), "What the scene is called and how long it runs.").required(),
         key("domain", Kind::Table(&DOMAIN), "The box that holds the fluid.").required(),
         key("fluid", Kind::Table(&FLUID), "The fluid and where it starts.").required(),
+        key("body", Kind::Tables(&BODY, MAX_BODIES), "Solids that the fluid meets.")
+            .also(&["bodies", "mesh", "object"]),
         key("solver", Kind::Table(&SOLVER), "How the fluid is computed."),
         key("surface", Kind::Table(&SURFACE), "How the fluid's surface is extracted."),
         key(
@@ -135,6 +151,74 @@ static BLOCK: Table = Table {
         key("center", a_vector(FAR, "m"), "Centre of a sphere.").also(&["centre"]),
         key("radius", a_number(1e-5, FAR, "m"), "Radius of a sphere."),
         key("velocity", a_vector(1000.0, "m/s"), "Velocity at the start.").default("[0.0, 0.0, 0.0]"),
+    ],
+};
+
+static BODY: Table = Table {
+    about: "A solid that the fluid meets: it stands, moves as written, or is carried.",
+    keys: &[
+        key("name", Kind::Name, "Its name in messages and files.").required(),
+        key(
+            "mesh",
+            Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
+            "Its triangles: a file, or one of the models that come with the program (`splashdown scenes --models`).",
+        )
+        .required()
+        .also(&["file", "model", "geometry_file", "shape"]),
+        key("scale", a_number(1e-6, 1e6, ""), "Metres per unit of the file: 0.001 for millimetres.")
+            .default("1.0")
+            .also(&["units", "size"]),
+        key("up", Kind::Word(words::<UpAxis>), "Which axis of the file points up.").default("\"y\""),
+        key("position", a_vector(FAR, "m"), "Where the mesh's origin lies.")
+            .default("[0.0, 0.0, 0.0]")
+            .also(&["translation", "center"]),
+        key("rotation", a_vector(36_000.0, "degrees"), "Turned about x, then y, then z.")
+            .default("[0.0, 0.0, 0.0]"),
+        key(
+            "motion",
+            Kind::Word(words::<MotionWord>),
+            "How it moves. Default: static; scripted where a keyframe, move or turn is given.",
+        )
+        .also(&["type", "dynamic"]),
+        key("density", a_number(1.0, 30_000.0, "kg/m^3"), "Of a dynamic body.").default("500.0").also(&["rho"]),
+        key("velocity", a_vector(1000.0, "m/s"), "Of a dynamic body at the start.").default("[0.0, 0.0, 0.0]"),
+        key("angular_velocity", a_vector(1000.0, "rad/s"), "Of a dynamic body at the start.")
+            .default("[0.0, 0.0, 0.0]"),
+        key(
+            "move",
+            Kind::Texts(3, super::formula::ALLOWED),
+            "Formulas of t added to the position, in m: [\"0.1*sin(2*pi*t)\", \"0\", \"0\"].",
+        ),
+        key(
+            "turn",
+            Kind::Texts(3, super::formula::ALLOWED),
+            "Formulas of t by which the mesh turns about its own x, then y, then z, in degrees.",
+        ),
+        key("keyframe", Kind::Tables(&KEYFRAME, MAX_KEYFRAMES), "Where it is at which time.").also(&["keyframes"]),
+        key("friction", a_number(0.0, 1.0, ""), "0: the fluid slips along it; 1: it sticks.").default("0.0"),
+        key("adhesion", a_number(0.0, 100.0, "m/s^2"), "How strongly it pulls the fluid beside it.").default("0.0"),
+        key("boundary", Kind::Word(words::<BoundaryKind>), "How the fluid feels it.").default("\"map\""),
+        key("shell", Kind::Boolean, "Whether the mesh is a sheet with a thickness. Default: decided by the mesh."),
+        key(
+            "half_thickness",
+            a_number(1e-6, 10.0, "m"),
+            "Half the thickness of a sheet. Default: half the particle spacing.",
+        )
+        .also(&["thickness"]),
+        key("colour", Kind::Numbers(3, range(0.0, 1.0, "")), "Linear red, green, blue in pictures.").also(&["color"]),
+    ],
+};
+
+static KEYFRAME: Table = Table {
+    about: "A pose at a time; between keyframes the body moves smoothly, outside them it rests.",
+    keys: &[
+        key("time", a_number(0.0, 3600.0, "s"), "When.").required().also(&["t"]),
+        key("position", a_vector(FAR, "m"), "Where the mesh's origin is. Default: the body's position."),
+        key(
+            "rotation",
+            a_vector(36_000.0, "degrees"),
+            "About x, then y, then z. Default: the body's rotation.",
+        ),
     ],
 };
 

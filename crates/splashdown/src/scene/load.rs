@@ -8,6 +8,7 @@ use super::errors::{SceneErrors, SceneProblem};
 use super::parse;
 use super::presets::presets;
 use super::suggest;
+use super::things::MeshShape;
 use super::types::Scene;
 
 /// Longest scene file in bytes; a larger file is surely not one.
@@ -47,7 +48,23 @@ impl Scene {
                 format!("the file is larger than {} MiB: this is not a scene file", MAX_BYTES >> 20);
             return Err(refuse(message, "scene files are short texts in TOML"));
         }
-        Self::from_bytes(&bytes, &file).map(|scene| Self { source: Some(path.to_owned()), ..scene })
+        let mut scene = Self::from_bytes(&bytes, &file)?;
+        scene.source = Some(path.to_owned());
+        if let Some(folder) = path.parent() {
+            scene.find_files_from(folder);
+        }
+        Ok(scene)
+    }
+
+    /// Files are named from the folder of the scene file.
+    fn find_files_from(&mut self, folder: &Path) {
+        for body in &mut self.bodies {
+            if let MeshShape::File(file) = &mut body.mesh.shape
+                && file.is_relative()
+            {
+                *file = folder.join(&file);
+            }
+        }
     }
 
     /// Checks the text of a scene file; `file_name` is for messages.

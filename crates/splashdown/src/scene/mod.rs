@@ -29,6 +29,7 @@
 mod choice;
 mod derived;
 mod errors;
+mod formula;
 mod framing;
 mod geometry;
 mod keys;
@@ -50,6 +51,7 @@ mod warnings;
 pub use choice::Choice;
 pub use derived::{Derived, lattice_sum};
 pub use errors::{SceneErrors, SceneProblem, SceneWarning};
+pub use formula::Formula;
 pub use materials::{KnownMaterial, MATERIALS};
 pub use presets::presets;
 pub use schema::{reference, schema};

@@ -267,6 +267,31 @@ impl<'r> Section<'r> {
         })
     }
 
+    /// A text that is not empty.
+    pub fn text(&self, name: &str) -> Read<String> {
+        self.read(name, |value, kind| match kind {
+            Kind::Text(what) => one_text(value, what),
+            _ => Err(undeclared(kind)),
+        })
+    }
+
+    /// Several texts.
+    pub fn texts<const N: usize>(&self, name: &str) -> Read<[String; N]> {
+        self.read(name, |value, kind| match kind {
+            Kind::Texts(count, what) if count == N => {
+                let list = value.as_array().filter(|list| list.len() == N).ok_or_else(|| {
+                    wrong_type(value, &format!("a list of {N} texts"), describe_texts(N, what))
+                })?;
+                let mut texts = std::array::from_fn(|_| String::new());
+                for (text, item) in texts.iter_mut().zip(list) {
+                    *text = one_text(item.get_ref(), what)?;
+                }
+                Ok(texts)
+            }
+            _ => Err(undeclared(kind)),
+        })
+    }
+
     /// A word that is not an enum's.
     pub fn word(&self, name: &str) -> Read<String> {
         self.read(name, |value, kind| match kind {
@@ -356,6 +381,11 @@ impl<'r> Section<'r> {
         Ok(found)
     }
 
+    /// A list of sections that may be absent.
+    pub fn sections_if_any(&self, name: &str) -> Result<Vec<Section<'r>>, Reported> {
+        if self.has(name) { self.sections(name) } else { Ok(Vec::new()) }
+    }
+
     fn as_table(&self, name: &str, value: &'r Spanned<DeValue<'r>>) -> Result<&'r DeTable<'r>, Reported> {
         match value.get_ref() {
             DeValue::Table(table) => Ok(table),
@@ -388,6 +418,17 @@ impl<'r> Section<'r> {
     pub fn exists(&self) -> bool {
         self.table.is_some()
     }
+}
+
+fn one_text(value: &DeValue<'_>, what: &str) -> Result<String, Wrong> {
+    match value {
+        DeValue::String(text) if !text.trim().is_empty() => Ok(text.to_string()),
+        other => Err(wrong_type(other, "a text in quotes", what.to_owned())),
+    }
+}
+
+fn describe_texts(count: usize, what: &str) -> String {
+    format!("{count} texts of {what}")
 }
 
 /// `keys.rs` and the code that reads disagree: a mistake in this crate, shown as an error rather than a crash.

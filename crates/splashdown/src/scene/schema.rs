@@ -43,6 +43,8 @@ fn property(key: &Key) -> Value {
         Kind::Integers(count, range) => list(count, number("integer", range)),
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$" }),
+        Kind::Text(_) => json!({ "type": "string", "minLength": 1 }),
+        Kind::Texts(count, _) => list(count, json!({ "type": "string", "minLength": 1 })),
         Kind::Word(words) => one_of(&words()),
         Kind::Words(words) => json!({ "type": "array", "items": one_of(&words()), "uniqueItems": true }),
         Kind::Table(inner) => table(inner),

@@ -1,6 +1,8 @@
 //! Scripted motion: where a body is at any time.
 
-use glam::{Quat, Vec3};
+use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
+
+use super::formula::Formula;
 
 /// A body's pose and how it changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,11 +17,16 @@ pub struct Pose {
     pub angular_velocity: Vec3,
 }
 
-/// A motion that is written down beforehand.
+/// A motion that is written down beforehand: keyframes, and formulas on top of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// Poses over time, in order of time; between them position and rotation go smoothly.
+    /// Poses in order of time, at least one. Between them the position is a cubic with the slopes of Catmull and Rom and the rotation
+    /// turns steadily; before the first and after the last the body rests.
     pub keyframes: Vec<Keyframe>,
+    /// Added to the position, in m.
+    pub shift: Option<Box<[Formula; 3]>>,
+    /// Turns the mesh about its own axes, x first, then y, then z, in degrees, before the keyframes' rotation.
+    pub turn: Option<Box<[Formula; 3]>>,
 }
 
 /// A pose at a time.
@@ -33,15 +40,120 @@ pub struct Keyframe {
     pub orientation: Quat,
 }
 
+/// Half the time over which velocities are differences, in s.
+const STEP: f64 = 1e-4;
+
 impl Script {
     /// The pose at a time in seconds.
-    pub fn pose(&self, _time: f64) -> Pose {
-        let first = self.keyframes.first();
+    pub fn pose(&self, time: f64) -> Pose {
+        let (position, orientation) = self.place(time);
+        let (before, turned_before) = self.place(time - STEP);
+        let (after, turned_after) = self.place(time + STEP);
+        let turn = turned_after * turned_before.conjugate();
+        let turn = if turn.w < 0.0 { -turn } else { turn };
         Pose {
-            position: first.map_or(Vec3::ZERO, |key| key.position),
-            orientation: first.map_or(Quat::IDENTITY, |key| key.orientation),
-            velocity: Vec3::ZERO,
-            angular_velocity: Vec3::ZERO,
+            position: position.as_vec3(),
+            orientation: orientation.as_quat(),
+            velocity: ((after - before) / (2.0 * STEP)).as_vec3(),
+            angular_velocity: (turn.to_scaled_axis() / (2.0 * STEP)).as_vec3(),
         }
+    }
+
+    /// The fastest that a point `reach` metres from the origin moves up to `duration`, in m/s: from samples.
+    pub fn max_speed(&self, duration: f64, reach: f32) -> f32 {
+        const SAMPLES: u32 = 400;
+        (0..=SAMPLES)
+            .map(|k| self.pose(duration * f64::from(k) / f64::from(SAMPLES)))
+            .map(|pose| pose.velocity.length() + reach * pose.angular_velocity.length())
+            .fold(0.0, f32::max)
+    }
+
+    fn place(&self, time: f64) -> (DVec3, DQuat) {
+        let (mut position, mut orientation) = self.between_keyframes(time);
+        if let Some(shift) = &self.shift {
+            position += DVec3::from_array(shift.each_ref().map(|formula| formula.at(time)));
+        }
+        if let Some(turn) = &self.turn {
+            let [x, y, z] = turn.each_ref().map(|formula| formula.at(time).to_radians());
+            orientation *= DQuat::from_euler(EulerRot::ZYX, z, y, x);
+        }
+        (position, orientation)
+    }
+
+    fn between_keyframes(&self, time: f64) -> (DVec3, DQuat) {
+        let keys = &self.keyframes;
+        let pose = |key: &Keyframe| (key.position.as_dvec3(), key.orientation.as_dquat());
+        let next = keys.partition_point(|key| key.time <= time);
+        let (Some(a), Some(b)) = (next.checked_sub(1).and_then(|k| keys.get(k)), keys.get(next)) else {
+            let held = if next == 0 { keys.first() } else { keys.last() };
+            return held.map_or((DVec3::ZERO, DQuat::IDENTITY), pose);
+        };
+        let length = b.time - a.time;
+        let f = (time - a.time) / length;
+        // The slope at a key is that of the line through its neighbours; at both ends the body rests.
+        let slope = |k: usize| {
+            if k == 0 || k + 1 == keys.len() {
+                return DVec3::ZERO;
+            }
+            let (p, q) = (&keys[k - 1], &keys[k + 1]);
+            (q.position - p.position).as_dvec3() / (q.time - p.time)
+        };
+        let (f2, f3) = (f * f, f * f * f);
+        let position = (2.0 * f3 - 3.0 * f2 + 1.0) * a.position.as_dvec3()
+            + (f3 - 2.0 * f2 + f) * length * slope(next - 1)
+            + (3.0 * f2 - 2.0 * f3) * b.position.as_dvec3()
+            + (f3 - f2) * length * slope(next);
+        (position, a.orientation.as_dquat().slerp(b.orientation.as_dquat(), f))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn formulas(texts: [&str; 3]) -> Option<Box<[Formula; 3]>> {
+        Some(Box::new(texts.map(|text| Formula::parse(text).unwrap())))
+    }
+
+    fn still() -> Keyframe {
+        Keyframe { time: 0.0, position: Vec3::new(1.0, 2.0, 3.0), orientation: Quat::IDENTITY }
+    }
+
+    #[test]
+    fn formulas_move_and_turn_with_their_derivatives() {
+        let script = Script {
+            keyframes: vec![still()],
+            shift: formulas(["0.1*sin(2*t)", "0", "t^2"]),
+            turn: formulas(["0", "0", "90*t"]),
+        };
+        let pose = script.pose(0.5);
+        let expected = Vec3::new(1.0 + 0.1 * 1f32.sin(), 2.0, 3.25);
+        assert!(pose.position.distance(expected) < 1e-6);
+        assert!(pose.velocity.distance(Vec3::new(0.2 * 1f32.cos(), 0.0, 1.0)) < 1e-5);
+        let rate = std::f32::consts::FRAC_PI_2;
+        assert!(pose.angular_velocity.distance(Vec3::new(0.0, 0.0, rate)) < 1e-4);
+        let x = pose.orientation * Vec3::X;
+        assert!(x.distance(Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)) < 1e-5);
+        assert!((script.max_speed(1.0, 2.0) - (4.0f32 + 0.0069).sqrt() - 2.0 * rate).abs() < 0.01);
+    }
+
+    #[test]
+    fn keyframes_are_met_smoothly_and_held_at_both_ends() {
+        let key = |time: f64, x: f32, turn: f32| Keyframe {
+            time,
+            position: Vec3::new(x, 0.0, 0.0),
+            orientation: Quat::from_rotation_y(turn),
+        };
+        let keyframes = vec![key(0.5, 0.0, 0.0), key(1.0, 1.0, 0.5), key(2.0, 1.5, 1.0)];
+        let script = Script { keyframes, shift: None, turn: None };
+        for (time, x) in [(0.0, 0.0), (0.5, 0.0), (1.0, 1.0), (2.0, 1.5), (9.0, 1.5)] {
+            assert!((script.pose(time).position.x - x).abs() < 1e-6, "{time}");
+        }
+        assert_eq!(script.pose(0.2).velocity, Vec3::ZERO);
+        // No jump of the velocity at the key in the middle: 1.5 m in 1.5 s.
+        for time in [0.999, 1.0, 1.001] {
+            assert!((script.pose(time).velocity.x - 1.0).abs() < 0.02, "{}", script.pose(time).velocity);
+        }
+        assert!((script.pose(1.5).angular_velocity.y - 0.5).abs() < 1e-4);
     }
 }

@@ -20,6 +20,10 @@ pub(crate) enum Kind {
     Boolean,
     /// A short name that is safe as a folder's name.
     Name,
+    /// Any text; the words say what may be in it.
+    Text(&'static str),
+    /// That many texts.
+    Texts(usize, &'static str),
     /// One of some words.
     Word(fn() -> Vec<Word>),
     /// A list of words, each at most once.

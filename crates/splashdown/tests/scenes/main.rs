@@ -1,5 +1,6 @@
 //! Scene files: what is read, what is refused and with which words, and how blocks become particles.
 
+mod bodies;
 mod derived;
 mod errors;
 mod hostile;

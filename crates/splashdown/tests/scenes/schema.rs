@@ -139,7 +139,9 @@ fn the_parser_knows_every_key_of_the_schema_and_takes_its_defaults() {
     let plain = parse(CUBE).expect("the cube is legal");
     let mut seen = 0;
     for (section, table) in schema["properties"].as_object().expect("sections") {
-        for (name, key) in table["properties"].as_object().expect("keys") {
+        // The keys of lists of sections are compared where the lists are tested.
+        let Some(keys) = table["properties"].as_object() else { continue };
+        for (name, key) in keys {
             let Some(default) = key.get("default") else { continue };
             // Without a meaning for the plain method; their defaults are compared below.
             if name == "density_diffusion" {

@@ -32,7 +32,7 @@ fn build(mesh: &Mesh, cells: f32) -> Solid {
     };
     let begun = std::time::Instant::now();
     let solid = Solid::build(mesh, &settings, &|_| {}).unwrap();
-    println!("{:?}: {}", begun.elapsed(), solid.report);
+    eprintln!("{:?}: {}", begun.elapsed(), solid.report);
     solid
 }
 
@@ -48,7 +48,7 @@ fn open_meshes_are_shells_and_closed_ones_solids() {
     ] {
         let Some(mesh) = shared(name) else { continue };
         let solid = build(&mesh, 40.0);
-        println!("{name}: {:?} volume {}", solid.kind, solid.mass.volume);
+        eprintln!("{name}: {:?} volume {}", solid.kind, solid.mass.volume);
         assert_eq!(solid.kind, kind, "{name}: {}", solid.report);
     }
 }
@@ -73,7 +73,7 @@ fn spot_damaged_has_the_distances_of_spot() {
             differing.push(x);
         }
     }
-    println!("{} of {all} nodes near the surface differ by more than a cell", differing.len());
+    eprintln!("{} of {all} nodes near the surface differ by more than a cell", differing.len());
     assert!(inside > 1000);
     let part = differing.len() as f32 / all as f32;
     // Where they differ is the hole and what floats about.

@@ -70,7 +70,7 @@ fn by_script(state: &StepState, samples: &[ScriptSample], body: &mut Body) {
         + (3.0 * f2 - 2.0 * f3) * two.position
         + (f3 - f2) * length * two.velocity;
     let near = if one.orientation.dot(two.orientation) >= 0.0 { two.orientation } else { -two.orientation };
-    body.orientation = one.orientation.lerp(near, f).normalize();
+    body.orientation = one.orientation.lerp(near, f).normalize_or(one.orientation);
     body.velocity = one.velocity.lerp(two.velocity, f);
     body.angular_velocity = one.angular_velocity.lerp(two.angular_velocity, f);
 }

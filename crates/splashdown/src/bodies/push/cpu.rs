@@ -75,15 +75,16 @@ impl Pushed<'_> {
     fn run(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
         let used = if self.contacts[1].body == Contact::NONE { 1 } else { 2 };
         let mut a = acceleration.xyz() - self.wall_body;
-        let mut reaction = [Vec3::ZERO; 2];
-        let mut normals = [Vec3::ZERO; 2];
-        for k in 0..used {
-            (reaction[k], normals[k]) = self.effect(k, used == 2);
-        }
-        for k in 0..used {
+        let both = used == 2;
+        let second = if both { self.effect(1, both) } else { (Vec3::ZERO, Vec3::ZERO) };
+        let (mut reaction, normals): ([Vec3; 2], [Vec3; 2]) = {
+            let first = self.effect(0, both);
+            ([first.0, second.0], [first.1, second.1])
+        };
+        for (contact, normal) in self.contacts.iter().zip(normals).take(used) {
             // What acts along the surface goes on in the solid.
-            let share = self.contacts[k].share.clamp(0.0, 0.6);
-            a += share / (1.0 - share) * (a - a.dot(normals[k]) * normals[k]);
+            let share = contact.share.clamp(0.0, 0.6);
+            a += share / (1.0 - share) * (a - a.dot(normal) * normal);
         }
         a += reaction[0] + reaction[1] + self.wall_body;
         for (k, reaction) in reaction.iter_mut().enumerate().take(used) {

@@ -2,6 +2,7 @@
 
 mod fluid;
 mod solver;
+mod things;
 mod view;
 
 use glam::Vec3;
@@ -77,6 +78,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         };
         sound.map(|()| fluid)
     });
+    let bodies = root.sections_if_any("body").and_then(|sections| things::read_bodies(&sections));
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
     let surface =
         root.section("surface").and_then(|section| view::read_surface(&section, fluid.as_ref().ok()));
@@ -95,7 +97,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         gravity: header.gravity,
         domain: domain?,
         fluid: fluid?,
-        bodies: Vec::new(),
+        bodies: bodies?,
         emitters: Vec::new(),
         sinks: Vec::new(),
         probes: Vec::new(),

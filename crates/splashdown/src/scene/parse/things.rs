@@ -1,0 +1,185 @@
+//! The section `[[body]]`.
+
+use std::collections::HashSet;
+
+use glam::{EulerRot, Quat, Vec3};
+
+use super::{Part, needed};
+use crate::models;
+use crate::scene::formula::{self, Formula};
+use crate::scene::keys::MotionWord;
+use crate::scene::reader::{Reported, Section};
+use crate::scene::script::{Keyframe, Script};
+use crate::scene::suggest;
+use crate::scene::things::{Body, BoundaryKind, MeshShape, MeshSource, Motion, UpAxis};
+
+/// Everything that `[[body]]` says.
+pub(super) fn read_bodies(sections: &[Section<'_>]) -> Part<Vec<Body>> {
+    let mut names = HashSet::new();
+    let bodies: Vec<Part<Body>> = sections
+        .iter()
+        .map(|section| {
+            let body = read_body(section)?;
+            if names.insert(body.name.clone()) {
+                return Ok(body);
+            }
+            let message = format!("there are two bodies called {:?}", body.name);
+            Err(section.complain("name", message, "a name of its own for every body", ""))
+        })
+        .collect();
+    bodies.into_iter().collect()
+}
+
+fn read_body(section: &Section<'_>) -> Part<Body> {
+    let name = section.name("name");
+    let mesh = read_mesh(section);
+    let density = section.number("density");
+    let velocity = section.numbers("velocity");
+    let angular_velocity = section.numbers("angular_velocity");
+    let friction = section.number("friction");
+    let adhesion = section.number("adhesion");
+    let boundary = section.choice::<BoundaryKind>("boundary");
+    let shell = section.boolean("shell");
+    let half_thickness = section.number("half_thickness");
+    let colour = section.numbers("colour");
+    let script = mesh.as_ref().map_err(|r| *r).and_then(|mesh| read_script(section, mesh));
+    let motion = read_motion(section, script);
+    let vector = |v: Option<[f32; 3]>| v.map_or(Vec3::ZERO, Vec3::from);
+    let motion = match motion? {
+        Motion::Dynamic { density: default, .. } => Motion::Dynamic {
+            density: density?.unwrap_or(default),
+            velocity: vector(velocity?),
+            angular_velocity: vector(angular_velocity?),
+        },
+        other => other,
+    };
+    Ok(Body {
+        name: needed(name)?,
+        mesh: mesh?,
+        motion,
+        friction: friction?.unwrap_or(0.0),
+        adhesion: adhesion?.unwrap_or(0.0),
+        boundary: boundary?.unwrap_or(BoundaryKind::Map),
+        half_thickness: half_thickness?,
+        shell: shell?,
+        colour: colour?,
+    })
+}
+
+/// The mesh and its place: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
+pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
+    let shape = section.text("mesh");
+    let scale = section.number("scale");
+    let up = section.choice::<UpAxis>("up");
+    let position = section.numbers("position");
+    let rotation = section.numbers("rotation");
+    let text = needed(shape)?;
+    let shape = if text.contains(['.', '/', '\\']) {
+        MeshShape::File(text.into())
+    } else {
+        let names: Vec<&str> = models::names().iter().map(|(name, _)| *name).collect();
+        if !names.contains(&text.as_str()) {
+            let message = format!("{} names no model: {text:?}", section.key_path("mesh"));
+            let hint = suggest::closest(&text, &names).map_or_else(
+                || "a file's name needs its ending".to_owned(),
+                |name| format!("did you mean {name:?}? A file's name needs its ending"),
+            );
+            return Err(section.complain("mesh", message, &names.join(", "), &hint));
+        }
+        MeshShape::Model(text)
+    };
+    Ok(MeshSource {
+        shape,
+        scale: scale?.unwrap_or(1.0),
+        up: up?.unwrap_or(UpAxis::Y),
+        position: position?.map_or(Vec3::ZERO, Vec3::from),
+        rotation: rotation?.map_or(Quat::IDENTITY, turned),
+    })
+}
+
+/// About x, then y, then z, in degrees.
+fn turned(degrees: [f32; 3]) -> Quat {
+    let [x, y, z] = degrees.map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, z, y, x)
+}
+
+fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Motion> {
+    let word = section.choice::<MotionWord>("motion");
+    let script = script?;
+    let scripted = script.is_some();
+    let word = word?.unwrap_or(if scripted { MotionWord::Scripted } else { MotionWord::Static });
+    for (name, wanted) in [("density", false), ("velocity", false), ("angular_velocity", false)] {
+        if section.has(name) && (word == MotionWord::Dynamic) == wanted {
+            let message = format!("{} means something only to a dynamic body", section.key_path(name));
+            section.warn(name, message, "write motion = \"dynamic\", or take the key out");
+        }
+    }
+    match (word, script) {
+        (MotionWord::Static, None) => Ok(Motion::Static),
+        (MotionWord::Scripted, Some(script)) => Ok(Motion::Scripted(script)),
+        (MotionWord::Dynamic, None) => {
+            Ok(Motion::Dynamic { density: 500.0, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO })
+        }
+        (MotionWord::Scripted, None) => {
+            let message = "a scripted body needs a keyframe, move or turn".to_owned();
+            Err(section.complain("motion", message, "", "for example turn = [\"0\", \"0\", \"90*t\"]"))
+        }
+        (other, Some(_)) => {
+            let message = format!("a {other} body cannot have keyframes, move or turn");
+            Err(section.complain("motion", message, "", "take motion out, or the script"))
+        }
+    }
+}
+
+fn read_script(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Script>> {
+    let shift = read_formulas(section, "move");
+    let turn = read_formulas(section, "turn");
+    let sections = section.sections_if_any("keyframe")?;
+    let keyframes: Vec<Part<Keyframe>> = sections.iter().map(|s| read_keyframe(s, mesh)).collect();
+    let mut keyframes = keyframes.into_iter().collect::<Part<Vec<_>>>()?;
+    let (shift, turn) = (shift?, turn?);
+    for (k, pair) in keyframes.windows(2).enumerate() {
+        if pair[1].time <= pair[0].time {
+            let message = format!(
+                "{} = {} s is not after the keyframe before it, {} s",
+                sections[k + 1].key_path("time"),
+                pair[1].time,
+                pair[0].time
+            );
+            let hint = "keyframes stand in the order of time, each at a time of its own";
+            return Err(sections[k + 1].complain("time", message, "", hint));
+        }
+    }
+    if keyframes.is_empty() {
+        if shift.is_none() && turn.is_none() {
+            return Ok(None);
+        }
+        keyframes.push(Keyframe { time: 0.0, position: mesh.position, orientation: mesh.rotation });
+    }
+    Ok(Some(Script { keyframes, shift, turn }))
+}
+
+fn read_keyframe(section: &Section<'_>, mesh: &MeshSource) -> Part<Keyframe> {
+    let time = section.number("time");
+    let position = section.numbers("position");
+    let rotation = section.numbers("rotation");
+    Ok(Keyframe {
+        time: f64::from(needed(time)?),
+        position: position?.map_or(mesh.position, Vec3::from),
+        orientation: rotation?.map_or(mesh.rotation, turned),
+    })
+}
+
+fn read_formulas(section: &Section<'_>, name: &str) -> Part<Option<Box<[Formula; 3]>>> {
+    let Some(texts) = section.texts::<3>(name)? else { return Ok(None) };
+    let refuse = |why: &str| -> Reported {
+        section.complain(name, format!("{}: {why}", section.key_path(name)), formula::ALLOWED, "")
+    };
+    let parse = |text: &String| Formula::parse(text).map_err(|why| refuse(&why));
+    let [x, y, z] = texts.each_ref().map(parse);
+    let formulas = Box::new([x?, y?, z?]);
+    if formulas.iter().any(|formula| !formula.at(0.0).is_finite()) {
+        return Err(refuse("a formula has no value at t = 0"));
+    }
+    Ok(Some(formulas))
+}

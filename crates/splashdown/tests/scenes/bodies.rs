@@ -1,0 +1,140 @@
+use glam::{Quat, Vec3};
+use splashdown::scene::{Body, BoundaryKind, MeshShape, Motion, Scene, UpAxis};
+
+use crate::{CUBE, parse};
+
+fn with_body(body: &str) -> String {
+    format!("{CUBE}\n[[body]]\n{body}\n")
+}
+
+fn body(text: &str) -> Body {
+    let scene = parse(&with_body(text)).unwrap_or_else(|errors| panic!("{errors}"));
+    scene.bodies.into_iter().next().expect("one body")
+}
+
+fn refusal(text: &str) -> String {
+    parse(&with_body(text)).map(drop).expect_err(text).to_string()
+}
+
+const PLAIN: &str = "name = \"block\"\nmesh = \"cube\"";
+
+#[test]
+fn a_body_has_the_defaults_of_the_reference() {
+    let plain = body(PLAIN);
+    assert_eq!(plain.motion, Motion::Static);
+    assert_eq!(plain.mesh.shape, MeshShape::Model("cube".into()));
+    assert_eq!((plain.friction, plain.adhesion, plain.boundary), (0.0, 0.0, BoundaryKind::Map));
+    assert_eq!((plain.half_thickness, plain.shell, plain.colour), (None, None, None));
+    let schema = splashdown::scene::schema();
+    let keys = schema["properties"]["body"]["items"]["properties"].as_object().expect("keys");
+    let mut seen = 0;
+    for (name, key) in keys {
+        // What belongs to dynamic bodies is tested with one.
+        let Some(default) = key
+            .get("default")
+            .filter(|_| !matches!(name.as_str(), "density" | "velocity" | "angular_velocity"))
+        else {
+            continue;
+        };
+        assert_eq!(body(&format!("{PLAIN}\n{name} = {default}")), plain, "{name}");
+        seen += 1;
+    }
+    assert!(seen >= 6, "{seen}");
+}
+
+#[test]
+fn every_key_of_a_body_is_read() {
+    let full = body(
+        "name = \"boat\"\nmesh = \"parts/boat.stl\"\nscale = 0.001\nup = \"z\"\nposition = [1, 2, 3]\nrotation = [0, 90, 0]\n\
+         motion = \"dynamic\"\ndensity = 200\nvelocity = [1, 0, 0]\nangular_velocity = [0, 2, 0]\nfriction = 0.5\nadhesion = 3\n\
+         boundary = \"particles\"\nshell = true\nhalf_thickness = 0.01\ncolour = [1, 0.5, 0]",
+    );
+    assert_eq!(full.mesh.shape, MeshShape::File("parts/boat.stl".into()));
+    assert_eq!(
+        (full.mesh.scale, full.mesh.up, full.mesh.position),
+        (0.001, UpAxis::Z, Vec3::new(1.0, 2.0, 3.0))
+    );
+    assert!((full.mesh.rotation * Vec3::Z).distance(Vec3::X) < 1e-6);
+    let velocity = Vec3::new(1.0, 0.0, 0.0);
+    let angular_velocity = Vec3::new(0.0, 2.0, 0.0);
+    assert_eq!(full.motion, Motion::Dynamic { density: 200.0, velocity, angular_velocity });
+    assert_eq!((full.friction, full.adhesion, full.boundary), (0.5, 3.0, BoundaryKind::Particles));
+    assert_eq!(
+        (full.shell, full.half_thickness, full.colour),
+        (Some(true), Some(0.01), Some([1.0, 0.5, 0.0]))
+    );
+}
+
+#[test]
+fn rotations_are_about_x_then_y_then_z() {
+    let turned = body(&format!("{PLAIN}\nrotation = [90, 0, 90]")).mesh.rotation;
+    let expected = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2)
+        * Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    assert!((turned * Vec3::Y).distance(expected * Vec3::Y) < 1e-6);
+}
+
+#[test]
+fn keyframes_and_formulas_make_a_script() {
+    let Motion::Scripted(script) = body(&format!(
+        "{PLAIN}\nposition = [0.5, 0, 0]\nmove = [\"0.1*sin(2*pi*t)\", \"0\", \"0\"]\nturn = [\"0\", \"0\", \"90*t\"]"
+    ))
+    .motion
+    else {
+        panic!("formulas make a scripted body")
+    };
+    assert!(script.pose(0.25).position.distance(Vec3::new(0.6, 0.0, 0.0)) < 1e-6);
+    let Motion::Scripted(script) = body(&format!(
+        "{PLAIN}\n[[body.keyframe]]\ntime = 0\n[[body.keyframe]]\ntime = 2\nposition = [1, 0, 0]"
+    ))
+    .motion
+    else {
+        panic!("keyframes make a scripted body")
+    };
+    assert!((script.pose(1.0).position.x - 0.5).abs() < 1e-6);
+}
+
+#[test]
+fn mistakes_in_bodies_are_named_with_what_is_allowed() {
+    for (text, parts) in [
+        ("mesh = \"cube\"", &["body[0].name is missing"][..]),
+        ("name = \"a\"\nmesh = \"cub\"", &["\"cub\"", "did you mean \"cube\"?"]),
+        (
+            "name = \"a\"\nmesh = \"cube\"\n[[body]]\nname = \"a\"\nmesh = \"cube\"",
+            &["two bodies called \"a\""],
+        ),
+        ("name = \"a\"\nmesh = \"cube\"\nmotion = \"scripted\"", &["needs a keyframe, move or turn"]),
+        (
+            "name = \"a\"\nmesh = \"cube\"\nmotion = \"static\"\nturn = [\"0\", \"t\", \"0\"]",
+            &["cannot have keyframes"],
+        ),
+        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"speed*t\", \"0\"]", &["\"speed\"", "sin cos"]),
+        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"1/t\", \"0\"]", &["no value at t = 0"]),
+        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"t\"]", &["3 texts"]),
+        (
+            "name = \"a\"\nmesh = \"cube\"\n[[body.keyframe]]\ntime = 1\n[[body.keyframe]]\ntime = 1",
+            &["body[0].keyframe[1].time", "not after"],
+        ),
+        ("name = \"a\"\nmesh = \"cube\"\nfriction = 2", &["body[0].friction", "0 to 1"]),
+    ] {
+        let message = refusal(text);
+        for part in parts {
+            assert!(message.contains(part), "{text}\n{message}");
+        }
+    }
+}
+
+#[test]
+fn a_density_of_a_static_body_is_doubted() {
+    let scene = parse(&with_body(&format!("{PLAIN}\ndensity = 300"))).expect("legal");
+    let warnings = scene.warnings.iter().map(ToString::to_string).collect::<String>();
+    assert!(warnings.contains("only to a dynamic body"), "{warnings}");
+}
+
+#[test]
+fn files_are_named_from_the_scene_file_s_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, with_body("name = \"a\"\nmesh = \"models/a.obj\"")).expect("written");
+    let scene = Scene::load(&path).expect("legal");
+    assert_eq!(scene.bodies[0].mesh.shape, MeshShape::File(folder.path().join("models/a.obj")));
+}
