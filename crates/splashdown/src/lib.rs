@@ -21,6 +21,7 @@ pub mod cells;
 mod device;
 mod error;
 mod fields;
+pub mod flow;
 pub mod kernel;
 mod memory;
 pub mod models;
@@ -45,7 +46,7 @@ pub use stats::Stats;
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
-    [passes::passes(), bodies::passes(), surface::passes()].concat()
+    [passes::passes(), bodies::passes(), flow::passes(), surface::passes()].concat()
 }
 
 /// The examples of the README.

@@ -2,7 +2,9 @@
 
 use crate::SimulationError;
 use crate::cells::Grid;
+use crate::flow::LoadedFlow;
 use crate::scene::{Derived, Scene, Sort, SurfaceTension};
+use crate::solver::Solver;
 use crate::surface::{self, SurfaceParams};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
@@ -37,6 +39,9 @@ pub(crate) fn check(particles: u64, largest_buffer: u64) -> Result<(), Simulatio
 /// A splash with more surface than most makes the surface's buffers grow beyond this.
 pub fn memory_forecast(scene: &Scene) -> u64 {
     let particles = Derived::new(scene).particles;
+    // A mesh that cannot be read is reported where the simulation starts.
+    let flow = LoadedFlow::new(scene, Solver::new(scene).walls()).unwrap_or_default();
+    let particles = flow.capacity(particles, u64::MAX);
     let normals = if scene.solver.surface_tension == SurfaceTension::Akinci2013 { 16 } else { 0 };
     let pairs = if scene.solver.sort == Sort::Bitonic { 8 } else { 0 };
     let motion = particles.saturating_mul(PER_PARTICLE + normals + pairs);

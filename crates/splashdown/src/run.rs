@@ -160,6 +160,7 @@ pub struct Run {
     density_error: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
+    particle_steps: f64,
     waiting: VecDeque<Event>,
     stats_before: Stats,
 }
@@ -195,9 +196,8 @@ impl Run {
         }
         let frames = options.frames.unwrap_or_else(|| scene.frame_count());
         let frame_duration = scene.frame_duration();
-        let params = simulation.params();
         let particle_volume =
-            f64::from(params.particle_count) * f64::from(scene.fluid.particle_spacing).powi(3);
+            f64::from(simulation.stats().particles) * f64::from(scene.fluid.particle_spacing).powi(3);
         Ok(Self {
             surface,
             frames,
@@ -211,6 +211,7 @@ impl Run {
             density_error: 0.0,
             volume: None,
             particle_volume,
+            particle_steps: 0.0,
             waiting: VecDeque::new(),
             stats_before: simulation.stats(),
             simulation,
@@ -253,7 +254,10 @@ impl Run {
         self.clock.steps += begun.elapsed();
         if let Some(stats) = outcome? {
             self.density_error = self.density_error.max(stats.density_error);
+            self.particle_steps += f64::from(stats.particles) * f64::from(stats.steps_in_frame);
             self.warn(&stats);
+            let told = self.simulation.take_warnings().into_iter();
+            self.waiting.extend(told.map(|text| Event::Warning(format!("at {:.4} s: {text}", stats.time))));
             self.stage = Stage::Fetch(frame);
             return Ok(None);
         }
@@ -351,14 +355,13 @@ impl Run {
         let stats = self.simulation.stats();
         let wall = self.started.elapsed().as_secs_f64();
         let step_wall = self.clock.steps.as_secs_f64();
-        let particle_steps = stats.steps as f64 * f64::from(self.simulation.params().particle_count);
         Event::Finished(Summary {
             stats,
             frames: self.frames,
             wall,
             step_wall,
             frame_wall: self.clock.frames.as_secs_f64(),
-            particle_steps_per_second: particle_steps / step_wall.max(f64::MIN_POSITIVE),
+            particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
             simulated_per_wall: stats.time / wall,
             density_error: self.density_error,
             volume: self.volume,

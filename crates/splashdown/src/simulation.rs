@@ -10,7 +10,8 @@ use splashdown_io::{Mesh, Particles};
 use crate::bodies::{Bodies, BodyMesh, BodyState, LoadedBody};
 use crate::cells::{Cells, Grid};
 use crate::fields::Fields;
-use crate::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
+use crate::flow::{Flow, LoadedFlow};
+use crate::passes::{DEAD_NON_FINITE, DEAD_UNBORN, Params, StepState, Tally};
 use crate::scene::{Derived, Scene, SurfaceSettings};
 use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
@@ -50,6 +51,11 @@ pub struct Simulation {
     frame: Option<FrameInProgress>,
     bodies: Option<Bodies>,
     removed: u32,
+    flow: Option<Flow>,
+    /// Particles at the start.
+    initial: u32,
+    /// What the emitters had to tell since it was last asked for.
+    told: Vec<String>,
 }
 
 /// A frame that has begun.
@@ -116,9 +122,14 @@ impl Simulation {
         loaded: Vec<LoadedBody>,
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
-        memory::check(n as u64, executor.largest_buffer())?;
-        let params = solver::params(scene, n as u32);
+        let largest = executor.largest_buffer();
+        memory::check(n as u64, largest)?;
         let solver = Solver::new(scene);
+        let loaded_flow = LoadedFlow::new(scene, solver.walls())?;
+        // The unborn have places of their own.
+        let (initial, n) =
+            (n as u32, loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as usize);
+        let params = solver::params(scene, n as u32);
         let (min, max) = (scene.domain.min, scene.domain.max);
         let grid =
             Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
@@ -134,12 +145,18 @@ impl Simulation {
         } else {
             Some(Bodies::new(&mut executor, loaded, &params, solver.walls(), &scene.domain)?)
         };
-        upload(&mut executor, &fields, particles, params.rest_density)?;
+        let flow = if loaded_flow.is_empty() {
+            None
+        } else {
+            let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
+            Some(Flow::new(&mut executor, &loaded_flow, params.particle_spacing, next_id)?)
+        };
+        upload(&mut executor, &fields, particles, &params)?;
         let stable_dt = Derived::new(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
 
-        let step = solver.step(&cells, &fields, bodies.as_ref(), n as u32);
+        let step = solver.step(&cells, &fields, bodies.as_ref(), flow.as_ref(), n as u32);
         let done = Flag::new(fields.state, offset_of!(StepState, done));
         let batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
@@ -161,6 +178,9 @@ impl Simulation {
             frame: None,
             bodies,
             removed: 0,
+            flow,
+            initial,
+            told: Vec::new(),
         };
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
@@ -272,7 +292,7 @@ impl Simulation {
                 max_acceleration: state.max_acceleration,
             });
         }
-        if self.stats.particles == 0 && self.params.particle_count > 0 {
+        if self.stats.particles == 0 && self.initial > 0 && self.flow.is_none() {
             return Err(SimulationError::NothingLeft {
                 time: self.stats.time,
                 reason: format!(
@@ -291,7 +311,14 @@ impl Simulation {
         stats.escaped = tally[Tally::ESCAPED];
         stats.wall_corrections = tally[Tally::CORRECTIONS];
         stats.speed_limits = tally[Tally::LIMITED];
-        stats.particles = self.params.particle_count - stats.escaped - tally[Tally::NON_FINITE];
+        stats.drained = tally[Tally::DRAINED];
+        if let Some(flow) = &mut self.flow {
+            let (count, told) = flow.count(&mut self.executor)?;
+            (stats.emitted, stats.refused) = (count.emitted, count.refused);
+            self.told.extend(told);
+        }
+        let gone = stats.escaped + stats.drained + tally[Tally::NON_FINITE];
+        stats.particles = self.initial + stats.emitted - gone;
         if tally[Tally::NON_FINITE] > stats.non_finite {
             stats.non_finite = tally[Tally::NON_FINITE];
             let (positions, ids) =
@@ -339,6 +366,11 @@ impl Simulation {
         let (positions, velocities) = (positions.wait(executor)?, velocities.wait(executor)?);
         let densities = densities.wait(executor)?;
         Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
+    }
+
+    /// What emitters had to tell since the last call: each says once when it found no room.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.told)
     }
 
     /// The meshes of the scene's bodies, in its order.
@@ -478,17 +510,23 @@ fn upload(
     executor: &mut Executor,
     fields: &Fields,
     particles: &Particles,
-    rest_density: f32,
+    params: &Params,
 ) -> Result<(), SimulationError> {
     let n = particles.positions.len();
-    let positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
+    let unborn = params.particle_count as usize - n;
+    let rest_density = params.rest_density;
+    let mut positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
+    positions.extend(vec![params.domain_min.extend(DEAD_UNBORN); unborn]);
     // Passes divide by densities: one that is not positive is as good as none, and its particle is taken out as such.
     let positive = |rho: f32| if rho > 0.0 { rho } else { f32::NAN };
     let density = |i: usize| particles.densities.get(i).map_or(rest_density, |&rho| positive(rho));
     let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
-    let velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
-    let ids: Vec<u32> =
+    let mut velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
+    velocities.extend(vec![Vec3::ZERO.extend(rest_density); unborn]);
+    let mut ids: Vec<u32> =
         if particles.ids.len() == n { particles.ids.clone() } else { (0..n as u32).collect() };
+    // Ids of the unborn must differ from each other and from those of the dead: they count down from the largest.
+    ids.extend((0..unborn as u32).map(|k| u32::MAX - k));
     executor.write(fields.positions, &positions)?;
     executor.write(fields.velocities, &velocities)?;
     executor.write(fields.ids, &ids)?;

@@ -13,6 +13,12 @@ pub struct Stats {
     pub dt: f32,
     /// Particles inside the domain.
     pub particles: u32,
+    /// Particles that emitters made, in all.
+    pub emitted: u32,
+    /// Particles that emitters found no room for, in all.
+    pub refused: u32,
+    /// Particles that went into sinks, in all.
+    pub drained: u32,
     /// Particles that left through an open side, in all.
     pub escaped: u32,
     /// Particles whose position or velocity became NaN or infinite, in all; they are taken out.

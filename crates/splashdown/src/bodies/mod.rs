@@ -14,7 +14,7 @@ mod rigid;
 mod share;
 mod types;
 
-pub use load::{BodyError, LoadedBody, load};
+pub use load::{BodyError, LoadedBody, load, mesh_of};
 pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
 
 use std::sync::Arc;

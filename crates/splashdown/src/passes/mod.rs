@@ -135,6 +135,8 @@ impl Tally {
     pub const MAX_ACCELERATION: usize = 5;
     /// Largest relative excess of density.
     pub const MAX_EXCESS: usize = 6;
+    /// Particles that went into sinks.
+    pub const DRAINED: usize = 7;
     /// Number of words.
     pub const WORDS: usize = 8;
 }
@@ -143,6 +145,10 @@ impl Tally {
 pub const DEAD_ESCAPED: f32 = 1.0;
 /// Mark of a particle that became NaN or infinite.
 pub const DEAD_NON_FINITE: f32 = 2.0;
+/// Mark of a place that waits for a particle to be born.
+pub const DEAD_UNBORN: f32 = 3.0;
+/// Mark of a particle that went into a sink.
+pub const DEAD_DRAINED: f32 = 4.0;
 
 impl Params {
     /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).

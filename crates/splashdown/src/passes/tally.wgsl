@@ -6,10 +6,12 @@ const TALLY_LIMITED: u32 = 3u;
 const TALLY_MAX_SPEED: u32 = 4u;
 const TALLY_MAX_ACCELERATION: u32 = 5u;
 const TALLY_MAX_EXCESS: u32 = 6u;
+const TALLY_DRAINED: u32 = 7u;
 
 // Marks in the fourth component of a position.
 const DEAD_ESCAPED: f32 = 1.0;
 const DEAD_NON_FINITE: f32 = 2.0;
+const DEAD_DRAINED: f32 = 4.0;
 
 // By its bits: shaders may assume that comparisons meet no NaN.
 fn is_finite(v: vec3<f32>) -> bool {

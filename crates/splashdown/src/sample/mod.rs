@@ -101,7 +101,7 @@ pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
         let (min, max) = (domain.min.to_array(), domain.max.to_array());
         return Err(SampleError::Outside { block, position, min, max });
     }
-    if positions.is_empty() {
+    if positions.is_empty() && scene.emitters.is_empty() {
         return Err(SampleError::Empty { spacing });
     }
     let ids = (0..positions.len() as u32).collect();

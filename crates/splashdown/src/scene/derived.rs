@@ -27,7 +27,7 @@ pub struct Derived {
     pub support_radius: f32,
     /// Height in m of the fluid's highest point above the domain's lowest, along gravity; 0 without gravity.
     pub head: f32,
-    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block. The
+    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block or emitter. The
     /// first part is the front of a dam break of that height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head)
     /// of a fall from there. A scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
     pub reference_speed: f32,
@@ -106,12 +106,14 @@ fn head(scene: &Scene) -> f32 {
         Shape::Box { min, size } => corner(min, min + size, false),
         Shape::Sphere { center, radius } => down.dot(center) - radius,
     });
-    (floor - tops.fold(floor, f32::min)).max(0.0)
+    let outlets = scene.emitters.iter().map(|emitter| down.dot(emitter.position));
+    (floor - tops.chain(outlets).fold(floor, f32::min)).max(0.0)
 }
 
 fn reference_speed(scene: &Scene, head: f32) -> f32 {
     let blocks = scene.fluid.blocks.iter().map(|block| block.velocity.length());
-    let fastest = blocks.fold(0.0, f32::max);
+    let emitters = scene.emitters.iter().map(|emitter| emitter.speed);
+    let fastest = blocks.chain(emitters).fold(0.0, f32::max);
     let shake = scene.domain.shake.map_or(0.0, |shake| shake.max_speed());
     let driven = (4.0 * scene.gravity.length() * head + fastest * fastest).sqrt() + shake;
     let material = &scene.fluid.material;

@@ -9,6 +9,7 @@ use crate::bodies::Bodies;
 use crate::boundary::{KernelPair, wall_offset};
 use crate::cells::Cells;
 use crate::fields::Fields;
+use crate::flow::Flow;
 use crate::passes::{Params, begin, cfl, integrate, state_equation};
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
 
@@ -58,7 +59,14 @@ impl Solver {
     }
 
     /// One step: sort, density and pressure, accelerations, motion, next time step.
-    pub fn step(&self, cells: &Cells, fields: &Fields, bodies: Option<&Bodies>, particles: u32) -> Recording {
+    pub fn step(
+        &self,
+        cells: &Cells,
+        fields: &Fields,
+        bodies: Option<&Bodies>,
+        flow: Option<&Flow>,
+        particles: u32,
+    ) -> Recording {
         let mut step = Recording::new("step");
         let all = Extent::Items(particles);
         cells.record(&mut step, fields);
@@ -82,6 +90,9 @@ impl Solver {
             bodies.record_push(&mut step, fields, all);
             bodies.record_motion(&mut step, fields);
         }
+        if let Some(flow) = flow {
+            flow.record_before_integrate(&mut step, cells, fields, all);
+        }
         step.dispatch(
             &integrate::INTEGRATE,
             all,
@@ -97,6 +108,9 @@ impl Solver {
                 fields.tally.id(),
             ],
         );
+        if let Some(flow) = flow {
+            flow.record_after_integrate(&mut step, cells, fields);
+        }
         step.dispatch(
             &cfl::CFL,
             Extent::Groups(1),

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec4};
 use splashdown::cells::Grid;
+use splashdown::flow::{Drain, Nozzle};
 use splashdown::passes::{Params, StepState};
 use splashdown_gpu::{
     Access, Buffer, BufferId, Executor, GpuElement, Grid as Extent, PassDesc, Recording, bytemuck,
@@ -18,6 +19,8 @@ pub enum Data {
     Params(Params),
     Grid(Grid),
     State(StepState),
+    Nozzles(Vec<Nozzle>),
+    Drains(Vec<Drain>),
 }
 
 impl Data {
@@ -29,6 +32,8 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice(v),
             Self::Vec4(v) => bytemuck::cast_slice(v),
             Self::UVec2(v) => bytemuck::cast_slice(v),
+            Self::Nozzles(v) => bytemuck::cast_slice(v),
+            Self::Drains(v) => bytemuck::cast_slice(v),
             Self::Params(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Grid(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::State(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
@@ -54,6 +59,8 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice_mut(v),
             Self::Vec4(v) => bytemuck::cast_slice_mut(v),
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
+            Self::Nozzles(v) => bytemuck::cast_slice_mut(v),
+            Self::Drains(v) => bytemuck::cast_slice_mut(v),
             Self::Params(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Grid(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::State(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
@@ -142,6 +149,8 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         Data::Vec2(v) => array(executor, name, v, Data::Vec2),
         Data::Vec4(v) => array(executor, name, v, Data::Vec4),
         Data::UVec2(v) => array(executor, name, v, Data::UVec2),
+        Data::Nozzles(v) => array(executor, name, v, Data::Nozzles),
+        Data::Drains(v) => array(executor, name, v, Data::Drains),
         Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
         Data::Params(v) => {
             assert!(uniform, "{name} is no uniform");

@@ -4,6 +4,7 @@
 //! comparison has a control: one input changed by as little as must be noticed. The surface's passes have their own tests.
 
 mod cases;
+mod flow_cases;
 mod harness;
 mod neighbour_cases;
 mod oracle;
@@ -18,7 +19,10 @@ use harness::Case;
 use splashdown_gpu::{CpuExecutor, Executor, testing};
 
 fn all_cases() -> Vec<Case> {
-    [sort_cases::cases(), cases::cases(), neighbour_cases::cases()].into_iter().flatten().collect()
+    [sort_cases::cases(), cases::cases(), neighbour_cases::cases(), flow_cases::cases()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 fn cpu() -> Executor {

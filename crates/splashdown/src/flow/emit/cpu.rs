@@ -1,0 +1,52 @@
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::cells::Grid;
+use crate::flow::{Nozzle, Plan};
+use crate::passes::Params;
+
+/// Nothing is born nearer to another particle than this many spacings.
+const NEAREST: f32 = 0.7;
+
+pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, grid, cell_start, nozzles, points, plans, positions, velocities, ids, densities] = slots
+    else {
+        unreachable!()
+    };
+    let (params, grid) = (params.get::<Params>(), grid.get::<Grid>());
+    let (cell_start, points) = (cell_start.read::<u32>(), points.read::<Vec2>());
+    let (positions, velocities) = (positions.write::<Vec4>(), velocities.write::<Vec4>());
+    let (ids, densities) = (ids.write::<u32>(), densities.write::<Vec2>());
+    let plans = plans.write::<u32>().chunks_exact_mut(Plan::WORDS);
+    for (nozzle, plan) in nozzles.read::<Nozzle>().iter().zip(plans) {
+        if plan[Plan::LAYER] == 0 {
+            continue;
+        }
+        let distance = f32::from_bits(plan[Plan::DISTANCE]);
+        let first = nozzle.first_point as usize;
+        for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
+            let x = nozzle.back + distance * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
+            if !is_free(&params, &grid, cell_start, positions, x) {
+                plan[Plan::BLOCKED] += 1;
+                continue;
+            }
+            let slot = plan[Plan::SLOT] as usize + place;
+            positions[slot] = x.extend(0.0);
+            velocities[slot] = (nozzle.speed * nozzle.direction).extend(params.rest_density);
+            ids[slot] = plan[Plan::ID] + place as u32;
+            densities[slot] = Vec2::new(params.rest_density, 0.0);
+            plan[Plan::EMITTED] += 1;
+        }
+    }
+}
+
+fn is_free(params: &Params, grid: &Grid, cell_start: &[u32], positions: &[Vec4], x: Vec3) -> bool {
+    let nearest = NEAREST * params.particle_spacing;
+    let (cell, width) = (grid.cell_of(x) as usize, grid.size_x as usize);
+    let plane = width * grid.size_y as usize;
+    let near = |p: &Vec4| p.w == 0.0 && (p.xyz() - x).length_squared() < nearest * nearest;
+    !(0..9).any(|row| {
+        let first = cell + row / 3 * plane + row % 3 * width - plane - width - 1;
+        positions[cell_start[first] as usize..cell_start[first + 3] as usize].iter().any(near)
+    })
+}

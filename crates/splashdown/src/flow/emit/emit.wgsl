@@ -1,0 +1,65 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/flow
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(3) var<storage, read> nozzles: array<Nozzle>;
+@group(0) @binding(4) var<storage, read> points: array<vec2<f32>>;
+@group(0) @binding(5) var<storage, read_write> plans: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> positions: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> velocities: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> ids: array<u32>;
+@group(0) @binding(9) var<storage, read_write> densities: array<vec2<f32>>;
+
+const NEAREST: f32 = 0.7;
+
+fn is_free(x: vec3<f32>) -> bool {
+    let nearest = NEAREST * params.particle_spacing;
+    let cell = cell_of(x);
+    for (var row = 0u; row < 9u; row++) {
+        let range = row_range(cell, row);
+        for (var j = range.x; j < range.y; j++) {
+            let p = positions[j];
+            let d = p.xyz - x;
+            if (p.w == 0.0 && dot(d, d) < nearest * nearest) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+@compute @workgroup_size(64)
+fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    var k = 0u;
+    while (k < arrayLength(&nozzles) && i >= nozzles[k].first_point + nozzles[k].points) {
+        k++;
+    }
+    if (k == arrayLength(&nozzles)) {
+        return;
+    }
+    let nozzle = nozzles[k];
+    let w = k * PLAN_WORDS;
+    if (atomicLoad(&plans[w + PLAN_LAYER]) == 0u) {
+        return;
+    }
+    let q = points[i];
+    let distance = bitcast<f32>(atomicLoad(&plans[w + PLAN_DISTANCE]));
+    let x = nozzle.back + distance * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
+    if (!is_free(x)) {
+        atomicAdd(&plans[w + PLAN_BLOCKED], 1u);
+        return;
+    }
+    let place = i - nozzle.first_point;
+    let slot = atomicLoad(&plans[w + PLAN_SLOT]) + place;
+    positions[slot] = vec4(x, 0.0);
+    velocities[slot] = vec4(nozzle.speed * nozzle.direction, params.rest_density);
+    ids[slot] = atomicLoad(&plans[w + PLAN_ID]) + place;
+    densities[slot] = vec2(params.rest_density, 0.0);
+    atomicAdd(&plans[w + PLAN_EMITTED], 1u);
+}

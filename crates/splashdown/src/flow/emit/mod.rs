@@ -1,0 +1,36 @@
+//! Writes the particles of the layers that are due ([`plan`](super::plan)).
+//!
+//! The sorted order of the step still holds: particles have moved by half a spacing at most since, so that the 27 cells show
+//! everything within reach. Where another particle is in the way, as in an outlet under water, none is made and that is counted.
+
+mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{FLOW, Nozzle};
+use crate::cells::{GRID, Grid};
+use crate::passes::{PARAMS, Params, ROWS, STATE};
+
+/// See the module.
+pub static EMIT: PassDesc = PassDesc {
+    label: "flow.emit",
+    wgsl: include_str!("emit.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, FLOW],
+    entry: "emit",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<u32>("cell_start"),
+        read::<Nozzle>("nozzles"),
+        read::<Vec2>("points"),
+        write::<u32>("plans"),
+        write::<Vec4>("positions"),
+        write::<Vec4>("velocities"),
+        write::<u32>("ids"),
+        write::<Vec2>("densities"),
+    ],
+    cpu: cpu::emit,
+};

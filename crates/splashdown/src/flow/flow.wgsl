@@ -1,0 +1,37 @@
+// Mirrors Nozzle and Drain in types.rs, and the words of Plan.
+struct Nozzle {
+    back: vec3<f32>,
+    speed: f32,
+    direction: vec3<f32>,
+    length: f32,
+    across: vec3<f32>,
+    start: f32,
+    up: vec3<f32>,
+    end: f32,
+    half_across: f32,
+    half_up: f32,
+    first_point: u32,
+    points: u32,
+    most: u32,
+    disc: u32,
+    unused: vec2<u32>,
+}
+
+struct Drain {
+    low: vec3<f32>,
+    kind: u32,
+    high: vec3<f32>,
+    cell_size: f32,
+    nodes: vec3<u32>,
+    first_node: u32,
+}
+
+const PLAN_PHASE: u32 = 0u;
+const PLAN_EMITTED: u32 = 1u;
+const PLAN_REFUSED: u32 = 2u;
+const PLAN_LAYER: u32 = 3u;
+const PLAN_SLOT: u32 = 4u;
+const PLAN_ID: u32 = 5u;
+const PLAN_DISTANCE: u32 = 6u;
+const PLAN_BLOCKED: u32 = 7u;
+const PLAN_WORDS: u32 = 8u;

@@ -1,0 +1,265 @@
+//! Emitters and sinks: fluid that comes and goes while a simulation runs.
+//!
+//! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet born is dead from the
+//! start, and the sort keeps the dead behind the living. An emitter's nozzle is a short pipe that ends at its outlet. At its back
+//! face layers of particles are born on a lattice ([`plan`], [`emit`]), and travel to the outlet as one piston ([`drive`]), so that
+//! fluid leaves at rest density and with the right speed. A sink marks what is in it as dead ([`drain`]); its places are used again.
+
+mod drain;
+mod drive;
+mod emit;
+pub mod outlet;
+mod plan;
+mod types;
+
+pub use types::{Drain, Nozzle, Plan};
+
+use glam::{UVec3, Vec2, Vec3};
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+
+use crate::bodies::BodyError;
+use crate::boundary::KernelPair;
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::scene::{Scene, Sink, SinkRegion};
+
+/// The WGSL side of [`Nozzle`], [`Drain`] and [`Plan`].
+pub const FLOW: WgslModule = WgslModule { name: "sph/flow", source: include_str!("flow.wgsl") };
+
+/// Most nodes in the map of a sink's mesh along one edge.
+const MOST_NODES: f32 = 128.0;
+
+/// The passes of this module.
+pub fn passes() -> Vec<&'static PassDesc> {
+    vec![&plan::PLAN, &emit::EMIT, &drive::DRIVE, &drain::DRAIN]
+}
+
+/// A scene's emitters and sinks, ready for a device.
+#[derive(Clone, Debug, Default)]
+pub struct LoadedFlow {
+    nozzles: Vec<Nozzle>,
+    names: Vec<String>,
+    points: Vec<Vec2>,
+    drains: Vec<Drain>,
+    maps: Vec<f32>,
+    expected: u64,
+}
+
+impl LoadedFlow {
+    /// From a scene.
+    ///
+    /// # Errors
+    /// [`BodyError`] of the meshes of outlets and sinks.
+    pub fn new(scene: &Scene, kernels: KernelPair) -> Result<Self, BodyError> {
+        let mut loaded = Self::default();
+        let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
+        for emitter in &scene.emitters {
+            let (mut nozzle, layer) = outlet::nozzle(emitter, scene, kernels)?;
+            nozzle.first_point = loaded.points.len() as u32;
+            loaded.expected = loaded.expected.saturating_add(outlet::expected(
+                &nozzle,
+                duration,
+                scene.fluid.particle_spacing,
+            ));
+            loaded.points.extend(layer);
+            loaded.nozzles.push(nozzle);
+            loaded.names.push(emitter.name.clone());
+        }
+        for sink in &scene.sinks {
+            let drain = loaded.drain(sink, scene, kernels)?;
+            loaded.drains.push(drain);
+        }
+        Ok(loaded)
+    }
+
+    /// True if nothing comes or goes.
+    pub fn is_empty(&self) -> bool {
+        self.nozzles.is_empty() && self.drains.is_empty()
+    }
+
+    /// How many particles need room, of which there are `initial` at the start; at most `allowed`.
+    pub fn capacity(&self, initial: u64, allowed: u64) -> u64 {
+        initial.saturating_add(self.expected).min(allowed).max(initial)
+    }
+
+    fn drain(&mut self, sink: &Sink, scene: &Scene, kernels: KernelPair) -> Result<Drain, BodyError> {
+        let none = Drain {
+            low: Vec3::ZERO,
+            kind: Drain::BOX,
+            high: Vec3::ZERO,
+            cell_size: 0.0,
+            nodes: UVec3::ZERO,
+            first_node: 0,
+        };
+        Ok(match &sink.region {
+            SinkRegion::Box { min, max } => Drain { low: *min, high: *max, ..none },
+            SinkRegion::Below { point, normal } => {
+                Drain { kind: Drain::BELOW, low: *point, high: *normal, ..none }
+            }
+            SinkRegion::Mesh(source) => {
+                let solid = outlet::solid_of(&sink.name, source, scene, kernels)?;
+                let world = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
+                let corners = solid.mesh.vertices.iter().map(world);
+                let (low, high) =
+                    corners.fold((Vec3::MAX, Vec3::MIN), |(low, high), x| (low.min(x), high.max(x)));
+                let cell_size =
+                    (0.5 * scene.fluid.particle_spacing).max((high - low).max_element() / MOST_NODES);
+                let nodes = ((high - low) / cell_size).ceil().as_uvec3() + UVec3::ONE;
+                let nodes = nodes.max(UVec3::splat(2));
+                let first_node = self.maps.len() as u32;
+                for k in 0..nodes.element_product() {
+                    let node = UVec3::new(k % nodes.x, k / nodes.x % nodes.y, k / (nodes.x * nodes.y));
+                    let x = low + node.as_vec3() * cell_size;
+                    let local = source.rotation.conjugate() * (x - source.position);
+                    self.maps.push(solid.field.distance(local));
+                }
+                Drain { kind: Drain::MAP, low, high, cell_size, nodes, first_node }
+            }
+        })
+    }
+}
+
+/// What emitters and sinks have done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlowCount {
+    /// Particles made so far.
+    pub emitted: u32,
+    /// Particles for which there was no room.
+    pub refused: u32,
+}
+
+/// Emitters and sinks on a device.
+#[derive(Debug)]
+pub struct Flow {
+    nozzles: Option<Nozzles>,
+    drains: Option<(Buffer<Drain>, Buffer<f32>)>,
+}
+
+#[derive(Debug)]
+struct Nozzles {
+    names: Vec<String>,
+    nozzles: Buffer<Nozzle>,
+    points: Buffer<Vec2>,
+    plans: Buffer<u32>,
+    /// The emitters of which it was told that they found no room.
+    told: Vec<bool>,
+}
+
+impl Flow {
+    /// Places them on a device. The first particle born gets the id `next_id`.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn new(
+        executor: &mut Executor,
+        loaded: &LoadedFlow,
+        spacing: f32,
+        next_id: u32,
+    ) -> Result<Self, GpuError> {
+        let nozzles = if loaded.nozzles.is_empty() {
+            None
+        } else {
+            // The first layer is due at once.
+            let mut plans = vec![0; loaded.nozzles.len() * Plan::WORDS + 1];
+            for plan in plans.chunks_exact_mut(Plan::WORDS) {
+                plan[Plan::PHASE] = spacing.to_bits();
+            }
+            plans[loaded.nozzles.len() * Plan::WORDS] = next_id;
+            Some(Nozzles {
+                names: loaded.names.clone(),
+                nozzles: executor.create_from("nozzles", &loaded.nozzles)?,
+                points: executor.create_from("points", &loaded.points)?,
+                plans: executor.create_from("plans", &plans)?,
+                told: vec![false; loaded.nozzles.len()],
+            })
+        };
+        let drains = if loaded.drains.is_empty() {
+            None
+        } else {
+            let maps = if loaded.maps.is_empty() { &[0.0][..] } else { &loaded.maps };
+            Some((executor.create_from("drains", &loaded.drains)?, executor.create_from("drain_maps", maps)?))
+        };
+        Ok(Self { nozzles, drains })
+    }
+
+    /// True if there are emitters.
+    pub fn emits(&self) -> bool {
+        self.nozzles.is_some()
+    }
+
+    /// Appends the nozzles' drive and the sinks; needs the accelerations.
+    pub fn record_before_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
+        if let Some(nozzles) = &self.nozzles {
+            let buffers = [
+                fields.params.id(),
+                grid,
+                fields.state.id(),
+                cell_start,
+                nozzles.nozzles.id(),
+                nozzles.plans.id(),
+                fields.sorted_positions.id(),
+                fields.sorted_velocities.id(),
+                fields.accelerations.id(),
+            ];
+            step.dispatch(&drive::DRIVE, all, &buffers);
+        }
+        if let Some((drains, maps)) = &self.drains {
+            let buffers = [
+                grid,
+                fields.state.id(),
+                cell_start,
+                drains.id(),
+                maps.id(),
+                fields.sorted_positions.id(),
+                fields.tally.id(),
+            ];
+            step.dispatch(&drain::DRAIN, all, &buffers);
+        }
+    }
+
+    /// Appends the birth of particles into the resting arrays.
+    pub fn record_after_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields) {
+        let Some(nozzles) = &self.nozzles else { return };
+        let (params, grid, cell_start) = (fields.params.id(), cells.grid_uniform.id(), cells.cell_start.id());
+        let buffers = [params, grid, fields.state.id(), cell_start, nozzles.nozzles.id(), nozzles.plans.id()];
+        step.dispatch(&plan::PLAN, Extent::Groups(1), &buffers);
+        let buffers = [
+            params,
+            grid,
+            cell_start,
+            nozzles.nozzles.id(),
+            nozzles.points.id(),
+            nozzles.plans.id(),
+            fields.positions.id(),
+            fields.velocities.id(),
+            fields.ids.id(),
+            fields.densities.id(),
+        ];
+        step.dispatch(&emit::EMIT, Extent::Items(nozzles.points.len()), &buffers);
+    }
+
+    /// What has been made so far, and a sentence for each emitter that found no room for the first time.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn count(&mut self, executor: &mut Executor) -> Result<(FlowCount, Vec<String>), GpuError> {
+        let mut count = FlowCount::default();
+        let mut told = Vec::new();
+        let Some(nozzles) = &mut self.nozzles else { return Ok((count, told)) };
+        let plans = executor.read(nozzles.plans)?;
+        for (k, plan) in plans.chunks_exact(Plan::WORDS).enumerate() {
+            count.emitted += plan[Plan::EMITTED];
+            count.refused += plan[Plan::REFUSED];
+            if plan[Plan::REFUSED] > 0 && !std::mem::replace(&mut nozzles.told[k], true) {
+                told.push(format!(
+                    "emitter {:?} found no room for more after {} particles: the buffers were made for the scene's own \
+                     duration. Make duration longer, or drain more",
+                    nozzles.names[k],
+                    plan[Plan::EMITTED]
+                ));
+            }
+        }
+        Ok((count, told))
+    }
+}

@@ -1,0 +1,350 @@
+//! Emitters and sinks.
+
+use glam::{DVec3, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown::flow::{Drain, Nozzle, Plan};
+use splashdown::passes::{DEAD_DRAINED, DEAD_UNBORN, Tally};
+use splashdown_gpu::Grid as Extent;
+
+use super::harness::{Case, Data, close, exact, wide};
+use super::sort_cases::pass;
+use super::world::{SPACING, World, params};
+
+pub fn cases() -> Vec<Case> {
+    vec![plan(), emit(), drive(), drain()]
+}
+
+/// Two nozzles that overlap the cloud, a disc and a rectangle; one that has not begun, one that has ended.
+fn nozzles() -> Vec<Nozzle> {
+    let direction = Vec3::new(0.6, 0.0, 0.8);
+    let disc = Nozzle {
+        back: Vec3::new(-0.111, 0.207, 0.313),
+        speed: 1.7,
+        direction,
+        length: 0.151,
+        across: Vec3::new(0.8, 0.0, -0.6),
+        start: 0.0,
+        up: Vec3::new(0.0, 1.0, 0.0),
+        end: 9.0,
+        half_across: 0.13,
+        half_up: 0.13,
+        first_point: 0,
+        points: 12,
+        most: 1000,
+        disc: 1,
+        unused: UVec2::ZERO,
+    };
+    let rectangle = Nozzle {
+        back: Vec3::new(0.13, 0.31, 0.47),
+        half_across: 0.09,
+        half_up: 0.05,
+        first_point: 12,
+        points: 8,
+        disc: 0,
+        speed: 0.9,
+        ..disc
+    };
+    let late = Nozzle { start: 5.0, first_point: 20, points: 3, ..disc };
+    let over = Nozzle { end: 0.5, first_point: 23, points: 2, ..rectangle };
+    vec![disc, rectangle, late, over]
+}
+
+fn points() -> Vec<Vec2> {
+    (0..25).map(|i| Vec2::new((i % 4) as f32 - 1.5, (i / 4 % 3) as f32 - 1.0) * 0.9 * SPACING).collect()
+}
+
+fn plan() -> Case {
+    let mut world = World::new(params(2.0), 500);
+    let due = nozzles();
+    // Room for the first and the second, not for another one like the first; the last has made all that it may.
+    let mut nozzles = due.clone();
+    nozzles.extend([due[0], Nozzle { most: 100, ..due[1] }]);
+    let living = world.living() as u32;
+    world.params.particle_count = living + 25;
+    let dt = world.state.dt;
+    let phases = [SPACING, 0.999_9 * SPACING, SPACING, SPACING, SPACING, SPACING];
+    let emitted = [24, 0, 0, 0, 5, 95];
+    let mut plans = vec![0; 6 * Plan::WORDS + 1];
+    for (k, plan) in plans.chunks_exact_mut(Plan::WORDS).enumerate() {
+        plan[Plan::PHASE] = phases[k].to_bits();
+        plan[Plan::EMITTED] = emitted[k];
+        plan[Plan::LAYER] = 77;
+    }
+    plans[6 * Plan::WORDS] = 4000;
+    let mut expected = plans.clone();
+    for plan in expected.chunks_exact_mut(Plan::WORDS) {
+        plan[Plan::LAYER] = 0;
+    }
+    let mut set = |k: usize, word: usize, value: u32| expected[k * Plan::WORDS + word] = value;
+    let rest =
+        |k: usize| (f64::from(phases[k]) + f64::from(due[k % 4].speed * dt) - f64::from(SPACING)) as f32;
+    for (k, slot, id) in [(0, living, 4000), (1, living + 12, 4012)] {
+        set(k, Plan::PHASE, rest(k).to_bits());
+        set(k, Plan::DISTANCE, rest(k).to_bits());
+        set(k, Plan::LAYER, due[k].points);
+        set(k, Plan::SLOT, slot);
+        set(k, Plan::ID, id);
+    }
+    set(4, Plan::PHASE, rest(0).to_bits());
+    set(4, Plan::REFUSED, 12);
+    expected[6 * Plan::WORDS] = 4020;
+    let same = |a: &[u32], b: &[u32]| {
+        for (k, (a, b)) in a.iter().zip(b).enumerate() {
+            let is_float = [Plan::PHASE, Plan::DISTANCE].contains(&(k % Plan::WORDS)) && k < 6 * Plan::WORDS;
+            let near = (f32::from_bits(*a) - f32::from_bits(*b)).abs() <= 1e-7 * SPACING.max(1.0);
+            if !(a == b || is_float && near) {
+                return Err(format!("plans: word {k} is {a:#x} and {b:#x}"));
+            }
+        }
+        Ok(())
+    };
+    Case {
+        pass: pass("flow.plan"),
+        name: "due, late, over, without room, at its limit".into(),
+        extent: Extent::Groups(1),
+        input: vec![
+            Data::Params(world.params),
+            Data::Grid(world.grid),
+            Data::State(world.state),
+            Data::U32(world.cell_start.clone()),
+            Data::Nozzles(nozzles),
+            Data::U32(plans),
+        ],
+        compare: Box::new(move |a, b| same(a[0].words(), b[0].words())),
+        oracle: Box::new(move |out| same(out[0].words(), &expected)),
+        control: |input| {
+            let Data::State(state) = &mut input[2] else { panic!("no state") };
+            state.dt *= 1.001;
+        },
+    }
+}
+
+fn emit() -> Case {
+    let world = World::new(params(2.0), 1500);
+    let (nozzles, points) = (nozzles(), points());
+    let living = world.living();
+    let mut plans = vec![0; 4 * Plan::WORDS + 1];
+    for (k, slot, id) in [(0, living, 9000), (1, living + 12, 9012)] {
+        let plan = &mut plans[k * Plan::WORDS..];
+        plan[Plan::EMITTED] = 5;
+        plan[Plan::LAYER] = nozzles[k].points;
+        plan[Plan::SLOT] = slot as u32;
+        plan[Plan::ID] = id;
+        plan[Plan::DISTANCE] = 0.004_f32.to_bits();
+    }
+    // Behind the living: the dead, and the unborn.
+    let n = living + 25;
+    let mut positions = world.positions.clone();
+    positions.resize(n, Vec4::new(0.0, 0.0, 0.0, DEAD_UNBORN));
+    let mut velocities = world.velocities.clone();
+    velocities.resize(n, Vec4::ZERO);
+    let mut ids = world.ids.clone();
+    ids.resize(n, 7);
+    let mut densities = world.densities.clone();
+    densities.resize(n, Vec2::ZERO);
+
+    let mut expected = (plans.clone(), positions.clone(), velocities.clone(), ids.clone(), densities.clone());
+    let mut blocked = 0;
+    for (k, nozzle) in nozzles[..2].iter().enumerate() {
+        for place in 0..nozzle.points as usize {
+            let q = points[nozzle.first_point as usize + place].as_dvec2();
+            let x = nozzle.back.as_dvec3()
+                + 0.004_f32 as f64 * nozzle.direction.as_dvec3()
+                + q.x * nozzle.across.as_dvec3()
+                + q.y * nozzle.up.as_dvec3();
+            let near = |p: &Vec4| p.w == 0.0 && p.xyz().as_dvec3().distance(x) < 0.7 * f64::from(SPACING);
+            if positions.iter().any(near) {
+                expected.0[k * Plan::WORDS + Plan::BLOCKED] += 1;
+                blocked += 1;
+                continue;
+            }
+            let slot = living + if k == 0 { 0 } else { 12 } + place;
+            expected.0[k * Plan::WORDS + Plan::EMITTED] += 1;
+            expected.1[slot] = x.as_vec3().extend(0.0);
+            expected.2[slot] = (nozzle.speed * nozzle.direction).extend(1000.0);
+            expected.3[slot] = 9000 + (slot - living) as u32;
+            expected.4[slot] = Vec2::new(1000.0, 0.0);
+        }
+    }
+    assert!((3..18).contains(&blocked), "{blocked} of 20 blocked: the case shows one side only");
+    let near = |what: &str, a: &Data, b: &Data| {
+        let b = wide(b.floats());
+        close(what, a.floats(), &b, &vec![1e-6; b.len()])
+    };
+    let same = move |a: &[Data], b: &[Data]| {
+        exact("plans", a[0].words(), b[0].words())?;
+        near("positions", &a[1], &b[1])?;
+        near("velocities", &a[2], &b[2])?;
+        exact("ids", a[3].words(), b[3].words())?;
+        near("densities", &a[4], &b[4])
+    };
+    let expected = [
+        Data::U32(expected.0),
+        Data::Vec4(expected.1),
+        Data::Vec4(expected.2),
+        Data::U32(expected.3),
+        Data::Vec2(expected.4),
+    ];
+    Case {
+        pass: pass("flow.emit"),
+        name: "two layers, some places taken".into(),
+        extent: Extent::Items(points.len() as u32),
+        input: vec![
+            Data::Params(world.params),
+            Data::Grid(world.grid),
+            Data::U32(world.cell_start.clone()),
+            Data::Nozzles(nozzles),
+            Data::Vec2(points),
+            Data::U32(plans),
+            Data::Vec4(positions),
+            Data::Vec4(velocities),
+            Data::U32(ids),
+            Data::Vec2(densities),
+        ],
+        compare: Box::new(same),
+        oracle: Box::new(move |out| same(out, &expected)),
+        control: |input| {
+            let Data::Nozzles(nozzles) = &mut input[3] else { panic!("no nozzles") };
+            nozzles[1].back.x += 1e-5;
+        },
+    }
+}
+
+fn drive() -> Case {
+    let world = World::new(params(2.0), 1500);
+    let nozzles = nozzles();
+    let mut plans = vec![0; 5 * Plan::WORDS + 1];
+    // The last would drive, but for its limit.
+    let mut all = nozzles.clone();
+    all.push(Nozzle { back: Vec3::new(0.0, 0.1, 0.2), most: 10, points: 5, first_point: 25, ..nozzles[0] });
+    plans[4 * Plan::WORDS + Plan::EMITTED] = 6;
+    let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
+    let mut expected = accelerations.clone();
+    let mut driven = 0;
+    for i in 0..world.living() {
+        let holds = |nozzle: &Nozzle| {
+            let o: DVec3 = (world.positions[i].xyz() - nozzle.back).as_dvec3();
+            let [along, a, b] =
+                [nozzle.direction, nozzle.across, nozzle.up].map(|axis| o.dot(axis.as_dvec3()));
+            let (h, up) = (f64::from(nozzle.half_across), f64::from(nozzle.half_up));
+            let inside = if nozzle.disc == 1 { a.hypot(b) <= h } else { a.abs() <= h && b.abs() <= up };
+            inside && along >= -0.25 * f64::from(SPACING) && along <= f64::from(nozzle.length)
+        };
+        if let Some(nozzle) = nozzles[..2].iter().find(|nozzle| holds(nozzle)) {
+            let change = nozzle.speed * nozzle.direction - world.velocities[i].xyz();
+            expected[i] = (change / world.state.dt).extend(0.0);
+            driven += 1;
+        }
+    }
+    assert!(driven > 20 && driven < world.living() / 2, "{driven}");
+    let same = |a: &[f32], b: &[f32]| {
+        let b = wide(b);
+        let tolerance: Vec<f64> = b.iter().map(|b| 2e-6 * b.abs() + 1e-3).collect();
+        close("accelerations", a, &b, &tolerance)
+    };
+    Case {
+        pass: pass("flow.drive"),
+        name: "a disc and a rectangle on, others off".into(),
+        extent: Extent::Items(world.len() as u32),
+        input: vec![
+            Data::Params(world.params),
+            Data::Grid(world.grid),
+            Data::State(world.state),
+            Data::U32(world.cell_start.clone()),
+            Data::Nozzles(all),
+            Data::U32(plans),
+            Data::Vec4(world.positions.clone()),
+            Data::Vec4(world.velocities.clone()),
+            Data::Vec4(accelerations),
+        ],
+        compare: Box::new(move |a, b| same(a[0].floats(), b[0].floats())),
+        oracle: Box::new(move |out| same(out[0].floats(), &Data::Vec4(expected.clone()).floats().to_vec())),
+        control: |input| {
+            let Data::Nozzles(nozzles) = &mut input[4] else { panic!("no nozzles") };
+            nozzles[1].speed *= 1.0001;
+        },
+    }
+}
+
+fn drain() -> Case {
+    let world = World::new(params(2.0), 1500);
+    let none = Drain {
+        low: Vec3::new(-0.211, 0.053, 0.157),
+        kind: Drain::BOX,
+        high: Vec3::new(-0.083, 0.167, 0.291),
+        cell_size: 0.0,
+        nodes: UVec3::ZERO,
+        first_node: 0,
+    };
+    let normal = Vec3::new(0.6, 0.8, 0.0);
+    let below = Drain { kind: Drain::BELOW, low: Vec3::new(-0.203, 0.0511, 0.0), high: normal, ..none };
+    // A ball of a tenth of a metre, behind five words that belong to nobody.
+    let (center, nodes, cell_size) = (Vec3::new(0.1, 0.3, 0.45), UVec3::new(12, 13, 14), 0.02);
+    let low = center - 0.12;
+    let ball = Drain {
+        kind: Drain::MAP,
+        low,
+        high: low + (nodes - UVec3::ONE).as_vec3() * cell_size,
+        cell_size,
+        nodes,
+        first_node: 5,
+    };
+    let mut maps = vec![-1.0; 5];
+    for k in 0..nodes.element_product() {
+        let node = UVec3::new(k % nodes.x, k / nodes.x % nodes.y, k / (nodes.x * nodes.y));
+        maps.push((low + node.as_vec3() * cell_size).distance(center) - 0.1);
+    }
+    let interpolated = |maps: &[f32], x: Vec3| -> f64 {
+        let at = (x.as_dvec3() - low.as_dvec3()) / f64::from(cell_size);
+        let c = at.floor();
+        (0..8u32).fold(0.0, |sum, corner| {
+            let corner = UVec3::new(corner & 1, corner >> 1 & 1, corner >> 2);
+            let f = at - c - corner.as_dvec3();
+            let node = c.as_uvec3() + corner;
+            let value = maps[5 + ((node.z * nodes.y + node.y) * nodes.x + node.x) as usize];
+            sum + f64::from(value) * (1.0 - f.abs()).element_product()
+        })
+    };
+    let mut expected = world.positions.clone();
+    let mut by = [0; 3];
+    for p in &mut expected[..world.living()] {
+        let x = p.xyz();
+        let within = |drain: &Drain| x.cmpge(drain.low).all() && x.cmplt(drain.high).all();
+        let takes =
+            [within(&none), (x - below.low).dot(normal) < 0.0, within(&ball) && interpolated(&maps, x) < 0.0];
+        if let Some(k) = takes.iter().position(|&takes| takes) {
+            by[k] += 1;
+            p.w = DEAD_DRAINED;
+        }
+    }
+    assert!(by.iter().all(|&n| n > 3), "{by:?}");
+    let mut tally = vec![1, 2, 3, 4, 0, 0, 0, 10];
+    let before = tally.clone();
+    tally[Tally::DRAINED] += by.iter().sum::<u32>();
+    Case {
+        pass: pass("flow.drain"),
+        name: "a box, a plane, a ball".into(),
+        extent: Extent::Items(world.len() as u32),
+        input: vec![
+            Data::Grid(world.grid),
+            Data::State(world.state),
+            Data::U32(world.cell_start.clone()),
+            Data::Drains(vec![none, below, ball]),
+            Data::F32(maps),
+            Data::Vec4(world.positions.clone()),
+            Data::U32(before),
+        ],
+        compare: Box::new(|a, b| {
+            exact("positions", a[0].words(), b[0].words())?;
+            exact("tally", a[1].words(), b[1].words())
+        }),
+        oracle: Box::new(move |out| {
+            exact("positions", out[0].words(), Data::Vec4(expected.clone()).words())?;
+            exact("tally", out[1].words(), &tally)
+        }),
+        control: |input| {
+            let Data::Drains(drains) = &mut input[3] else { panic!("no drains") };
+            drains[2].low.x += 0.02;
+            drains[2].high.x += 0.02;
+        },
+    }
+}
