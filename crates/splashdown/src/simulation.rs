@@ -87,7 +87,7 @@ impl Simulation {
         // Just under half a spacing, so that fluid that touches a body at half a spacing stays.
         let clearance = 0.49 * scene.fluid.particle_spacing;
         let removed = sample::remove_inside(&mut particles, &bodies, clearance);
-        if particles.positions.is_empty() {
+        if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
         }
         let mut simulation = Self::with_bodies(scene, executor, &particles, bodies)?;

@@ -220,7 +220,7 @@ fn drive() -> Case {
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
     let mut expected = accelerations.clone();
     let mut driven = 0;
-    for i in 0..world.living() {
+    for (i, a) in expected.iter_mut().enumerate().take(world.living()) {
         let holds = |nozzle: &Nozzle| {
             let o: DVec3 = (world.positions[i].xyz() - nozzle.back).as_dvec3();
             let [along, a, b] =
@@ -231,7 +231,7 @@ fn drive() -> Case {
         };
         if let Some(nozzle) = nozzles[..2].iter().find(|nozzle| holds(nozzle)) {
             let change = nozzle.speed * nozzle.direction - world.velocities[i].xyz();
-            expected[i] = (change / world.state.dt).extend(0.0);
+            *a = (change / world.state.dt).extend(0.0);
             driven += 1;
         }
     }
@@ -257,7 +257,7 @@ fn drive() -> Case {
             Data::Vec4(accelerations),
         ],
         compare: Box::new(move |a, b| same(a[0].floats(), b[0].floats())),
-        oracle: Box::new(move |out| same(out[0].floats(), &Data::Vec4(expected.clone()).floats().to_vec())),
+        oracle: Box::new(move |out| same(out[0].floats(), Data::Vec4(expected.clone()).floats())),
         control: |input| {
             let Data::Nozzles(nozzles) = &mut input[4] else { panic!("no nozzles") };
             nozzles[1].speed *= 1.0001;
