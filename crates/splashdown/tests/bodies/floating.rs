@@ -1,0 +1,65 @@
+use glam::{Quat, Vec3};
+use splashdown::{Device, Simulation};
+
+use crate::{body, free, tank};
+
+/// Mean over the last third of two seconds of: how deep a cube of this density floats, over its edge; its tilt.
+fn draft(density: f32) -> (f32, f32) {
+    let (spacing, edge) = (0.02, 0.2);
+    let mut scene = tank(spacing, [0.5, 0.5, 0.5], 0.24);
+    // Near where it will float, so that it rests soon.
+    let bottom = 0.24 - edge * density / 1000.0;
+    scene.bodies.push(body(
+        "float",
+        "cube",
+        edge,
+        Vec3::new(0.25, bottom + 0.5 * edge + 0.01, 0.25),
+        free(density),
+    ));
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(1.4).unwrap();
+    let (mut depth, mut tilt, mut samples) = (0.0, 0.0f32, 0);
+    for _ in 0..12 {
+        simulation.advance(0.05).unwrap();
+        let state = simulation.body_states().unwrap()[0];
+        let particles = simulation.particles().unwrap();
+        // The level beside the cube, a spacing above the middle of the highest layer's particles' lower half.
+        let mut heights: Vec<f32> = particles
+            .positions
+            .iter()
+            .filter(|x| (x[0] - 0.25).abs().max((x[2] - 0.25).abs()) > 0.17)
+            .map(|x| x[1])
+            .collect();
+        heights.sort_by(f32::total_cmp);
+        let columns = (0.25 - 0.34f32 * 0.34) / (spacing * spacing);
+        let top = &heights[heights.len() - columns as usize..];
+        let level = top.iter().sum::<f32>() / top.len() as f32 + 0.5 * spacing;
+        depth += (level - (state.position.y - 0.5 * edge)) / edge;
+        tilt = tilt.max((state.orientation * Vec3::Y).angle_between(Vec3::Y));
+        samples += 1;
+    }
+    (depth / samples as f32, tilt)
+}
+
+#[test]
+fn light_and_heavy_cubes_float_as_deep_as_archimedes_says() {
+    let depths = [100.0, 300.0, 700.0].map(|density| (density, draft(density)));
+    eprintln!("{depths:?}");
+    for (density, (depth, tilt)) in depths {
+        // The water keeps half a spacing off the cube's bottom and sides, a twentieth of its edge at this resolution.
+        assert!((depth - density / 1000.0).abs() < 0.08, "{density}: {depth}");
+        assert!(tilt < 0.6, "{density}: {tilt}");
+    }
+}
+
+#[test]
+fn a_heavy_body_sinks_to_the_floor_and_stays_there() {
+    let mut scene = tank(0.025, [0.4, 0.4, 0.4], 0.2);
+    scene.bodies.push(body("stone", "cube", 0.1, Vec3::new(0.2, 0.3, 0.2), free(2500.0)));
+    scene.bodies[0].mesh.rotation = Quat::from_rotation_y(0.3);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(1.2).unwrap();
+    let state = simulation.body_states().unwrap()[0];
+    assert!((state.position.y - 0.05).abs() < 0.006, "{state:?}");
+    assert!(state.velocity.length() < 0.05, "{state:?}");
+}

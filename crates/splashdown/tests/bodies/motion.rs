@@ -1,0 +1,61 @@
+use glam::Vec3;
+use splashdown::scene::{Formula, Keyframe, Motion, Scene, Script};
+use splashdown::{Device, Simulation};
+
+use crate::{body, free, tank};
+
+fn dry(scene: &mut Scene) {
+    // A drop far from everything: a scene needs some fluid.
+    if let splashdown::scene::Shape::Box { min, size } = &mut scene.fluid.blocks[0].shape {
+        (*min, *size) = (Vec3::ZERO, Vec3::splat(0.05));
+    }
+}
+
+#[test]
+fn a_scripted_body_is_where_its_script_says() {
+    let mut scene = tank(0.025, [0.6, 0.6, 0.6], 0.1);
+    dry(&mut scene);
+    let formulas = |texts: [&str; 3]| Some(Box::new(texts.map(|text| Formula::parse(text).unwrap())));
+    let keyframe = Keyframe { time: 0.0, position: Vec3::splat(0.4), orientation: glam::Quat::IDENTITY };
+    let script = Script {
+        keyframes: vec![keyframe],
+        shift: formulas(["0.05*sin(20*t)", "0", "0"]),
+        turn: formulas(["0", "360*t", "0"]),
+    };
+    scene.bodies.push(body("mixer", "cube", 0.1, Vec3::ZERO, Motion::Scripted(script.clone())));
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    for k in 1..=5 {
+        simulation.advance(0.1).unwrap();
+        let (state, pose) = (simulation.body_states().unwrap()[0], script.pose(0.1 * f64::from(k)));
+        assert!(state.position.distance(pose.position) < 1e-4, "{state:?} {pose:?}");
+        assert!(state.velocity.distance(pose.velocity) < 1e-3, "{state:?} {pose:?}");
+        assert!(state.orientation.dot(pose.orientation).abs() > 1.0 - 1e-5, "{state:?} {pose:?}");
+    }
+}
+
+#[test]
+fn a_free_body_falls_as_bodies_fall_and_bounces_off_the_floor_and_others() {
+    let mut scene = tank(0.025, [0.8, 1.0, 0.8], 0.1);
+    dry(&mut scene);
+    scene.bodies = vec![
+        body("one", "cube", 0.1, Vec3::new(0.4, 0.6, 0.4), free(500.0)),
+        body("two", "cube", 0.1, Vec3::new(0.42, 0.75, 0.4), free(900.0)),
+        body("far", "cube", 0.1, Vec3::new(0.7, 0.9, 0.7), free(500.0)),
+    ];
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(0.2).unwrap();
+    let state = simulation.body_states().unwrap()[2];
+    assert!((state.position.y - (0.9 - 0.5 * 9.81 * 0.04)).abs() < 2e-3, "{state:?}");
+    assert!((state.velocity.y + 9.81 * 0.2).abs() < 1e-3, "{state:?}");
+    for _ in 0..10 {
+        simulation.advance(0.1).unwrap();
+        for state in simulation.body_states().unwrap() {
+            // Whatever its turn, the middle of a cube is at least half an edge above the floor.
+            assert!(state.position.y > 0.05 - 0.004, "{state:?}");
+            assert!(state.position.min_element() > 0.04 && state.position.max_element() < 1.0, "{state:?}");
+        }
+    }
+    let states = simulation.body_states().unwrap();
+    assert!(states[0].position.distance(states[1].position) > 0.095, "{states:?}");
+    assert!(states.iter().all(|state| state.velocity.length() < 1.0), "{states:?}");
+}
