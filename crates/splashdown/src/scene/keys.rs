@@ -12,6 +12,10 @@ use super::types::{
 const FAR: f64 = 10_000.0;
 /// Most bodies in a scene.
 const MAX_BODIES: usize = 1024;
+/// Most emitters in a scene.
+const MAX_EMITTERS: usize = 64;
+/// Most sinks in a scene.
+const MAX_SINKS: usize = 64;
 /// Most keyframes of a body.
 const MAX_KEYFRAMES: usize = 4096;
 /// Most blocks in a scene.
@@ -32,6 +36,20 @@ choices! {
         ZMin = "z_min",
         /// The side at max z.
         ZMax = "z_max",
+    }
+    /// The word for an emitter's outlet.
+    OutletWord {
+        /// Needs `radius`.
+        Disc = "disc",
+        /// Needs `size`.
+        Rectangle = "rectangle",
+    }
+    /// The word for a sink's shape.
+    SinkWord {
+        /// Inside a box: needs `min` and `max`.
+        Box = "box",
+        /// Behind a plane: needs `point` and `normal`.
+        Below = "below",
     }
     /// The word for a body's motion.
     MotionWord {
@@ -71,6 +89,10 @@ pub(crate) static ROOT: Table = Table {
         key("fluid", Kind::Table(&FLUID), "The fluid and where it starts.").required(),
         key("body", Kind::Tables(&BODY, MAX_BODIES), "Solids that the fluid meets.")
             .also(&["bodies", "mesh", "object"]),
+        key("emitter", Kind::Tables(&EMITTER, MAX_EMITTERS), "Sources of fluid.")
+            .also(&["emitters", "inlet", "source"]),
+        key("sink", Kind::Tables(&SINK, MAX_SINKS), "Where fluid leaves for good.")
+            .also(&["sinks", "drain", "outlet"]),
         key("solver", Kind::Table(&SOLVER), "How the fluid is computed."),
         key("surface", Kind::Table(&SURFACE), "How the fluid's surface is extracted."),
         key(
@@ -134,9 +156,12 @@ static FLUID: Table = Table {
             .also(&["nu", "kinematic_viscosity", "mu"]),
         key("surface_tension", a_number(0.0, 10.0, "N/m"), "Surface tension, in place of the material's.")
             .also(&["sigma"]),
-        key("block", Kind::Tables(&BLOCK, MAX_BLOCKS), "Pieces of fluid at the start.")
-            .required()
-            .also(&["blocks"]),
+        key(
+            "block",
+            Kind::Tables(&BLOCK, MAX_BLOCKS),
+            "Pieces of fluid at the start; at least one unless an emitter brings fluid.",
+        )
+        .also(&["blocks"]),
     ],
 };
 
@@ -206,6 +231,40 @@ static BODY: Table = Table {
         )
         .also(&["thickness"]),
         key("colour", Kind::Numbers(3, range(0.0, 1.0, "")), "Linear red, green, blue in pictures.").also(&["color"]),
+    ],
+};
+
+static EMITTER: Table = Table {
+    about: "A source of fluid: a nozzle from which particles leave in layers.",
+    keys: &[
+        key("name", Kind::Name, "Its name in messages.").required(),
+        key("shape", Kind::Word(words::<OutletWord>), "The shape of its outlet.").default("\"disc\""),
+        key("radius", a_number(1e-5, FAR, "m"), "Radius of a disc."),
+        key("size", Kind::Numbers(2, range(1e-5, FAR, "m")), "Edge lengths of a rectangle: across, and up."),
+        key("position", a_vector(FAR, "m"), "The middle of the outlet.")
+            .required()
+            .also(&["center", "translation"]),
+        key("direction", a_vector(FAR, ""), "Along which the fluid leaves; of any length.")
+            .required()
+            .also(&["normal"]),
+        key("speed", a_number(1e-3, 1000.0, "m/s"), "How fast.").required().also(&["velocity"]),
+        key("start", a_number(0.0, 3600.0, "s"), "When it begins.").default("0.0").also(&["start_time"]),
+        key("end", a_number(0.0, 3600.0, "s"), "When it ends. Default: with the scene.")
+            .also(&["end_time", "stop"]),
+        key("max_particles", Kind::Integer(range(1.0, 67_108_864.0, "")), "Most particles it makes.")
+            .also(&["cap"]),
+    ],
+};
+
+static SINK: Table = Table {
+    about: "A place where fluid leaves for good.",
+    keys: &[
+        key("name", Kind::Name, "Its name in messages.").required(),
+        key("shape", Kind::Word(words::<SinkWord>), "Its shape.").default("\"box\""),
+        key("min", a_vector(FAR, "m"), "Lower corner of a box."),
+        key("max", a_vector(FAR, "m"), "Upper corner of a box."),
+        key("point", a_vector(FAR, "m"), "A point of a plane."),
+        key("normal", a_vector(FAR, ""), "Away from what is taken out; of any length."),
     ],
 };
 

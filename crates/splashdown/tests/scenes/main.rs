@@ -3,6 +3,7 @@
 mod bodies;
 mod derived;
 mod errors;
+mod flow;
 mod hostile;
 mod presets;
 mod sampling;

@@ -1,5 +1,6 @@
 //! From text to [`Scene`]: each section is read on its own, so that one mistake does not hide another.
 
+mod flow;
 mod fluid;
 mod solver;
 mod things;
@@ -62,7 +63,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
     let fluid = fluid_section.as_ref().map_err(|r| *r).and_then(|section| {
         let spacing = section.number("particle_spacing");
         let blocks = section
-            .sections("block")
+            .sections_if_any("block")
             .map(|list| list.into_iter().map(|s| (fluid::read_block(&s), s)).collect());
         let material = fluid::read_material(section);
         // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block outside the tank.
@@ -78,6 +79,17 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         };
         sound.map(|()| fluid)
     });
+    let emitters = root
+        .sections_if_any("emitter")
+        .and_then(|sections| flow::read_emitters(&sections, domain.as_ref().ok()));
+    let sinks = root.sections_if_any("sink").and_then(|sections| flow::read_sinks(&sections));
+    if let (Ok(section), Ok(Fluid { blocks, .. }), Ok([])) = (&fluid_section, &fluid, emitters.as_deref())
+        && blocks.is_empty()
+    {
+        let message = "there is no [[fluid.block]], and no [[emitter]] either".to_owned();
+        let hint = "a scene needs at least one, for example position = [0, 0, 0] and size = [0.2, 0.2, 0.2]";
+        section.complain("block", message, "1 to 256 sections", hint);
+    }
     let bodies = root.sections_if_any("body").and_then(|sections| things::read_bodies(&sections));
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
     let surface =
@@ -98,8 +110,8 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         domain: domain?,
         fluid: fluid?,
         bodies: bodies?,
-        emitters: Vec::new(),
-        sinks: Vec::new(),
+        emitters: emitters?,
+        sinks: sinks?,
         probes: Vec::new(),
         solver: solver?,
         surface: surface?,

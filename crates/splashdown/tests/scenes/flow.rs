@@ -1,0 +1,53 @@
+use glam::Vec3;
+use splashdown::scene::{Outlet, Scene, SinkRegion};
+
+use crate::{CUBE, parse};
+
+fn with(text: &str) -> Scene {
+    parse(&format!("{CUBE}\n{text}\n")).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn refusal(text: &str) -> String {
+    parse(&format!("{CUBE}\n{text}\n")).map(drop).expect_err(text).to_string()
+}
+
+const TAP: &str = "[[emitter]]\nname = \"tap\"\nradius = 0.1\nposition = [0.5, 0.9, 0.5]\ndirection = [0, -2, 0]\nspeed = 2";
+
+#[test]
+fn emitters_and_sinks_are_read() {
+    let scene = with(&format!(
+        "{TAP}\nstart = 0.1\nend = 0.5\nmax_particles = 100\n[[emitter]]\nname = \"slot\"\nshape = \"rectangle\"\nsize = [0.2, 0.1]\n\
+         position = [0, 0.5, 0.5]\ndirection = [1, 0, 0]\nspeed = 1\n[[sink]]\nname = \"drain\"\nmin = [0, 0, 0]\nmax = [0.1, 0.1, 0.1]\n\
+         [[sink]]\nname = \"floor\"\nshape = \"below\"\npoint = [0, 0.1, 0]\nnormal = [0, 3, 0]"
+    ));
+    let tap = &scene.emitters[0];
+    assert_eq!((&tap.outlet, tap.direction, tap.speed), (&Outlet::Disc { radius: 0.1 }, Vec3::NEG_Y, 2.0));
+    assert_eq!((tap.start, tap.end, tap.max_particles), (0.1, Some(0.5), Some(100)));
+    assert_eq!(scene.emitters[1].outlet, Outlet::Rectangle { size: [0.2, 0.1] });
+    assert_eq!(scene.sinks[0].region, SinkRegion::Box { min: Vec3::ZERO, max: Vec3::splat(0.1) });
+    assert_eq!(scene.sinks[1].region, SinkRegion::Below { point: Vec3::new(0.0, 0.1, 0.0), normal: Vec3::Y });
+}
+
+#[test]
+fn an_emitter_may_stand_for_the_blocks() {
+    let block = "[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n";
+    let dry = CUBE.replace(block, "");
+    assert!(parse(&format!("{dry}\n{TAP}\n")).is_ok());
+    assert!(parse(&dry).is_err());
+}
+
+#[test]
+fn mistakes_in_emitters_and_sinks_are_named() {
+    for (text, part) in [
+        (TAP.replace("radius = 0.1\n", ""), "emitter[0].radius is missing: a disc needs it"),
+        (TAP.replace("0.9", "1.9"), "outside the domain"),
+        (TAP.replace("[0, -2, 0]", "[0, 0, 0]"), "has no length"),
+        (format!("{TAP}\nstart = 1\nend = 0.5"), "ends at 0.5 s"),
+        (TAP.replace("speed = 2", ""), "speed is missing"),
+        ("[[sink]]\nname = \"a\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]".into(), "not above min"),
+        ("[[sink]]\nname = \"a\"\nshape = \"below\"\npoint = [0, 0, 0]".into(), "normal is missing"),
+    ] {
+        let message = refusal(&text);
+        assert!(message.contains(part), "{text}\n{message}");
+    }
+}
