@@ -1,18 +1,87 @@
-//! Meshes that come with the program, made by its own code.
+//! Meshes that come with the program: every one is computed, none is read from a file.
+//!
+//! Most are written as a formula for the signed distance to the shape (`shape`), which marching cubes turns into
+//! triangles (`polygonise`); the simple ones are built triangle by triangle (`direct`). All are closed, manifold
+//! and oriented outwards, but for `thin-cup`, a sheet without thickness. Lengths are in metres and y is up: what
+//! stands has its foot at y = 0 and its middle over the origin, what floats has its centre of mass at the origin.
+//!
+//! [`ugly`] spoils a mesh, as material for tests of whatever repairs meshes.
 
-mod shapes;
+mod boats;
+mod crockery;
+mod curves;
+mod direct;
+mod figure;
+mod lighthouse;
+mod machines;
+mod polygonise;
+mod rock;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod ugly;
 
 use splashdown_io::Mesh;
 
-/// The models: their names and what they are.
+pub use ugly::ugly;
+
+/// One model: its name, what it is, and what makes it.
+type Model = (&'static str, &'static str, fn() -> Mesh);
+
+const MODELS: &[Model] = &[
+    (
+        "lighthouse",
+        "a lighthouse on its rock, with gallery and lantern room, 1 m high",
+        lighthouse::lighthouse,
+    ),
+    ("figure", "a statue: a woman in a long robe who carries a jar on her head, 1 m high", figure::figure),
+    (
+        "hull",
+        "a small tug with a solid hull, bulwark, wheelhouse and funnel, 0.6 m long; floats",
+        boats::hull,
+    ),
+    ("buoy", "a beacon buoy with a counterweight, 0.66 m high; floats", boats::buoy),
+    ("cup", "a mug with thick walls and a handle, 0.1 m high, open on top", crockery::cup),
+    ("thin-cup", "a beaker without thickness, 0.1 m high: an open sheet", crockery::thin_cup),
+    (
+        "spout",
+        "a bent pipe with a flange; its mouth, 0.06 m wide, is at the origin and points down",
+        machines::spout,
+    ),
+    ("gear", "a spur gear of 20 teeth with a bore, 0.44 m across, axis along z", machines::gear),
+    ("paddle-wheel", "a wheel with 12 paddles, 0.5 m across, axis along z", machines::paddle_wheel),
+    ("drum", "a mixing drum with 6 lifters, 0.5 m across, axis along z, with a mouth at +z", machines::drum),
+    ("torus-knot", "a trefoil knot of round rope, 0.6 m across, in the xy plane", curves::torus_knot),
+    ("sphere", "a ball, 0.2 m across", curves::sphere),
+    ("block", "a cube of 0.2 m with rounded edges, its middle at the origin", curves::block),
+    ("cube", "a cube of 1 m with sharp edges, its middle at the origin", direct::cube),
+    (
+        "marin-box",
+        "the obstacle of SPHERIC test 2: 0.161 m x 0.161 m high x 0.403 m along z",
+        direct::marin_box,
+    ),
+    ("ramp", "a wedge, 1 m long, 0.5 m wide, rising to 0.3 m towards +x", direct::ramp),
+    ("steps", "a flight of five stairs, 1 m long, 0.5 m wide, rising to 0.5 m towards +x", direct::steps),
+];
+
+/// The models: the name of each, and one line that says what it is and how large in m.
+#[must_use]
 pub fn names() -> &'static [(&'static str, &'static str)] {
-    &[("cube", "a cube of 1 m, its middle at the origin")]
+    const NAMES: [(&str, &str); MODELS.len()] = {
+        let mut names = [("", ""); MODELS.len()];
+        let mut i = 0;
+        while i < names.len() {
+            names[i] = (MODELS[i].0, MODELS[i].1);
+            i += 1;
+        }
+        names
+    };
+    &NAMES
 }
 
-/// Makes a model in m, y up; `None` if there is none of this name.
+/// The model of this name (one of [`names`]) in m; `None` for an unknown name. The same name gives the same mesh,
+/// to the last bit.
+#[must_use]
 pub fn build(name: &str) -> Option<Mesh> {
-    match name {
-        "cube" => Some(shapes::cuboid([1.0; 3])),
-        _ => None,
-    }
+    MODELS.iter().find(|(known, ..)| *known == name).map(|(.., make)| make())
 }

@@ -48,7 +48,7 @@ mod parts;
 mod reconstruct;
 mod smooth;
 mod spline;
-mod tables;
+pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 mod volume;

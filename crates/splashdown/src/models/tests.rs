@@ -1,0 +1,142 @@
+use std::f64::consts::PI;
+
+use glam::Vec3;
+use splashdown_io::Mesh;
+
+use super::{build, names, ugly};
+
+fn model(name: &str) -> Mesh {
+    build(name).unwrap_or_else(|| panic!("no model {name}"))
+}
+
+/// Lower and upper corner of a mesh's box.
+fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
+    let points = mesh.vertices.iter().map(|&v| Vec3::from(v));
+    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+}
+
+/// Euler characteristic of each: 2 less two for every hole through it. The rail and the 14 posts of the gallery make
+/// 14 holes, their 2 rings on 4 legs and its 2 eyes the 13 of the buoy; the gear has 6 and its bore.
+const EULER: &[(&str, i64)] = &[
+    ("lighthouse", 2 - 2 * 15),
+    ("cup", 0),
+    ("buoy", 2 - 2 * 13),
+    ("spout", 0),
+    ("gear", 2 - 2 * 7),
+    ("drum", 2),
+    ("torus-knot", 0),
+    ("sphere", 2),
+    ("cube", 2),
+    ("block", 2),
+    ("marin-box", 2),
+    ("ramp", 2),
+    ("steps", 2),
+];
+
+#[test]
+fn every_model_is_closed_manifold_and_turned_outwards() {
+    for (name, what) in names() {
+        let mesh = model(name);
+        let topology = mesh.topology().unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(topology.is_manifold() && topology.is_oriented(), "{name}: {topology}");
+        assert_eq!(topology.is_closed(), *name != "thin-cup", "{name}: {topology}");
+        assert_eq!(topology.components, 1, "{name}: {topology}");
+        assert_eq!(topology.unused_vertices, 0, "{name}: {topology}");
+        assert!(mesh.volume() > 0.0 || *name == "thin-cup", "{name} is inside out: {} m^3", mesh.volume());
+        if let Some((_, euler)) = EULER.iter().find(|(known, _)| known == name) {
+            assert_eq!(topology.euler_characteristic, *euler, "{name}: {topology}");
+        }
+        assert!(mesh.len() < 70_000, "{name}: {} triangles", mesh.len());
+        assert!(what.contains(" m"), "{name} does not say how large it is: {what}");
+    }
+    assert!(build("teapot").is_none());
+}
+
+/// The share of triangles that look away from the mean of their corners' normals.
+fn folded(mesh: &Mesh) -> f64 {
+    let away = mesh.triangles.iter().filter(|corners| {
+        let [a, b, c] = corners.map(|i| Vec3::from(mesh.vertices[i as usize]));
+        let mean: Vec3 = corners.iter().map(|&i| Vec3::from(mesh.normals[i as usize])).sum();
+        (b - a).cross(c - a).dot(mean) < 0.0
+    });
+    away.count() as f64 / mesh.len() as f64
+}
+
+#[test]
+fn normals_agree_with_the_triangles() {
+    for (name, _) in names() {
+        let mut mesh = model(name);
+        if mesh.normals.is_empty() {
+            continue;
+        }
+        assert!(mesh.normals.iter().all(|&n| (Vec3::from(n).length() - 1.0).abs() < 1e-3), "{name}");
+        assert!(folded(&mesh) < 0.002, "{name}: {:.4} of the triangles are folded over", folded(&mesh));
+        // The measure can tell: a mesh turned inside out is folded all over.
+        for corners in &mut mesh.triangles {
+            corners.swap(1, 2);
+        }
+        assert!(folded(&mesh) > 0.99, "{name}");
+    }
+}
+
+#[test]
+fn volumes_are_those_of_the_formulas() {
+    let ball = 4.0 / 3.0 * PI * 1e-3;
+    for (name, volume, tolerance) in [
+        ("sphere", ball, 0.005),
+        ("cube", 1.0, 1e-6),
+        ("block", 0.008, 0.02),
+        ("marin-box", 0.161 * 0.161 * 0.403, 1e-6),
+        ("ramp", 0.5 * 0.3 * 0.5, 1e-6),
+        ("steps", 0.2 * 0.1 * 15.0 * 0.5, 1e-6),
+    ] {
+        let given = model(name).volume();
+        assert!((given / volume - 1.0).abs() < tolerance, "{name}: {given} m^3 instead of {volume}");
+    }
+}
+
+#[test]
+fn models_stand_or_float_where_they_are_said_to() {
+    for name in ["lighthouse", "figure", "cup", "thin-cup", "marin-box", "ramp", "steps"] {
+        let (low, _) = bounds(&model(name));
+        assert!(low.y.abs() < 1e-3, "{name} stands at y = {}", low.y);
+    }
+    for (name, low, high) in [
+        ("lighthouse", 0.97, 1.02),
+        ("figure", 0.97, 1.02),
+        ("cup", 0.098, 0.102),
+        ("thin-cup", 0.0999, 0.1001),
+        ("marin-box", 0.161, 0.161),
+    ] {
+        let size = bounds(&model(name)).1.y;
+        assert!((low..=high).contains(&size), "{name} is {size} m high");
+    }
+}
+
+#[test]
+fn the_same_model_twice_is_the_same_mesh() {
+    for name in ["lighthouse", "figure"] {
+        assert_eq!(model(name), model(name), "{name}");
+    }
+    let sphere = model("sphere");
+    assert_eq!(ugly(&sphere, 1), ugly(&sphere, 1));
+    assert_ne!(ugly(&sphere, 1), ugly(&sphere, 2));
+}
+
+#[test]
+fn the_ugly_twin_has_every_fault() -> Result<(), Box<dyn std::error::Error>> {
+    let sphere = model("sphere");
+    let twin = ugly(&sphere, 3);
+    let report = twin.topology()?;
+    assert!(twin.normals.is_empty() && twin.len() > sphere.len());
+    assert_eq!(report.components, twin.len(), "a soup shares nothing: {report}");
+    let volume = twin.volume() / sphere.volume();
+    assert!((0.7..0.9).contains(&volume), "a tenth is turned over: volume {volume}");
+    let area = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|i| Vec3::from(twin.vertices[i as usize]));
+        (b - a).cross(c - a).length()
+    };
+    assert!(twin.triangles.iter().filter(|t| area(t) == 0.0).count() > 100);
+    assert!(bounds(&twin).1.y > 0.105, "nothing floats about");
+    Ok(())
+}
