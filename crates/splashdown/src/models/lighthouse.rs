@@ -35,7 +35,7 @@ pub(super) fn lighthouse() -> Mesh {
         [0.01, 0.926],
         [0.0, 0.926],
     ]);
-    polygonise(vec3(-0.39, -0.02, -0.36), vec3(0.39, 1.02, 0.39), 0.0074, |p| {
+    polygonise(vec3(-0.39, -0.02, -0.36), vec3(0.39, 1.02, 0.39), 0.0071, |p| {
         let mut d = rock(p, &stones);
         if p.y > TOP - 0.08 && p.xz().length() < 0.16 {
             let body = openings(p, lathe(p, &tower, 0.003));
@@ -93,7 +93,7 @@ fn openings(p: Vec3, tower: f32) -> f32 {
     let mut d = tower;
     for y in [0.345, 0.505, 0.655] {
         let t = (y - TOP - 0.02) / (0.675 - TOP);
-        d = join(d, ring(p - vec3(0.0, y, 0.0), tower_radius(t), 0.006), 0.004);
+        d = join(d, ring(p - vec3(0.0, y, 0.0), tower_radius(t) - 0.001, 0.009), 0.005);
     }
     let arch = |p: Vec3, half_width: f32, height: f32| {
         let wall = rectangle(vec2(p.x, p.y - 0.5 * height), vec2(half_width, 0.5 * height), 0.0);
@@ -101,7 +101,7 @@ fn openings(p: Vec3, tower: f32) -> f32 {
     };
     let mut hole = |q: Vec3, half_width: f32, height: f32, radius: f32| {
         if q.z > 0.0 {
-            let frame = meet(arch(q, half_width + 0.009, height), q.z - radius - 0.007, 0.004);
+            let frame = meet(arch(q, half_width + 0.012, height), q.z - radius - 0.009, 0.004);
             d = join(d, frame.max(radius - 0.03 - q.z), 0.003);
             let opening = arch(q, half_width, height).max(radius - 0.012 - q.z);
             d = cut(d, opening, 0.003);
@@ -110,7 +110,7 @@ fn openings(p: Vec3, tower: f32) -> f32 {
     hole(p - vec3(0.0, TOP + 0.012, 0.0), 0.021, 0.056, 0.103);
     for (angle, y) in [(0.0, 0.405), (90.0, 0.31), (180.0, 0.42), (270.0, 0.31), (20.0, 0.57), (200.0, 0.57)]
     {
-        let t = (y - TOP) / (0.675 - TOP);
+        let t = (y - TOP - 0.02) / (0.675 - TOP);
         hole(turn_y(p, angle) - vec3(0.0, y, 0.0), 0.0125, 0.03, tower_radius(t));
     }
     d

@@ -4,7 +4,7 @@ use glam::{Mat2, Vec2, Vec3, Vec3Swizzles as _, vec2, vec3};
 use splashdown_io::Mesh;
 
 use super::polygonise::polygonise;
-use super::shape::{cuboid, cut, extrude, join, meet, polygon, rectangle, sector};
+use super::shape::{cuboid, cut, extrude, join, polygon, rectangle, sector};
 
 pub(super) fn gear() -> Mesh {
     let tooth = [
