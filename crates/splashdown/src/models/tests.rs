@@ -1,12 +1,18 @@
+use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use glam::Vec3;
 use splashdown_io::Mesh;
 
 use super::{build, names, ugly};
 
+/// Every model, built once for all tests.
+static MODELS: LazyLock<HashMap<&str, Mesh>> =
+    LazyLock::new(|| names().iter().filter_map(|&(name, _)| Some((name, build(name)?))).collect());
+
 fn model(name: &str) -> Mesh {
-    build(name).unwrap_or_else(|| panic!("no model {name}"))
+    MODELS.get(name).cloned().unwrap_or_else(|| panic!("no model {name}"))
 }
 
 /// Lower and upper corner of a mesh's box.
@@ -116,7 +122,7 @@ fn models_stand_or_float_where_they_are_said_to() {
 #[test]
 fn the_same_model_twice_is_the_same_mesh() {
     for name in ["lighthouse", "figure"] {
-        assert_eq!(model(name), model(name), "{name}");
+        assert_eq!(build(name).as_ref(), Some(&model(name)), "{name}");
     }
     let sphere = model("sphere");
     assert_eq!(ugly(&sphere, 1), ugly(&sphere, 1));
