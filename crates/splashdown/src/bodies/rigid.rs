@@ -126,11 +126,42 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
 }
 
 fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<SharedShape> {
-    let hull = SharedShape::convex_hull(points)?;
+    let hull = hull(points)?;
     if hull.mass_properties(1.0).mass() <= HOLLOW * volume {
         return Some(hull);
     }
-    Some(SharedShape::convex_decomposition(points, triangles))
+    let parts = SharedShape::convex_decomposition(points, triangles);
+    let parts = parts.as_compound()?.shapes().iter().filter_map(|(place, part)| {
+        let part = part.as_convex_polyhedron()?;
+        Some((*place, self::hull(part.points())?))
+    });
+    let parts: Vec<_> = parts.collect();
+    if parts.is_empty() { Some(hull) } else { Some(SharedShape::compound(parts)) }
+}
+
+/// The convex hull of the points that are farthest in some evenly spread directions. Of all points of a fine mesh parry makes hulls
+/// whose slivers its contacts trip over; and a contact need not know a ball from one with a hundred facets.
+fn hull(points: &[Vector]) -> Option<SharedShape> {
+    const DIRECTIONS: u32 = 256;
+    let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
+    let mut kept: Vec<usize> = (0..DIRECTIONS)
+        .filter_map(|k| {
+            let y = 1.0 - 2.0 * (k as f32 + 0.5) / DIRECTIONS as f32;
+            let (radius, angle) = ((1.0 - y * y).sqrt(), golden * k as f32);
+            let direction = Vector::new(radius * angle.cos(), y, radius * angle.sin());
+            (0..points.len()).max_by(|&a, &b| points[a].dot(direction).total_cmp(&points[b].dot(direction)))
+        })
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let mut corners: Vec<Vector> = Vec::new();
+    let size = kept.iter().map(|&k| points[k].length()).fold(0.0, f32::max);
+    for point in kept.into_iter().map(|k| points[k]) {
+        if corners.iter().all(|corner| corner.distance(point) > 0.02 * size) {
+            corners.push(point);
+        }
+    }
+    SharedShape::convex_hull(&corners)
 }
 
 fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {

@@ -59,3 +59,22 @@ fn a_free_body_falls_as_bodies_fall_and_bounces_off_the_floor_and_others() {
     assert!(states[0].position.distance(states[1].position) > 0.095, "{states:?}");
     assert!(states.iter().all(|state| state.velocity.length() < 1.0), "{states:?}");
 }
+
+#[test]
+fn fine_and_hollow_bodies_collide_too() {
+    let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
+    dry(&mut scene);
+    scene.bodies = vec![
+        body("ball", "sphere", 1.0, Vec3::new(0.3, 0.3, 0.3), free(500.0)),
+        body("block", "block", 1.0, Vec3::new(0.7, 0.3, 0.7), free(500.0)),
+        body("gear", "gear", 0.8, Vec3::new(0.5, 0.6, 0.5), free(500.0)),
+    ];
+    scene.bodies[2].mesh.rotation = glam::Quat::from_rotation_x(1.3);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(1.0).unwrap();
+    for (state, least) in simulation.body_states().unwrap().iter().zip([0.09, 0.09, 0.0]) {
+        assert!(state.position.y > least, "{state:?}");
+        assert!(state.position.max_element() < 1.0 && state.position.min_element() > 0.0, "{state:?}");
+        assert!(state.velocity.length() < 3.0, "{state:?}");
+    }
+}
