@@ -1,11 +1,11 @@
 //! How much memory a simulation takes, before it takes it.
 
-use crate::SimulationError;
 use crate::cells::Grid;
 use crate::flow::LoadedFlow;
 use crate::scene::{Derived, Scene, Sort, SurfaceTension};
 use crate::solver::Solver;
 use crate::surface::{self, SurfaceParams};
+use crate::{SimulationError, bodies};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
@@ -44,7 +44,9 @@ pub fn memory_forecast(scene: &Scene) -> u64 {
     let particles = flow.capacity(particles, u64::MAX);
     let normals = if scene.solver.surface_tension == SurfaceTension::Akinci2013 { 16 } else { 0 };
     let pairs = if scene.solver.sort == Sort::Bitonic { 8 } else { 0 };
-    let motion = particles.saturating_mul(PER_PARTICLE + normals + pairs);
+    let motion = particles
+        .saturating_mul(PER_PARTICLE + normals + pairs)
+        .saturating_add(bodies::forecast(scene, particles));
     // A domain of more cells than there can be is refused at the start.
     let Some(grid) = Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene)) else {
         return motion.saturating_add(PER_CELL << 31);
@@ -89,8 +91,11 @@ mod tests {
                 // Tables and uniforms of fixed size, and the sums of the scans' blocks, are left out: some tens of kB.
                 let difference = taken.abs_diff(forecast);
                 assert!(difference < taken / 100 + 50_000, "{name}: {forecast} forecast, {taken} taken");
-                // Controls: the surface matters, and a scene without one takes what the motion takes.
-                assert!(without_surface < forecast / 2, "{name}: {without_surface} of {forecast}");
+                // Controls: the surface matters (beside maps of bodies less so), and a scene without one takes what the motion takes.
+                assert!(
+                    without_surface < forecast / 2 || !scene.bodies.is_empty(),
+                    "{name}: {without_surface} of {forecast}"
+                );
                 let bare = Scene {
                     surface: SurfaceSettings { enabled: false, ..scene.surface.clone() },
                     ..scene.clone()

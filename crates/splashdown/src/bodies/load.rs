@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use glam::{Mat3, Quat, Vec3, Vec4};
+use glam::{Mat3, Quat, Vec2, Vec3, Vec4};
 use splashdown_io::{IoError, Mesh};
 
-use super::types::Body;
+use super::types::{Body, Contact};
 use crate::boundary::{KernelPair, wall_offset};
 use crate::models;
 use crate::passes::Params;
@@ -193,6 +193,28 @@ fn load_one(
 /// Diagonal, and xy, xz, yz.
 fn parts(m: Mat3) -> (Vec3, Vec3) {
     (Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z), Vec3::new(m.y_axis.x, m.z_axis.x, m.z_axis.y))
+}
+
+/// Bytes of the maps and contacts that a scene's bodies take on a device; a mesh that cannot be read counts nothing here and is
+/// refused when it is loaded.
+pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
+    if scene.bodies.is_empty() {
+        return 0;
+    }
+    let spacing = scene.fluid.particle_spacing;
+    let support = scene.solver.support_radius(spacing);
+    let maps: u64 = scene
+        .bodies
+        .iter()
+        .filter_map(|body| mesh_of(&body.name, &body.mesh).ok())
+        .map(|mesh| {
+            let cell = cell_size(&mesh, spacing, support);
+            let (low, high) = solid::bounds(&mesh);
+            let nodes = ((high - low + 2.0 * (support + 2.0 * cell)) / cell).ceil() + 1.0;
+            nodes.element_product() as u64 * size_of::<Vec2>() as u64
+        })
+        .sum();
+    maps + particles * 2 * size_of::<Contact>() as u64
 }
 
 /// Half a particle spacing, or more where the grid would have more than this many nodes.

@@ -14,6 +14,7 @@ mod rigid;
 mod share;
 mod types;
 
+pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, load, mesh_of};
 pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
 
