@@ -20,10 +20,12 @@ const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
 }
 
 /// Scenes and what is shown of them.
-const PICTURES: [(&str, &[Shown]); 4] = [
+const PICTURES: [(&str, &[Shown]); 6] = [
     ("dam-break", &[shown("surface", 38, "dam-break"), shown("particles", 34, "dam-break-particles")]),
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
     ("honey", &[shown("surface", 20, "honey")]),
+    ("lighthouse", &[shown("surface", 20, "lighthouse")]),
+    ("knot", &[shown("surface", 30, "knot")]),
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 

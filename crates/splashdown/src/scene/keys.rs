@@ -186,7 +186,7 @@ static BODY: Table = Table {
         key(
             "mesh",
             Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
-            "Its triangles: a file, or one of the models that come with the program (`splashdown scenes --models`).",
+            "Its triangles: a file, or one of the models that come with the program, such as lighthouse; a name that is none is answered with the list.",
         )
         .required()
         .also(&["file", "model", "geometry_file", "shape"]),

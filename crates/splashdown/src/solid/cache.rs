@@ -11,7 +11,7 @@ use super::field::DistanceField;
 use super::{RepairReport, SolidSettings};
 
 /// Changes when the content of a file would change.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const MAGIC: &[u8; 8] = b"SDSOLID1";
 
 /// Where solids are kept unless told otherwise: `splashdown/solids` in the user's cache folder, if there is one.

@@ -162,7 +162,8 @@ impl DistanceField {
         let x = self.node(at);
         let e = 0.5 * self.cell_size;
         let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
-        let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or_zero();
+        // In the middle of a thin wall the distance has no slope; any plane then serves to compare with.
+        let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or(Vec3::X);
         let inside = |distance: f32| (0.5 - distance / grain).clamp(0.0, 1.0);
         let (mut solid, mut plane) = (0.0, 0.0);
         for &(r, w) in ball {
