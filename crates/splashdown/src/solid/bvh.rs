@@ -135,7 +135,7 @@ fn box_distance(node: &Node, x: Vec3) -> f32 {
 }
 
 /// The solid angle of a triangle (van Oosterom & Strackee 1983).
-fn solid_angle(x: Vec3, t: &[Vec3; 3]) -> f32 {
+pub(super) fn solid_angle(x: Vec3, t: &[Vec3; 3]) -> f32 {
     let [a, b, c] = t.map(|corner| corner - x);
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let numerator = a.dot(b.cross(c));

@@ -1,7 +1,6 @@
 //! Solids on disk, found again by what they were made from.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
@@ -12,7 +11,7 @@ use super::{RepairReport, SolidSettings};
 
 /// Changes when the content of a file would change.
 const VERSION: u32 = 2;
-const MAGIC: &[u8; 8] = b"SDSOLID1";
+const MAGIC: &[u8; 8] = b"SDSOLID2";
 
 /// Where solids are kept unless told otherwise: `splashdown/solids` in the user's cache folder, if there is one.
 pub fn default_cache_folder() -> Option<PathBuf> {
@@ -58,6 +57,12 @@ impl Fnv {
     }
 }
 
+fn hash_of(bytes: &[u8]) -> u128 {
+    let mut hash = Fnv::default();
+    hash.add(bytes);
+    hash.0
+}
+
 /// What is stored beside the numbers.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Header {
@@ -72,17 +77,18 @@ struct Header {
 /// Reads a solid back; `None` if there is none or it is damaged.
 pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
     let bytes = fs::read(path).ok()?;
-    let rest = bytes.strip_prefix(MAGIC)?;
+    let (content, sum) = bytes.split_last_chunk::<16>()?;
+    if *sum != hash_of(content).to_le_bytes() {
+        return None;
+    }
+    let rest = content.strip_prefix(MAGIC)?;
     let (length, rest) = rest.split_first_chunk::<4>()?;
     let (header, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
     let header: Header = serde_json::from_slice(header).ok()?;
     let count = header.nodes.iter().try_fold(1usize, |n, &axis| n.checked_mul(axis as usize))?;
     let (vertices, rest) = rest.split_at_checked(header.vertices.checked_mul(12)?)?;
     let (triangles, rest) = rest.split_at_checked(header.triangles.checked_mul(12)?)?;
-    let (values, sum) = rest.split_at_checked(count.checked_mul(8)?)?;
-    let mut hash = Fnv::default();
-    hash.add(values);
-    if sum != hash.0.to_le_bytes() {
+    if rest.len() != count.checked_mul(8)? {
         return None;
     }
     let mesh = Mesh {
@@ -94,7 +100,7 @@ pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
         min: Vec3::from(header.min),
         cell_size: header.cell_size,
         nodes: header.nodes,
-        values: bytemuck::pod_collect_to_vec::<u8, Vec2>(values),
+        values: bytemuck::pod_collect_to_vec::<u8, Vec2>(rest),
     };
     Some((mesh, header.report, field))
 }
@@ -113,19 +119,15 @@ pub(super) fn save(path: &Path, mesh: &Mesh, report: RepairReport, field: &Dista
             nodes: field.nodes,
         };
         let header = serde_json::to_vec(&header)?;
-        let values: &[u8] = bytemuck::cast_slice(&field.values);
-        let mut hash = Fnv::default();
-        hash.add(values);
+        let mut content = MAGIC.to_vec();
+        content.extend((header.len() as u32).to_le_bytes());
+        content.extend(header);
+        content.extend_from_slice(bytemuck::cast_slice(&mesh.vertices));
+        content.extend_from_slice(bytemuck::cast_slice(&mesh.triangles));
+        content.extend_from_slice(bytemuck::cast_slice(&field.values));
+        content.extend(hash_of(&content).to_le_bytes());
         let partial = path.with_extension(format!("{}.partial", std::process::id()));
-        let mut file = std::io::BufWriter::new(fs::File::create(&partial)?);
-        file.write_all(MAGIC)?;
-        file.write_all(&(header.len() as u32).to_le_bytes())?;
-        file.write_all(&header)?;
-        file.write_all(bytemuck::cast_slice(&mesh.vertices))?;
-        file.write_all(bytemuck::cast_slice(&mesh.triangles))?;
-        file.write_all(values)?;
-        file.write_all(&hash.0.to_le_bytes())?;
-        file.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        fs::write(&partial, content).inspect_err(|_| drop(fs::remove_file(&partial)))?;
         fs::rename(&partial, path).inspect_err(|_| drop(fs::remove_file(&partial)))
     };
     if let Err(error) = write() {

@@ -162,7 +162,7 @@ impl DistanceField {
         let x = self.node(at);
         let e = 0.5 * self.cell_size;
         let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
-        // In the middle of a thin wall the distance has no slope; any plane then serves to compare with.
+        // In the middle of a wall or a slot the distance has no slope; any plane at that distance serves for comparison.
         let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or(Vec3::X);
         let inside = |distance: f32| (0.5 - distance / grain).clamp(0.0, 1.0);
         let (mut solid, mut plane) = (0.0, 0.0);

@@ -6,7 +6,7 @@ use std::fmt;
 use glam::{DVec3, IVec3, Vec3};
 use splashdown_io::Mesh;
 
-use super::bvh::Bvh;
+use super::bvh::{Bvh, solid_angle};
 
 /// What was found in a mesh, and what was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -201,23 +201,32 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
     let areas: Vec<f64> = pieces.iter().map(|piece| area(triangles, piece)).collect();
     order.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));
     let mut placed: Vec<[Vec3; 3]> = Vec::new();
+    // Built again only after a good part has been added: a tree per scrap would take minutes.
+    let mut tree: Option<Bvh> = None;
+    let mut in_tree = 0;
     for (rank, &p) in order.iter().enumerate() {
         let piece = &pieces[p];
         let size = volume(triangles, piece);
+        if placed.len() > in_tree + in_tree / 16 {
+            in_tree = placed.len();
+            tree = Some(Bvh::new(placed.clone()));
+        }
+        let winding = |x: Vec3| {
+            let late = placed[in_tree..].iter().map(|t| solid_angle(x, t)).sum::<f32>();
+            tree.as_ref().map_or(0.0, |tree| tree.winding(x)) + late / (4.0 * std::f32::consts::PI)
+        };
         // A piece with a volume of its own says where its inside is; a scrap of a torn surface does not.
         let own_way = size.abs() > 0.02 * areas[p].powf(1.5) / 10.0;
         let turn = if own_way {
-            let hollow = size < 0.0 && rank > 0 && {
-                let around = Bvh::new(placed.clone());
-                piece
+            let hollow = size < 0.0
+                && rank > 0
+                && piece
                     .iter()
                     .step_by(1 + piece.len() / 16)
-                    .all(|&t| around.winding(corner(triangles[t as usize][0])) > 0.5)
-            };
+                    .all(|&t| winding(corner(triangles[t as usize][0])) > 0.5);
             size < 0.0 && !hollow
         } else if rank > 0 && rank < 2000 {
             // The face belongs where the surface is missing: its outside is where the others' winding number is lower.
-            let others = Bvh::new(placed.clone());
             let votes: f32 = piece
                 .iter()
                 .step_by(1 + piece.len() / 8)
@@ -226,7 +235,7 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
                     let normal = (b - a).cross(c - a);
                     let step = 0.3 * normal.length().sqrt() * normal.normalize_or_zero();
                     let middle = (a + b + c) / 3.0;
-                    others.winding(middle - step) - others.winding(middle + step)
+                    winding(middle - step) - winding(middle + step)
                 })
                 .sum();
             votes < 0.0

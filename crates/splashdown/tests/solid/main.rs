@@ -1,4 +1,5 @@
 //! Solids from meshes: mending, distances, shares of the kernel, masses, the cache.
 
 mod fields;
+mod hostile;
 mod shared_meshes;
