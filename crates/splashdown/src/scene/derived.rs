@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::things::Motion;
 use super::types::{KernelKind, Method, Scene, Shape, SurfaceTension};
 use crate::sample;
 
@@ -27,7 +28,7 @@ pub struct Derived {
     pub support_radius: f32,
     /// Height in m of the fluid's highest point above the domain's lowest, along gravity; 0 without gravity.
     pub head: f32,
-    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block or emitter. The
+    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block, emitter or body. The
     /// first part is the front of a dam break of that height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head)
     /// of a fall from there. A scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
     pub reference_speed: f32,
@@ -113,7 +114,13 @@ fn head(scene: &Scene) -> f32 {
 fn reference_speed(scene: &Scene, head: f32) -> f32 {
     let blocks = scene.fluid.blocks.iter().map(|block| block.velocity.length());
     let emitters = scene.emitters.iter().map(|emitter| emitter.speed);
-    let fastest = blocks.chain(emitters).fold(0.0, f32::max);
+    // Of bodies only the speed of their origins: how far they reach is known when their meshes are read.
+    let bodies = scene.bodies.iter().map(|body| match &body.motion {
+        Motion::Static => 0.0,
+        Motion::Scripted(script) => script.max_speed(f64::from(scene.duration), 0.0),
+        Motion::Dynamic { velocity, .. } => velocity.length(),
+    });
+    let fastest = blocks.chain(emitters).chain(bodies).filter(|speed| speed.is_finite()).fold(0.0, f32::max);
     let shake = scene.domain.shake.map_or(0.0, |shake| shake.max_speed());
     let driven = (4.0 * scene.gravity.length() * head + fastest * fastest).sqrt() + shake;
     let material = &scene.fluid.material;

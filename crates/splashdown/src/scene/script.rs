@@ -47,15 +47,18 @@ impl Script {
     /// The pose at a time in seconds.
     pub fn pose(&self, time: f64) -> Pose {
         let (position, orientation) = self.place(time);
-        let (before, turned_before) = self.place(time - STEP);
-        let (after, turned_after) = self.place(time + STEP);
+        // Formulas need have no value before the start.
+        let (start, end) = ((time - STEP).max(0.0), time.max(0.0) + STEP);
+        let (before, turned_before) = self.place(start);
+        let (after, turned_after) = self.place(end);
+        let span = end - start;
         let turn = turned_after * turned_before.conjugate();
         let turn = if turn.w < 0.0 { -turn } else { turn };
         Pose {
             position: position.as_vec3(),
             orientation: orientation.as_quat(),
-            velocity: ((after - before) / (2.0 * STEP)).as_vec3(),
-            angular_velocity: (turn.to_scaled_axis() / (2.0 * STEP)).as_vec3(),
+            velocity: ((after - before) / span).as_vec3(),
+            angular_velocity: (turn.to_scaled_axis() / span).as_vec3(),
         }
     }
 
@@ -135,6 +138,13 @@ mod tests {
         let x = pose.orientation * Vec3::X;
         assert!(x.distance(Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)) < 1e-5);
         assert!((script.max_speed(1.0, 2.0) - (4.0f32 + 0.0069).sqrt() - 2.0 * rate).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_formula_without_a_value_before_the_start_has_a_speed_at_it() {
+        let script = Script { keyframes: vec![still()], shift: formulas(["t^1.5", "0", "0"]), turn: None };
+        assert!(script.pose(0.0).velocity.length() < 0.02);
+        assert!((script.pose(1.0).velocity.x - 1.5).abs() < 1e-4);
     }
 
     #[test]
