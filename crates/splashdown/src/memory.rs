@@ -90,7 +90,9 @@ mod tests {
                 let taken = simulation.memory();
                 // Tables and uniforms of fixed size, and the sums of the scans' blocks, are left out: some tens of kB.
                 let difference = taken.abs_diff(forecast);
-                assert!(difference < taken / 100 + 50_000, "{name}: {forecast} forecast, {taken} taken");
+                // Whether a mesh is a sheet, whose grid is a little larger, is known only when it has been looked at.
+                let part = if scene.bodies.is_empty() { 100 } else { 25 };
+                assert!(difference < taken / part + 50_000, "{name}: {forecast} forecast, {taken} taken");
                 // Controls: the surface matters (beside maps of bodies less so), and a scene without one takes what the motion takes.
                 assert!(
                     without_surface < forecast / 2 || !scene.bodies.is_empty(),
@@ -101,7 +103,7 @@ mod tests {
                     ..scene.clone()
                 };
                 assert!(
-                    memory_forecast(&bare).abs_diff(without_surface) < without_surface / 100 + 50_000,
+                    memory_forecast(&bare).abs_diff(without_surface) < without_surface / part + 50_000,
                     "{name}"
                 );
             }
