@@ -1,9 +1,9 @@
 //! Bodies that the fluid meets: meshes that stand, move as written, or are carried.
 //!
 //! *How it works.* A body's solid ([`crate::solid`]) is a grid of distances in the frame of its mesh. In every step each particle near a
-//! body looks its place up ([`contacts`]), the body takes part in the density ([`share`]) and in the forces ([`push`]), the
-//! reactions are summed on the device, and the body moves ([`motion`]), all without asking the host. Between batches of steps
-//! the host lets bodies that touch one another or the box collide ([`rigid`]).
+//! body looks its place up (`contacts`), the body takes part in the density (`share`) and in the forces (`push`), the
+//! reactions are summed on the device, and the body moves (`motion`), all without asking the host. Between batches of steps
+//! the host lets bodies that touch one another or the box collide (`rigid`).
 
 mod contacts;
 mod field;
