@@ -25,7 +25,7 @@ const PICTURES: [(&str, &[Shown]); 6] = [
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
     ("honey", &[shown("surface", 20, "honey")]),
     ("lighthouse", &[shown("surface", 20, "lighthouse")]),
-    ("knot", &[shown("surface", 30, "knot")]),
+    ("knot", &[shown("surface", 22, "knot")]),
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 
