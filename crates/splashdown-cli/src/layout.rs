@@ -1,6 +1,7 @@
 //! Where the results of a run lie below its output folder.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use splashdown::scene::{Choice, Format, PictureKind, Scene};
@@ -19,6 +20,11 @@ const FOLDERS: [(&str, &[&str], &[&str]); 3] = [
     ("mesh", &["surface"], &["ply", "obj"]),
     ("pictures", &["surface", "particles"], &["png"]),
 ];
+
+/// The folder of the probes' files, which are named by the scene.
+const PROBES: &str = "probes";
+/// How these files begin.
+const PROBES_BEGIN: &[u8] = b"time (s),";
 
 impl Layout {
     /// Names for this many frames: four digits, more if they are needed.
@@ -62,6 +68,11 @@ impl Layout {
         self.root.join("particles").join("particles.pvd")
     }
 
+    /// The readings of a probe.
+    pub fn probe(&self, name: &str) -> PathBuf {
+        self.root.join(PROBES).join(format!("{name}.csv"))
+    }
+
     /// The summary.
     pub fn report(&self) -> PathBuf {
         self.root.join("run.json")
@@ -77,9 +88,13 @@ impl Layout {
     /// [`IoError::Write`].
     pub fn make(&self, wanted: Folders) -> Result<(), IoError> {
         prepare_folder(&self.root)?;
+        let wanted_probes = wanted.probes;
         let wanted = [wanted.particles, wanted.mesh, wanted.pictures];
         for ((folder, ..), _) in FOLDERS.iter().zip(wanted).filter(|(_, wanted)| *wanted) {
             prepare_folder(&self.root.join(folder))?;
+        }
+        if wanted_probes {
+            prepare_folder(&self.root.join(PROBES))?;
         }
         Ok(())
     }
@@ -104,6 +119,13 @@ impl Layout {
             // Succeeds only if nothing else is in it.
             let _ = fs::remove_dir(&folder);
         }
+        let probes = self.root.join(PROBES);
+        for entry in fs::read_dir(&probes).into_iter().flatten().flatten() {
+            if is_log(&entry.path()) {
+                remove(&entry.path());
+            }
+        }
+        let _ = fs::remove_dir(&probes);
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
@@ -121,6 +143,8 @@ pub struct Folders {
     pub mesh: bool,
     /// For pictures.
     pub pictures: bool,
+    /// For what probes measure.
+    pub probes: bool,
 }
 
 impl Folders {
@@ -131,8 +155,16 @@ impl Folders {
             particles: any([Format::Ply, Format::Vtu]),
             mesh: surface && any([Format::Ply, Format::Obj]),
             pictures,
+            probes: !scene.probes.is_empty(),
         }
     }
+}
+
+/// True for what a probe has written, whatever its name.
+fn is_log(path: &Path) -> bool {
+    let mut begin = [0; PROBES_BEGIN.len()];
+    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut begin));
+    path.extension().is_some_and(|ending| ending == "csv") && read.is_ok() && begin == PROBES_BEGIN
 }
 
 /// True for `stem_0123.ending` with at least four digits.
@@ -179,17 +211,20 @@ mod tests {
     fn an_earlier_run_is_removed_and_nothing_else() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
         let layout = Layout::new(folder.path().to_owned(), 10);
-        layout.make(Folders { particles: true, mesh: true, pictures: true })?;
+        layout.make(Folders { particles: true, mesh: true, pictures: true, probes: true })?;
         let mine = folder.path().join("particles/notes.txt");
         let frame = layout.particles(3, "ply");
         fs::write(&mine, "mine")?;
         fs::write(&frame, "old")?;
+        fs::write(layout.probe("gauge"), "time (s),height (m)\n")?;
+        let other = layout.probe("measured");
+        fs::write(&other, "seconds,metres\n")?;
         // Without a report the folder is not known to be ours.
         assert_eq!(layout.remove_earlier(), 0);
         assert!(frame.exists());
         fs::write(layout.report(), "{}")?;
-        assert_eq!(layout.remove_earlier(), 2);
-        assert!(!frame.exists() && mine.exists());
+        assert_eq!(layout.remove_earlier(), 3);
+        assert!(!frame.exists() && mine.exists() && other.exists() && !layout.probe("gauge").exists());
         Ok(())
     }
 }

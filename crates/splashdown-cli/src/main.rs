@@ -14,6 +14,7 @@ mod layout;
 mod lines;
 mod memory;
 mod pictures;
+mod probes;
 mod progress;
 mod report;
 mod scene_file;

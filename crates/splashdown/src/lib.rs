@@ -26,6 +26,7 @@ pub mod kernel;
 mod memory;
 pub mod models;
 pub mod passes;
+pub mod probes;
 mod run;
 pub mod sample;
 pub mod scene;
@@ -46,7 +47,7 @@ pub use stats::Stats;
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
-    [passes::passes(), bodies::passes(), flow::passes(), surface::passes()].concat()
+    [passes::passes(), bodies::passes(), flow::passes(), probes::passes(), surface::passes()].concat()
 }
 
 /// The examples of the README.

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use splashdown_gpu::{Gpu, Timings};
 use splashdown_io::{Mesh, Particles};
 
+use crate::probes::ProbeRows;
 use crate::scene::Scene;
 use crate::surface::Surface;
 use crate::{BodyMesh, BodyState, Device, Simulation, SimulationError, Stats};
@@ -100,6 +101,8 @@ pub struct Frame {
     pub volume: Option<f64>,
     /// The bodies, in the order of [`Run::bodies`].
     pub bodies: Arc<[BodyState]>,
+    /// What the scene's probes measured since the frame before, in the order of the scene.
+    pub probes: Arc<[ProbeRows]>,
 }
 
 /// The whole run in a few numbers.
@@ -347,6 +350,7 @@ impl Run {
             mesh: mesh.map(Arc::new),
             volume,
             bodies: self.simulation.body_states()?.into(),
+            probes: self.simulation.take_probe_rows().into(),
         })
     }
 

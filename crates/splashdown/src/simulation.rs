@@ -12,6 +12,7 @@ use crate::cells::{Cells, Grid};
 use crate::fields::Fields;
 use crate::flow::{Flow, LoadedFlow};
 use crate::passes::{DEAD_NON_FINITE, DEAD_UNBORN, Params, StepState, Tally};
+use crate::probes::{ProbeRows, Probes};
 use crate::scene::{Derived, Scene, SurfaceSettings};
 use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
@@ -52,6 +53,9 @@ pub struct Simulation {
     bodies: Option<Bodies>,
     removed: u32,
     flow: Option<Flow>,
+    probes: Option<Probes>,
+    /// Rows of the probes since they were last asked for.
+    rows: Vec<ProbeRows>,
     /// Particles at the start.
     initial: u32,
     /// What the emitters had to tell since it was last asked for.
@@ -156,7 +160,8 @@ impl Simulation {
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
 
-        let step = solver.step(&cells, &fields, bodies.as_ref(), flow.as_ref(), n as u32);
+        let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
+        let step = solver.step(&cells, &fields, bodies.as_ref(), flow.as_ref(), probes.as_ref(), n as u32);
         let done = Flag::new(fields.state, offset_of!(StepState, done));
         let batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
@@ -179,6 +184,8 @@ impl Simulation {
             bodies,
             removed: 0,
             flow,
+            rows: vec![Vec::new(); scene.probes.len()],
+            probes,
             initial,
             told: Vec::new(),
         };
@@ -274,6 +281,12 @@ impl Simulation {
         let last = self.stats;
         let passed =
             if state.done != 0 { state.frame_duration } else { state.frame_duration - state.remaining };
+        if let Some(probes) = &self.probes {
+            let taken = probes.take(&mut self.executor, last.time, passed)?;
+            for (rows, more) in self.rows.iter_mut().zip(taken) {
+                rows.extend(more);
+            }
+        }
         self.stats = Stats {
             time: last.time + f64::from(passed),
             steps: last.steps + u64::from(state.steps),
@@ -371,6 +384,11 @@ impl Simulation {
     /// What emitters had to tell since the last call: each says once when it found no room.
     pub fn take_warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.told)
+    }
+
+    /// What the scene's probes have measured in whole frames since the last call: rows of each, in the scene's order.
+    pub fn take_probe_rows(&mut self) -> Vec<ProbeRows> {
+        self.rows.iter_mut().map(std::mem::take).collect()
     }
 
     /// The meshes of the scene's bodies, in its order.

@@ -16,6 +16,7 @@ use crate::interrupt::{Interrupt, Wish};
 use crate::layout::{Folders, Layout};
 use crate::lines::Line;
 use crate::pictures::{self, Pictures};
+use crate::probes::ProbeFiles;
 use crate::report::Report;
 use crate::teller::Teller;
 use crate::{human, memory, scene_file};
@@ -41,6 +42,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 struct Session {
     run: Run,
     files: Files,
+    probes: ProbeFiles,
     pictures: Option<Pictures>,
     /// Drawing has failed, and that was told.
     no_more_pictures: bool,
@@ -76,6 +78,7 @@ impl Session {
         let mut session = Self {
             run,
             files: Files::start(layout.clone(), scene.output.formats.clone())?,
+            probes: ProbeFiles::default(),
             pictures: None,
             no_more_pictures: false,
             pictures_demanded: arguments.pictures.is_some(),
@@ -92,6 +95,7 @@ impl Session {
         }
         // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than room for its own.
         session.replace_earlier(&scene, wanted)?;
+        session.probes = ProbeFiles::create(&scene, &session.layout)?;
         Ok(session)
     }
 
@@ -166,6 +170,7 @@ impl Session {
             Event::Frame(frame) => {
                 let pictures = self.pictures.as_ref().filter(|_| !self.no_more_pictures);
                 let names = pictures.map(|pictures| pictures.names(frame.index)).unwrap_or_default();
+                self.probes.write(&frame)?;
                 self.files.submit(&frame, names)?;
                 if let Some(pictures) = pictures {
                     pictures.submit(&frame);
@@ -197,6 +202,7 @@ impl Session {
         let Self {
             run,
             files,
+            probes,
             pictures,
             mut no_more_pictures,
             pictures_demanded,
@@ -216,7 +222,8 @@ impl Session {
                 failure.get_or_insert(error);
             }
         }
-        let ended = files.finish(no_more_pictures);
+        let mut ended = files.finish(no_more_pictures);
+        ended.files.extend(probes.finish());
         teller.complete(ended.frames);
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());

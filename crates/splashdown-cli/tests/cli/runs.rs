@@ -225,3 +225,26 @@ fn the_benchmark_measures_steps_and_passes() -> Outcome {
     assert!(row["passes"].as_object().is_some_and(|passes| passes.len() > 3), "{row}");
     Ok(())
 }
+
+#[test]
+fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
+    let place = Place::new()?;
+    let scene = fs::read_to_string(place.path("small.toml"))?;
+    let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n";
+    fs::write(place.path("small.toml"), format!("{scene}\n{probe}"))?;
+    // What an earlier run measured, and what is somebody else's.
+    fs::create_dir_all(place.path("out/probes"))?;
+    fs::write(place.path("out/run.json"), "{}")?;
+    fs::write(place.path("out/probes/old.csv"), "time (s),height (m)\n0.1,0.2\n")?;
+    fs::write(place.path("out/probes/notes.csv"), "mine\n")?;
+    let output = place.run_small(&["--formats", "none"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = fs::read_to_string(place.path("out/probes/gauge.csv"))?;
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("time (s),pressure (Pa)"));
+    let times: Vec<f64> = lines.filter_map(|line| line.split(',').next()?.parse().ok()).collect();
+    assert!(times.len() >= 18 && times.windows(2).all(|pair| pair[0] < pair[1]), "{text}");
+    assert!(!place.path("out/probes/old.csv").exists() && place.path("out/probes/notes.csv").exists());
+    assert!(stdout(&output).contains("probes/gauge.csv"), "{}", stdout(&output));
+    Ok(())
+}

@@ -16,7 +16,7 @@ mod types;
 
 pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, load, mesh_of};
-pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
+pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample, WGSL as BODY};
 
 use std::sync::Arc;
 

@@ -16,6 +16,8 @@ const MAX_BODIES: usize = 1024;
 const MAX_EMITTERS: usize = 64;
 /// Most sinks in a scene.
 const MAX_SINKS: usize = 64;
+/// Most probes in a scene.
+const MAX_PROBES: usize = 256;
 /// Most keyframes of a body.
 const MAX_KEYFRAMES: usize = 4096;
 /// Most blocks in a scene.
@@ -50,6 +52,17 @@ choices! {
         Box = "box",
         /// Behind a plane: needs `point` and `normal`.
         Below = "below",
+    }
+    /// The word for what a probe measures.
+    QuantityWord {
+        /// Pressure in Pa at a point: needs `position`.
+        Pressure = "pressure",
+        /// Height of the fluid in m above a point, in the column over it: needs `position`.
+        Height = "height",
+        /// Force in N and torque in N m of the fluid on a body: needs `body`.
+        Force = "force",
+        /// Volume in m^3/s through a rectangle: needs `position`, `normal` and `size`.
+        Flow = "flow",
     }
     /// The word for a body's motion.
     MotionWord {
@@ -93,6 +106,8 @@ pub(crate) static ROOT: Table = Table {
             .also(&["emitters", "inlet", "source"]),
         key("sink", Kind::Tables(&SINK, MAX_SINKS), "Where fluid leaves for good.")
             .also(&["sinks", "drain", "outlet"]),
+        key("probe", Kind::Tables(&PROBE, MAX_PROBES), "What is measured while it runs.")
+            .also(&["probes", "gauge", "gauges", "sensor", "measure"]),
         key("solver", Kind::Table(&SOLVER), "How the fluid is computed."),
         key("surface", Kind::Table(&SURFACE), "How the fluid's surface is extracted."),
         key(
@@ -265,6 +280,28 @@ static SINK: Table = Table {
         key("max", a_vector(FAR, "m"), "Upper corner of a box."),
         key("point", a_vector(FAR, "m"), "A point of a plane."),
         key("normal", a_vector(FAR, ""), "Away from what is taken out; of any length."),
+    ],
+};
+
+static PROBE: Table = Table {
+    about: "Something that is measured in every step and written as probes/NAME.csv: rows of means over the time since the row before.",
+    keys: &[
+        key("name", Kind::Name, "Its name, and its file's.").required(),
+        key("quantity", Kind::Word(words::<QuantityWord>), "What it measures.")
+            .required()
+            .also(&["type", "kind", "measure"]),
+        key("position", a_vector(FAR, "m"), "A point, the foot of a column, or the middle of a rectangle.")
+            .also(&["point", "center"]),
+        key("body", Kind::Name, "The name of the body whose force is measured."),
+        key(
+            "normal",
+            a_vector(FAR, ""),
+            "Across a rectangle, of any length: what flows along it counts as positive.",
+        )
+        .also(&["direction"]),
+        key("along", a_vector(FAR, ""), "A rectangle's first edge, of any length. Default: horizontal."),
+        key("size", Kind::Numbers(2, range(1e-5, FAR, "m")), "Edge lengths of a rectangle."),
+        key("interval", a_number(1e-6, 3600.0, "s"), "Time between two rows. Default: a tenth of a frame."),
     ],
 };
 

@@ -11,6 +11,7 @@ use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
 use crate::passes::{Params, begin, cfl, integrate, state_equation};
+use crate::probes::Probes;
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
 
 /// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Chosen with `examples/droplet.rs`: the period of a
@@ -65,6 +66,7 @@ impl Solver {
         fields: &Fields,
         bodies: Option<&Bodies>,
         flow: Option<&Flow>,
+        probes: Option<&Probes>,
         particles: u32,
     ) -> Recording {
         let mut step = Recording::new("step");
@@ -108,6 +110,9 @@ impl Solver {
                 fields.tally.id(),
             ],
         );
+        if let Some(probes) = probes {
+            probes.record(&mut step, cells, fields, all);
+        }
         if let Some(flow) = flow {
             flow.record_after_integrate(&mut step, cells, fields);
         }

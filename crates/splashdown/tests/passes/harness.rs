@@ -1,9 +1,11 @@
 //! Runs one pass from given buffers on an executor, and compares what it leaves.
 
 use glam::{UVec2, Vec2, Vec4};
+use splashdown::bodies::Body;
 use splashdown::cells::Grid;
 use splashdown::flow::{Drain, Nozzle};
 use splashdown::passes::{Params, StepState};
+use splashdown::probes::ProbePoint;
 use splashdown_gpu::{
     Access, Buffer, BufferId, Executor, GpuElement, Grid as Extent, PassDesc, Recording, bytemuck,
 };
@@ -21,6 +23,8 @@ pub enum Data {
     State(StepState),
     Nozzles(Vec<Nozzle>),
     Drains(Vec<Drain>),
+    Probes(Vec<ProbePoint>),
+    Bodies(Vec<Body>),
 }
 
 impl Data {
@@ -34,6 +38,8 @@ impl Data {
             Self::UVec2(v) => bytemuck::cast_slice(v),
             Self::Nozzles(v) => bytemuck::cast_slice(v),
             Self::Drains(v) => bytemuck::cast_slice(v),
+            Self::Probes(v) => bytemuck::cast_slice(v),
+            Self::Bodies(v) => bytemuck::cast_slice(v),
             Self::Params(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Grid(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::State(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
@@ -61,6 +67,8 @@ impl Data {
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
             Self::Nozzles(v) => bytemuck::cast_slice_mut(v),
             Self::Drains(v) => bytemuck::cast_slice_mut(v),
+            Self::Probes(v) => bytemuck::cast_slice_mut(v),
+            Self::Bodies(v) => bytemuck::cast_slice_mut(v),
             Self::Params(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Grid(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::State(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
@@ -151,6 +159,8 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         Data::UVec2(v) => array(executor, name, v, Data::UVec2),
         Data::Nozzles(v) => array(executor, name, v, Data::Nozzles),
         Data::Drains(v) => array(executor, name, v, Data::Drains),
+        Data::Probes(v) => array(executor, name, v, Data::Probes),
+        Data::Bodies(v) => array(executor, name, v, Data::Bodies),
         Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
         Data::Params(v) => {
             assert!(uniform, "{name} is no uniform");

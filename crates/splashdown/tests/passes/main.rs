@@ -9,6 +9,7 @@ mod flow_cases;
 mod harness;
 mod neighbour_cases;
 mod oracle;
+mod probe_cases;
 mod sort_cases;
 mod walls;
 mod whole_step;
@@ -20,10 +21,14 @@ use harness::Case;
 use splashdown_gpu::{CpuExecutor, Executor, testing};
 
 fn all_cases() -> Vec<Case> {
-    [sort_cases::cases(), cases::cases(), neighbour_cases::cases(), flow_cases::cases()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let all = [
+        sort_cases::cases(),
+        cases::cases(),
+        neighbour_cases::cases(),
+        flow_cases::cases(),
+        probe_cases::cases(),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 fn cpu() -> Executor {

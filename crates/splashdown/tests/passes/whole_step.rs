@@ -68,7 +68,7 @@ impl Rig {
             ..bytemuck::Zeroable::zeroed()
         };
         executor.write(fields.state, &[state]).unwrap();
-        let step = way.step(&cells, &fields, None, None, n);
+        let step = way.step(&cells, &fields, None, None, None, n);
         Self { executor, fields, cells, step }
     }
 

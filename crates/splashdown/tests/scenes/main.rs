@@ -6,6 +6,7 @@ mod errors;
 mod flow;
 mod hostile;
 mod presets;
+mod probes;
 mod sampling;
 mod schema;
 

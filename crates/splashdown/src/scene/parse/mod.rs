@@ -2,6 +2,7 @@
 
 mod flow;
 mod fluid;
+mod probes;
 mod solver;
 mod things;
 mod view;
@@ -91,6 +92,10 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         section.complain("block", message, "1 to 256 sections", hint);
     }
     let bodies = root.sections_if_any("body").and_then(|sections| things::read_bodies(&sections));
+    let probes = root.sections_if_any("probe").and_then(|sections| {
+        let around = probes::Around { domain: domain.as_ref().ok(), bodies: bodies.as_deref().ok() };
+        probes::read_probes(&sections, &around)
+    });
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
     let surface =
         root.section("surface").and_then(|section| view::read_surface(&section, fluid.as_ref().ok()));
@@ -102,6 +107,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         view::read_camera(&section, domain.as_ref().ok(), picture, duration)
     });
     let header = header?;
+    let probes = probes::check_intervals(root, probes?, 1.0 / header.frame_rate)?;
     let scene = Scene {
         name: header.name,
         duration: header.duration,
@@ -112,7 +118,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         bodies: bodies?,
         emitters: emitters?,
         sinks: sinks?,
-        probes: Vec::new(),
+        probes,
         solver: solver?,
         surface: surface?,
         camera: camera?,

@@ -1,0 +1,60 @@
+#import gpu/index
+#import sph/params
+#import sph/body
+#import sph/probe
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> state: StepState;
+@group(0) @binding(2) var<storage, read> probes: array<ProbePoint>;
+@group(0) @binding(3) var<storage, read> bodies: array<Body>;
+@group(0) @binding(4) var<storage, read> values: array<f32>;
+@group(0) @binding(5) var<storage, read_write> counts: array<u32>;
+@group(0) @binding(6) var<storage, read_write> accounts: array<u32>;
+@group(0) @binding(7) var<storage, read_write> rows: array<f32>;
+
+fn add(word: u32, value: f32) {
+    accounts[word] = bitcast<u32>(bitcast<f32>(accounts[word]) + value);
+}
+
+@compute @workgroup_size(64)
+fn log_values(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear_index(gid, groups, 64u);
+    if (k >= arrayLength(&probes) || state.run_count == 0u) {
+        return;
+    }
+    let probe = probes[k];
+    let account = k * ACCOUNT_WORDS;
+    let sums = account + ACCOUNT_SUMS;
+    let dt = state.dt;
+    add(account + ACCOUNT_TIME, dt);
+    if (probe.kind == PROBE_FORCE) {
+        let body = bodies[probe.body];
+        for (var a = 0u; a < 3u; a++) {
+            add(sums + a, body.force[a] * dt);
+            add(sums + 3u + a, body.torque[a] * dt);
+        }
+    } else if (probe.kind == PROBE_FLOW) {
+        add(sums, f32(bitcast<i32>(counts[k])) * params.particle_mass / params.rest_density);
+        counts[k] = 0u;
+    } else {
+        add(sums, values[k * PROBE_VALUES] * dt);
+    }
+    // The step whose end is nearest to the time that is due has the row.
+    let elapsed = state.frame_duration - state.remaining + dt;
+    let row = accounts[account + ACCOUNT_ROWS];
+    let next = bitcast<f32>(accounts[account + ACCOUNT_NEXT]);
+    if (elapsed + 0.5 * dt < next || row >= probe.most_rows) {
+        return;
+    }
+    let at = (probe.first_row + row) * PROBE_ROW;
+    let duration = bitcast<f32>(accounts[account + ACCOUNT_TIME]);
+    rows[at] = elapsed;
+    for (var v = 0u; v < PROBE_VALUES; v++) {
+        rows[at + 1u + v] = bitcast<f32>(accounts[sums + v]) / duration;
+        accounts[sums + v] = 0u;
+    }
+    accounts[account + ACCOUNT_TIME] = 0u;
+    accounts[account + ACCOUNT_ROWS] = row + 1u;
+    // Steps longer than the interval have a row each.
+    accounts[account + ACCOUNT_NEXT] = bitcast<u32>(max(next + probe.interval, elapsed));
+}

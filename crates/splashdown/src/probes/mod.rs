@@ -1,0 +1,230 @@
+//! Probes: what is measured while a simulation runs, as gauges in a laboratory do.
+//!
+//! *How it works.* In every step the device reads each probe (`gather`, `crossings`), adds the reading to an account, and
+//! writes a row, the mean since the row before, when one is due (`log`). The host fetches the rows once a frame.
+
+mod crossings;
+mod gather;
+mod log;
+mod types;
+
+pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
+
+use glam::Vec3;
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording};
+
+use crate::bodies::{Bodies, Body};
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::scene::{Domain, Probe, Quantity, Scene};
+
+/// Room for rows that a longer frame than the scene's may need.
+const SPARE_ROWS: u32 = 64;
+
+/// The passes of this module.
+pub fn passes() -> Vec<&'static PassDesc> {
+    vec![&gather::GATHER, &crossings::CROSSINGS, &log::LOG]
+}
+
+/// One probe's readings in time: a row is the time in s at which it ends, then the mean values since the row before, as
+/// [`columns`] names them.
+pub type ProbeRows = Vec<Vec<f64>>;
+
+/// The names of a probe's columns with their units; the first is the time.
+pub fn columns(probe: &Probe) -> &'static [&'static str] {
+    match probe.quantity {
+        Quantity::Pressure(_) => &["time (s)", "pressure (Pa)"],
+        Quantity::Height(_) => &["time (s)", "height (m)"],
+        Quantity::Force(_) => &[
+            "time (s)",
+            "force x (N)",
+            "force y (N)",
+            "force z (N)",
+            "torque x (N m)",
+            "torque y (N m)",
+            "torque z (N m)",
+        ],
+        Quantity::Flow { .. } => &["time (s)", "flow (m^3/s)"],
+    }
+}
+
+/// The probes of a simulation, on its device.
+#[derive(Debug)]
+pub struct Probes {
+    /// How many columns each has.
+    columns: Vec<usize>,
+    points: Vec<ProbePoint>,
+    has_flow: bool,
+    probes: Buffer<ProbePoint>,
+    /// Where there are no bodies, one that nothing reads.
+    bodies: Buffer<Body>,
+    values: Buffer<f32>,
+    counts: Buffer<u32>,
+    accounts: Buffer<u32>,
+    rows: Buffer<f32>,
+}
+
+impl Probes {
+    /// Places a scene's probes on a device; `None` if it has none.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn new(
+        executor: &mut Executor,
+        scene: &Scene,
+        bodies: Option<&Bodies>,
+    ) -> Result<Option<Self>, GpuError> {
+        if scene.probes.is_empty() {
+            return Ok(None);
+        }
+        let mut rows = 0;
+        let mut accounts = vec![0; scene.probes.len() * Account::WORDS];
+        let mut points = Vec::new();
+        for (probe, account) in scene.probes.iter().zip(accounts.chunks_exact_mut(Account::WORDS)) {
+            let mut point = point_of(probe, scene);
+            account[Account::NEXT] = point.interval.to_bits();
+            point.first_row = rows;
+            point.most_rows = (scene.frame_duration() / point.interval).ceil() as u32 + SPARE_ROWS;
+            rows += point.most_rows;
+            points.push(point);
+        }
+        Ok(Some(Self {
+            columns: scene.probes.iter().map(|probe| columns(probe).len()).collect(),
+            has_flow: points.iter().any(|point| point.kind == ProbePoint::FLOW),
+            probes: executor.create_from("probes", &points)?,
+            bodies: match bodies {
+                Some(bodies) => bodies.bodies,
+                None => executor.create("no bodies", 1)?,
+            },
+            values: executor.create("probe values", points.len() * VALUES)?,
+            counts: executor.create_from("probe counts", &vec![0; points.len()])?,
+            accounts: executor.create_from("probe accounts", &accounts)?,
+            rows: executor.create("probe rows", rows as usize * ROW)?,
+            points,
+        }))
+    }
+
+    /// Appends the readings; needs the step's densities and accelerations, and the positions after it.
+    pub fn record(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
+        let (params, state) = (fields.params.id(), fields.state.id());
+        let probes = self.probes.id();
+        let buffers = [
+            params,
+            grid,
+            state,
+            cell_start,
+            probes,
+            fields.sorted_positions.id(),
+            fields.densities.id(),
+            fields.accelerations.id(),
+            self.values.id(),
+        ];
+        step.dispatch(&gather::GATHER, Extent::Groups(self.points.len() as u32), &buffers);
+        if self.has_flow {
+            let sorted_positions = fields.sorted_positions.id();
+            let counts = self.counts.id();
+            let buffers = [grid, state, cell_start, probes, sorted_positions, fields.positions.id(), counts];
+            step.dispatch(&crossings::CROSSINGS, all, &buffers);
+        }
+        let buffers = [
+            params,
+            state,
+            probes,
+            self.bodies.id(),
+            self.values.id(),
+            self.counts.id(),
+            self.accounts.id(),
+            self.rows.id(),
+        ];
+        step.dispatch(&log::LOG, Extent::Items(self.probes.len()), &buffers);
+    }
+
+    /// Fetches the rows of a frame that began at `start` and has gone on for `passed`, in s: one list per probe, in the
+    /// order of the scene.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn take(&self, executor: &mut Executor, start: f64, passed: f32) -> Result<Vec<ProbeRows>, GpuError> {
+        let mut accounts = executor.read(self.accounts)?;
+        let rows = executor.read(self.rows)?;
+        let mut taken = Vec::with_capacity(self.points.len());
+        for ((point, columns), account) in
+            self.points.iter().zip(&self.columns).zip(accounts.chunks_exact_mut(Account::WORDS))
+        {
+            let first = point.first_row as usize * ROW;
+            let written = rows[first..].chunks_exact(ROW).take(account[Account::ROWS] as usize);
+            let row = |row: &[f32]| {
+                let values = row[1..*columns].iter().map(|&value| f64::from(value));
+                std::iter::once(start + f64::from(row[0])).chain(values).collect()
+            };
+            taken.push(written.map(row).collect());
+            account[Account::ROWS] = 0;
+            let next = f32::from_bits(account[Account::NEXT]) - passed;
+            account[Account::NEXT] = next.to_bits();
+        }
+        executor.write(self.accounts, &accounts)?;
+        Ok(taken)
+    }
+}
+
+/// What the device needs of a probe, but for its place in the rows.
+fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
+    let interval = probe.interval.unwrap_or(0.1 * scene.frame_duration());
+    let mut point = ProbePoint { interval, ..bytemuck::Zeroable::zeroed() };
+    match &probe.quantity {
+        Quantity::Pressure(position) => {
+            point.kind = ProbePoint::PRESSURE;
+            point.position = *position;
+        }
+        Quantity::Height(foot) => {
+            point.kind = ProbePoint::HEIGHT;
+            point.normal = (-scene.gravity).try_normalize().unwrap_or(Vec3::Y);
+            point.position = off_walls(scene, *foot, point.normal);
+            point.half_along = way_out(scene, point.position, point.normal);
+        }
+        Quantity::Force(name) => {
+            point.kind = ProbePoint::FORCE;
+            let place = scene.bodies.iter().position(|body| body.name == *name);
+            point.body = place.unwrap_or_default() as u32;
+        }
+        Quantity::Flow { center, normal, along, size } => {
+            point.kind = ProbePoint::FLOW;
+            point.position = *center;
+            point.normal = *normal;
+            point.along = *along;
+            point.across = normal.cross(*along);
+            [point.half_along, point.half_across] = size.map(|edge| 0.5 * edge);
+        }
+    }
+    point
+}
+
+/// The foot of a column so far from the closed sides that none of the column is cut off.
+fn off_walls(scene: &Scene, foot: Vec3, up: Vec3) -> Vec3 {
+    let radius = gather::COLUMN * scene.solver.support_radius(scene.fluid.particle_spacing);
+    let Domain { min, max, closed, .. } = scene.domain;
+    let mut place = foot;
+    for axis in (0..3).filter(|&axis| up[axis].abs() < 0.5) {
+        if max[axis] - min[axis] <= 2.0 * radius {
+            continue;
+        }
+        if closed[axis][0] {
+            place[axis] = place[axis].max(min[axis] + radius);
+        }
+        if closed[axis][1] {
+            place[axis] = place[axis].min(max[axis] - radius);
+        }
+    }
+    place
+}
+
+/// How far it is in m from a point of the domain along a direction to its side.
+fn way_out(scene: &Scene, from: Vec3, direction: Vec3) -> f32 {
+    let ends = [scene.domain.min, scene.domain.max];
+    let ways = (0..3).filter(|&axis| direction[axis].abs() > 1e-6).map(|axis| {
+        let end = ends[usize::from(direction[axis] > 0.0)][axis];
+        (end - from[axis]) / direction[axis]
+    });
+    ways.fold(f32::MAX, f32::min).max(0.0)
+}

@@ -1,0 +1,140 @@
+//! The sections `[[probe]]`.
+
+use glam::Vec3;
+
+use super::{Part, needed};
+use crate::flow::outlet;
+use crate::scene::keys::QuantityWord;
+use crate::scene::reader::{Reported, Section};
+use crate::scene::suggest;
+use crate::scene::things::{Body, Probe, Quantity};
+use crate::scene::types::Domain;
+
+/// Most rows of a probe in a frame.
+const MAX_ROWS: f32 = 10_000.0;
+
+/// What probes are checked against, as far as it could be read.
+pub(super) struct Around<'a> {
+    pub domain: Option<&'a Domain>,
+    pub bodies: Option<&'a [Body]>,
+}
+
+/// Everything that `[[probe]]` says.
+pub(super) fn read_probes(sections: &[Section<'_>], around: &Around<'_>) -> Part<Vec<Probe>> {
+    let probes: Vec<Part<Probe>> = sections.iter().map(|section| read_probe(section, around)).collect();
+    let mut found: Vec<&str> = Vec::new();
+    let mut doubles = Ok(());
+    for (probe, section) in probes.iter().zip(sections) {
+        let Ok(probe) = probe else { continue };
+        // Names are those of files, which some disks do not tell apart by case.
+        if found.iter().any(|name| name.eq_ignore_ascii_case(&probe.name)) {
+            let message = format!("there are two probes called {:?}", probe.name);
+            doubles = Err(section.complain("name", message, "a name of its own", "each has its own file"));
+        }
+        found.push(&probe.name);
+    }
+    doubles?;
+    probes.into_iter().collect()
+}
+
+fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
+    let name = section.name("name");
+    let quantity = section.choice::<QuantityWord>("quantity");
+    let position = section.numbers::<3>("position");
+    let body = section.name("body");
+    let normal = section.numbers::<3>("normal");
+    let along = section.numbers::<3>("along");
+    let size = section.numbers::<2>("size");
+    let interval = section.number("interval");
+    let quantity = needed(quantity)?;
+    let word = match quantity {
+        QuantityWord::Pressure => "pressure",
+        QuantityWord::Height => "height",
+        QuantityWord::Force => "force",
+        QuantityWord::Flow => "flow",
+    };
+    let fitting: &[&str] = match quantity {
+        QuantityWord::Pressure | QuantityWord::Height => &["position"],
+        QuantityWord::Force => &["body"],
+        QuantityWord::Flow => &["position", "normal", "along", "size"],
+    };
+    for key in ["position", "body", "normal", "along", "size"] {
+        if section.has(key) && !fitting.contains(&key) {
+            let message = format!("{} has no meaning for {word}", section.key_path(key));
+            return Err(section.complain(key, message, &fitting.join(", "), "leave it out"));
+        }
+    }
+    let missing = |key: &str| {
+        let message = format!("{} is missing: {word} needs it", section.key_path(key));
+        section.complain(key, message, "", "")
+    };
+    let point = || -> Part<Vec3> {
+        let point = Vec3::from(position?.ok_or_else(|| missing("position"))?);
+        match around.domain {
+            Some(domain) if point.cmplt(domain.min).any() || point.cmpgt(domain.max).any() => {
+                let message = format!("{} lies outside the domain", section.key_path("position"));
+                let allowed = format!("{} to {} m", domain.min, domain.max);
+                Err(section.complain("position", message, &allowed, "there is no fluid to measure"))
+            }
+            _ => Ok(point),
+        }
+    };
+    let quantity = match quantity {
+        QuantityWord::Pressure => Quantity::Pressure(point()?),
+        QuantityWord::Height => Quantity::Height(point()?),
+        QuantityWord::Force => Quantity::Force(known_body(section, body?, around.bodies, missing)?),
+        QuantityWord::Flow => {
+            let center = point()?;
+            let normal = unit(section, "normal", normal?.ok_or_else(|| missing("normal"))?)?;
+            let along = match along? {
+                None => outlet::axes(normal).0,
+                Some(along) => {
+                    let along = unit(section, "along", along)?;
+                    if along.dot(normal).abs() > 1e-3 {
+                        let message = format!("{} is not across the normal", section.key_path("along"));
+                        return Err(section.complain("along", message, "a vector across normal", ""));
+                    }
+                    along
+                }
+            };
+            let size = size?.ok_or_else(|| missing("size"))?;
+            Quantity::Flow { center, normal, along, size }
+        }
+    };
+    Ok(Probe { name: needed(name)?, quantity, interval: interval? })
+}
+
+fn known_body(
+    section: &Section<'_>,
+    name: Option<String>,
+    bodies: Option<&[Body]>,
+    missing: impl Fn(&str) -> Reported,
+) -> Part<String> {
+    let name = name.ok_or_else(|| missing("body"))?;
+    // Bodies with mistakes of their own are not known, and nothing can be said about names then.
+    let Some(bodies) = bodies else { return Ok(name) };
+    let names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    if names.contains(&name.as_str()) {
+        return Ok(name);
+    }
+    let message = format!("there is no body called {name:?}");
+    let hint = suggest::closest(&name, &names).map(|meant| format!("did you mean {meant:?}?"));
+    let allowed = if names.is_empty() { "the scene has no [[body]]".to_owned() } else { names.join(", ") };
+    Err(section.complain("body", message, &allowed, &hint.unwrap_or_default()))
+}
+
+fn unit(section: &Section<'_>, key: &str, vector: [f32; 3]) -> Part<Vec3> {
+    Vec3::from(vector).try_normalize().ok_or_else(|| {
+        let message = format!("{} has no length", section.key_path(key));
+        section.complain(key, message, "any vector but zero", "")
+    })
+}
+
+/// Rows are kept on the device for the length of a frame: there must be a sane number of them.
+pub(super) fn check_intervals(root: &Section<'_>, probes: Vec<Probe>, frame: f32) -> Part<Vec<Probe>> {
+    let short = probes.iter().find(|probe| probe.interval.is_some_and(|s| frame / s > MAX_ROWS));
+    let Some(probe) = short else { return Ok(probes) };
+    let message = format!("probe {:?} has more than {MAX_ROWS} rows in a frame", probe.name);
+    let allowed = format!("an interval of at least {} s", frame / MAX_ROWS);
+    Err(root.complain("probe", message, &allowed, "make the interval longer or the frame_rate higher"))
+}

@@ -1,0 +1,180 @@
+//! Probes in whole scenes.
+
+use splashdown::probes::ProbeRows;
+use splashdown::scene::Scene;
+use splashdown::{Event, Run, RunOptions, Simulation};
+use splashdown_gpu::testing;
+
+/// A tank of still water, 0.4 m deep, with a cube of 0.15 m standing free of the walls in it.
+const TANK: &str = r#"
+    [scene]
+    name = "tank"
+    duration = 0.6
+    frame_rate = 5
+    [domain]
+    min = [0, 0, 0]
+    max = [0.4, 0.6, 0.4]
+    [solver]
+    density = "continuity"
+    [fluid]
+    particle_spacing = 0.025
+    [[fluid.block]]
+    position = [0, 0, 0]
+    size = [0.4, 0.4, 0.4]
+    [surface]
+    enabled = false
+    [[body]]
+    name = "cube"
+    mesh = "cube"
+    scale = 0.15
+    position = [0.2, 0.2, 0.2]
+    [[probe]]
+    name = "floor"
+    quantity = "pressure"
+    position = [0.06, 0, 0.06]
+    interval = 0.05
+    [[probe]]
+    name = "wall"
+    quantity = "pressure"
+    position = [0, 0.2, 0.34]
+    [[probe]]
+    name = "air"
+    quantity = "pressure"
+    position = [0.2, 0.55, 0.2]
+    [[probe]]
+    name = "level"
+    quantity = "height"
+    position = [0.06, 0, 0.34]
+    [[probe]]
+    name = "cube"
+    quantity = "force"
+    body = "cube"
+    "#;
+
+fn mean(rows: &ProbeRows, column: usize, from: f64) -> f64 {
+    let late: Vec<f64> = rows.iter().filter(|row| row[0] > from).map(|row| row[column]).collect();
+    assert!(late.len() > 3, "{} rows after {from} s", late.len());
+    late.iter().sum::<f64>() / late.len() as f64
+}
+
+#[test]
+fn gauges_in_still_water_read_its_weight_and_its_level() {
+    let scene = Scene::parse(TANK, "tank.toml").unwrap();
+    for (name, executor) in testing::executors("gauges_in_still_water_read_its_weight_and_its_level") {
+        let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
+        let mut taken: Vec<ProbeRows> = vec![Vec::new(); 5];
+        for frame in 0..3 {
+            simulation.advance(0.2).unwrap();
+            for (all, rows) in taken.iter_mut().zip(simulation.take_probe_rows()) {
+                assert!(!rows.is_empty(), "{name}: frame {frame}");
+                all.extend(rows);
+            }
+        }
+        assert!(simulation.take_probe_rows().iter().all(Vec::is_empty), "{name}: rows were taken twice");
+        // Rows come at their times, to half a step, one after the other.
+        for (rows, interval) in taken.iter().zip([0.05, 0.02, 0.02, 0.02, 0.02]) {
+            assert!((rows.len() as f64 - 0.6 / interval).abs() <= 1.0, "{name}: {} rows", rows.len());
+            for (k, row) in rows.iter().enumerate() {
+                assert!((row[0] - interval * (k + 1) as f64).abs() < 1e-3, "{name}: row {k} at {}", row[0]);
+            }
+        }
+        // The lattice's water has the cube's room less than the tank's.
+        let depth = f64::from(simulation.stats().particles) * 0.025_f64.powi(3) + 0.15_f64.powi(3);
+        let depth = depth / 0.16;
+        let weight = 1000.0 * 9.81 * depth;
+        let floor = mean(&taken[0], 1, 0.3);
+        assert!((floor - weight).abs() < 0.04 * weight, "{name}: {floor} Pa at the floor of {weight}");
+        let wall = mean(&taken[1], 1, 0.3);
+        let above = weight - 9810.0 * 0.2;
+        assert!((wall - above).abs() < 0.05 * above, "{name}: {wall} Pa at the wall of {above}");
+        assert!(taken[2].iter().all(|row| row[1] == 0.0), "{name}: pressure in the air");
+        let level = mean(&taken[3], 1, 0.3);
+        assert!((level - depth).abs() < 0.025, "{name}: level {level} m of {depth}");
+        let lift = mean(&taken[4], 2, 0.3);
+        let displaced = 9810.0 * 0.15_f64.powi(3);
+        assert!((lift - displaced).abs() < 0.25 * displaced, "{name}: {lift} N of {displaced}");
+        let aside = mean(&taken[4], 1, 0.3).abs();
+        assert!(aside < 0.05 * displaced, "{name}: {aside} N along x");
+    }
+}
+
+/// A jet without gravity, through a rectangle, past another, and through one that looks back.
+const JET: &str = r#"
+    [scene]
+    name = "jet"
+    duration = 0.5
+    frame_rate = 10
+    gravity = [0, 0, 0]
+    [domain]
+    min = [0, 0, 0]
+    max = [1, 1, 1]
+    open = ["x_max"]
+    [fluid]
+    particle_spacing = 0.02
+    [surface]
+    enabled = false
+    [[emitter]]
+    name = "nozzle"
+    radius = 0.1
+    position = [0.2, 0.5, 0.5]
+    direction = [1, 0, 0]
+    speed = 2
+    [[probe]]
+    name = "through"
+    quantity = "flow"
+    position = [0.5, 0.5, 0.5]
+    normal = [2, 0, 0]
+    size = [0.4, 0.4]
+    interval = 0.05
+    [[probe]]
+    name = "against"
+    quantity = "flow"
+    position = [0.5, 0.5, 0.5]
+    normal = [-1, 0, 0.5]
+    size = [0.6, 0.6]
+    [[probe]]
+    name = "past"
+    quantity = "flow"
+    position = [0.5, 0.8, 0.5]
+    normal = [1, 0, 0]
+    size = [0.2, 0.2]
+    "#;
+
+#[test]
+fn what_flows_through_a_rectangle_is_what_was_poured() {
+    let scene = Scene::parse(JET, "jet.toml").unwrap();
+    let layer = splashdown::flow::outlet::disc_layer(0.1, 0.02).len() as f64;
+    let poured = layer * 0.02_f64.powi(2) * 2.0;
+    for (name, executor) in testing::executors("what_flows_through_a_rectangle_is_what_was_poured") {
+        let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
+        let mut taken: Vec<ProbeRows> = vec![Vec::new(); 3];
+        for _ in 0..5 {
+            simulation.advance(0.1).unwrap();
+            for (all, rows) in taken.iter_mut().zip(simulation.take_probe_rows()) {
+                all.extend(rows);
+            }
+        }
+        // It arrives after 0.15 s.
+        assert!(taken[0].iter().all(|row| row[0] > 0.14 || row[1] == 0.0), "{name}: {:?}", taken[0]);
+        let through = mean(&taken[0], 1, 0.21);
+        assert!((through - poured).abs() < 0.06 * poured, "{name}: {through} of {poured} m^3/s");
+        let against = mean(&taken[1], 1, 0.21);
+        assert!((against + poured).abs() < 0.06 * poured, "{name}: {against} of {poured} m^3/s");
+        assert!(taken[2].iter().all(|row| row[1] == 0.0), "{name}: {:?}", taken[2]);
+    }
+}
+
+#[test]
+fn a_run_hands_the_rows_out_with_its_frames() {
+    let mut scene = Scene::parse(JET, "jet.toml").unwrap();
+    scene.probes.truncate(1);
+    let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(2), ..RunOptions::new(&scene) };
+    let mut counts = Vec::new();
+    for event in Run::new(&scene, options).unwrap() {
+        if let Event::Frame(frame) = event.unwrap() {
+            assert_eq!(frame.probes.len(), 1);
+            counts.push(frame.probes[0].len());
+        }
+    }
+    assert_eq!(counts, [0, 2, 2]);
+}

@@ -1,0 +1,58 @@
+use glam::Vec3;
+use splashdown::scene::Quantity;
+
+use crate::{CUBE, parse};
+
+const BODY: &str = "[[body]]\nname = \"wheel\"\nmesh = \"gear\"\nscale = 0.1\nposition = [0.5, 0.5, 0.5]\n";
+
+#[test]
+fn probes_are_read() {
+    let text = format!(
+        "{CUBE}\n{BODY}[[probe]]\nname = \"p1\"\nquantity = \"pressure\"\nposition = [0.1, 0, 0.2]\ninterval = 0.001\n\
+         [[probe]]\nname = \"h1\"\nquantity = \"height\"\nposition = [0.5, 0, 0.5]\n\
+         [[probe]]\nname = \"f1\"\nquantity = \"force\"\nbody = \"wheel\"\n\
+         [[probe]]\nname = \"q1\"\nquantity = \"flow\"\nposition = [0.5, 0.5, 0.5]\nnormal = [0, 0, 2]\nsize = [0.2, 0.1]\n"
+    );
+    let scene = parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
+    let quantities: Vec<_> = scene.probes.iter().map(|probe| probe.quantity.clone()).collect();
+    assert_eq!(quantities[0], Quantity::Pressure(Vec3::new(0.1, 0.0, 0.2)));
+    assert_eq!(scene.probes[0].interval, Some(0.001));
+    assert_eq!(quantities[1], Quantity::Height(Vec3::new(0.5, 0.0, 0.5)));
+    assert_eq!(quantities[2], Quantity::Force("wheel".into()));
+    let Quantity::Flow { normal, along, size, .. } = quantities[3] else { panic!("{quantities:?}") };
+    assert_eq!((normal, size), (Vec3::Z, [0.2, 0.1]));
+    assert!(along.dot(normal).abs() < 1e-6 && along.y.abs() < 1e-6, "{along}");
+}
+
+#[test]
+fn mistakes_in_probes_are_named() {
+    let probe = |rest: &str| format!("{CUBE}\n{BODY}[[probe]]\nname = \"a\"\n{rest}\n");
+    for (text, part) in [
+        (probe("quantity = \"pressure\""), "probe[0].position is missing: pressure needs it"),
+        (probe("quantity = \"pressure\"\nposition = [0, 9, 0]"), "outside the domain"),
+        (probe("quantity = \"presure\"\nposition = [0, 0, 0]"), "did you mean \"pressure\"?"),
+        (probe("quantity = \"force\"\nbody = \"wheal\""), "did you mean \"wheel\"?"),
+        (probe("quantity = \"force\"\nbody = \"wheel\"\nposition = [0, 0, 0]"), "has no meaning for force"),
+        (probe("quantity = \"flow\"\nposition = [0, 0, 0]\nsize = [1, 1]"), "normal is missing"),
+        (
+            probe(
+                "quantity = \"flow\"\nposition = [0, 0, 0]\nsize = [1, 1]\nnormal = [0, 1, 0]\nalong = [0, 1, 1]",
+            ),
+            "is not across the normal",
+        ),
+        (
+            probe("quantity = \"height\"\nposition = [0, 0, 0]\ninterval = 1e-6"),
+            "more than 10000 rows in a frame",
+        ),
+        (
+            format!(
+                "{}[[probe]]\nname = \"A\"\nquantity = \"height\"\nposition = [0, 0, 0]\n",
+                probe("quantity = \"height\"\nposition = [0, 0, 0]")
+            ),
+            "two probes called \"A\"",
+        ),
+    ] {
+        let message = parse(&text).map(drop).expect_err(&text).to_string();
+        assert!(message.contains(part), "{text}\n{message}");
+    }
+}
