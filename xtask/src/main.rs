@@ -21,7 +21,7 @@ Usage: cargo xtask <WORD> [OPTIONS]
   test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
   bench [--quick]   the numbers of docs/performance.md as Markdown tables (--quick: small sizes only)
   pictures [SCENE]  make the pictures of the README anew
-  validate          the checks against measurements at full resolution, in release mode
+  validate [CASE]   the checks against measurements at full resolution, in release mode: figures, plots, one page
   setup             check what demo and test need and install it where that is possible
   help              this text
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail};
 
 use crate::layers::{Report, filtered};
 use crate::process::{self, say};
@@ -11,11 +11,34 @@ use crate::process::{self, say};
 /// Where the figures go.
 const FIGURES: &str = "out/validation";
 
+/// How the page begins.
+const HEAD: &str = "<!DOCTYPE html>
+<html lang=\"en\">
+<head>
+<meta charset=\"utf-8\">
+<title>Splashdown: validation</title>
+<style>
+body { font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }
+table { border-collapse: collapse; margin: 1em 0; }
+th, td { text-align: left; padding: 0.2em 1em 0.2em 0; border-bottom: 1px solid #ccc; }
+td:nth-child(2) { font-variant-numeric: tabular-nums; text-align: right; }
+svg { display: block; max-width: 100%; height: auto; margin: 1em 0; }
+strong { color: #b00020; }
+</style>
+</head>
+<body>
+<h1>Splashdown: validation</h1>
+<p>Dots are measurements, lines are simulated. Gates were set before the first run; what misses one says so.</p>
+";
+
 /// The word `validate`.
 pub fn run(arguments: &[String]) -> Result<()> {
-    ensure!(arguments.is_empty(), "validate takes no arguments, got {}", arguments.join(" "));
+    if let Some(option) = arguments.iter().find(|argument| argument.starts_with('-')) {
+        bail!("validate takes names of cases, for example `spheric2`, or nothing for all; got {option}");
+    }
     let folder = process::root().join(FIGURES);
-    if folder.exists() {
+    // One case's figures take the place of its earlier ones, beside those of the others.
+    if folder.exists() && arguments.is_empty() {
         std::fs::remove_dir_all(&folder).with_context(|| format!("cannot empty {}", folder.display()))?;
     }
     let mut report = Report::default();
@@ -23,6 +46,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         let words =
             ["test", "--release", "--package", "splashdown", "--test", "physics", "--", "--show-output"];
         let mut command = process::cargo(words);
+        command.args(arguments);
         filtered(command.env("SPLASHDOWN_FULL", "1").env("SPLASHDOWN_FIGURES", &folder), filter)
     });
     say("\n=== Figures");
@@ -39,7 +63,11 @@ pub fn run(arguments: &[String]) -> Result<()> {
     std::fs::create_dir_all(&folder)?;
     std::fs::write(&all, format!("[\n  {}\n]\n", entries.join(",\n  ")))
         .with_context(|| format!("cannot write {}", all.display()))?;
-    say(format!("\nAlso as JSON: {FIGURES}/report.json, and a file per case beside it."));
+    let page = folder.join("report.html");
+    let text = format!("{HEAD}{}</body>\n</html>\n", left(&folder, "html").concat());
+    std::fs::write(&page, text).with_context(|| format!("cannot write {}", page.display()))?;
+    say(format!("\nAs a page with plots: {FIGURES}/report.html"));
+    say(format!("Also as JSON: {FIGURES}/report.json, and a file per case beside it."));
     report.close()
 }
 

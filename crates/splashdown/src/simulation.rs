@@ -13,7 +13,7 @@ use crate::fields::Fields;
 use crate::flow::{Flow, LoadedFlow};
 use crate::passes::{DEAD_NON_FINITE, DEAD_UNBORN, Params, StepState, Tally};
 use crate::probes::{ProbeRows, Probes};
-use crate::scene::{Derived, Scene, SurfaceSettings};
+use crate::scene::{DensityMode, Derived, Scene, SurfaceSettings};
 use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
@@ -23,6 +23,13 @@ use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 const MOST_STEPS: u32 = 64;
 /// Steps in one batch on the CPU, which tests for the frame's end before each.
 const CPU_STEPS: u32 = 16;
+
+/// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
+///
+/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a wall. An
+/// integrated density feels no gap either: what is left empty here stays empty, and a body would displace its volume and
+/// half a spacing all around it (a fifth of a ball of 12 spacings). Centres of particles outside fill the room outside.
+const CLEARANCE: [f32; 2] = [0.49, 0.05];
 
 /// A fluid in its box, with everything that moves it, on one device.
 ///
@@ -88,8 +95,8 @@ impl Simulation {
     pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene)?;
         let mut particles = sample::particles(scene)?;
-        // Just under half a spacing, so that fluid that touches a body at half a spacing stays.
-        let clearance = 0.49 * scene.fluid.particle_spacing;
+        let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
+        let clearance = clearance * scene.fluid.particle_spacing;
         let removed = sample::remove_inside(&mut particles, &bodies, clearance);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use super::plot;
+
 /// True for the resolution of the published checks; without it the cases run smaller, with the same gates.
 pub fn full() -> bool {
     std::env::var_os("SPLASHDOWN_FULL").is_some()
@@ -36,15 +38,20 @@ impl Gate {
     }
 }
 
+/// Points of one curve.
+pub type Series = Vec<(f64, f64)>;
+
 /// The figures of one case.
 pub struct Figures {
     case: String,
     rows: Vec<(String, f64, Gate)>,
+    /// Drawings as SVG.
+    plots: Vec<String>,
 }
 
 impl Figures {
     pub fn new(case: impl Into<String>) -> Self {
-        Self { case: case.into(), rows: Vec::new() }
+        Self { case: case.into(), rows: Vec::new(), plots: Vec::new() }
     }
 
     pub fn at_most(&mut self, name: impl Into<String>, measured: f64, limit: f64) {
@@ -64,6 +71,13 @@ impl Figures {
         self.rows.push((name.into(), measured, Gate::Reported));
     }
 
+    /// Draws what was measured, as dots, and simulated curves, if anybody is going to look.
+    pub fn plot(&mut self, title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str, &Series)]) {
+        if std::env::var_os("SPLASHDOWN_FIGURES").is_some() {
+            self.plots.push(plot::draw(title, axes, measured, simulated));
+        }
+    }
+
     /// Prints the figures, leaves them where `SPLASHDOWN_FIGURES` says, and fails if one misses its gate.
     pub fn close(self) {
         let mut table = String::new();
@@ -80,10 +94,29 @@ impl Figures {
                 |end: &str| folder.join(format!("{}.{end}", self.case.replace(", ", "-").replace(' ', "_")));
             std::fs::write(file("json"), serde_json::to_string_pretty(&rows).unwrap()).unwrap();
             std::fs::write(file("txt"), &table).unwrap();
+            std::fs::write(file("html"), self.page()).unwrap();
         }
         let missed: Vec<&str> =
             self.rows.iter().filter(|(_, m, gate)| !gate.holds(*m)).map(|(name, ..)| name.as_str()).collect();
         assert!(missed.is_empty(), "{}: missed: {}\n{table}", self.case, missed.join(", "));
+    }
+
+    /// The case's part of the page: a table, then the drawings.
+    fn page(&self) -> String {
+        let mut page = format!(
+            "<h2>{}</h2>\n<table>\n<tr><th>figure<th>measured<th>gate<th></tr>\n",
+            escaped(&self.case)
+        );
+        for (name, measured, gate) in &self.rows {
+            let word = match gate {
+                Gate::Reported => "",
+                _ if gate.holds(*measured) => "ok",
+                _ => "<strong>missed</strong>",
+            };
+            let (name, gate) = (escaped(name), escaped(&gate.words()));
+            let _ = writeln!(page, "<tr><td>{name}<td>{measured:.4e}<td>{gate}<td>{word}</tr>");
+        }
+        page + "</table>\n" + &self.plots.concat()
     }
 
     fn json(&self, (name, measured, gate): &(String, f64, Gate)) -> serde_json::Value {
@@ -96,6 +129,10 @@ impl Figures {
             "passed": gate.holds(*measured),
         })
     }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[expect(

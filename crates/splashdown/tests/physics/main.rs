@@ -6,8 +6,15 @@
 mod conservation;
 mod dam_break;
 mod figures;
+mod floating;
 mod free_fall;
 mod hydrostatics;
+mod plot;
+mod shapes;
+mod spheric2;
+mod submerged;
+mod tilted;
+mod torricelli;
 
 use glam::DVec3;
 use splashdown::scene::Scene;

@@ -1,0 +1,111 @@
+//! Balls that float: as deep as Archimedes says (within 4 % of the diameter, after half a spacing on which the water keeps
+//! off), and heaving with the period that half of the displaced mass as added mass gives (within 10 %).
+
+use glam::Vec3;
+use splashdown::scene::{MeshShape, Motion, Scene};
+
+use super::figures::{Figures, Series, full};
+use super::scene;
+use super::shapes::{at_rest, body};
+
+const RADIUS: f32 = 0.08;
+const SIDE: f32 = 0.56;
+
+fn spacing() -> f32 {
+    if full() { 2.0 * RADIUS / 12.0 } else { 2.0 * RADIUS / 8.0 }
+}
+
+/// A tank of still water with a ball of this density whose middle is `height` in m above the level.
+fn tank(density: f32, height: f32) -> Scene {
+    let spacing = spacing();
+    let depth = (0.28 / spacing).round() * spacing;
+    let mut scene = scene(&format!(
+        "[scene]\nname = \"floating\"\nduration = 2\n[domain]\nmin = [0, 0, 0]\nmax = [{SIDE}, 0.5, {SIDE}]\nopen = [\"y_max\"]\n\
+         [fluid]\nparticle_spacing = {spacing}\nviscosity = 1e-6\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{SIDE}, {depth}, {SIDE}]\n\
+         [solver]\ndensity = \"continuity\"\nartificial_viscosity = 0.05\n"
+    ));
+    let motion = Motion::Dynamic { density, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO };
+    let place = Vec3::new(0.5 * SIDE, depth + height, 0.5 * SIDE);
+    scene.bodies.push(body("ball", MeshShape::Model("sphere".into()), RADIUS / 0.1, place, motion));
+    scene
+}
+
+/// The ball's height above the level of the block that the scene starts with, over time.
+fn heights(scene: &Scene, seconds: f64) -> Series {
+    let splashdown::scene::Shape::Box { size, .. } = &scene.fluid.blocks[0].shape else { panic!("no block") };
+    let level = size.y;
+    let mut simulation = at_rest(scene, |x| level - x.y);
+    let mut found = Series::new();
+    for k in 0..(seconds / 0.01) as u32 {
+        let stats = simulation.advance(0.01).unwrap();
+        assert_eq!((stats.non_finite, stats.escaped), (0, 0), "{stats:?}");
+        let y = simulation.body_states().unwrap()[0].position.y;
+        found.push((0.01 * f64::from(k + 1), f64::from(y - level)));
+    }
+    found
+}
+
+/// How far a ball's middle is under the level at rest, over its radius, for a density in kg/m^3: where the cap's volume is
+/// that of the displaced water.
+fn archimedes(density: f64) -> f64 {
+    let share = |s: f64| (2.0 + 3.0 * s - s.powi(3)) / 4.0;
+    let (mut low, mut high) = (-1.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if share(middle) < density / 1000.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn balls_float_as_deep_as_archimedes_says() {
+    if !full() {
+        eprintln!(
+            "SKIPPED: balls need 12 spacings of diameter (tests/bodies floats cubes): cargo xtask validate"
+        );
+        return;
+    }
+    let mut figures = Figures::new("floating, draft, CPU");
+    for density in [100.0, 200.0, 700.0] {
+        let under = archimedes(density);
+        let scene = tank(density as f32, (-under * f64::from(RADIUS)) as f32);
+        let late: Series = heights(&scene, 1.5).into_iter().filter(|(t, _)| *t > 0.8).collect();
+        let mean = late.iter().map(|(_, y)| y).sum::<f64>() / late.len() as f64;
+        // The tank's level does not rise: the ball was placed into the water, whose particles inside it were removed.
+        let error = (mean / f64::from(RADIUS) + under) / 2.0;
+        figures.within(
+            format!("height off Archimedes over the diameter, {density} kg/m^3"),
+            error,
+            -0.04,
+            0.04,
+        );
+    }
+    figures.close();
+}
+
+#[test]
+fn a_ball_heaves_with_its_added_mass() {
+    let lift = 0.3 * RADIUS;
+    let found = heights(&tank(500.0, lift), 1.1);
+    // The first time that it passes its mean height downwards, then upwards, then downwards: half a period each.
+    let mean = found.iter().map(|(_, y)| y).sum::<f64>() / found.len() as f64;
+    let passes: Vec<f64> = found
+        .windows(2)
+        .filter(|pair| (pair[0].1 > mean) != (pair[1].1 > mean))
+        .map(|pair| pair[0].0 + 0.01 * (mean - pair[0].1) / (pair[1].1 - pair[0].1))
+        .collect();
+    assert!(passes.len() >= 2, "{passes:?} {found:?}");
+    let period = 2.0 * (passes[1] - passes[0]);
+    // m = rho V / 2, added rho V / 4, restored by rho g pi R^2.
+    let exact = std::f64::consts::TAU * (f64::from(RADIUS) / 9.81).sqrt();
+    let mut figures = Figures::new("floating, heave, CPU");
+    figures.within("period over 2 pi sqrt(R / g)", period / exact, 0.9, 1.1);
+    figures.report("mean height over the diameter", mean / f64::from(2.0 * RADIUS));
+    figures.plot(
+        "A ball of 500 kg/m^3, let go 0.3 R too high",
+        ["time, s", "height, m"],
+        &Series::new(),
+        &[("simulated", &found)],
+    );
+    figures.close();
+}
