@@ -38,6 +38,8 @@ struct Body {
     reach: f32,
     script: u32,
     unused: vec2<f32>,
+    moment: vec3<f32>,
+    unused_2: f32,
 }
 
 struct Contact {

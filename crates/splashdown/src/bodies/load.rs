@@ -9,7 +9,7 @@ use super::types::{Body, Contact};
 use crate::boundary::{KernelPair, wall_offset};
 use crate::models;
 use crate::passes::Params;
-use crate::scene::{self, BoundaryKind, MeshShape, MeshSource, Motion, Script, UpAxis};
+use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
 use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
 
 /// Why a body could not be made.
@@ -79,9 +79,16 @@ pub struct LoadedBody {
     pub script: Option<Script>,
     /// Linear RGB.
     pub colour: Option<[f32; 3]>,
+    /// Density in kg/m^3 of what moves; 0 for what does not.
+    density: f32,
 }
 
 impl LoadedBody {
+    /// The mass of what moves, in kg; 1 for what does not.
+    pub fn mass(&self) -> f32 {
+        if self.density > 0.0 { self.density * self.solid.mass.volume } else { 1.0 }
+    }
+
     /// Where the mesh's origin is at t = 0, in m, and the mesh's rotation.
     pub fn pose(&self) -> (Vec3, Quat) {
         let rotation = self.state.rotation();
@@ -167,7 +174,7 @@ fn load_one(
             (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
             script = Some(written.clone());
         }
-        Motion::Dynamic { density, velocity, angular_velocity } => {
+        Motion::Dynamic { density, velocity, angular_velocity, hinge } => {
             solid.require_volume().map_err(wrong)?;
             let mass = solid.mass;
             state.kind = Body::DYNAMIC;
@@ -178,6 +185,9 @@ fn load_one(
             (state.inertia, state.inertia_products) = parts(inertia);
             (state.inverse_inertia, state.inverse_inertia_products) = parts(inertia.inverse());
             (state.velocity, state.angular_velocity) = (*velocity, *angular_velocity);
+            if let Some(hinge) = hinge {
+                hang(&mut state, hinge, inertia);
+            }
         }
     }
     let farthest = |x: &[f32; 3]| Vec3::from(*x).distance(state.center);
@@ -187,7 +197,27 @@ fn load_one(
         BoundaryKind::Map => Vec::new(),
         BoundaryKind::Particles => boundary_particles(&solid, params, kernels),
     };
-    Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour })
+    let density = if let Motion::Dynamic { density, .. } = body.motion { density } else { 0.0 };
+    Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour, density })
+}
+
+/// Puts a free body, with this inertia about its centre of mass, on a hinge: it turns about the hinge's point, and only about
+/// the axis, because its inverse inertia knows no other.
+fn hang(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
+    let rotation = state.rotation();
+    let arm = rotation.conjugate() * (state.position - hinge.point);
+    let axis = rotation.conjugate() * hinge.axis;
+    let mass = 1.0 / state.inverse_mass;
+    let about_axis = axis.dot(inertia * axis) + mass * (arm.length_squared() - arm.dot(axis).powi(2));
+    let along = Mat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
+    state.center -= arm;
+    state.position = hinge.point;
+    state.moment = mass * arm;
+    state.inverse_mass = 0.0;
+    (state.inertia, state.inertia_products) = parts(along * about_axis);
+    (state.inverse_inertia, state.inverse_inertia_products) = parts(along * about_axis.recip());
+    state.velocity = Vec3::ZERO;
+    state.angular_velocity = state.angular_velocity.dot(hinge.axis) * hinge.axis;
 }
 
 /// Diagonal, and xy, xz, yz.

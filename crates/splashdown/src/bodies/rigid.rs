@@ -12,7 +12,8 @@
 
 use glam::{Quat, Vec3, Vec4};
 use rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Rotation, SharedShape, Vector,
+    ColliderBuilder, PhysicsWorld, Pose, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle, Rotation,
+    SharedShape, Vector,
 };
 
 use super::load::LoadedBody;
@@ -81,11 +82,15 @@ impl Rigid {
             if state.kind == Body::DYNAMIC && self.touches(handle) {
                 collided = true;
                 let (velocity, spin) = means[b];
-                state.position = here(body.position().translation);
+                let axis = axis(state).map(|axis| state.rotation() * axis);
+                if axis.is_none() {
+                    state.position = here(body.position().translation);
+                    state.velocity += here(body.linvel()) - velocity;
+                }
                 let [x, y, z, w] = body.position().rotation.to_array();
                 state.orientation = Vec4::new(x, y, z, w).normalize_or(state.orientation);
-                state.velocity += here(body.linvel()) - velocity;
-                state.angular_velocity += here(body.angvel()) - spin;
+                let turn = here(body.angvel()) - spin;
+                state.angular_velocity += axis.map_or(turn, |axis| axis.dot(turn) * axis);
             }
             self.before[b] = (state.position, state.rotation());
         }
@@ -99,6 +104,15 @@ impl Rigid {
     }
 }
 
+/// The axis of a body on a hinge, in the mesh's frame: the only one about which its inertia lets it turn.
+fn axis(state: &Body) -> Option<Vec3> {
+    let hangs = state.kind == Body::DYNAMIC && state.inverse_mass == 0.0;
+    let inertia = state.inertia_matrix();
+    let columns = [inertia.x_axis, inertia.y_axis, inertia.z_axis];
+    let longest = columns.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    longest.filter(|_| hangs).map(Vec3::normalize_or_zero)
+}
+
 fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBodyHandle {
     let builder = match state.kind {
         Body::DYNAMIC => RigidBodyBuilder::dynamic(),
@@ -107,6 +121,10 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
     };
     let builder = builder.pose(pose(state.position, state.rotation())).can_sleep(false);
     let handle = world.insert_body(builder);
+    if let Some(axis) = axis(state) {
+        let fixed = world.insert_body(RigidBodyBuilder::fixed().pose(pose(state.position, state.rotation())));
+        world.insert_impulse_joint(fixed, handle, RevoluteJointBuilder::new(there(axis)));
+    }
     let points: Vec<Vector> =
         body.solid.mesh.vertices.iter().map(|&v| there(Vec3::from(v) - state.center)).collect();
     let shape = if state.kind == Body::DYNAMIC {
@@ -118,7 +136,7 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
     let shape = shape.unwrap_or_else(|| SharedShape::ball(state.reach));
     // The mass is that of the shape for rapier, whatever its volume: contacts with equal masses look the same.
     let volume = shape.mass_properties(1.0).mass();
-    let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { 1.0 };
+    let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { body.mass() };
     let density = if volume > 0.0 { mass / volume } else { 1.0 };
     let collider = ColliderBuilder::new(shape).density(density).friction(FRICTION).restitution(RESTITUTION);
     world.insert_collider(collider, Some(handle));

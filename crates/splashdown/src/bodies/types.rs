@@ -25,7 +25,7 @@ gpu_struct! {
         adhesion: f32,
         /// The point of the mesh about which it turns, in m: the centre of mass of a dynamic body.
         center: Vec3,
-        /// One over the mass in kg; 0 for what is moved by nothing.
+        /// One over the mass in kg; 0 for what is moved by nothing, and on a hinge.
         inverse_mass: f32,
         /// Diagonal of the inertia about `center` in the mesh's frame, in kg m^2.
         inertia: Vec3,
@@ -70,6 +70,11 @@ gpu_struct! {
         script: u32,
         /// Nothing; WGSL wants a multiple of sixteen bytes.
         unused: [f32; 2],
+        /// Of a body on a hinge, where `center` is: its mass times the arm from there to the centre of mass, in the mesh's
+        /// frame, in kg m.
+        moment: Vec3,
+        /// Nothing.
+        unused_2: f32,
     }
 }
 

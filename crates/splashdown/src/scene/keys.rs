@@ -225,6 +225,13 @@ static BODY: Table = Table {
         key("angular_velocity", a_vector(1000.0, "rad/s"), "Of a dynamic body at the start.")
             .default("[0.0, 0.0, 0.0]"),
         key(
+            "hinge",
+            a_vector(FAR, ""),
+            "The axis, of any length, about which a dynamic body turns and which holds it: a wheel, a door.",
+        )
+        .also(&["axis", "axle"]),
+        key("hinge_point", a_vector(FAR, "m"), "A point of that axis. Default: the body's position."),
+        key(
             "move",
             Kind::Texts(3, super::formula::ALLOWED),
             "Formulas of t added to the position, in m: [\"0.1*sin(2*pi*t)\", \"0\", \"0\"].",

@@ -57,8 +57,8 @@ pub use presets::presets;
 pub use schema::{reference, schema};
 pub use script::{Keyframe, Pose, Script};
 pub use things::{
-    Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink, SinkRegion,
-    UpAxis,
+    Body, BoundaryKind, Emitter, Hinge, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink,
+    SinkRegion, UpAxis,
 };
 pub use types::{
     Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, Format, KernelKind, Material,

@@ -69,7 +69,18 @@ pub enum Motion {
         velocity: Vec3,
         /// Angular velocity at t = 0 in rad/s.
         angular_velocity: Vec3,
+        /// The axis that holds it, if it may only turn.
+        hinge: Option<Hinge>,
     },
+}
+
+/// An axis, fixed in the world, about which a body turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hinge {
+    /// A point of the axis in m.
+    pub point: Vec3,
+    /// Unit vector along it.
+    pub axis: Vec3,
 }
 
 choices! {

@@ -1,5 +1,7 @@
 use glam::{Quat, Vec3};
-use splashdown::scene::{BoundaryKind, DensityMode, Keyframe, Method, Motion, NegativePressure, Script};
+use splashdown::scene::{
+    BoundaryKind, DensityMode, Hinge, Keyframe, Method, Motion, NegativePressure, Script,
+};
 use splashdown::{BodyState, Simulation};
 use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, testing};
 use splashdown_io::Particles;
@@ -37,7 +39,13 @@ fn run(
         Script { keyframes: vec![keyframe(0.0, 0.3031), keyframe(1.0, 0.4)], shift: None, turn: None };
     let scripted = body("scripted", "cube", 0.08, Vec3::ZERO, Motion::Scripted(script));
     let carried = body("carried", "cube", 0.09, Vec3::new(0.2023, 0.2219, 0.1987), free(300.0));
-    scene.bodies = vec![standing, scripted, carried];
+    // On a hinge beside its middle: the fluid and its own weight turn it.
+    let mut hung = body("hung", "cube", 0.07, Vec3::new(0.3217, 0.2093, 0.2179), free(700.0));
+    let axis = Vec3::new(0.48, -0.36, 0.8);
+    if let Motion::Dynamic { hinge, .. } = &mut hung.motion {
+        *hinge = Some(Hinge { point: Vec3::new(0.3, 0.21, 0.22), axis });
+    }
+    scene.bodies = vec![standing, scripted, carried, hung];
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
     // Enough steps for bodies to have moved, few enough for rounding not to have grown.
     let dt = simulation.dt();
@@ -86,6 +94,9 @@ fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
         }
         // Control: the fluid does push, and the bodies do differ from one another.
         assert!(bodies_one[0].force.length() > 0.1, "{what}: {:?}", bodies_one[0]);
+        let axis = Vec3::new(0.48, -0.36, 0.8);
+        let spin = bodies_one[3].angular_velocity;
+        assert!(spin.length() > 1e-3 && spin.cross(axis).length() < 1e-4 * spin.length(), "{what}: {spin}");
         assert!(bodies_one[1].velocity.length() > 1e-4 && bodies_one[2].velocity.length() > 1e-3, "{what}");
     }
 }

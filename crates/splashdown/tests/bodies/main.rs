@@ -41,5 +41,5 @@ fn body(name: &str, model: &str, scale: f32, position: Vec3, motion: Motion) -> 
 
 /// A free body at rest.
 fn free(density: f32) -> Motion {
-    Motion::Dynamic { density, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO }
+    Motion::Dynamic { density, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, hinge: None }
 }

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use splashdown::scene::{Formula, Keyframe, Motion, Scene, Script};
+use splashdown::scene::{Formula, Hinge, Keyframe, Motion, Scene, Script};
 use splashdown::{Device, Simulation};
 
 use crate::{body, free, tank};
@@ -77,4 +77,36 @@ fn fine_and_hollow_bodies_collide_too() {
         assert!(state.position.max_element() < 1.0 && state.position.min_element() > 0.0, "{state:?}");
         assert!(state.velocity.length() < 3.0, "{state:?}");
     }
+}
+
+#[test]
+fn a_body_on_a_hinge_swings_like_a_pendulum_and_nowhere_else() {
+    let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
+    dry(&mut scene);
+    let (edge, arm) = (0.1, 0.2);
+    let mut swing = body("swing", "cube", edge, Vec3::new(0.5 + arm * 0.1, 0.7 - arm, 0.5), free(800.0));
+    let hinge_point = Vec3::new(0.5, 0.7, 0.5);
+    if let Motion::Dynamic { hinge, .. } = &mut swing.motion {
+        *hinge = Some(Hinge { point: hinge_point, axis: Vec3::Z });
+    }
+    let length = swing.mesh.position.distance(hinge_point);
+    scene.bodies.push(swing);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    // Physical pendulum: T = 2 pi sqrt((I + m l^2) / (m g l)), I = m edge^2 / 6, plus 0.06 % for its swing of 0.1.
+    let exact = std::f32::consts::TAU * ((edge * edge / 6.0 + length * length) / (9.81 * length)).sqrt();
+    let mut before = 1.0;
+    let mut passes = Vec::new();
+    for k in 0..120 {
+        simulation.advance(0.01).unwrap();
+        let state = simulation.body_states().unwrap()[0];
+        assert!((state.position.distance(hinge_point) - length).abs() < 1e-4, "{state:?}");
+        assert!((state.position.z - 0.5).abs() < 1e-5 && state.angular_velocity.truncate().length() < 1e-4);
+        let x = state.position.x - 0.5;
+        if x * before < 0.0 {
+            passes.push(0.01 * (k as f32 + before / (before - x)));
+        }
+        before = x;
+    }
+    let period = 2.0 * (passes[1] - passes[0]);
+    assert!((period / exact - 1.0).abs() < 0.01, "{period} of {exact} s: {passes:?}");
 }

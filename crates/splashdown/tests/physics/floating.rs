@@ -24,7 +24,7 @@ fn tank(density: f32, height: f32) -> Scene {
          [fluid]\nparticle_spacing = {spacing}\nviscosity = 1e-6\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{SIDE}, {depth}, {SIDE}]\n\
          [solver]\ndensity = \"continuity\"\nartificial_viscosity = 0.05\n"
     ));
-    let motion = Motion::Dynamic { density, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO };
+    let motion = Motion::Dynamic { density, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO, hinge: None };
     let place = Vec3::new(0.5 * SIDE, depth + height, 0.5 * SIDE);
     scene.bodies.push(body("ball", MeshShape::Model("sphere".into()), RADIUS / 0.1, place, motion));
     scene

@@ -1,5 +1,5 @@
 use glam::{Quat, Vec3};
-use splashdown::scene::{Body, BoundaryKind, MeshShape, Motion, Scene, UpAxis};
+use splashdown::scene::{Body, BoundaryKind, Hinge, MeshShape, Motion, Scene, UpAxis};
 
 use crate::{CUBE, parse};
 
@@ -43,6 +43,20 @@ fn a_body_has_the_defaults_of_the_reference() {
 }
 
 #[test]
+fn a_hinge_is_read_and_its_point_is_the_bodys_place() {
+    let wheel = body(
+        "name = \"wheel\"\nmesh = \"gear\"\nmotion = \"dynamic\"\nposition = [0.1, 0.2, 0.3]\nhinge = [0, 0, 2]",
+    );
+    let Motion::Dynamic { hinge: Some(hinge), .. } = wheel.motion else { panic!("{wheel:?}") };
+    assert_eq!(hinge, Hinge { point: Vec3::new(0.1, 0.2, 0.3), axis: Vec3::Z });
+    let door = body(
+        "name = \"door\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nhinge = [0, 1, 0]\nhinge_point = [1, 0, 0]",
+    );
+    let Motion::Dynamic { hinge: Some(hinge), .. } = door.motion else { panic!("{door:?}") };
+    assert_eq!(hinge.point, Vec3::X);
+}
+
+#[test]
 fn every_key_of_a_body_is_read() {
     let full = body(
         "name = \"boat\"\nmesh = \"parts/boat.stl\"\nscale = 0.001\nup = \"z\"\nposition = [1, 2, 3]\nrotation = [0, 90, 0]\n\
@@ -57,7 +71,7 @@ fn every_key_of_a_body_is_read() {
     assert!((full.mesh.rotation * Vec3::Z).distance(Vec3::X) < 1e-6);
     let velocity = Vec3::new(1.0, 0.0, 0.0);
     let angular_velocity = Vec3::new(0.0, 2.0, 0.0);
-    assert_eq!(full.motion, Motion::Dynamic { density: 200.0, velocity, angular_velocity });
+    assert_eq!(full.motion, Motion::Dynamic { density: 200.0, velocity, angular_velocity, hinge: None });
     assert_eq!((full.friction, full.adhesion, full.boundary), (0.5, 3.0, BoundaryKind::Particles));
     assert_eq!(
         (full.shell, full.half_thickness, full.colour),

@@ -46,9 +46,14 @@ fn value(words: &[u32], first: usize) -> f32 {
 fn by_force(params: &Params, state: &StepState, body: &mut Body) {
     let dt = state.dt;
     let q = body.rotation();
-    body.velocity += dt * (body.force * body.inverse_mass + params.body_acceleration(state.time));
+    let gravity = params.body_acceleration(state.time);
+    // A hinge holds its body: no mass that a force could move.
+    if body.inverse_mass > 0.0 {
+        body.velocity += dt * (body.force * body.inverse_mass + gravity);
+    }
+    let torque = body.torque + (q * body.moment).cross(gravity);
     let spin = q.conjugate() * body.angular_velocity;
-    let moment = q.conjugate() * body.torque - spin.cross(body.inertia_matrix() * spin);
+    let moment = q.conjugate() * torque - spin.cross(body.inertia_matrix() * spin);
     let spin = q * (spin + dt * (body.inverse_inertia_matrix() * moment));
     body.angular_velocity = spin;
     body.position += dt * body.velocity;

@@ -35,9 +35,14 @@ fn product(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
 fn by_force(b: u32) {
     let dt = state.dt;
     let q = bodies[b].orientation;
-    bodies[b].velocity += dt * (bodies[b].force * bodies[b].inverse_mass + body_acceleration(state.time));
+    let gravity = body_acceleration(state.time);
+    // A hinge holds its body: no mass that a force could move.
+    if (bodies[b].inverse_mass > 0.0) {
+        bodies[b].velocity += dt * (bodies[b].force * bodies[b].inverse_mass + gravity);
+    }
+    let torque = bodies[b].torque + cross(turned(q, bodies[b].moment), gravity);
     let spin = turned_back(q, bodies[b].angular_velocity);
-    let moment = turned_back(q, bodies[b].torque)
+    let moment = turned_back(q, torque)
         - cross(spin, symmetric(bodies[b].inertia, bodies[b].inertia_products) * spin);
     let inverse = symmetric(bodies[b].inverse_inertia, bodies[b].inverse_inertia_products);
     let next_spin = turned(q, spin + dt * (inverse * moment));

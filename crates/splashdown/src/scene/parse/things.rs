@@ -11,7 +11,7 @@ use crate::scene::keys::MotionWord;
 use crate::scene::reader::{Reported, Section};
 use crate::scene::script::{Keyframe, Script};
 use crate::scene::suggest;
-use crate::scene::things::{Body, BoundaryKind, MeshShape, MeshSource, Motion, UpAxis};
+use crate::scene::things::{Body, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, UpAxis};
 
 /// Everything that `[[body]]` says.
 pub(super) fn read_bodies(sections: &[Section<'_>]) -> Part<Vec<Body>> {
@@ -36,6 +36,7 @@ fn read_body(section: &Section<'_>) -> Part<Body> {
     let density = section.number("density");
     let velocity = section.numbers("velocity");
     let angular_velocity = section.numbers("angular_velocity");
+    let hinge = mesh.as_ref().map_err(|r| *r).and_then(|mesh| read_hinge(section, mesh));
     let friction = section.number("friction");
     let adhesion = section.number("adhesion");
     let boundary = section.choice::<BoundaryKind>("boundary");
@@ -50,6 +51,7 @@ fn read_body(section: &Section<'_>) -> Part<Body> {
             density: density?.unwrap_or(default),
             velocity: vector(velocity?),
             angular_velocity: vector(angular_velocity?),
+            hinge: hinge?,
         },
         other => other,
     };
@@ -64,6 +66,24 @@ fn read_body(section: &Section<'_>) -> Part<Body> {
         shell: shell?,
         colour: colour?,
     })
+}
+
+/// The keys `hinge` and `hinge_point`.
+fn read_hinge(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Hinge>> {
+    let axis = section.numbers::<3>("hinge");
+    let point = section.numbers::<3>("hinge_point")?.map_or(mesh.position, Vec3::from);
+    let Some(axis) = axis? else {
+        if section.has("hinge_point") {
+            let message = format!("{} has no hinge", section.key_path("hinge_point"));
+            return Err(section.complain("hinge_point", message, "", "add hinge = [0, 0, 1], its axis"));
+        }
+        return Ok(None);
+    };
+    let axis = Vec3::from(axis).try_normalize().ok_or_else(|| {
+        let message = format!("{} has no length", section.key_path("hinge"));
+        section.complain("hinge", message, "any vector but zero", "")
+    })?;
+    Ok(Some(Hinge { point, axis }))
 }
 
 /// The mesh and its place: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
@@ -108,8 +128,8 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
     let script = script?;
     let scripted = script.is_some();
     let word = word?.unwrap_or(if scripted { MotionWord::Scripted } else { MotionWord::Static });
-    for (name, wanted) in [("density", false), ("velocity", false), ("angular_velocity", false)] {
-        if section.has(name) && (word == MotionWord::Dynamic) == wanted {
+    for name in ["density", "velocity", "angular_velocity", "hinge"] {
+        if section.has(name) && word != MotionWord::Dynamic {
             let message = format!("{} means something only to a dynamic body", section.key_path(name));
             section.warn(name, message, "write motion = \"dynamic\", or take the key out");
         }
@@ -117,9 +137,12 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
     match (word, script) {
         (MotionWord::Static, None) => Ok(Motion::Static),
         (MotionWord::Scripted, Some(script)) => Ok(Motion::Scripted(script)),
-        (MotionWord::Dynamic, None) => {
-            Ok(Motion::Dynamic { density: 500.0, velocity: Vec3::ZERO, angular_velocity: Vec3::ZERO })
-        }
+        (MotionWord::Dynamic, None) => Ok(Motion::Dynamic {
+            density: 500.0,
+            velocity: Vec3::ZERO,
+            angular_velocity: Vec3::ZERO,
+            hinge: None,
+        }),
         (MotionWord::Scripted, None) => {
             let message = "a scripted body needs a keyframe, move or turn".to_owned();
             Err(section.complain("motion", message, "", "for example turn = [\"0\", \"0\", \"90*t\"]"))
