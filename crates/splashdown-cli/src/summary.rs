@@ -43,6 +43,14 @@ pub fn numbers(summary: &Summary) -> String {
         ("volume", volume(summary)),
         ("particles", particles),
     ];
+    if stats.emitted > 0 || stats.drained > 0 {
+        let text = format!(
+            "{} emitted, {} drained",
+            human::counted(stats.emitted.into(), "particle"),
+            human::count(stats.drained.into())
+        );
+        rows.push(("", text));
+    }
     if stats.escaped > 0 {
         rows.push((
             "left the domain",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use splashdown::{Progress, Started, Summary};
+use splashdown::{Listener, Progress, Started, Summary};
 use splashdown_io::WrittenFile;
 
 use crate::console::{self, Verbosity};
@@ -67,6 +67,11 @@ impl Teller {
         ));
         self.report.device = Some(started.device.clone());
         self.line(&Line::started(started));
+    }
+
+    /// Shows what takes time before the run begins.
+    pub fn listener(&self) -> Listener {
+        self.bar.listener()
     }
 
     /// Where it is. The bar follows every time, a line comes once a second.

@@ -23,12 +23,30 @@ pub struct RunOptions {
     pub surface: bool,
     /// Measure the time of every pass.
     pub timing: bool,
+    /// Who hears of what takes time before the first event.
+    pub listener: Option<Listener>,
+}
+
+/// Hears of the bodies whose distances are being computed before a run's first event: name, and how far it is, in [0, 1].
+#[derive(Clone)]
+pub struct Listener(pub Arc<dyn Fn(&str, f32) + Send + Sync>);
+
+impl std::fmt::Debug for Listener {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Listener")
+    }
 }
 
 impl RunOptions {
     /// The scene's own wishes on the best device.
     pub fn new(scene: &Scene) -> Self {
-        Self { device: Device::Auto, frames: None, surface: scene.surface.enabled, timing: false }
+        Self {
+            device: Device::Auto,
+            frames: None,
+            surface: scene.surface.enabled,
+            timing: false,
+            listener: None,
+        }
     }
 }
 
@@ -192,7 +210,12 @@ impl Run {
     /// As [`Simulation::new`].
     pub fn new(scene: &Scene, options: RunOptions) -> Result<Self, SimulationError> {
         let started = Instant::now();
-        let mut simulation = Simulation::new(scene, &options.device)?;
+        let told = |body: &str, part: f32| {
+            if let Some(Listener(listener)) = &options.listener {
+                listener(body, part);
+            }
+        };
+        let mut simulation = Simulation::prepare(scene, options.device.executor()?, &told)?;
         let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
         if options.timing {
             simulation.enable_timing();

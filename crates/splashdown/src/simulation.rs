@@ -93,7 +93,20 @@ impl Simulation {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
-        let bodies = Self::load_bodies(scene)?;
+        Self::prepare(scene, executor, &|_, _| {})
+    }
+
+    /// As [`with_executor`](Self::with_executor); `told` hears of each body whose distances are being computed, its name
+    /// and how far it is, in [0, 1]: a mesh of a hundred thousand triangles takes seconds when it is first seen.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn prepare(
+        scene: &Scene,
+        executor: Executor,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Self, SimulationError> {
+        let bodies = Self::load_bodies(scene, told)?;
         let mut particles = sample::particles(scene)?;
         let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
         let clearance = clearance * scene.fluid.particle_spacing;
@@ -117,13 +130,16 @@ impl Simulation {
         executor: Executor,
         particles: &Particles,
     ) -> Result<Self, SimulationError> {
-        Self::with_bodies(scene, executor, particles, Self::load_bodies(scene)?)
+        Self::with_bodies(scene, executor, particles, Self::load_bodies(scene, &|_, _| {})?)
     }
 
-    fn load_bodies(scene: &Scene) -> Result<Vec<LoadedBody>, SimulationError> {
+    fn load_bodies(
+        scene: &Scene,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Vec<LoadedBody>, SimulationError> {
         let kernels = Solver::new(scene).walls();
         let params = solver::params(scene, 0);
-        Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), &|_, _| {})?)
+        Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), told)?)
     }
 
     fn with_bodies(

@@ -74,6 +74,7 @@ impl Session {
         layout.make(wanted)?;
 
         let timing = options.timing;
+        options.listener = Some(teller.listener());
         let run = Run::new(&scene, options)?;
         let mut session = Self {
             run,

@@ -2,6 +2,7 @@
 
 mod devices;
 mod floating;
+mod many;
 mod motion;
 mod walls;
 

@@ -1,0 +1,98 @@
+use glam::{Quat, Vec3};
+use splashdown::scene::{Body, Hinge, Motion, Scene, Shape};
+use splashdown::{Device, Simulation};
+
+use crate::{body, free, tank};
+
+/// Runs a scene for a while; nothing may get into a body, or have to be put back.
+fn run_tight(scene: &Scene, tenths: u32) -> Simulation {
+    let mut simulation = Simulation::new(scene, &Device::Cpu).unwrap();
+    for _ in 0..tenths {
+        let stats = simulation.advance(0.1).unwrap();
+        let particles = simulation.particles().unwrap();
+        assert_eq!(simulation.inside_bodies(&particles).unwrap(), 0, "at {} s", stats.time);
+        assert_eq!((stats.wall_corrections, stats.non_finite), (0, 0), "{stats:?}");
+    }
+    simulation
+}
+
+#[test]
+fn sixty_four_bodies_float_at_once() {
+    // Far enough from one another that no two close over a particle between them.
+    let mut scene = tank(0.03, [1.2, 0.45, 1.2], 0.15);
+    for k in 0..64 {
+        let place = Vec3::new(0.075 + 0.15 * (k % 8) as f32, 0.2, 0.075 + 0.15 * (k / 8) as f32);
+        let mut cube = body(&format!("cube-{k}"), "cube", 0.08, place, free(200.0 + 5.0 * k as f32));
+        cube.mesh.rotation = Quat::from_rotation_y(0.3 * k as f32);
+        scene.bodies.push(cube);
+    }
+    let mut simulation = run_tight(&scene, 3);
+    let states = simulation.body_states().unwrap();
+    assert_eq!(states.len(), 64);
+    // Control: all have moved, and nobody has left the tank.
+    assert!(states.iter().all(|state| (state.position.y - 0.2).abs() > 1e-3), "{states:?}");
+    let inside = |x: Vec3| x.cmpgt(Vec3::ZERO).all() && x.cmplt(Vec3::new(1.2, 0.45, 1.2)).all();
+    assert!(states.iter().all(|state| inside(state.position)), "{states:?}");
+}
+
+#[test]
+fn bodies_that_overlap_hold_water_together() {
+    // A dam of two cubes that stand in one another, askew, across the tank; water on one side only.
+    let mut scene = tank(0.025, [0.8, 0.4, 0.3], 0.2);
+    if let Shape::Box { size, .. } = &mut scene.fluid.blocks[0].shape {
+        size.x = 0.3;
+    }
+    for (name, z, angle) in [("near", 0.05, 0.2), ("far", 0.25, -0.3)] {
+        let mut cube = body(name, "cube", 0.3, Vec3::new(0.5, 0.15, z), Motion::Static);
+        cube.mesh.rotation = Quat::from_rotation_y(angle);
+        scene.bodies.push(cube);
+    }
+    let mut simulation = run_tight(&scene, 8);
+    let particles = simulation.particles().unwrap();
+    let behind = particles.positions.iter().filter(|x| x[0] > 0.68).count();
+    assert_eq!(behind, 0, "particles behind the dam");
+    let beside = particles.positions.iter().filter(|x| x[0] > 0.31).count();
+    assert!(beside > 50, "the water never reached the dam");
+}
+
+/// A beaker without thickness, its mouth on the floor, full of water.
+fn turned_over(scene: &mut Scene) -> Body {
+    let mut cup = body("beaker", "thin-cup", 4.0, Vec3::new(0.3, 0.4, 0.3), Motion::Static);
+    cup.mesh.rotation = Quat::from_rotation_x(std::f32::consts::PI);
+    if let Shape::Box { min, size } = &mut scene.fluid.blocks[0].shape {
+        (*min, *size) = (Vec3::new(0.22, 0.0, 0.22), Vec3::new(0.16, 0.36, 0.16));
+    }
+    cup
+}
+
+#[test]
+fn a_beaker_without_thickness_holds_water_upside_down() {
+    let mut scene = tank(0.02, [0.6, 0.5, 0.6], 0.36);
+    let cup = turned_over(&mut scene);
+    scene.bodies.push(cup);
+    let mut simulation = run_tight(&scene, 6);
+    let particles = simulation.particles().unwrap();
+    let out = |x: &&[f32; 3]| Vec3::from(**x).with_y(0.0).distance(Vec3::new(0.3, 0.0, 0.3)) > 0.18;
+    assert_eq!(particles.positions.iter().filter(out).count(), 0, "particles outside the beaker");
+    // Control: without it the water would be everywhere.
+    scene.bodies.clear();
+    let mut free = Simulation::new(&scene, &Device::Cpu).unwrap();
+    free.advance(0.4).unwrap();
+    assert!(free.particles().unwrap().positions.iter().filter(out).count() > 100);
+}
+
+#[test]
+fn a_race_turns_a_wheel_on_its_axle() {
+    let mut scene = tank(0.025, [1.2, 0.6, 0.3], 0.15);
+    scene.fluid.blocks[0].velocity = Vec3::new(1.0, 0.0, 0.0);
+    let mut wheel = body("wheel", "paddle-wheel", 1.0, Vec3::new(0.6, 0.32, 0.15), free(600.0));
+    if let Motion::Dynamic { hinge, .. } = &mut wheel.motion {
+        *hinge = Some(Hinge { point: Vec3::new(0.6, 0.32, 0.15), axis: Vec3::Z });
+    }
+    scene.bodies.push(wheel);
+    let mut simulation = run_tight(&scene, 3);
+    let state = simulation.body_states().unwrap()[0];
+    assert!(state.position.distance(Vec3::new(0.6, 0.32, 0.15)) < 1e-4, "{state:?}");
+    // Water that runs along +x under the axle turns it counter-clockwise, as seen from +z.
+    assert!(state.angular_velocity.z > 0.5, "{state:?}");
+}
