@@ -27,9 +27,12 @@ pub struct RunOptions {
     pub listener: Option<Listener>,
 }
 
-/// Hears of the bodies whose distances are being computed before a run's first event: name, and how far it is, in [0, 1].
+/// What a [`Listener`] calls: with a body's name, and how far its distances are, in [0, 1].
+pub type Told = dyn Fn(&str, f32) + Send + Sync;
+
+/// Hears of the bodies whose distances are being computed before a run's first event.
 #[derive(Clone)]
-pub struct Listener(pub Arc<dyn Fn(&str, f32) + Send + Sync>);
+pub struct Listener(pub Arc<Told>);
 
 impl std::fmt::Debug for Listener {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
