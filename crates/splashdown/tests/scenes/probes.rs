@@ -56,3 +56,14 @@ fn mistakes_in_probes_are_named() {
         assert!(message.contains(part), "{text}\n{message}");
     }
 }
+
+#[test]
+fn a_pressure_where_densities_are_summed_is_doubted() {
+    let probe = "[[probe]]\nname = \"a\"\nquantity = \"pressure\"\nposition = [0, 0, 0]\n";
+    let warnings = |text: &str| parse(text).unwrap_or_else(|errors| panic!("{errors}")).warnings;
+    let found = warnings(&format!("{CUBE}\n{probe}"));
+    assert!(found.iter().any(|warning| warning.to_string().contains("pressure beside walls is too low")));
+    let exact = CUBE.replace("[solver]", "[solver]\ndensity = \"continuity\"");
+    assert_ne!(exact, CUBE);
+    assert!(warnings(&format!("{exact}\n{probe}")).is_empty());
+}
