@@ -81,7 +81,7 @@ impl From<SimulationError> for Failure {
             SimulationError::Gpu(_)
             | SimulationError::Surface(SurfaceError::Gpu(_))
             | SimulationError::TooMany { .. } => Exit::Device,
-            SimulationError::Sample(_) => Exit::Scene,
+            SimulationError::Sample(_) | SimulationError::Body(_) => Exit::Scene,
             _ => Exit::Failed,
         };
         Self::new(exit, error.to_string())

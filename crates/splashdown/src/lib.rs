@@ -40,7 +40,7 @@ pub use bodies::{BodyMesh, BodyState};
 pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;
-pub use memory::{largest_particle_count, memory_forecast};
+pub use memory::{largest_particle_count, memory_forecast, memory_forecast_of};
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
 pub use simulation::Simulation;
 pub use stats::Stats;

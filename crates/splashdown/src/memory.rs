@@ -2,9 +2,9 @@
 
 use crate::cells::Grid;
 use crate::flow::LoadedFlow;
-use crate::scene::{Derived, Scene, Sort, SurfaceTension};
-use crate::solver::Solver;
+use crate::scene::{Scene, Sort, SurfaceTension};
 use crate::surface::{self, SurfaceParams};
+use crate::sample::{self, Inventory};
 use crate::{SimulationError, bodies};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
@@ -34,13 +34,22 @@ pub(crate) fn check(particles: u64, largest_buffer: u64) -> Result<(), Simulatio
     Ok(())
 }
 
-/// Bytes in the buffers of a scene's simulation and, where the scene asks for it, of its surface.
+/// Bytes in the buffers of a scene's simulation and, where the scene asks for it, of its surface. Particles inside bodies, which a
+/// simulation leaves out, are counted: to know them takes loading the bodies ([`memory_forecast_of`]).
 ///
 /// A splash with more surface than most makes the surface's buffers grow beyond this.
 pub fn memory_forecast(scene: &Scene) -> u64 {
-    let particles = Derived::new(scene).particles;
+    forecast(scene, sample::count(scene))
+}
+
+/// As [`memory_forecast`], for a scene whose particles have been counted by [`sample::inventory`].
+pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
+    forecast(scene, inventory.particles)
+}
+
+fn forecast(scene: &Scene, particles: u64) -> u64 {
     // A mesh that cannot be read is reported where the simulation starts.
-    let flow = LoadedFlow::new(scene, Solver::new(scene).walls()).unwrap_or_default();
+    let flow = LoadedFlow::new(scene).unwrap_or_default();
     let particles = flow.capacity(particles, u64::MAX);
     let normals = if scene.solver.surface_tension == SurfaceTension::Akinci2013 { 16 } else { 0 };
     let pairs = if scene.solver.sort == Sort::Bitonic { 8 } else { 0 };
@@ -70,7 +79,7 @@ pub(crate) fn grid_reach(scene: &Scene) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SurfaceSettings;
+    use crate::scene::{Derived, SurfaceSettings};
     use crate::{Device, Simulation};
 
     #[test]

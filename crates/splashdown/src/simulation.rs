@@ -13,7 +13,7 @@ use crate::fields::Fields;
 use crate::flow::{Flow, LoadedFlow};
 use crate::passes::{DEAD_NON_FINITE, DEAD_UNBORN, Params, StepState, Tally};
 use crate::probes::{ProbeRows, Probes};
-use crate::scene::{DensityMode, Derived, Scene, SurfaceSettings};
+use crate::scene::{Derived, Scene, SurfaceSettings};
 use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
@@ -23,13 +23,6 @@ use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 const MOST_STEPS: u32 = 64;
 /// Steps in one batch on the CPU, which tests for the frame's end before each.
 const CPU_STEPS: u32 = 16;
-
-/// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
-///
-/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a wall. An
-/// integrated density feels no gap either: what is left empty here stays empty, and a body would displace its volume and
-/// half a spacing all around it (a fifth of a ball of 12 spacings). Centres of particles outside fill the room outside.
-const CLEARANCE: [f32; 2] = [0.49, 0.05];
 
 /// A fluid in its box, with everything that moves it, on one device.
 ///
@@ -108,9 +101,7 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene, told)?;
         let mut particles = sample::particles(scene)?;
-        let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
-        let clearance = clearance * scene.fluid.particle_spacing;
-        let removed = sample::remove_inside(&mut particles, &bodies, clearance);
+        let removed = sample::remove_inside(scene, &mut particles, &bodies);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
         }
@@ -133,7 +124,7 @@ impl Simulation {
         Self::with_bodies(scene, executor, particles, Self::load_bodies(scene, &|_, _| {})?)
     }
 
-    fn load_bodies(
+    pub(crate) fn load_bodies(
         scene: &Scene,
         told: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Vec<LoadedBody>, SimulationError> {
@@ -152,7 +143,7 @@ impl Simulation {
         let largest = executor.largest_buffer();
         memory::check(n as u64, largest)?;
         let solver = Solver::new(scene);
-        let loaded_flow = LoadedFlow::new(scene, solver.walls())?;
+        let loaded_flow = LoadedFlow::new(scene)?;
         // The unborn have places of their own.
         let (initial, n) =
             (n as u32, loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as usize);
@@ -179,7 +170,7 @@ impl Simulation {
             Some(Flow::new(&mut executor, &loaded_flow, params.particle_spacing, next_id)?)
         };
         upload(&mut executor, &fields, particles, &params)?;
-        let stable_dt = Derived::new(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
+        let stable_dt = Derived::without_particles(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
 

@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use splashdown::sample::{self, Inventory};
 use splashdown::scene::{Derived, Scene, SceneWarning};
-use splashdown::{Device, Simulation, memory_forecast};
+use splashdown::{Device, Simulation, memory_forecast_of};
 
 use crate::args::CheckArguments;
 use crate::exit::Failure;
@@ -29,6 +30,8 @@ struct Report<'a> {
     duration: f32,
     #[serde(flatten)]
     derived: &'a Derived,
+    /// Particles left out because they would be inside bodies.
+    removed: u64,
     memory_forecast: u64,
     speed: &'a Speed,
     warnings: &'a [SceneWarning],
@@ -53,8 +56,10 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             console::print_json(&Line::error(failure));
         }
     })?;
-    let derived = Derived::new(&scene);
-    let memory = memory_forecast(&scene);
+    // As the simulation will have them: without those inside bodies.
+    let inventory = sample::inventory(&scene)?;
+    let derived = Derived::with_inventory(&scene, &inventory);
+    let memory = memory_forecast_of(&scene, &inventory);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
     if arguments.json {
         console::print_json(&Report {
@@ -64,6 +69,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             particle_spacing: scene.fluid.particle_spacing,
             duration: scene.duration,
             derived: &derived,
+            removed: inventory.removed,
             memory_forecast: memory,
             speed: &speed,
             warnings: &scene.warnings,
@@ -74,11 +80,11 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         console::note(format!("{warning}\n"));
     }
     let file = arguments.scene.display();
-    console::print(format!("{file}: valid\n{}", describe(&scene, &derived, memory, &speed)));
+    console::print(format!("{file}: valid\n{}", describe(&scene, &derived, &inventory, memory, &speed)));
     Ok(())
 }
 
-fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> String {
+fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {
     let fluid = &scene.fluid;
     let size = scene.domain.size();
     console::table(&[
@@ -91,7 +97,7 @@ fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> Str
                 fluid.material.name, fluid.material.rest_density, fluid.material.viscosity
             ),
         ),
-        ("particles", format!("{}, {} m apart", human::count(derived.particles), fluid.particle_spacing)),
+        ("particles", particles(inventory, fluid.particle_spacing)),
         ("particle mass", format!("{:.4e} kg", derived.particle_mass)),
         ("volume", human::volume(derived.volume.into())),
         ("solver", format!("{}, support radius {} m", scene.solver.method, derived.support_radius)),
@@ -124,11 +130,23 @@ fn describe(scene: &Scene, derived: &Derived, memory: u64, speed: &Speed) -> Str
     ])
 }
 
+fn particles(inventory: &Inventory, spacing: f32) -> String {
+    let mut words = format!("{}, {spacing} m apart", human::count(inventory.particles));
+    if inventory.emitted > 0 {
+        words += &format!("; emitters bring up to {} more", human::count(inventory.emitted));
+    }
+    if inventory.removed > 0 {
+        words += &format!("; {} inside bodies are left out", human::count(inventory.removed));
+    }
+    words
+}
+
 /// Runs a few steps of a dam break with the scene's own solver.
 fn measure(scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
-    let mut speed = measure_with(FEW.min(derived.particles), scene, derived, device)?;
-    if speed.on_gpu && derived.particles > FEW {
-        speed = measure_with(MANY.min(derived.particles), scene, derived, device)?;
+    let typical = (derived.mean_particles.ceil() as u64).max(1);
+    let mut speed = measure_with(FEW.min(typical), scene, derived, device)?;
+    if speed.on_gpu && typical > FEW {
+        speed = measure_with(MANY.min(typical), scene, derived, device)?;
     }
     Ok(speed)
 }
@@ -151,6 +169,6 @@ fn measure_with(particles: u64, scene: &Scene, derived: &Derived, device: &Devic
         device: simulation.device_name(),
         measured_particles: measured,
         particle_steps_per_second: rate,
-        expected_seconds: derived.particles as f64 * derived.steps_estimate as f64 / rate,
+        expected_seconds: derived.mean_particles * derived.steps_estimate as f64 / rate,
     })
 }

@@ -12,53 +12,77 @@ use crate::passes::Params;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
 use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
 
-/// Why a body could not be made.
-#[derive(Debug, thiserror::Error)]
+/// Why a mesh could not be used: of a body, an outlet, a sink or a piece of fluid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BodyError {
     /// Its file.
-    #[error("body {name:?}: {source}")]
+    #[error("{owner}: {source}")]
     File {
-        /// The body's name.
-        name: String,
+        /// What the mesh is for, such as `body "raft"`.
+        owner: String,
         /// What is wrong with the file.
         source: IoError,
     },
     /// A model that does not come with the program.
-    #[error(
-        "body {name:?}: there is no model {model:?}; there are {}. A file's name needs its ending",
-        known()
-    )]
+    #[error("{owner}: there is no model {model:?}; there are {}. A file's name needs its ending", known())]
     NoModel {
-        /// The body's name.
-        name: String,
+        /// What the mesh is for.
+        owner: String,
         /// The word given.
         model: String,
     },
     /// Its shape.
-    #[error("body {name:?}: {source}")]
+    #[error("{owner}: {source}")]
     Solid {
-        /// The body's name.
-        name: String,
+        /// What the mesh is for.
+        owner: String,
         /// What is wrong with the shape.
         source: SolidError,
     },
     /// A size that can hardly be meant.
-    #[error(
-        "body {name:?} is {size:.4} m long, the domain is {domain:.4} m: its mesh is probably in {unit}; give it scale = {scale}"
-    )]
+    #[error("{owner} is {size:.4} m long, the domain is {domain:.4} m: {advice}")]
     Scale {
-        /// The body's name.
-        name: String,
+        /// What the mesh is for.
+        owner: String,
         /// Its longest edge in m.
         size: f32,
         /// The domain's longest edge in m.
         domain: f32,
-        /// The unit that would fit.
-        unit: &'static str,
-        /// The scale that would fit.
-        scale: f32,
+        /// The scale that would fit, in words.
+        advice: String,
     },
+    /// A sheet where an inside is needed.
+    #[error(
+        "{owner}: its mesh is open ({open_edges} open edges) and encloses no volume; close it, or export the object as a solid"
+    )]
+    Open {
+        /// What the mesh is for.
+        owner: String,
+        /// Edges with one triangle only.
+        open_edges: u32,
+    },
+    /// An outlet too small for a particle.
+    #[error(
+        "{owner}: the outline of its mesh across the direction holds no particle of {spacing} m, half a spacing inside; the mesh's \
+         origin must lie inside it: enlarge it, check up and rotation, or refine particle_spacing"
+    )]
+    Outline {
+        /// What the mesh is for.
+        owner: String,
+        /// The particle spacing in m.
+        spacing: f32,
+    },
+}
+
+/// `body "raft" (raft.stl)`, as messages call what has a name and a mesh.
+pub(crate) fn owner(kind: &str, name: &str, source: &MeshSource) -> String {
+    match &source.shape {
+        MeshShape::Model(_) => format!("{kind} {name:?}"),
+        MeshShape::File(path) => {
+            format!("{kind} {name:?} ({})", path.file_name().unwrap_or_default().to_string_lossy())
+        }
+    }
 }
 
 fn known() -> String {
@@ -96,17 +120,16 @@ impl LoadedBody {
     }
 }
 
-/// A mesh in metres, y up, in its own frame.
+/// A mesh in metres, y up, in its own frame; `owner` is what it is for, in messages.
 ///
 /// # Errors
 /// [`BodyError`] of the file or the model's name.
-pub fn mesh_of(name: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
+pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     let mut mesh = match &source.shape {
         MeshShape::Model(model) => models::build(model)
-            .ok_or_else(|| BodyError::NoModel { name: name.into(), model: model.clone() })?,
-        MeshShape::File(path) => {
-            splashdown_io::read_mesh(path).map_err(|source| BodyError::File { name: name.into(), source })?
-        }
+            .ok_or_else(|| BodyError::NoModel { owner: owner.into(), model: model.clone() })?,
+        MeshShape::File(path) => splashdown_io::read_mesh(path)
+            .map_err(|source| BodyError::File { owner: owner.into(), source })?,
     };
     for v in &mut mesh.vertices {
         let [x, y, z] = v.map(|c| c * source.scale);
@@ -142,8 +165,9 @@ fn load_one(
     cache: Option<PathBuf>,
     told: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<LoadedBody, BodyError> {
-    let mesh = mesh_of(&body.name, &body.mesh)?;
-    check_scale(scene, body, &mesh)?;
+    let owner = owner("body", &body.name, &body.mesh);
+    let mesh = mesh_of(&owner, &body.mesh)?;
+    check_scale(&owner, &body.mesh, &mesh, &scene.domain)?;
     let spacing = params.particle_spacing;
     let settings = SolidSettings {
         cell_size: cell_size(&mesh, spacing, params.support_radius),
@@ -153,7 +177,7 @@ fn load_one(
         shell: body.shell,
         cache,
     };
-    let wrong = |source| BodyError::Solid { name: body.name.clone(), source };
+    let wrong = |source| BodyError::Solid { owner: owner.clone(), source };
     let solid = Solid::build(&mesh, &settings, &|part| told(&body.name, part)).map_err(wrong)?;
     let mut state = Body {
         position: body.mesh.position,
@@ -248,7 +272,7 @@ pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
 }
 
 /// Half a particle spacing, or more where the grid would have more than this many nodes.
-fn cell_size(mesh: &Mesh, spacing: f32, support: f32) -> f32 {
+pub(super) fn cell_size(mesh: &Mesh, spacing: f32, support: f32) -> f32 {
     const MOST_NODES: f32 = 6e6;
     let (low, high) = solid::bounds(mesh);
     let volume = |cell: f32| ((high - low + 2.0 * support) / cell + 4.0).element_product();
@@ -259,16 +283,37 @@ fn cell_size(mesh: &Mesh, spacing: f32, support: f32) -> f32 {
     cell
 }
 
-fn check_scale(scene: &scene::Scene, body: &scene::Body, mesh: &Mesh) -> Result<(), BodyError> {
+/// Refuses a mesh that is a hundred times as long as the domain, or a thousandth of it: its unit is another one.
+pub(crate) fn check_scale(
+    owner: &str,
+    source: &MeshSource,
+    mesh: &Mesh,
+    domain: &scene::Domain,
+) -> Result<(), BodyError> {
     let (low, high) = solid::bounds(mesh);
-    let (size, domain) = ((high - low).max_element(), scene.domain.size().max_element());
-    let scale = body.mesh.scale;
-    let (unit, scale) = match size / domain {
-        ratio if ratio > 100.0 => ("millimetres", 0.001 * scale),
-        ratio if ratio > 0.0 && ratio < 0.001 => ("kilometres", 1000.0 * scale),
+    let (size, domain) = ((high - low).max_element(), domain.size().max_element());
+    let scale = source.scale;
+    let advice = match size / domain {
+        ratio if ratio > 100.0 && scale == 1.0 => {
+            "its mesh is probably in millimetres; give it scale = \"mm\"".to_owned()
+        }
+        ratio if ratio > 100.0 => format!("give it a smaller scale, for example {}", 0.001 * scale),
+        ratio if ratio > 0.0 && ratio < 0.001 && scale < 0.05 => {
+            format!("its mesh is probably not in {}; take scale out", unit_word(scale))
+        }
+        ratio if ratio > 0.0 && ratio < 0.001 => {
+            format!("give it a larger scale, for example {}", 1000.0 * scale)
+        }
         _ => return Ok(()),
     };
-    Err(BodyError::Scale { name: body.name.clone(), size, domain, unit, scale })
+    Err(BodyError::Scale { owner: owner.to_owned(), size, domain, advice })
+}
+
+/// What files with this scale are written in.
+fn unit_word(scale: f32) -> String {
+    let known = [(0.001, "millimetres"), (0.01, "centimetres"), (0.0254, "inches")];
+    let word = known.iter().find(|(unit, _)| (scale / unit - 1.0).abs() < 1e-4);
+    word.map_or_else(|| format!("units of {scale} m"), |(_, word)| (*word).to_owned())
 }
 
 /// Boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W (Akinci et al. 2012),

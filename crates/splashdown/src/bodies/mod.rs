@@ -5,6 +5,7 @@
 //! reactions are summed on the device, and the body moves (`motion`), all without asking the host. Between batches of steps
 //! the host lets bodies that touch one another or the box collide (`rigid`).
 
+mod closed;
 mod contacts;
 mod field;
 mod load;
@@ -14,8 +15,10 @@ mod rigid;
 mod share;
 mod types;
 
+pub(crate) use closed::closed_solid;
 pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, load, mesh_of};
+pub(crate) use load::{check_scale, owner};
 pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample, WGSL as BODY};
 
 use std::sync::Arc;

@@ -17,8 +17,7 @@ pub use types::{Drain, Nozzle, Plan};
 use glam::{UVec3, Vec2, Vec3};
 use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
 
-use crate::bodies::BodyError;
-use crate::boundary::KernelPair;
+use crate::bodies::{BodyError, closed_solid, owner};
 use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::scene::{Scene, Sink, SinkRegion};
@@ -50,11 +49,11 @@ impl LoadedFlow {
     ///
     /// # Errors
     /// [`BodyError`] of the meshes of outlets and sinks.
-    pub fn new(scene: &Scene, kernels: KernelPair) -> Result<Self, BodyError> {
+    pub fn new(scene: &Scene) -> Result<Self, BodyError> {
         let mut loaded = Self::default();
         let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
         for emitter in &scene.emitters {
-            let (mut nozzle, layer) = outlet::nozzle(emitter, scene, kernels)?;
+            let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
             nozzle.first_point = loaded.points.len() as u32;
             loaded.expected = loaded.expected.saturating_add(outlet::expected(
                 &nozzle,
@@ -66,7 +65,7 @@ impl LoadedFlow {
             loaded.names.push(emitter.name.clone());
         }
         for sink in &scene.sinks {
-            let drain = loaded.drain(sink, scene, kernels)?;
+            let drain = loaded.drain(sink, scene)?;
             loaded.drains.push(drain);
         }
         Ok(loaded)
@@ -82,7 +81,7 @@ impl LoadedFlow {
         initial.saturating_add(self.expected).min(allowed).max(initial)
     }
 
-    fn drain(&mut self, sink: &Sink, scene: &Scene, kernels: KernelPair) -> Result<Drain, BodyError> {
+    fn drain(&mut self, sink: &Sink, scene: &Scene) -> Result<Drain, BodyError> {
         let none = Drain {
             low: Vec3::ZERO,
             kind: Drain::BOX,
@@ -97,7 +96,10 @@ impl LoadedFlow {
                 Drain { kind: Drain::BELOW, low: *point, high: *normal, ..none }
             }
             SinkRegion::Mesh(source) => {
-                let solid = outlet::solid_of(&sink.name, source, scene, kernels)?;
+                let solid = {
+                    let (owner, spacing) = (owner("sink", &sink.name, source), scene.fluid.particle_spacing);
+                    closed_solid(&owner, source, &scene.domain, spacing)?
+                };
                 let world = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
                 let corners = solid.mesh.vertices.iter().map(world);
                 let (low, high) =

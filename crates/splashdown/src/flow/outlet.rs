@@ -3,10 +3,9 @@
 use glam::{Vec2, Vec3};
 
 use super::Nozzle;
-use crate::bodies::{BodyError, mesh_of};
-use crate::boundary::KernelPair;
+use crate::bodies::{BodyError, closed_solid, owner};
 use crate::scene::{Domain, Emitter, MeshSource, Outlet, Scene};
-use crate::solid::{self, Solid, SolidSettings};
+use crate::solid::Solid;
 
 /// More than any scene makes, and small enough to be added to.
 const UNLIMITED: u32 = u32::MAX / 2;
@@ -41,58 +40,52 @@ pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Vec<Vec2> {
     (0..m).flat_map(|j| (0..n).map(move |i| Vec2::new(place(i, n), place(j, m)))).collect()
 }
 
-/// The solid of an outlet's or a sink's mesh.
-///
-/// # Errors
-/// [`BodyError`] of the file or the shape; a sheet without an inside among them.
-pub fn solid_of(
-    name: &str,
-    source: &MeshSource,
-    scene: &Scene,
-    kernels: KernelPair,
-) -> Result<Solid, BodyError> {
-    let mesh = mesh_of(name, source)?;
-    let spacing = scene.fluid.particle_spacing;
-    let (low, high) = solid::bounds(&mesh);
-    let support_radius = scene.solver.support_radius(spacing);
-    let settings = SolidSettings {
-        // A hundred cells along the longest edge show as much of a shape as particles can.
-        cell_size: (0.5 * spacing).max((high - low).max_element() / 100.0),
-        support_radius,
-        kernels,
-        half_thickness: 0.5 * spacing,
-        shell: Some(false),
-        cache: None,
-    };
-    let wrong = |source| BodyError::Solid { name: name.into(), source };
-    let solid = Solid::build(&mesh, &settings, &|_| {}).map_err(wrong)?;
-    solid.require_volume().map_err(wrong)?;
-    Ok(solid)
-}
-
-/// Points of the mesh's cross-section at the outlet, on the lattice of [`axes`] round `position`.
+/// Points of the mesh's cross-section at the outlet that keep half a spacing off its rim, on a square lattice along [`axes`] round
+/// `position`: of the four lattices that have a point or a square's side or middle there, the one that makes up the area best.
 fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Vec<Vec2> {
+    const FINER: i32 = 4;
     let (across, up) = axes(emitter.direction);
     let reach = solid.mesh.vertices.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
-    let n = (reach / spacing).ceil() as i32;
-    let points = (-n..=n).flat_map(|j| (-n..=n).map(move |i| spacing * Vec2::new(i as f32, j as f32)));
-    let inside = |q: &Vec2| {
+    let inside = |q: Vec2| {
         let offset = q.x * across + q.y * up;
-        solid.field.distance(source.rotation.conjugate() * offset) <= -0.499 * spacing
+        solid.contains(source.rotation.conjugate() * offset)
     };
-    points.filter(inside).collect()
+    let lattice = |distance: f32, shift: Vec2| {
+        let n = (reach / distance).ceil() as i32;
+        let points = (-n..=n).flat_map(move |j| (-n..=n).map(move |i| Vec2::new(i as f32, j as f32)));
+        points.map(move |q| distance * (q + shift))
+    };
+    // Cells, rather than points, fill an area.
+    let fine = lattice(spacing / FINER as f32, Vec2::splat(0.5)).filter(|q| inside(*q)).count();
+    let wanted = fine as f32 / (FINER * FINER) as f32;
+    let off_rim = |q: Vec2| {
+        let rim =
+            (0..8).map(|k| Vec2::from_angle(std::f32::consts::FRAC_PI_4 * k as f32) * (0.499 * spacing));
+        inside(q) && rim.into_iter().all(|way| inside(q + way))
+    };
+    let shifts = [Vec2::ZERO, Vec2::splat(0.5), Vec2::new(0.5, 0.0), Vec2::new(0.0, 0.5)];
+    let layers = shifts.map(|shift| lattice(spacing, shift).filter(|q| off_rim(*q)).collect::<Vec<_>>());
+    let missed = |layer: &Vec<Vec2>| (layer.len() as f32 - wanted).abs();
+    layers.into_iter().min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or_default()
 }
 
 /// An emitter's layer and nozzle; `first_point` is not yet set.
 ///
 /// # Errors
-/// As [`solid_of`].
-pub fn nozzle(
-    emitter: &Emitter,
-    scene: &Scene,
-    kernels: KernelPair,
-) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
+/// [`BodyError`] of an outlet's mesh; of a sheet without an inside, too.
+pub fn nozzle(emitter: &Emitter, scene: &Scene) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
     let spacing = scene.fluid.particle_spacing;
+    let support_radius = scene.solver.support_radius(spacing);
+    nozzle_in(emitter, &scene.domain, spacing, support_radius)
+}
+
+/// As [`nozzle`], of a scene that is not yet whole.
+pub(crate) fn nozzle_in(
+    emitter: &Emitter,
+    domain: &Domain,
+    spacing: f32,
+    support_radius: f32,
+) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
     let (across, up) = axes(emitter.direction);
     let half = |layer: &[Vec2]| {
         layer.iter().fold(Vec2::ZERO, |most, q| most.max(q.abs())) + Vec2::splat(0.5 * spacing)
@@ -109,15 +102,19 @@ pub fn nozzle(
             (layer, 0, half)
         }
         Outlet::Mesh(source) => {
-            let solid = solid_of(&emitter.name, source, scene, kernels)?;
+            let owner = owner("emitter", &emitter.name, source);
+            let solid = closed_solid(&owner, source, domain, spacing)?;
             let layer = mesh_layer(emitter, source, &solid, spacing);
+            if layer.is_empty() {
+                return Err(BodyError::Outline { owner, spacing });
+            }
             let half = half(&layer);
             (layer, 0, half)
         }
     };
-    let length = scene.solver.support_radius(spacing) + spacing;
+    let length = support_radius + spacing;
     let start = emitter.position - length * emitter.direction;
-    let back = start + emitter.direction * forward(&scene.domain, start, emitter, &layer, length, spacing);
+    let back = start + emitter.direction * forward(domain, start, emitter, &layer, length, spacing);
     let nozzle = Nozzle {
         back,
         speed: emitter.speed,
@@ -152,6 +149,27 @@ fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], lengt
     (0..=steps).map(|k| 0.25 * spacing * k as f32).find(|&shift| fits(shift)).unwrap_or(0.0)
 }
 
+/// What a scene's emitters will bring until its end: how many particles, and how many of them are there on average over the scene's
+/// time, as fluid that is not held up and not drained.
+///
+/// # Errors
+/// As [`nozzle`].
+pub(crate) fn forecast(scene: &Scene) -> Result<(u64, f64), BodyError> {
+    let (spacing, duration) = (scene.fluid.particle_spacing, scene.duration);
+    let (mut all, mut average) = (0u64, 0.0);
+    for emitter in &scene.emitters {
+        let (nozzle, _) = nozzle(emitter, scene)?;
+        let brought = expected(&nozzle, duration, spacing);
+        // The flow is steady from its start until it is stopped or has made all it may.
+        let per_second = nozzle.points as f32 * nozzle.speed / spacing;
+        let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, brought as f32 / per_second);
+        let present = (duration - nozzle.start - 0.5 * busy) / duration;
+        all = all.saturating_add(brought);
+        average += brought as f64 * f64::from(present.clamp(0.0, 1.0));
+    }
+    Ok((all, average))
+}
+
 /// How many particles a nozzle makes until `duration` (s), one layer more than the flow asks for.
 pub fn expected(nozzle: &Nozzle, duration: f32, spacing: f32) -> u64 {
     let active = (nozzle.end.min(duration) - nozzle.start).max(0.0);
@@ -164,7 +182,10 @@ pub fn expected(nozzle: &Nozzle, duration: f32, spacing: f32) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use glam::Quat;
+
     use super::*;
+    use crate::scene::{MeshShape, UpAxis};
 
     #[test]
     fn layers_fill_their_outlet_and_keep_off_the_rim() {
@@ -179,6 +200,45 @@ mod tests {
         let layer = rectangle_layer([0.04, 0.03], 0.01);
         assert_eq!(layer.len(), 12);
         assert!(layer.iter().all(|q| q.x.abs() < 0.0151 && q.y.abs() < 0.0101));
+    }
+
+    #[test]
+    fn a_mesh_pours_through_its_outline_however_thin_it_is() {
+        let source = |scale: f32| MeshSource {
+            shape: MeshShape::Model("cube".into()),
+            scale,
+            up: UpAxis::Y,
+            position: Vec3::ZERO,
+            rotation: Quat::IDENTITY,
+        };
+        let emitter = Emitter {
+            name: "tap".into(),
+            outlet: Outlet::Mesh(source(0.1)),
+            position: Vec3::splat(0.5),
+            direction: Vec3::NEG_Y,
+            speed: 1.0,
+            start: 0.0,
+            end: None,
+            max_particles: None,
+        };
+        let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], shake: None };
+        // A square of whole spacings is filled to its rim, be they even or odd.
+        for (spacing, count) in [(0.01, 100), (0.02, 25)] {
+            let (nozzle, layer) = nozzle_in(&emitter, &domain, spacing, 2.0 * spacing).unwrap();
+            assert_eq!((layer.len(), nozzle.points), (count, count as u32), "{spacing}");
+            assert!(layer.iter().all(|q| q.abs().max_element() < 0.05 - 0.49 * spacing));
+        }
+        // A gear is a plate, 0.22 m across at this scale: its layer leaves the bore free, and the gaps between teeth.
+        let gear = MeshSource {
+            shape: MeshShape::Model("gear".into()),
+            rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            ..source(0.5)
+        };
+        let (_, layer) =
+            nozzle_in(&Emitter { outlet: Outlet::Mesh(gear), ..emitter }, &domain, 0.01, 0.02).unwrap();
+        let area = layer.len() as f32 * 1e-4;
+        assert!((0.5..0.8).contains(&(area / (std::f32::consts::PI * 0.1 * 0.1))), "{area}");
+        assert!(layer.iter().all(|q| q.length() > 0.01));
     }
 
     #[test]

@@ -21,6 +21,8 @@ mod shape;
 mod tests;
 mod ugly;
 
+use std::sync::OnceLock;
+
 use splashdown_io::Mesh;
 
 pub use ugly::ugly;
@@ -80,8 +82,10 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
 }
 
 /// The model of this name (one of [`names`]) in m; `None` for an unknown name. The same name gives the same mesh,
-/// to the last bit.
+/// to the last bit; it is computed once and then copied, for some take half a second.
 #[must_use]
 pub fn build(name: &str) -> Option<Mesh> {
-    MODELS.iter().find(|(known, ..)| *known == name).map(|(.., make)| make())
+    static BUILT: [OnceLock<Mesh>; MODELS.len()] = [const { OnceLock::new() }; MODELS.len()];
+    let index = MODELS.iter().position(|(known, ..)| *known == name)?;
+    Some(BUILT[index].get_or_init(MODELS[index].2).clone())
 }

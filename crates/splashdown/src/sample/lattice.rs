@@ -1,5 +1,7 @@
 //! The lattice of one block.
 
+use glam::Vec3;
+
 use crate::scene::{Domain, Fluid, Shape};
 
 /// How near a block's face must be to a wall to touch it, in spacings: positions in f32 are not exact.
@@ -82,52 +84,27 @@ impl Sampler {
     fn new(domain: &Domain, spacing: f64, solids: &[Solid]) -> Self {
         let (solid, before) = (solids[solids.len() - 1], &solids[..solids.len() - 1]);
         let (low, high) = solid.bounds();
-        let walls = |axis: usize| {
-            let place = [domain.min[axis], domain.max[axis]].map(f64::from);
-            (domain.closed[axis], place)
+        let along = |axis: usize| match &solid {
+            Solid::Box { .. } => along_box(domain, spacing, axis, low[axis], high[axis]),
+            Solid::Sphere { .. } => {
+                let half = (0.5 * (high[axis] - low[axis]) / spacing).ceil();
+                let center = 0.5 * (low[axis] + high[axis]);
+                (center + (0.5 - half) * spacing, (half * 2.0) as u64)
+            }
         };
-        let mut first = [0.0; 3];
-        let mut counts = [0; 3];
-        for axis in 0..3 {
-            let length = (high[axis] - low[axis]) / spacing;
-            let (closed, place) = walls(axis);
-            let touches_low = closed[0] && (low[axis] - place[0]).abs() <= TOUCH * spacing;
-            let touches_high = closed[1] && (place[1] - high[axis]).abs() <= TOUCH * spacing;
-            let (count, start) = match (&solid, touches_low, touches_high) {
-                (Solid::Sphere { .. }, ..) => {
-                    let half = (length * 0.5).ceil();
-                    (half * 2.0, (length * 0.5 - half + 0.5) * spacing)
-                }
-                // From wall to wall nothing may be squeezed in.
-                (_, true, true) => centred((length + TOUCH).floor(), length, spacing),
-                (_, true, false) => (length.round(), 0.5 * spacing),
-                (_, false, true) => (length.round(), (length - length.round() + 0.5) * spacing),
-                (_, false, false) => centred(length.round(), length, spacing),
-            };
-            counts[axis] = count as u64;
-            first[axis] = low[axis] + start;
-        }
+        let axes: [(f64, u64); 3] = std::array::from_fn(along);
         let near = |other: &&Solid| {
             let (other_low, other_high) = other.bounds();
             let reach = CROWDED * spacing;
             (0..3).all(|a| other_low[a] - reach < high[a] && other_high[a] + reach > low[a])
         };
-        let room = |axis: usize, side: usize| {
-            let (closed, place) = walls(axis);
-            match (closed[side], side) {
-                (true, 0) => place[0] + (0.5 - TOUCH) * spacing,
-                (true, _) => place[1] - (0.5 - TOUCH) * spacing,
-                (false, 0) => f64::NEG_INFINITY,
-                (false, _) => f64::INFINITY,
-            }
-        };
         Self {
             solid,
-            first,
-            counts,
+            first: axes.map(|(first, _)| first),
+            counts: axes.map(|(_, count)| count),
             spacing,
             earlier: before.iter().filter(near).copied().collect(),
-            room: (std::array::from_fn(|a| room(a, 0)), std::array::from_fn(|a| room(a, 1))),
+            room: room(domain, spacing),
         }
     }
 
@@ -167,6 +144,41 @@ impl Sampler {
             }
         }
     }
+}
+
+/// First coordinate (m) and number of the particles of a box along an axis: on the walls that it touches, else in its middle.
+fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) -> (f64, u64) {
+    let length = (high - low) / spacing;
+    let closed = domain.closed[axis];
+    let place = [domain.min[axis], domain.max[axis]].map(f64::from);
+    let touches_low = closed[0] && (low - place[0]).abs() <= TOUCH * spacing;
+    let touches_high = closed[1] && (place[1] - high).abs() <= TOUCH * spacing;
+    let (count, start) = match (touches_low, touches_high) {
+        // From wall to wall nothing may be squeezed in.
+        (true, true) => centred((length + TOUCH).floor(), length, spacing),
+        (true, false) => (length.round(), 0.5 * spacing),
+        (false, true) => (length.round(), (length - length.round() + 0.5) * spacing),
+        (false, false) => centred(length.round(), length, spacing),
+    };
+    (low + start, count as u64)
+}
+
+/// [`along_box`] along all axes.
+pub(super) fn axes(domain: &Domain, spacing: f64, low: Vec3, high: Vec3) -> [(f64, u64); 3] {
+    std::array::from_fn(|a| along_box(domain, spacing, a, f64::from(low[a]), f64::from(high[a])))
+}
+
+/// Corners in m of where particles may be: half a spacing inside the closed walls, without limit at open sides.
+pub(super) fn room(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
+    let low = |axis: usize| match domain.closed[axis][0] {
+        true => f64::from(domain.min[axis]) + (0.5 - TOUCH) * spacing,
+        false => f64::NEG_INFINITY,
+    };
+    let high = |axis: usize| match domain.closed[axis][1] {
+        true => f64::from(domain.max[axis]) - (0.5 - TOUCH) * spacing,
+        false => f64::INFINITY,
+    };
+    (std::array::from_fn(low), std::array::from_fn(high))
 }
 
 /// `count` particles in the middle of a length given in spacings.

@@ -1,24 +1,40 @@
-//! From the blocks of a scene to particles on a lattice.
+//! From the blocks, meshes and files of a scene to particles.
 //!
 //! A box of whole spacings gets `size / particle_spacing` particles along each axis, the outermost half a spacing inside its
 //! faces: water that stands on a floor starts half a spacing above it, where the wall's kernel integral expects it
-//! (`boundary`). A ball gets those particles of a lattice around its centre that lie inside. Where blocks overlap, the one
-//! written first keeps the room. The order is that of the blocks, x fastest, then y, then z; ids count from 0.
+//! (`boundary`). A ball gets those particles of a lattice around its centre that lie inside; a closed mesh those of the lattice that
+//! the box round it would have, so that it keeps its volume. The particles of a file stay where they are. Where sources overlap, the
+//! one written first keeps the room: blocks, then meshes, then files. The order is theirs, x fastest, then y, then z; ids count from 0.
 
+mod filler;
 mod lattice;
+mod near;
+mod spacing;
 
 use glam::Vec3;
 use rayon::prelude::*;
-use splashdown_io::Particles;
+use serde::Serialize;
+use splashdown_io::{IoError, Particles};
 
-use crate::bodies::LoadedBody;
-use crate::scene::{Domain, Fluid, Scene};
+use crate::bodies::{BodyError, LoadedBody};
+use crate::flow::outlet;
+use crate::scene::{DensityMode, Domain, Fluid, Scene, place};
+use crate::{Simulation, SimulationError};
+pub(crate) use filler::{Filler, Reach, Taken, file_title, mesh_title, reaches};
 pub(crate) use lattice::Sampler;
+pub(crate) use spacing::typical_spacing;
 
 /// Most particles of a scene: 2^26.
 pub const MAX_PARTICLES: u64 = 1 << 26;
 
-/// Why a scene could not be filled with particles. [`Scene::load`] reports all of these earlier, with the file's line; a
+/// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
+///
+/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a wall. An
+/// integrated density feels no gap either: what is left empty here stays empty, and a body would displace its volume and
+/// half a spacing all around it (a fifth of a ball of 12 spacings). Centres of particles outside fill the room outside.
+const CLEARANCE: [f32; 2] = [0.49, 0.05];
+
+/// Why a scene could not be filled with particles. [`Scene::load`] reports most of these earlier, with the file's line; a
 /// scene built in code meets them here.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -41,6 +57,44 @@ pub enum SampleError {
     Empty {
         /// The spacing given, in m.
         spacing: f32,
+    },
+    /// A mesh that no particle fits into.
+    #[error("{what} holds no particle at a spacing of {spacing} m: enlarge it, or refine particle_spacing")]
+    TooSmall {
+        /// The piece of fluid.
+        what: String,
+        /// The spacing given, in m.
+        spacing: f32,
+    },
+    /// A mesh that cannot be filled.
+    #[error(transparent)]
+    Mesh(Box<BodyError>),
+    /// A file of particles.
+    #[error("{what}: {source}")]
+    File {
+        /// The piece of fluid.
+        what: String,
+        /// What is wrong with the file.
+        source: Box<IoError>,
+    },
+    /// A mesh or a file outside the domain.
+    #[error(
+        "{what} {how}: it spans {} to {} m, the domain is {} to {} m; check its scale, position and rotation, or enlarge the domain",
+        place(*low), place(*high), place(*min), place(*max)
+    )]
+    Beyond {
+        /// The piece of fluid.
+        what: String,
+        /// Whether a part of it or all.
+        how: &'static str,
+        /// Its lower corner in m.
+        low: [f32; 3],
+        /// Its upper corner in m.
+        high: [f32; 3],
+        /// The domain's lower corner, in m.
+        min: [f32; 3],
+        /// The domain's upper corner, in m.
+        max: [f32; 3],
     },
     /// Bodies take all the room.
     #[error(
@@ -67,51 +121,75 @@ pub enum SampleError {
     },
 }
 
-/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s); densities and pressures are absent.
-///
-/// # Errors
-/// [`SampleError`] if there are none, too many, or some outside the domain.
-pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
-    let (domain, fluid) = (&scene.domain, &scene.fluid);
-    let spacing = fluid.particle_spacing;
-    let estimate = estimate(fluid);
-    if estimate > MAX_PARTICLES {
-        let fitting = fitting_spacing(spacing, estimate);
-        return Err(SampleError::TooMany { count: estimate, spacing, fitting });
+impl From<BodyError> for SampleError {
+    fn from(error: BodyError) -> Self {
+        Self::Mesh(Box::new(error))
     }
-    let mut positions: Vec<[f32; 3]> = Vec::with_capacity(estimate as usize);
-    let mut velocities: Vec<[f32; 3]> = Vec::with_capacity(estimate as usize);
-    let mut outside = None;
-    for (block, sampler) in Sampler::all(domain, fluid).iter().enumerate() {
-        let velocity = fluid.blocks[block].velocity.to_array();
-        sampler.for_each(|position, free| {
-            if !free {
-                return;
-            }
-            let position = position.map(|x| x as f32);
-            let inside = (0..3).all(|a| position[a] >= domain.min[a] && position[a] <= domain.max[a]);
-            if !inside && outside.is_none() {
-                outside = Some((block, position));
-            }
-            positions.push(position);
-            velocities.push(velocity);
-        });
-    }
-    if let Some((block, position)) = outside {
-        let (min, max) = (domain.min.to_array(), domain.max.to_array());
-        return Err(SampleError::Outside { block, position, min, max });
-    }
-    if positions.is_empty() && scene.emitters.is_empty() {
-        return Err(SampleError::Empty { spacing });
-    }
-    let ids = (0..positions.len() as u32).collect();
-    Ok(Particles { ids, positions, velocities, densities: Vec::new(), pressures: Vec::new() })
 }
 
-/// How many particles [`particles`] makes, without storing them. Exact up to [`MAX_PARTICLES`], above that an estimate from the
-/// blocks' volumes; quick for sizes of any kind.
+/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s); densities and pressures are absent. Of a file's
+/// particles those outside the domain are left out.
+///
+/// # Errors
+/// [`SampleError`] if there are none, too many, or some outside the domain; or a mesh or file cannot be used.
+pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
+    let fluid = &scene.fluid;
+    let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
+    filler.blocks(fluid)?;
+    for (index, mesh) in fluid.meshes.iter().enumerate() {
+        filler.mesh(&mesh_title(index, mesh), mesh)?;
+    }
+    for (index, file) in fluid.files.iter().enumerate() {
+        filler.file(&file_title(index, file), file)?;
+    }
+    let particles = filler.finish();
+    if particles.is_empty() && scene.emitters.is_empty() {
+        return Err(SampleError::Empty { spacing: fluid.particle_spacing });
+    }
+    Ok(particles)
+}
+
+/// How many particles [`particles`] makes. Of blocks they are counted without storing them: exact up to [`MAX_PARTICLES`], above that an
+/// estimate from the blocks' volumes, quick for sizes of any kind. Meshes are filled and files read; one that cannot be used counts as none.
 pub fn count(scene: &Scene) -> u64 {
-    count_in(&scene.domain, &scene.fluid)
+    let fluid = &scene.fluid;
+    let of_blocks = count_in(&scene.domain, fluid);
+    if of_blocks > MAX_PARTICLES || (fluid.meshes.is_empty() && fluid.files.is_empty()) {
+        return of_blocks;
+    }
+    match particles(scene) {
+        Ok(particles) => particles.len() as u64,
+        Err(SampleError::TooMany { count, .. }) => count,
+        Err(_) => of_blocks,
+    }
+}
+
+/// What becomes of a scene's particles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct Inventory {
+    /// Particles at the start.
+    pub particles: u64,
+    /// Particles of blocks, meshes and files that are left out because they would be inside bodies.
+    pub removed: u64,
+    /// Particles that the emitters will bring until the scene's end.
+    pub emitted: u64,
+}
+
+/// Counts a scene's particles as a [`Simulation`] would have them; bodies are loaded for it, which may take seconds the first time.
+///
+/// # Errors
+/// [`SimulationError`] of sampling, bodies and outlets.
+pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
+    let emitted = outlet::forecast(scene)?.0;
+    let count = count_in(&scene.domain, &scene.fluid);
+    if scene.bodies.is_empty() || count > MAX_PARTICLES {
+        return Ok(Inventory { particles: self::count(scene), removed: 0, emitted });
+    }
+    let mut particles = particles(scene)?;
+    let removed =
+        remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
+    Ok(Inventory { particles: particles.len() as u64, removed: u64::from(removed), emitted })
 }
 
 pub(crate) fn count_in(domain: &Domain, fluid: &Fluid) -> u64 {
@@ -136,8 +214,10 @@ pub(crate) fn fitting_spacing(spacing: f32, count: u64) -> f32 {
     ((exact / unit * 1.001).ceil() * unit) as f32
 }
 
-/// Takes out the particles that lie inside bodies or nearer to one than `clearance` (m); how many. Ids count from 0 again.
-pub(crate) fn remove_inside(particles: &mut Particles, bodies: &[LoadedBody], clearance: f32) -> u32 {
+/// Takes out the particles that lie inside bodies or too near to one; how many. Ids count from 0 again.
+pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) -> u32 {
+    let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
+    let clearance = clearance * scene.fluid.particle_spacing;
     let poses: Vec<_> = bodies.iter().map(LoadedBody::pose).collect();
     let free = |x: Vec3| {
         bodies.iter().zip(&poses).all(|(body, (position, rotation))| {

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::things::Motion;
 use super::types::{KernelKind, Method, Scene, Shape, SurfaceTension};
-use crate::sample;
+use crate::flow::outlet;
+use crate::sample::{self, Inventory, Reach};
 
 /// Speed of sound over the largest speed to expect: keeps the density within one per cent (Monaghan 1994).
 const SOUND_RATIO: f32 = 10.0;
@@ -15,8 +16,12 @@ const LEAST_SPEED: f32 = 0.01;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Derived {
-    /// Number of particles.
+    /// Number of particles at the start. [`Derived::new`] counts those inside bodies, too; see [`Derived::with_inventory`].
     pub particles: u64,
+    /// Number of particles that emitters will bring until the end.
+    pub emitted: u64,
+    /// Number of particles on average over the scene's time, if none is drained.
+    pub mean_particles: f64,
     /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`, so that the starting lattice has exactly the
     /// rest density.
     pub particle_mass: f32,
@@ -28,7 +33,7 @@ pub struct Derived {
     pub support_radius: f32,
     /// Height in m of the fluid's highest point above the domain's lowest, along gravity; 0 without gravity.
     pub head: f32,
-    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block, emitter or body. The
+    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block, mesh, file, emitter or body. The
     /// first part is the front of a dam break of that height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head)
     /// of a fall from there. A scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
     pub reference_speed: f32,
@@ -51,15 +56,39 @@ impl Derived {
     /// From a checked scene. Values that a hand-made scene may break (zero spacing, no blocks) give numbers that make no sense, but no
     /// panic.
     pub fn new(scene: &Scene) -> Self {
+        Self::with_particles(scene, sample::count(scene))
+    }
+
+    /// From a checked scene whose particles have been counted, as [`sample::inventory`] does.
+    pub fn with_inventory(scene: &Scene, inventory: &Inventory) -> Self {
+        Self::with_particles(scene, inventory.particles)
+    }
+
+    fn with_particles(scene: &Scene, particles: u64) -> Self {
+        // An outlet that cannot be made is refused where the simulation starts.
+        let (emitted, present) = outlet::forecast(scene).unwrap_or_default();
+        let rest = Self::without_particles(scene);
+        let volume = f64::from(scene.fluid.particle_spacing).powi(3);
+        Self {
+            particles,
+            emitted,
+            mean_particles: particles as f64 + present,
+            volume: (particles as f64 * volume) as f32,
+            ..rest
+        }
+    }
+
+    /// Everything but the numbers of particles, which are zero: those of meshes take time to count.
+    pub(crate) fn without_particles(scene: &Scene) -> Self {
         let (fluid, solver) = (&scene.fluid, &scene.solver);
         let spacing = fluid.particle_spacing;
         let density = fluid.material.rest_density;
         let support_radius = solver.support_radius(spacing);
         let lattice_sum = lattice_sum(solver.method, solver.kernel, f64::from(solver.support_ratio));
         let volume = f64::from(spacing).powi(3);
-        let particles = sample::count(scene);
-        let head = head(scene);
-        let reference_speed = reference_speed(scene, head);
+        let reaches = sample::reaches(fluid);
+        let head = head(scene, &reaches);
+        let reference_speed = reference_speed(scene, head, &reaches);
         // Both equations of state have the slope c^2 = dp/drho at rest.
         let per_square = match solver.method {
             Method::Wcsph => density / solver.exponent,
@@ -78,10 +107,12 @@ impl Derived {
         let frames = scene.frame_count();
         let steps_per_frame = (f64::from(scene.frame_duration()) / f64::from(dt_estimate)).ceil() as u64;
         Self {
-            particles,
+            particles: 0,
+            emitted: 0,
+            mean_particles: 0.0,
             particle_mass: (f64::from(density) * volume / lattice_sum) as f32,
             lattice_sum,
-            volume: (particles as f64 * volume) as f32,
+            volume: 0.0,
             support_radius,
             head,
             reference_speed,
@@ -96,7 +127,7 @@ impl Derived {
 }
 
 /// Height of the fluid's highest point above the domain's lowest corner, against gravity.
-fn head(scene: &Scene) -> f32 {
+fn head(scene: &Scene, reaches: &[Reach]) -> f32 {
     let Some(down) = scene.gravity.try_normalize() else { return 0.0 };
     let corner = |low: glam::Vec3, high: glam::Vec3, lowest: bool| {
         let pick = |a: usize| if (down[a] > 0.0) == lowest { high[a] } else { low[a] };
@@ -108,10 +139,11 @@ fn head(scene: &Scene) -> f32 {
         Shape::Sphere { center, radius } => down.dot(center) - radius,
     });
     let outlets = scene.emitters.iter().map(|emitter| down.dot(emitter.position));
-    (floor - tops.chain(outlets).fold(floor, f32::min)).max(0.0)
+    let others = reaches.iter().map(|reach| corner(reach.low, reach.high, false));
+    (floor - tops.chain(outlets).chain(others).fold(floor, f32::min)).max(0.0)
 }
 
-fn reference_speed(scene: &Scene, head: f32) -> f32 {
+fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
     let blocks = scene.fluid.blocks.iter().map(|block| block.velocity.length());
     let emitters = scene.emitters.iter().map(|emitter| emitter.speed);
     // Of bodies only the speed of their origins: how far they reach is known when their meshes are read.
@@ -120,7 +152,13 @@ fn reference_speed(scene: &Scene, head: f32) -> f32 {
         Motion::Scripted(script) => script.max_speed(f64::from(scene.duration), 0.0),
         Motion::Dynamic { velocity, .. } => velocity.length(),
     });
-    let fastest = blocks.chain(emitters).chain(bodies).filter(|speed| speed.is_finite()).fold(0.0, f32::max);
+    let others = reaches.iter().map(|reach| reach.speed);
+    let fastest = blocks
+        .chain(emitters)
+        .chain(bodies)
+        .chain(others)
+        .filter(|speed| speed.is_finite())
+        .fold(0.0, f32::max);
     let shake = scene.domain.shake.map_or(0.0, |shake| shake.max_speed());
     let driven = (4.0 * scene.gravity.length() * head + fastest * fastest).sqrt() + shake;
     let material = &scene.fluid.material;

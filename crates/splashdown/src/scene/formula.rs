@@ -96,6 +96,37 @@ impl Formula {
         }
         stack.pop().unwrap_or(f64::NAN)
     }
+
+    /// A time in [0, `end`] (s) at which the formula has no finite value or one larger than `limit`, if one is found: among many samples,
+    /// and between those where the value is largest, for there a pole hides.
+    pub(crate) fn fault(&self, end: f64, limit: f64) -> Option<f64> {
+        const SAMPLES: usize = 2000;
+        const PEAKS: usize = 8;
+        const ROUNDS: u32 = 64;
+        let bad = |t: f64| !matches!(self.at(t).abs(), size if size <= limit);
+        let step = end / SAMPLES as f64;
+        let times: Vec<f64> = (0..=SAMPLES).map(|k| (step * k as f64).min(end)).collect();
+        if let Some(&t) = times.iter().find(|&&t| bad(t)) {
+            return Some(t);
+        }
+        let size: Vec<f64> = times.iter().map(|&t| self.at(t).abs()).collect();
+        let is_peak =
+            |k: &usize| size[*k] >= size[k.saturating_sub(1)] && size[*k] >= size[(k + 1).min(SAMPLES)];
+        let mut peaks: Vec<usize> = (0..=SAMPLES).filter(is_peak).collect();
+        peaks.sort_by(|a, b| size[*b].total_cmp(&size[*a]));
+        peaks.into_iter().take(PEAKS).find_map(|k| {
+            let (mut low, mut high) = ((times[k] - step).max(0.0), (times[k] + step).min(end));
+            for _ in 0..ROUNDS {
+                let third = (high - low) / 3.0;
+                let (a, b) = (low + third, high - third);
+                if let Some(t) = [a, b].into_iter().find(|&t| bad(t)) {
+                    return Some(t);
+                }
+                if self.at(a).abs() < self.at(b).abs() { low = a } else { high = b }
+            }
+            None
+        })
+    }
 }
 
 struct Parser<'a> {
@@ -253,6 +284,29 @@ mod tests {
             let got = Formula::parse(text).unwrap().at(0.5);
             assert!((got - value).abs() < 1e-12, "{text}: {got}");
         }
+    }
+
+    #[test]
+    fn formulas_that_blow_up_are_found_wherever_they_do() {
+        for (text, at) in [
+            ("1/t", 0.0),
+            ("sqrt(0.5-t)", 0.5),
+            ("log(t)", 0.0),
+            ("1/(t-1)", 1.0),
+            ("0.01/(t-0.12345)^2", 0.12345),
+            ("tan(t)", std::f64::consts::FRAC_PI_2),
+            ("exp(20*t)", 0.691),
+            ("sqrt(-1-t)", 0.0),
+        ] {
+            let found = Formula::parse(text).unwrap().fault(2.0, 1e6);
+            assert!(found.is_some_and(|t| (t - at).abs() < 2e-3), "{text}: {found:?}");
+        }
+        for text in
+            ["t", "1/(t+0.01)", "sqrt(t)", "100*sin(1000*t)", "tan(t/2)", "1/max(t-1, 0.001)", "floor(t)"]
+        {
+            assert_eq!(Formula::parse(text).unwrap().fault(2.0, 1e6), None, "{text}");
+        }
+        assert_eq!(Formula::parse("1/(t-3)").unwrap().fault(2.0, 1e6), None, "control: after the end");
     }
 
     #[test]

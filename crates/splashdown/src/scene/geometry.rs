@@ -173,7 +173,7 @@ fn report_overlaps(domain: &Domain, fluid: &Fluid, blocks: &[ReadBlock<'_>]) {
 }
 
 /// 1234567 as 1,234,567.
-fn grouped(count: u64) -> String {
+pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let groups: Vec<&str> =
         digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();

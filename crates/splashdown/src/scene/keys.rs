@@ -2,7 +2,7 @@
 
 use super::choice::{Choice, choices};
 use super::materials::MATERIALS;
-use super::spec::{Kind, Table, Word, a_number, a_vector, key, range, words};
+use super::spec::{Key, Kind, Table, Word, a_number, a_vector, key, range, words};
 use super::things::{BoundaryKind, UpAxis};
 use super::types::{
     ColourBy, DensityMode, Format, KernelKind, Method, NegativePressure, PictureKind, Sort, SurfaceTension,
@@ -20,7 +20,7 @@ const MAX_SINKS: usize = 64;
 const MAX_PROBES: usize = 256;
 /// Most keyframes of a body.
 const MAX_KEYFRAMES: usize = 4096;
-/// Most blocks in a scene.
+/// Most blocks in a scene; most meshes of fluid, and most files.
 const MAX_BLOCKS: usize = 256;
 
 choices! {
@@ -45,6 +45,8 @@ choices! {
         Disc = "disc",
         /// Needs `size`.
         Rectangle = "rectangle",
+        /// The outline of a closed mesh, cut through its origin across the direction: needs `mesh`.
+        Mesh = "mesh",
     }
     /// The word for a sink's shape.
     SinkWord {
@@ -52,6 +54,8 @@ choices! {
         Box = "box",
         /// Behind a plane: needs `point` and `normal`.
         Below = "below",
+        /// Inside a closed mesh: needs `mesh`.
+        Mesh = "mesh",
     }
     /// The word for what a probe measures.
     QuantityWord {
@@ -174,9 +178,17 @@ static FLUID: Table = Table {
         key(
             "block",
             Kind::Tables(&BLOCK, MAX_BLOCKS),
-            "Pieces of fluid at the start; at least one unless an emitter brings fluid.",
+            "Pieces of fluid at the start; at least one unless a mesh, a file or an emitter brings fluid.",
         )
         .also(&["blocks"]),
+        key(
+            "mesh",
+            Kind::Tables(&FLUID_MESH, MAX_BLOCKS),
+            "Closed meshes that are filled with fluid at the start.",
+        )
+        .also(&["meshes", "shape", "fill"]),
+        key("file", Kind::Tables(&FLUID_FILE, MAX_BLOCKS), "Files of particles that are there at the start.")
+            .also(&["files", "particles"]),
     ],
 };
 
@@ -194,34 +206,89 @@ static BLOCK: Table = Table {
     ],
 };
 
+static FLUID_MESH: Table = Table {
+    about: "A closed mesh filled with fluid at the start. Where it overlaps blocks, or meshes before it, those keep the room.",
+    keys: &[
+        MESH.required(),
+        SCALE,
+        UP,
+        POSITION,
+        ROTATION,
+        key("velocity", a_vector(1000.0, "m/s"), "Velocity at the start.").default("[0.0, 0.0, 0.0]"),
+    ],
+};
+
+static FLUID_FILE: Table = Table {
+    about: "Particles of a file, as they lie, at the start: those of a frame of an earlier run, for example. Where they overlap blocks, meshes \
+            or files before them, those keep the room.",
+    keys: &[
+        key(
+            "file",
+            Kind::Text("a file (.ply, .npy, .vtk, .vtu, .vtp, .bgeo) beside the scene file"),
+            "The particles.",
+        )
+        .required()
+        .also(&["path", "name", "particles"]),
+        SCALE,
+        key("position", a_vector(FAR, "m"), "Where the file's origin lies.")
+            .default("[0.0, 0.0, 0.0]")
+            .also(&["translation", "offset"]),
+        key(
+            "rotation",
+            a_vector(36_000.0, "degrees"),
+            "Turned about the file's x, then y, then z, velocities too.",
+        )
+        .default("[0.0, 0.0, 0.0]"),
+        key(
+            "velocity",
+            a_vector(1000.0, "m/s"),
+            "Added to the file's velocities, which are zero where it has none.",
+        )
+        .default("[0.0, 0.0, 0.0]"),
+    ],
+};
+
+/// The mesh of anything that has one.
+const MESH: Key = key(
+    "mesh",
+    Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
+    "Its triangles: a file, or one of the models that come with the program, such as lighthouse; a name that is none is answered with the list.",
+)
+.also(&["file", "model", "geometry_file"]);
+const SCALE: Key = key(
+    "scale",
+    Kind::Scale(range(1e-6, 1e6, "")),
+    "Metres per unit of the file, or the file's unit: \"mm\" is 0.001.",
+)
+.default("1.0")
+.also(&["units", "unit"]);
+const UP: Key = key("up", Kind::Word(words::<UpAxis>), "Which axis of the file points up.").default("\"y\"");
+const POSITION: Key = key("position", a_vector(FAR, "m"), "Where the mesh's origin lies.")
+    .default("[0.0, 0.0, 0.0]")
+    .also(&["translation", "center"]);
+const ROTATION: Key = key("rotation", a_vector(36_000.0, "degrees"), "Turned about x, then y, then z.")
+    .default("[0.0, 0.0, 0.0]");
+
 static BODY: Table = Table {
     about: "A solid that the fluid meets: it stands, moves as written, or is carried.",
     keys: &[
         key("name", Kind::Name, "Its name in messages and files.").required(),
-        key(
-            "mesh",
-            Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
-            "Its triangles: a file, or one of the models that come with the program, such as lighthouse; a name that is none is answered with the list.",
-        )
-        .required()
-        .also(&["file", "model", "geometry_file", "shape"]),
-        key("scale", a_number(1e-6, 1e6, ""), "Metres per unit of the file: 0.001 for millimetres.")
-            .default("1.0")
-            .also(&["units", "size"]),
-        key("up", Kind::Word(words::<UpAxis>), "Which axis of the file points up.").default("\"y\""),
-        key("position", a_vector(FAR, "m"), "Where the mesh's origin lies.")
-            .default("[0.0, 0.0, 0.0]")
-            .also(&["translation", "center"]),
-        key("rotation", a_vector(36_000.0, "degrees"), "Turned about x, then y, then z.")
-            .default("[0.0, 0.0, 0.0]"),
+        MESH.required().also(&["file", "model", "geometry_file", "shape"]),
+        SCALE,
+        UP,
+        POSITION,
+        ROTATION,
         key(
             "motion",
             Kind::Word(words::<MotionWord>),
             "How it moves. Default: static; scripted where a keyframe, move or turn is given.",
         )
         .also(&["type", "dynamic"]),
-        key("density", a_number(1.0, 30_000.0, "kg/m^3"), "Of a dynamic body.").default("500.0").also(&["rho"]),
-        key("velocity", a_vector(1000.0, "m/s"), "Of a dynamic body at the start.").default("[0.0, 0.0, 0.0]"),
+        key("density", a_number(1.0, 30_000.0, "kg/m^3"), "Of a dynamic body.")
+            .default("500.0")
+            .also(&["rho"]),
+        key("velocity", a_vector(1000.0, "m/s"), "Of a dynamic body at the start.")
+            .default("[0.0, 0.0, 0.0]"),
         key("angular_velocity", a_vector(1000.0, "rad/s"), "Of a dynamic body at the start.")
             .default("[0.0, 0.0, 0.0]"),
         key(
@@ -241,18 +308,25 @@ static BODY: Table = Table {
             Kind::Texts(3, super::formula::ALLOWED),
             "Formulas of t by which the mesh turns about its own x, then y, then z, in degrees.",
         ),
-        key("keyframe", Kind::Tables(&KEYFRAME, MAX_KEYFRAMES), "Where it is at which time.").also(&["keyframes"]),
+        key("keyframe", Kind::Tables(&KEYFRAME, MAX_KEYFRAMES), "Where it is at which time.")
+            .also(&["keyframes"]),
         key("friction", a_number(0.0, 1.0, ""), "0: the fluid slips along it; 1: it sticks.").default("0.0"),
-        key("adhesion", a_number(0.0, 100.0, "m/s^2"), "How strongly it pulls the fluid beside it.").default("0.0"),
+        key("adhesion", a_number(0.0, 100.0, "m/s^2"), "How strongly it pulls the fluid beside it.")
+            .default("0.0"),
         key("boundary", Kind::Word(words::<BoundaryKind>), "How the fluid feels it.").default("\"map\""),
-        key("shell", Kind::Boolean, "Whether the mesh is a sheet with a thickness. Default: decided by the mesh."),
+        key(
+            "shell",
+            Kind::Boolean,
+            "Whether the mesh is a sheet with a thickness. Default: decided by the mesh.",
+        ),
         key(
             "half_thickness",
             a_number(1e-6, 10.0, "m"),
             "Half the thickness of a sheet. Default: half the particle spacing.",
         )
         .also(&["thickness"]),
-        key("colour", Kind::Numbers(3, range(0.0, 1.0, "")), "Linear red, green, blue in pictures.").also(&["color"]),
+        key("colour", Kind::Numbers(3, range(0.0, 1.0, "")), "Linear red, green, blue in pictures.")
+            .also(&["color"]),
     ],
 };
 
@@ -263,7 +337,11 @@ static EMITTER: Table = Table {
         key("shape", Kind::Word(words::<OutletWord>), "The shape of its outlet.").default("\"disc\""),
         key("radius", a_number(1e-5, FAR, "m"), "Radius of a disc."),
         key("size", Kind::Numbers(2, range(1e-5, FAR, "m")), "Edge lengths of a rectangle: across, and up."),
-        key("position", a_vector(FAR, "m"), "The middle of the outlet.")
+        MESH,
+        SCALE,
+        UP,
+        ROTATION,
+        key("position", a_vector(FAR, "m"), "The middle of the outlet; a mesh's origin.")
             .required()
             .also(&["center", "translation"]),
         key("direction", a_vector(FAR, ""), "Along which the fluid leaves; of any length.")
@@ -287,6 +365,11 @@ static SINK: Table = Table {
         key("max", a_vector(FAR, "m"), "Upper corner of a box."),
         key("point", a_vector(FAR, "m"), "A point of a plane."),
         key("normal", a_vector(FAR, ""), "Away from what is taken out; of any length."),
+        MESH,
+        SCALE,
+        UP,
+        POSITION,
+        ROTATION,
     ],
 };
 

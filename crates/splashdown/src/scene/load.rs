@@ -8,7 +8,6 @@ use super::errors::{SceneErrors, SceneProblem};
 use super::parse;
 use super::presets::presets;
 use super::suggest;
-use super::things::MeshShape;
 use super::types::Scene;
 
 /// Longest scene file in bytes; a larger file is surely not one.
@@ -19,7 +18,7 @@ impl Scene {
     ///
     /// # Errors
     /// Everything that is wrong with it, at once: unreadable, too large, not text, not TOML, unknown or missing keys, values out of range,
-    /// values that contradict one another.
+    /// values that contradict one another, meshes and particles that are missing or cannot be used.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -48,34 +47,21 @@ impl Scene {
                 format!("the file is larger than {} MiB: this is not a scene file", MAX_BYTES >> 20);
             return Err(refuse(message, "scene files are short texts in TOML"));
         }
-        let mut scene = Self::from_bytes(&bytes, &file)?;
-        scene.source = Some(path.to_owned());
-        if let Some(folder) = path.parent() {
-            scene.find_files_from(folder);
-        }
-        Ok(scene)
+        // A file's name alone has the empty path as its folder, from which files are named as well.
+        let scene = Self::from_bytes(&bytes, &file, path.parent())?;
+        Ok(Self { source: Some(path.to_owned()), ..scene })
     }
 
-    /// Files are named from the folder of the scene file.
-    fn find_files_from(&mut self, folder: &Path) {
-        for body in &mut self.bodies {
-            if let MeshShape::File(file) = &mut body.mesh.shape
-                && file.is_relative()
-            {
-                *file = folder.join(&file);
-            }
-        }
-    }
-
-    /// Checks the text of a scene file; `file_name` is for messages.
+    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not looked for: paths stay as written, and
+    /// what is wrong with them is told when a simulation begins.
     ///
     /// # Errors
     /// As [`Scene::load`].
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneErrors> {
-        Self::from_bytes(text.as_bytes(), file_name)
+        Self::from_bytes(text.as_bytes(), file_name, None)
     }
 
-    fn from_bytes(bytes: &[u8], file: &str) -> Result<Self, SceneErrors> {
+    fn from_bytes(bytes: &[u8], file: &str, folder: Option<&Path>) -> Result<Self, SceneErrors> {
         let refuse = |message: String| {
             SceneErrors::one(SceneProblem::of_file(
                 file,
@@ -93,7 +79,7 @@ impl Scene {
             return Err(refuse("this is a binary file, not a scene".into()));
         }
         match std::str::from_utf8(bytes) {
-            Ok(text) => parse::parse(text.strip_prefix('\u{feff}').unwrap_or(text), file),
+            Ok(text) => parse::parse(text.strip_prefix('\u{feff}').unwrap_or(text), file, folder),
             Err(error) => {
                 let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
                 Err(refuse(format!("line {line} is not UTF-8 text")))

@@ -1,8 +1,9 @@
 //! The scene file: from TOML to checked values.
 //!
 //! `keys.rs` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along that table and collects every
-//! problem with its line; `parse.rs` puts the values together; `geometry.rs` and `warnings.rs` compare them with each other. `schema.rs`
-//! writes the same table as a JSON schema and as a page of documentation, so parser, schema and docs cannot disagree.
+//! problem with its line; `parse.rs` puts the values together; `geometry.rs` and `warnings.rs` compare them with each other, `files.rs`
+//! with the files that they name. `schema.rs` writes the same table as a JSON schema and as a page of documentation, so parser, schema
+//! and docs cannot disagree.
 //!
 //! ```
 //! let text = r#"
@@ -29,6 +30,7 @@
 mod choice;
 mod derived;
 mod errors;
+mod files;
 mod formula;
 mod framing;
 mod geometry;
@@ -47,6 +49,8 @@ mod things;
 mod types;
 mod values;
 mod warnings;
+
+pub(crate) use spec::place;
 
 pub use choice::Choice;
 pub use derived::{Derived, lattice_sum};

@@ -5,6 +5,7 @@
 
 use std::cell::RefCell;
 use std::ops::Range as Span;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -15,7 +16,8 @@ use super::source::Source;
 use super::spec::{Kind, Table};
 use super::suggest;
 use super::values::{
-    Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_word, several, wrong_type,
+    Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_scale, one_word, several,
+    wrong_type,
 };
 
 /// A file with more problems than this is not a scene; reading on would cost time and memory for nothing.
@@ -31,13 +33,15 @@ pub(crate) type Read<T> = Result<Option<T>, Reported>;
 /// The list of problems of one file.
 pub(crate) struct Reader<'a> {
     pub source: Source<'a>,
+    /// From where files are named; `None` for a text without a file.
+    folder: Option<&'a Path>,
     problems: RefCell<Vec<SceneProblem>>,
     warnings: RefCell<Vec<SceneProblem>>,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(source: Source<'a>) -> Self {
-        Self { source, problems: RefCell::default(), warnings: RefCell::default() }
+    pub fn new(source: Source<'a>, folder: Option<&'a Path>) -> Self {
+        Self { source, folder, problems: RefCell::default(), warnings: RefCell::default() }
     }
 
     pub fn report(&self, problem: SceneProblem) -> Reported {
@@ -128,6 +132,23 @@ impl<'r> Section<'r> {
         self.reader.report(problem);
     }
 
+    /// The path of a file that this key names: from the scene file's folder, where that is known; the file must be there then.
+    pub fn file(&self, name: &str, file: &str) -> Result<PathBuf, Reported> {
+        let Some(folder) = self.reader.folder else { return Ok(file.into()) };
+        let path = folder.join(file);
+        if path.exists() {
+            return Ok(path);
+        }
+        let message = format!("{}: there is no file {:?}", self.key_path(name), path.display().to_string());
+        let hint = "files are named from the scene file's folder";
+        Err(self.complain(name, message, "", hint))
+    }
+
+    /// Whether the scene has a place on disk, so that the files it names can be looked for.
+    pub fn has_folder(&self) -> bool {
+        self.reader.folder.is_some()
+    }
+
     /// The section's own path, for example `fluid.block[1]`.
     pub fn path(&self) -> &str {
         &self.path
@@ -207,6 +228,14 @@ impl<'r> Section<'r> {
     pub fn number(&self, name: &str) -> Read<f32> {
         self.read(name, |value, kind| match kind {
             Kind::Number(range) => one_number(value, range).map(|x| x as f32),
+            _ => Err(undeclared(kind)),
+        })
+    }
+
+    /// A number, or a unit's word as metres.
+    pub fn scale(&self, name: &str) -> Read<f32> {
+        self.read(name, |value, kind| match kind {
+            Kind::Scale(range) => one_scale(value, range).map(|x| x as f32),
             _ => Err(undeclared(kind)),
         })
     }

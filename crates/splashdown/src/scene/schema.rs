@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::keys::ROOT;
 use super::presets::presets;
-use super::spec::{Key, Kind, Range, Table, Word};
+use super::spec::{Key, Kind, Range, Table, UNITS, Word};
 use super::types::Scene;
 use super::values::describe;
 use crate::sample;
@@ -39,6 +39,10 @@ fn property(key: &Key) -> Value {
     let mut value = match key.kind {
         Kind::Number(range) => number("number", range),
         Kind::Numbers(count, range) => list(count, number("number", range)),
+        Kind::Scale(range) => {
+            let units: Vec<_> = UNITS.iter().map(|(word, _)| *word).collect();
+            json!({ "anyOf": [number("number", range), { "type": "string", "enum": units }] })
+        }
         Kind::Integer(range) => number("integer", range),
         Kind::Integers(count, range) => list(count, number("integer", range)),
         Kind::Boolean => json!({ "type": "boolean" }),

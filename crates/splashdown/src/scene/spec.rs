@@ -12,6 +12,8 @@ pub(crate) enum Kind {
     Number(Range),
     /// That many finite numbers, each in the range.
     Numbers(usize, Range),
+    /// A number, or the word for a unit of length ([`UNITS`]).
+    Scale(Range),
     /// A whole number.
     Integer(Range),
     /// That many whole numbers, each in the range.
@@ -33,6 +35,10 @@ pub(crate) enum Kind {
     /// A list of tables, of this many at most.
     Tables(&'static Table, usize),
 }
+
+/// Units of length as the scale of a file, in m.
+pub(crate) const UNITS: &[(&str, f64)] =
+    &[("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254), ("ft", 0.3048)];
 
 /// Both ends are allowed.
 #[derive(Debug, Clone, Copy)]
@@ -130,4 +136,9 @@ pub(crate) fn rounded(value: f32) -> String {
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { format!("{value}") }
+}
+
+/// A point in m, its coordinates with the digits that mean something.
+pub(crate) fn place(x: [f32; 3]) -> String {
+    format!("[{}]", x.map(rounded).join(", "))
 }

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::choice::choices;
 use super::errors::SceneWarning;
@@ -168,8 +168,21 @@ pub struct FluidMesh {
 pub struct FluidFile {
     /// PLY, VTK, VTU, NPY or BGEO.
     pub path: PathBuf,
-    /// Added to every position, in m.
-    pub offset: Vec3,
+    /// Metres per unit of the file; positions and velocities are multiplied by it.
+    pub scale: f32,
+    /// Turns positions and velocities about the file's origin.
+    pub rotation: Quat,
+    /// Where the file's origin lies, in m.
+    pub position: Vec3,
+    /// Added to the file's velocities, which are zero where it has none, in m/s.
+    pub velocity: Vec3,
+}
+
+impl FluidFile {
+    /// A point of the file in the scene, in m.
+    pub fn place(&self, x: Vec3) -> Vec3 {
+        self.position + self.rotation * (self.scale * x)
+    }
 }
 
 /// The shape of a [`Block`].

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::spec::{Key, Kind, Range, Word, number};
+use super::spec::{Key, Kind, Range, UNITS, Word, number};
 use super::suggest;
 
 /// What is wrong with one value.
@@ -68,6 +68,45 @@ pub(crate) fn one_number(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong
         });
     }
     in_range(given, range)
+}
+
+/// A number, or a unit's word.
+pub(crate) fn one_scale(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong> {
+    let DeValue::String(given) = value else {
+        return one_number(value, range).map_err(|wrong| Wrong { allowed: scales(range), ..wrong });
+    };
+    if let Some((_, metres)) = UNITS.iter().find(|(word, _)| word == given) {
+        return Ok(*metres);
+    }
+    let names: Vec<&str> = UNITS.iter().map(|(word, _)| *word).collect();
+    let long = [
+        ("millimet", "mm"),
+        ("centimet", "cm"),
+        ("met", "m"),
+        ("inch", "in"),
+        ("foot", "ft"),
+        ("feet", "ft"),
+        ("\"", "in"),
+        ("'", "ft"),
+    ];
+    let lower = given.trim().to_ascii_lowercase();
+    let meant = names
+        .iter()
+        .copied()
+        .find(|name| *name == lower)
+        .or_else(|| long.iter().find(|(start, _)| lower.starts_with(start)).map(|(_, word)| *word));
+    let hint = if lower.parse::<f64>().is_ok() {
+        Some("write the number without quotes".to_owned())
+    } else {
+        meant.map(|word| format!("did you mean {word:?}?"))
+    };
+    let shown: String = given.chars().filter(|c| !c.is_control()).take(40).collect();
+    Err(Wrong { message: format!("cannot be {shown:?}"), allowed: scales(range), hint, item: None })
+}
+
+fn scales(range: Range) -> String {
+    let words: Vec<_> = UNITS.iter().map(|(word, _)| format!("{word:?}")).collect();
+    format!("{range}, or the file's unit: {}", words.join(", "))
 }
 
 fn number_alone(unit: &str) -> String {
@@ -150,6 +189,7 @@ pub(crate) fn describe(key: &Key) -> String {
     match key.kind {
         Kind::Number(range) => range.to_string(),
         Kind::Numbers(count, range) => format!("{count} numbers, each {range}"),
+        Kind::Scale(range) => scales(range),
         Kind::Integer(range) => format!("whole, {range}"),
         Kind::Integers(count, range) => format!("{count} whole numbers, each {range}"),
         Kind::Boolean => "true, false".to_owned(),

@@ -11,7 +11,7 @@ const MANY_STEPS: u64 = 10_000_000;
 const SLOWEST_SOUND: f32 = 5.0;
 
 pub(crate) fn check(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>) {
-    let derived = Derived::new(scene);
+    let derived = Derived::without_particles(scene);
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",

@@ -218,6 +218,12 @@ fn check(mesh: &Mesh) -> Result<(), SolidError> {
     }
 }
 
+/// How many times triangles wind round a point: 1 inside a mesh that faces outwards, 0 outside (Jacobson et al. 2013).
+pub(crate) fn winding(triangles: &[[Vec3; 3]], x: Vec3) -> f64 {
+    let angle: f64 = triangles.iter().map(|t| f64::from(bvh::solid_angle(x, t))).sum();
+    angle / (4.0 * std::f64::consts::PI)
+}
+
 /// Lower and upper corner of a mesh, in m.
 pub(crate) fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     mesh.vertices.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &v| {

@@ -179,7 +179,7 @@ pub fn begin_frame(fields: &Fields) -> Recording {
 /// The constants of a scene.
 pub fn params(scene: &Scene, particles: u32) -> Params {
     let (solver, material) = (&scene.solver, &scene.fluid.material);
-    let derived = Derived::new(scene);
+    let derived = Derived::without_particles(scene);
     let support_radius = derived.support_radius;
     let rest_density = material.rest_density;
     let (shake, shake_rate) = scene.domain.shake.map_or_else(Default::default, |shake| {

@@ -80,6 +80,20 @@ fn every_key_of_a_body_is_read() {
 }
 
 #[test]
+fn scales_are_numbers_or_units() {
+    for (written, expected) in [
+        ("2", 2.0),
+        ("\"mm\"", 0.001),
+        ("\"cm\"", 0.01),
+        ("\"m\"", 1.0),
+        ("\"in\"", 0.0254),
+        ("\"ft\"", 0.3048),
+    ] {
+        assert_eq!(body(&format!("{PLAIN}\nscale = {written}")).mesh.scale, expected, "{written}");
+    }
+}
+
+#[test]
 fn rotations_are_about_x_then_y_then_z() {
     let turned = body(&format!("{PLAIN}\nrotation = [90, 0, 90]")).mesh.rotation;
     let expected = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2)
@@ -123,6 +137,24 @@ fn mistakes_in_bodies_are_named_with_what_is_allowed() {
         ),
         ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"speed*t\", \"0\"]", &["\"speed\"", "sin cos"]),
         ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"1/t\", \"0\"]", &["no value at t = 0"]),
+        (
+            "name = \"a\"\nmesh = \"cube\"\nmove = [\"sqrt(0.5-t)\", \"0\", \"0\"]",
+            &["body[0].move", "no value at t = 0.50"],
+        ),
+        (
+            "name = \"a\"\nmesh = \"cube\"\nmove = [\"0\", \"0.1/(t-0.3333)\", \"0\"]",
+            &["at t = 0.3333", "duration"],
+        ),
+        (
+            "name = \"a\"\nmesh = \"cube\"\n[[body.keyframe]]\ntime = 1\n[[body.keyframe]]\ntime = 0.5",
+            &["body[0].keyframe[1].time = 0.5", "not after"],
+        ),
+        (
+            "name = \"a\"\nmesh = \"cube\"\nscale = \"millimetre\"",
+            &["body[0].scale cannot be \"millimetre\"", "did you mean \"mm\"?"],
+        ),
+        ("name = \"a\"\nmesh = \"cube\"\nscale = \"0.1\"", &["without quotes"]),
+        ("name = \"a\"\nmesh = \"cube\"\nscale = -1", &["body[0].scale is -1", "\"ft\""]),
         ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"t\"]", &["3 texts"]),
         (
             "name = \"a\"\nmesh = \"cube\"\n[[body.keyframe]]\ntime = 1\n[[body.keyframe]]\ntime = 1",
@@ -149,6 +181,14 @@ fn files_are_named_from_the_scene_file_s_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, with_body("name = \"a\"\nmesh = \"models/a.obj\"")).expect("written");
+    let missing = Scene::load(&path).map(drop).expect_err("there is no such file").to_string();
+    assert!(
+        missing.contains("body[0].mesh: there is no file") && missing.contains("scene.toml:22"),
+        "{missing}"
+    );
+    std::fs::create_dir(folder.path().join("models")).expect("a folder");
+    std::fs::write(folder.path().join("models/a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        .expect("written");
     let scene = Scene::load(&path).expect("legal");
     assert_eq!(scene.bodies[0].mesh.shape, MeshShape::File(folder.path().join("models/a.obj")));
 }

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use splashdown::scene::{Outlet, Scene, SinkRegion};
+use splashdown::scene::{Outlet, Scene, SinkRegion, UpAxis};
 
 use crate::{CUBE, parse};
 
@@ -29,6 +29,20 @@ fn emitters_and_sinks_are_read() {
 }
 
 #[test]
+fn outlets_and_sinks_may_be_meshes() {
+    let scene = with(
+        "[[emitter]]\nname = \"cross\"\nshape = \"mesh\"\nmesh = \"gear\"\nscale = 0.5\nup = \"z\"\nrotation = [0, 0, 90]\n\
+         position = [0.5, 0.5, 0.5]\ndirection = [0, 0, 1]\nspeed = 1\n\
+         [[sink]]\nname = \"ball\"\nshape = \"mesh\"\nmesh = \"sphere\"\nscale = \"cm\"\nposition = [0.9, 0.1, 0.9]",
+    );
+    let Outlet::Mesh(outlet) = &scene.emitters[0].outlet else { panic!("{:?}", scene.emitters[0]) };
+    assert_eq!((outlet.scale, outlet.up, outlet.position), (0.5, UpAxis::Z, Vec3::splat(0.5)));
+    assert!((outlet.rotation * Vec3::X).distance(Vec3::Y) < 1e-6);
+    let SinkRegion::Mesh(sink) = &scene.sinks[0].region else { panic!("{:?}", scene.sinks[0]) };
+    assert_eq!((sink.scale, sink.position), (0.01, Vec3::new(0.9, 0.1, 0.9)));
+}
+
+#[test]
 fn an_emitter_may_stand_for_the_blocks() {
     let block = "[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n";
     let dry = CUBE.replace(block, "");
@@ -44,6 +58,18 @@ fn mistakes_in_emitters_and_sinks_are_named() {
         (TAP.replace("[0, -2, 0]", "[0, 0, 0]"), "has no length"),
         (format!("{TAP}\nstart = 1\nend = 0.5"), "ends at 0.5 s"),
         (TAP.replace("speed = 2", ""), "speed is missing"),
+        (format!("{TAP}\n{TAP}"), "there are two emitters called \"tap\""),
+        (
+            "[[sink]]\nname = \"a\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n".repeat(2),
+            "there are two sinks called \"a\"",
+        ),
+        (TAP.replace("0.1", "0.6"), "the outlet of emitter \"tap\" reaches out of the domain"),
+        (TAP.replace("radius = 0.1", "shape = \"mesh\""), "emitter[0].mesh is missing: a mesh needs it"),
+        (
+            TAP.replace("radius", "shape = \"mesh\"\nmesh = \"cube\"\nradius"),
+            "emitter[0].radius does not belong",
+        ),
+        ("[[sink]]\nname = \"a\"\nmesh = \"cube\"".into(), "sink[0].mesh does not belong to shape = \"box\""),
         ("[[sink]]\nname = \"a\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]".into(), "not above min"),
         ("[[sink]]\nname = \"a\"\nshape = \"below\"\npoint = [0, 0, 0]".into(), "normal is missing"),
     ] {

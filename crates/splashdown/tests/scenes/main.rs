@@ -3,6 +3,8 @@
 mod bodies;
 mod derived;
 mod errors;
+mod files;
+mod fill;
 mod flow;
 mod hostile;
 mod presets;

@@ -2,16 +2,18 @@
 
 use glam::Vec3;
 
-use super::{Part, needed};
+use super::things::{self, named_once};
+use super::{Part, given, needed};
+use crate::flow::outlet;
+use crate::scene::choice::Choice;
 use crate::scene::keys::{OutletWord, SinkWord};
-use crate::scene::reader::Section;
+use crate::scene::reader::{Reported, Section};
 use crate::scene::things::{Emitter, Outlet, Sink, SinkRegion};
 use crate::scene::types::Domain;
 
 /// Everything that `[[emitter]]` says.
-pub(super) fn read_emitters(sections: &[Section<'_>], domain: Option<&Domain>) -> Part<Vec<Emitter>> {
-    let emitters: Vec<Part<Emitter>> = sections.iter().map(|section| read_emitter(section, domain)).collect();
-    emitters.into_iter().collect()
+pub(super) fn read_emitters(sections: &[Section<'_>], domain: Option<&Domain>) -> Vec<Part<Emitter>> {
+    named_once(sections, "emitters", |section| read_emitter(section, domain), |emitter| &emitter.name)
 }
 
 fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter> {
@@ -38,35 +40,67 @@ fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter>
             format!("emitter {:?} ends at {end} s, but begins at {} s", emitter.name, emitter.start);
         return Err(section.complain("end", message, &format!("more than {} s", emitter.start), ""));
     }
-    if let Some(domain) = domain
-        && (emitter.position.cmplt(domain.min).any() || emitter.position.cmpgt(domain.max).any())
-    {
-        let message = format!("emitter {:?} is at {} m, outside the domain", emitter.name, emitter.position);
-        let allowed = format!("{} to {} m", domain.min, domain.max);
-        return Err(section.complain(
-            "position",
-            message,
-            &allowed,
-            "move the outlet, or enlarge the domain",
-        ));
+    if let Some(domain) = domain {
+        let position = emitter.position;
+        if position.cmplt(domain.min).any() || position.cmpgt(domain.max).any() {
+            let message = format!("emitter {:?} is at {position} m, outside the domain", emitter.name);
+            let allowed = format!("{} to {} m", domain.min, domain.max);
+            let hint = "move the outlet, or enlarge the domain";
+            return Err(section.complain("position", message, &allowed, hint));
+        }
+        let reach = reach(&emitter);
+        // Rounding of an outlet that fills a wall is no fault.
+        let slack = 1e-3 * reach.max_element();
+        if (position - reach).cmplt(domain.min - slack).any()
+            || (position + reach).cmpgt(domain.max + slack).any()
+        {
+            return Err(outlet_outside(section, &emitter, domain));
+        }
     }
     Ok(emitter)
+}
+
+/// How far an outlet reaches along each axis, in m; of a mesh only its middle is known yet.
+fn reach(emitter: &Emitter) -> Vec3 {
+    let (across, up) = outlet::axes(emitter.direction);
+    match emitter.outlet {
+        Outlet::Disc { radius } => {
+            let d = emitter.direction;
+            radius * (Vec3::ONE - d * d).max(Vec3::ZERO).map(f32::sqrt)
+        }
+        Outlet::Rectangle { size } => 0.5 * (size[0] * across.abs() + size[1] * up.abs()),
+        Outlet::Mesh(_) => Vec3::ZERO,
+    }
+}
+
+/// Reports an outlet that is partly outside.
+pub(crate) fn outlet_outside(section: &Section<'_>, emitter: &Emitter, domain: &Domain) -> Reported {
+    let message = format!("the outlet of emitter {:?} reaches out of the domain", emitter.name);
+    let allowed = format!("all of it from {} to {} m", domain.min, domain.max);
+    section.complain("position", message, &allowed, "move or shrink the outlet, or enlarge the domain")
 }
 
 fn read_outlet(section: &Section<'_>) -> Part<Outlet> {
     let shape = section.choice::<OutletWord>("shape");
     let radius = section.number("radius");
     let size = section.numbers("size");
-    match shape?.unwrap_or(OutletWord::Disc) {
+    let word = shape?.unwrap_or(OutletWord::Disc);
+    let fitting: &[&str] = match word {
+        OutletWord::Disc => &["radius"],
+        OutletWord::Rectangle => &["size"],
+        OutletWord::Mesh => &["mesh", "scale", "up", "rotation"],
+    };
+    refuse_others(section, word.name(), fitting, &["radius", "size", "mesh", "scale", "up", "rotation"])?;
+    match word {
         OutletWord::Disc => Ok(Outlet::Disc { radius: given(section, "radius", radius?, "disc")? }),
         OutletWord::Rectangle => Ok(Outlet::Rectangle { size: given(section, "size", size?, "rectangle")? }),
+        OutletWord::Mesh => things::read_mesh(section).map(Outlet::Mesh),
     }
 }
 
 /// Everything that `[[sink]]` says.
-pub(super) fn read_sinks(sections: &[Section<'_>]) -> Part<Vec<Sink>> {
-    let sinks: Vec<Part<Sink>> = sections.iter().map(read_sink).collect();
-    sinks.into_iter().collect()
+pub(super) fn read_sinks(sections: &[Section<'_>]) -> Vec<Part<Sink>> {
+    named_once(sections, "sinks", read_sink, |sink| &sink.name)
 }
 
 fn read_sink(section: &Section<'_>) -> Part<Sink> {
@@ -74,7 +108,15 @@ fn read_sink(section: &Section<'_>) -> Part<Sink> {
     let shape = section.choice::<SinkWord>("shape");
     let (min, max) = (section.numbers::<3>("min"), section.numbers::<3>("max"));
     let point = section.numbers::<3>("point");
-    let region = match shape?.unwrap_or(SinkWord::Box) {
+    let word = shape?.unwrap_or(SinkWord::Box);
+    let fitting: &[&str] = match word {
+        SinkWord::Box => &["min", "max"],
+        SinkWord::Below => &["point", "normal"],
+        SinkWord::Mesh => &["mesh", "scale", "up", "position", "rotation"],
+    };
+    let all = ["min", "max", "point", "normal", "mesh", "scale", "up", "position", "rotation"];
+    refuse_others(section, word.name(), fitting, &all)?;
+    let region = match word {
         SinkWord::Box => {
             let min = Vec3::from(given(section, "min", min?, "box")?);
             let max = Vec3::from(given(section, "max", max?, "box")?);
@@ -88,8 +130,18 @@ fn read_sink(section: &Section<'_>) -> Part<Sink> {
             point: given(section, "point", point?, "plane")?.into(),
             normal: read_direction(section, "normal")?,
         },
+        SinkWord::Mesh => SinkRegion::Mesh(things::read_mesh(section)?),
     };
     Ok(Sink { name: needed(name)?, region })
+}
+
+/// Complains of keys that belong to another shape.
+fn refuse_others(section: &Section<'_>, word: &str, fitting: &[&str], all: &[&str]) -> Part<()> {
+    let Some(name) = all.iter().find(|name| section.has(name) && !fitting.contains(name)) else {
+        return Ok(());
+    };
+    let message = format!("{} does not belong to shape = {word:?}", section.key_path(name));
+    Err(section.complain(name, message, &fitting.join(", "), "take it out, or write the shape it belongs to"))
 }
 
 /// A vector of any length but zero, as a unit vector.
@@ -98,12 +150,5 @@ fn read_direction(section: &Section<'_>, name: &str) -> Part<Vec3> {
     vector.try_normalize().ok_or_else(|| {
         let message = format!("{} has no length", section.key_path(name));
         section.complain(name, message, "any vector but zero", "")
-    })
-}
-
-fn given<T>(section: &Section<'_>, name: &str, value: Option<T>, what: &str) -> Part<T> {
-    value.ok_or_else(|| {
-        let message = format!("{} is missing: a {what} needs it", section.key_path(name));
-        section.complain(name, message, "", "")
     })
 }

@@ -1,11 +1,12 @@
-//! The sections `[fluid]` and `[[fluid.block]]`.
+//! The sections `[fluid]`, `[[fluid.block]]`, `[[fluid.mesh]]` and `[[fluid.file]]`.
 
 use glam::Vec3;
 
+use super::things::{read_mesh, read_rotation};
 use super::{Part, needed};
 use crate::scene::keys::ShapeWord;
 use crate::scene::reader::Section;
-use crate::scene::types::{Block, Material, Shape};
+use crate::scene::types::{Block, FluidFile, FluidMesh, Material, Shape};
 
 pub(super) fn read_material(section: &Section<'_>) -> Part<Material> {
     let name = section.word("material");
@@ -50,4 +51,25 @@ pub(super) fn read_block(section: &Section<'_>) -> Part<Block> {
         ShapeWord::Sphere => Shape::Sphere { center: needed(center)?.into(), radius: needed(radius)? },
     };
     Ok(Block { shape, velocity: velocity?.map_or(Vec3::ZERO, Vec3::from) })
+}
+
+pub(super) fn read_fluid_mesh(section: &Section<'_>) -> Part<FluidMesh> {
+    let mesh = read_mesh(section);
+    let velocity = section.numbers("velocity");
+    Ok(FluidMesh { mesh: mesh?, velocity: velocity?.map_or(Vec3::ZERO, Vec3::from) })
+}
+
+pub(super) fn read_fluid_file(section: &Section<'_>) -> Part<FluidFile> {
+    let path = section.text("file").and_then(|file| section.file("file", &needed(Ok(file))?));
+    let scale = section.scale("scale");
+    let position = section.numbers("position");
+    let rotation = read_rotation(section);
+    let velocity = section.numbers("velocity");
+    Ok(FluidFile {
+        path: path?,
+        scale: scale?.unwrap_or(1.0),
+        rotation: rotation?,
+        position: position?.map_or(Vec3::ZERO, Vec3::from),
+        velocity: velocity?.map_or(Vec3::ZERO, Vec3::from),
+    })
 }

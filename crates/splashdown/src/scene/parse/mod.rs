@@ -7,15 +7,19 @@ mod solver;
 mod things;
 mod view;
 
+use std::path::Path;
+
 use glam::Vec3;
 use toml::de::DeTable;
+
+pub(crate) use flow::outlet_outside;
 
 use super::errors::{SceneErrors, SceneProblem};
 use super::keys::{ROOT, Side};
 use super::reader::{Read, Reader, Reported, Section};
 use super::source::Source;
 use super::types::{Domain, Fluid, Scene, Shake};
-use super::{geometry, warnings};
+use super::{files, geometry, warnings};
 
 /// Most frames of a run.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -23,7 +27,8 @@ const MAX_FRAMES: f64 = 100_000.0;
 /// A section's value, or a problem that is in the list.
 type Part<T> = Result<T, Reported>;
 
-pub(crate) fn parse(text: &str, file: &str) -> Result<Scene, SceneErrors> {
+/// `folder`: from where the scene names files, which are then looked at; `None`: they are not.
+pub(crate) fn parse(text: &str, file: &str, folder: Option<&Path>) -> Result<Scene, SceneErrors> {
     if text.trim().is_empty() {
         let message = "the scene file is empty";
         return Err(SceneErrors::one(SceneProblem::of_file(
@@ -32,7 +37,7 @@ pub(crate) fn parse(text: &str, file: &str) -> Result<Scene, SceneErrors> {
             "`splashdown scenes` lists scenes to start from",
         )));
     }
-    let reader = Reader::new(Source::new(file, text));
+    let reader = Reader::new(Source::new(file, text), folder);
     let (table, mistakes) = DeTable::parse_recoverable(text);
     for mistake in &mistakes {
         let span = mistake.span().unwrap_or(0..0);
@@ -66,6 +71,8 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         let blocks = section
             .sections_if_any("block")
             .map(|list| list.into_iter().map(|s| (fluid::read_block(&s), s)).collect());
+        let meshes = read_all(section, "mesh", fluid::read_fluid_mesh);
+        let files = read_all(section, "file", fluid::read_fluid_file);
         let material = fluid::read_material(section);
         // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block outside the tank.
         let sound = geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
@@ -75,23 +82,27 @@ fn read(root: &Section<'_>) -> Part<Scene> {
             particle_spacing: spacing?.ok_or(Reported)?,
             material: material?,
             blocks,
-            meshes: Vec::new(),
-            files: Vec::new(),
+            meshes: meshes?,
+            files: files?,
         };
         sound.map(|()| fluid)
     });
-    let emitters = root
-        .sections_if_any("emitter")
-        .and_then(|sections| flow::read_emitters(&sections, domain.as_ref().ok()));
-    let sinks = root.sections_if_any("sink").and_then(|sections| flow::read_sinks(&sections));
-    if let (Ok(section), Ok(Fluid { blocks, .. }), Ok([])) = (&fluid_section, &fluid, emitters.as_deref())
-        && blocks.is_empty()
+    let emitters = all_of(root.sections_if_any("emitter"), |sections| {
+        flow::read_emitters(sections, domain.as_ref().ok())
+    });
+    let sinks = all_of(root.sections_if_any("sink"), flow::read_sinks);
+    if let (Ok(section), Ok(fluid), Ok([])) = (&fluid_section, &fluid, emitters.as_deref())
+        && fluid.blocks.is_empty()
+        && fluid.meshes.is_empty()
+        && fluid.files.is_empty()
     {
-        let message = "there is no [[fluid.block]], and no [[emitter]] either".to_owned();
-        let hint = "a scene needs at least one, for example position = [0, 0, 0] and size = [0.2, 0.2, 0.2]";
+        let message =
+            "there is no fluid: no [[fluid.block]], [[fluid.mesh]], [[fluid.file]] or [[emitter]]".to_owned();
+        let hint = "a scene needs at least one, for example [[fluid.block]] with position = [0, 0, 0] and size = [0.2, 0.2, 0.2]";
         section.complain("block", message, "1 to 256 sections", hint);
     }
-    let bodies = root.sections_if_any("body").and_then(|sections| things::read_bodies(&sections));
+    let duration = header.as_ref().map(|header| header.duration).ok();
+    let bodies = all_of(root.sections_if_any("body"), |sections| things::read_bodies(sections, duration));
     let probes = root.sections_if_any("probe").and_then(|sections| {
         let around = probes::Around { domain: domain.as_ref().ok(), bodies: bodies.as_deref().ok() };
         probes::read_probes(&sections, &around)
@@ -126,8 +137,27 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         warnings: Vec::new(),
         source: None,
     };
-    warnings::check(&scene, &fluid_section?, &solver_section?);
+    let (fluid_section, solver_section) = (fluid_section?, solver_section?);
+    warnings::check(&scene, &fluid_section, &solver_section);
+    if root.has_folder() {
+        files::check(&scene, root)?;
+    }
     Ok(scene)
+}
+
+/// Every section of a list, or a problem that is in the list.
+fn all_of<T>(
+    sections: Part<Vec<Section<'_>>>,
+    read: impl Fn(&[Section<'_>]) -> Vec<Part<T>>,
+) -> Part<Vec<T>> {
+    read(&sections?).into_iter().collect()
+}
+
+/// Reads every section of a list that may be absent.
+fn read_all<T>(section: &Section<'_>, name: &str, read: fn(&Section<'_>) -> Part<T>) -> Part<Vec<T>> {
+    // All of them before any is given up, so that each has its say.
+    let all: Vec<Part<T>> = section.sections_if_any(name)?.iter().map(read).collect();
+    all.into_iter().collect()
 }
 
 struct Header {
@@ -194,6 +224,14 @@ fn read_shake(section: &Section<'_>) -> Part<Shake> {
     let amplitude = section.numbers("amplitude");
     let period = section.number("period");
     Ok(Shake { amplitude: needed(amplitude)?.into(), period: needed(period)? })
+}
+
+/// The value of a key that a certain shape needs.
+fn given<T>(section: &Section<'_>, name: &str, value: Option<T>, what: &str) -> Part<T> {
+    value.ok_or_else(|| {
+        let message = format!("{} is missing: a {what} needs it", section.key_path(name));
+        section.complain(name, message, "", "")
+    })
 }
 
 /// The value of a required key; its absence has been reported with the section.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::{EulerRot, Quat, Vec3};
 
-use super::{Part, needed};
+use super::{Part, given, needed};
 use crate::models;
 use crate::scene::formula::{self, Formula};
 use crate::scene::keys::MotionWord;
@@ -13,24 +13,37 @@ use crate::scene::script::{Keyframe, Script};
 use crate::scene::suggest;
 use crate::scene::things::{Body, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, UpAxis};
 
-/// Everything that `[[body]]` says.
-pub(super) fn read_bodies(sections: &[Section<'_>]) -> Part<Vec<Body>> {
-    let mut names = HashSet::new();
-    let bodies: Vec<Part<Body>> = sections
-        .iter()
-        .map(|section| {
-            let body = read_body(section)?;
-            if names.insert(body.name.clone()) {
-                return Ok(body);
-            }
-            let message = format!("there are two bodies called {:?}", body.name);
-            Err(section.complain("name", message, "a name of its own for every body", ""))
-        })
-        .collect();
-    bodies.into_iter().collect()
+/// A body beyond this many metres is surely a mistake in a formula.
+const FARTHEST: f64 = 1e6;
+/// Nor does anything turn this far, in degrees.
+const MOST_DEGREES: f64 = 1e9;
+
+/// Everything that `[[body]]` says; `duration` (s) of the scene, if known.
+pub(super) fn read_bodies(sections: &[Section<'_>], duration: Option<f32>) -> Vec<Part<Body>> {
+    let read = |section: &Section<'_>| read_body(section, duration.unwrap_or(0.0));
+    named_once(sections, "bodies", read, |body| &body.name)
 }
 
-fn read_body(section: &Section<'_>) -> Part<Body> {
+/// Reads sections whose names must differ.
+pub(super) fn named_once<T>(
+    sections: &[Section<'_>],
+    kinds: &str,
+    mut read: impl FnMut(&Section<'_>) -> Part<T>,
+    name: impl Fn(&T) -> &str,
+) -> Vec<Part<T>> {
+    let mut names = HashSet::new();
+    let mut one = |section: &Section<'_>| {
+        let thing = read(section)?;
+        if names.insert(name(&thing).to_owned()) {
+            return Ok(thing);
+        }
+        let message = format!("there are two {kinds} called {:?}", name(&thing));
+        Err(section.complain("name", message, "a name of its own for each", "rename one of them"))
+    };
+    sections.iter().map(&mut one).collect()
+}
+
+fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
     let name = section.name("name");
     let mesh = read_mesh(section);
     let density = section.number("density");
@@ -43,7 +56,7 @@ fn read_body(section: &Section<'_>) -> Part<Body> {
     let shell = section.boolean("shell");
     let half_thickness = section.number("half_thickness");
     let colour = section.numbers("colour");
-    let script = mesh.as_ref().map_err(|r| *r).and_then(|mesh| read_script(section, mesh));
+    let script = mesh.as_ref().map_err(|r| *r).and_then(|mesh| read_script(section, mesh, duration));
     let motion = read_motion(section, script);
     let vector = |v: Option<[f32; 3]>| v.map_or(Vec3::ZERO, Vec3::from);
     let motion = match motion? {
@@ -89,13 +102,13 @@ fn read_hinge(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Hinge>> {
 /// The mesh and its place: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
 pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
     let shape = section.text("mesh");
-    let scale = section.number("scale");
+    let scale = section.scale("scale");
     let up = section.choice::<UpAxis>("up");
     let position = section.numbers("position");
-    let rotation = section.numbers("rotation");
-    let text = needed(shape)?;
+    let rotation = read_rotation(section);
+    let text = given(section, "mesh", shape?, "mesh")?;
     let shape = if text.contains(['.', '/', '\\']) {
-        MeshShape::File(text.into())
+        MeshShape::File(section.file("mesh", &text)?)
     } else {
         let names: Vec<&str> = models::names().iter().map(|(name, _)| *name).collect();
         if !names.contains(&text.as_str()) {
@@ -113,11 +126,15 @@ pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
         scale: scale?.unwrap_or(1.0),
         up: up?.unwrap_or(UpAxis::Y),
         position: position?.map_or(Vec3::ZERO, Vec3::from),
-        rotation: rotation?.map_or(Quat::IDENTITY, turned),
+        rotation: rotation?,
     })
 }
 
-/// About x, then y, then z, in degrees.
+/// The key `rotation`: about x, then y, then z, in degrees.
+pub(super) fn read_rotation(section: &Section<'_>) -> Part<Quat> {
+    Ok(section.numbers("rotation")?.map_or(Quat::IDENTITY, turned))
+}
+
 fn turned(degrees: [f32; 3]) -> Quat {
     let [x, y, z] = degrees.map(f32::to_radians);
     Quat::from_euler(EulerRot::ZYX, z, y, x)
@@ -154,9 +171,9 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
     }
 }
 
-fn read_script(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Script>> {
-    let shift = read_formulas(section, "move");
-    let turn = read_formulas(section, "turn");
+fn read_script(section: &Section<'_>, mesh: &MeshSource, duration: f32) -> Part<Option<Script>> {
+    let shift = read_formulas(section, "move", duration, FARTHEST);
+    let turn = read_formulas(section, "turn", duration, MOST_DEGREES);
     let sections = section.sections_if_any("keyframe")?;
     let keyframes: Vec<Part<Keyframe>> = sections.iter().map(|s| read_keyframe(s, mesh)).collect();
     let mut keyframes = keyframes.into_iter().collect::<Part<Vec<_>>>()?;
@@ -193,16 +210,29 @@ fn read_keyframe(section: &Section<'_>, mesh: &MeshSource) -> Part<Keyframe> {
     })
 }
 
-fn read_formulas(section: &Section<'_>, name: &str) -> Part<Option<Box<[Formula; 3]>>> {
+fn read_formulas(
+    section: &Section<'_>,
+    name: &str,
+    duration: f32,
+    limit: f64,
+) -> Part<Option<Box<[Formula; 3]>>> {
     let Some(texts) = section.texts::<3>(name)? else { return Ok(None) };
-    let refuse = |why: &str| -> Reported {
-        section.complain(name, format!("{}: {why}", section.key_path(name)), formula::ALLOWED, "")
+    let refuse = |why: &str, hint: &str| -> Reported {
+        section.complain(name, format!("{}: {why}", section.key_path(name)), formula::ALLOWED, hint)
     };
-    let parse = |text: &String| Formula::parse(text).map_err(|why| refuse(&why));
+    let parse = |text: &String| Formula::parse(text).map_err(|why| refuse(&why, ""));
     let [x, y, z] = texts.each_ref().map(parse);
     let formulas = Box::new([x?, y?, z?]);
-    if formulas.iter().any(|formula| !formula.at(0.0).is_finite()) {
-        return Err(refuse("a formula has no value at t = 0"));
+    for (formula, text) in formulas.iter().zip(&texts) {
+        let Some(time) = formula.fault(f64::from(duration), limit) else { continue };
+        let value = formula.at(time);
+        let why = if value.is_finite() {
+            format!("{text:?} is {value:.3e} at t = {time:.6} s")
+        } else {
+            format!("{text:?} has no value at t = {time:.6} s: it is {value}")
+        };
+        let hint = "a motion needs a sane value from 0 to the scene's duration; max(t, 0.1) keeps a divisor from zero";
+        return Err(refuse(&why, hint));
     }
     Ok(Some(formulas))
 }

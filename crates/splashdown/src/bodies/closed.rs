@@ -1,0 +1,36 @@
+//! Meshes that must have an inside: what is filled with fluid, pours or drains it.
+
+use super::load::{BodyError, cell_size, check_scale, mesh_of};
+use crate::boundary::KernelPair;
+use crate::scene::{Domain, MeshSource};
+use crate::solid::{self, Solid, SolidKind, SolidSettings};
+
+/// The solid of a mesh, in the mesh's frame, with distances but without shares of the kernel. `owner` is what the mesh is for.
+///
+/// # Errors
+/// [`BodyError`] of the file, the size or the shape; [`BodyError::Open`] for a sheet without an inside.
+pub(crate) fn closed_solid(
+    owner: &str,
+    source: &MeshSource,
+    domain: &Domain,
+    spacing: f32,
+) -> Result<Solid, BodyError> {
+    let mesh = mesh_of(owner, source)?;
+    check_scale(owner, source, &mesh, domain)?;
+    let settings = SolidSettings {
+        cell_size: cell_size(&mesh, spacing, 0.0),
+        // Nothing feels it, so no node needs to know its share.
+        support_radius: 0.0,
+        kernels: KernelPair::WendlandC2,
+        half_thickness: 0.5 * spacing,
+        shell: None,
+        cache: solid::default_cache_folder(),
+    };
+    let wrong = |source| BodyError::Solid { owner: owner.into(), source };
+    let solid = Solid::build(&mesh, &settings, &|_| {}).map_err(wrong)?;
+    if solid.kind == SolidKind::Shell {
+        return Err(BodyError::Open { owner: owner.into(), open_edges: solid.report.boundary_edges });
+    }
+    solid.require_volume().map_err(wrong)?;
+    Ok(solid)
+}

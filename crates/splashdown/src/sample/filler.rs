@@ -1,0 +1,241 @@
+//! Puts a scene's sources of fluid together, each beside those before it.
+
+use glam::Vec3;
+use splashdown_io::Particles;
+
+use super::lattice::{self, Sampler};
+use super::near::Near;
+use super::{MAX_PARTICLES, SampleError, fitting_spacing};
+use crate::bodies::{self, closed_solid};
+use crate::scene::{Domain, Fluid, FluidFile, FluidMesh, MeshShape};
+use crate::solid::Solid;
+
+/// A particle this near to one of an earlier mesh, file or block, in spacings, is left out.
+const CROWDED: f32 = 0.6;
+/// How far a mesh may reach out of the domain, in spacings: for the rounding of positions.
+const SLACK: f32 = 0.02;
+
+/// What became of one source.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Taken {
+    /// Particles that are there now.
+    pub made: u64,
+    /// Left out because an earlier source is there.
+    pub crowded: u64,
+    /// Left out because they lie outside the domain.
+    pub outside: u64,
+}
+
+/// Particles in the making.
+#[derive(Debug)]
+pub(crate) struct Filler<'a> {
+    domain: &'a Domain,
+    spacing: f32,
+    positions: Vec<[f32; 3]>,
+    velocities: Vec<[f32; 3]>,
+    near: Near,
+}
+
+impl<'a> Filler<'a> {
+    /// None yet.
+    pub fn new(domain: &'a Domain, spacing: f32) -> Self {
+        Self { domain, spacing, positions: Vec::new(), velocities: Vec::new(), near: Near::new(spacing) }
+    }
+
+    /// The blocks of a fluid, which must come first.
+    ///
+    /// # Errors
+    /// [`SampleError`] if there are too many particles, or some outside the domain.
+    pub fn blocks(&mut self, fluid: &Fluid) -> Result<(), SampleError> {
+        let estimate = super::estimate(fluid);
+        self.room_for(estimate)?;
+        self.positions.reserve(estimate as usize);
+        self.velocities.reserve(estimate as usize);
+        let domain = self.domain;
+        let mut outside = None;
+        for (block, sampler) in Sampler::all(domain, fluid).iter().enumerate() {
+            let velocity = fluid.blocks[block].velocity.to_array();
+            sampler.for_each(|position, free| {
+                if !free {
+                    return;
+                }
+                let position = position.map(|x| x as f32);
+                if !holds(domain, position) && outside.is_none() {
+                    outside = Some((block, position));
+                }
+                self.positions.push(position);
+                self.velocities.push(velocity);
+            });
+        }
+        if let Some((block, position)) = outside {
+            let (min, max) = (domain.min.to_array(), domain.max.to_array());
+            return Err(SampleError::Outside { block, position, min, max });
+        }
+        if !fluid.meshes.is_empty() || !fluid.files.is_empty() {
+            self.near.insert(&self.positions);
+        }
+        Ok(())
+    }
+
+    /// Fills a closed mesh; `what` names it in messages.
+    ///
+    /// # Errors
+    /// [`SampleError`] of the mesh, its place and its number of particles.
+    pub fn mesh(&mut self, what: &str, filled: &FluidMesh) -> Result<Taken, SampleError> {
+        let source = &filled.mesh;
+        let solid = closed_solid(what, source, self.domain, self.spacing)?;
+        let place = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
+        let (low, high) = bounds(solid.mesh.vertices.iter().map(place));
+        let slack = SLACK * self.spacing;
+        if low.cmplt(self.domain.min - slack).any() || high.cmpgt(self.domain.max + slack).any() {
+            return Err(self.outside(what, "reaches outside the domain", (low, high)));
+        }
+        // A mesh of many windings may count parts of its volume twice; what it really makes is counted below.
+        let expected = f64::from(solid.mass.volume) / f64::from(self.spacing).powi(3);
+        self.room_for(expected as u64)?;
+        let points = self.lattice(&solid, filled, low, high);
+        if points.is_empty() {
+            return Err(SampleError::TooSmall { what: what.to_owned(), spacing: self.spacing });
+        }
+        let velocity = filled.velocity.to_array();
+        self.add(points.into_iter().map(|x| (x, velocity)))
+    }
+
+    /// Points of the lattice inside a solid: that of a box round it, so that what is flush with walls, or has whole spacings as its
+    /// size, comes out as a block does.
+    fn lattice(&self, solid: &Solid, filled: &FluidMesh, low: Vec3, high: Vec3) -> Vec<[f32; 3]> {
+        let box_round = lattice::axes(self.domain, f64::from(self.spacing), low, high);
+        let origin = Vec3::from(box_round.map(|(first, _)| first as f32));
+        let source = &filled.mesh;
+        let mut points = solid.fill(source.position, source.rotation, self.spacing, origin, 0.0);
+        let room = lattice::room(self.domain, f64::from(self.spacing));
+        let in_room =
+            |x: &[f32; 3]| (0..3).all(|a| f64::from(x[a]) >= room.0[a] && f64::from(x[a]) <= room.1[a]);
+        points.retain(in_room);
+        points
+    }
+
+    /// Takes in a file's particles as they lie.
+    ///
+    /// # Errors
+    /// [`SampleError`] of the file and its number of particles, or if most of them lie outside the domain.
+    pub fn file(&mut self, what: &str, file: &FluidFile) -> Result<(Taken, Vec<[f32; 3]>), SampleError> {
+        let read = splashdown_io::read_particles(&file.path)
+            .map_err(|source| SampleError::File { what: what.to_owned(), source: Box::new(source) })?;
+        let velocities = turned_velocities(&read, file);
+        let positions: Vec<[f32; 3]> =
+            read.positions.iter().map(|x| file.place(Vec3::from(*x)).to_array()).collect();
+        let taken = self.add(positions.iter().copied().zip(velocities))?;
+        if 2 * taken.outside > positions.len() as u64 {
+            let bounds = bounds(positions.iter().map(|x| Vec3::from(*x)));
+            return Err(self.outside(what, "lies mostly outside the domain", bounds));
+        }
+        Ok((taken, positions))
+    }
+
+    fn add(
+        &mut self,
+        particles: impl ExactSizeIterator<Item = ([f32; 3], [f32; 3])>,
+    ) -> Result<Taken, SampleError> {
+        self.room_for(particles.len() as u64)?;
+        let before = self.positions.len();
+        let mut taken = Taken::default();
+        for (x, v) in particles {
+            if !holds(self.domain, x) {
+                taken.outside += 1;
+            } else if self.near.crowded(x.into(), CROWDED * self.spacing) {
+                taken.crowded += 1;
+            } else {
+                self.positions.push(x);
+                self.velocities.push(v);
+            }
+        }
+        taken.made = (self.positions.len() - before) as u64;
+        self.near.insert(&self.positions[before..]);
+        Ok(taken)
+    }
+
+    fn room_for(&self, more: u64) -> Result<(), SampleError> {
+        let count = (self.positions.len() as u64).saturating_add(more);
+        if count <= MAX_PARTICLES {
+            return Ok(());
+        }
+        let spacing = self.spacing;
+        Err(SampleError::TooMany { count, spacing, fitting: fitting_spacing(spacing, count) })
+    }
+
+    fn outside(&self, what: &str, how: &'static str, (low, high): (Vec3, Vec3)) -> SampleError {
+        let (what, [low, high]) = (what.to_owned(), [low, high].map(|x| x.to_array()));
+        let (min, max) = (self.domain.min.to_array(), self.domain.max.to_array());
+        SampleError::Beyond { what, how, low, high, min, max }
+    }
+
+    /// Everything that was put in, numbered from 0.
+    pub fn finish(self) -> Particles {
+        let ids = (0..self.positions.len() as u32).collect();
+        Particles {
+            ids,
+            positions: self.positions,
+            velocities: self.velocities,
+            densities: Vec::new(),
+            pressures: Vec::new(),
+        }
+    }
+}
+
+fn turned_velocities(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
+    if read.velocities.is_empty() {
+        return vec![file.velocity.to_array(); read.positions.len()];
+    }
+    let turned = |v: &[f32; 3]| (file.rotation * (file.scale * Vec3::from(*v)) + file.velocity).to_array();
+    read.velocities.iter().map(turned).collect()
+}
+
+fn holds(domain: &Domain, x: [f32; 3]) -> bool {
+    (0..3).all(|a| x[a] >= domain.min[a] && x[a] <= domain.max[a])
+}
+
+fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
+    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+}
+
+/// What a piece of fluid from a mesh is called in messages.
+pub(crate) fn mesh_title(index: usize, filled: &FluidMesh) -> String {
+    match &filled.mesh.shape {
+        MeshShape::Model(name) => format!("fluid.mesh[{index}] ({name:?})"),
+        MeshShape::File(path) => format!("fluid.mesh[{index}] ({:?})", path.file_name().unwrap_or_default()),
+    }
+}
+
+/// What a file of particles is called in messages.
+pub(crate) fn file_title(index: usize, file: &FluidFile) -> String {
+    format!("fluid.file[{index}] ({:?})", file.path.file_name().unwrap_or_default())
+}
+
+/// How high and how fast.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reach {
+    /// Lower corner in m.
+    pub low: Vec3,
+    /// Upper corner in m.
+    pub high: Vec3,
+    /// Largest speed in m/s.
+    pub speed: f32,
+}
+
+/// What meshes and files bring; those that cannot be read count nothing, they are refused elsewhere.
+pub(crate) fn reaches(fluid: &Fluid) -> Vec<Reach> {
+    let meshes = fluid.meshes.iter().filter_map(|filled| {
+        let mesh = bodies::mesh_of("", &filled.mesh).ok()?;
+        let place = |v: &[f32; 3]| filled.mesh.position + filled.mesh.rotation * Vec3::from(*v);
+        let (low, high) = bounds(mesh.vertices.iter().map(place));
+        Some(Reach { low, high, speed: filled.velocity.length() })
+    });
+    let files = fluid.files.iter().filter_map(|file| {
+        let read = splashdown_io::read_particles(&file.path).ok()?;
+        let (low, high) = bounds(read.positions.iter().map(|x| file.place(Vec3::from(*x))));
+        let speeds = turned_velocities(&read, file).into_iter().map(|v| Vec3::from(v).length());
+        Some(Reach { low, high, speed: speeds.fold(0.0, f32::max) })
+    });
+    meshes.chain(files).collect()
+}

@@ -1,0 +1,256 @@
+//! Compares a scene with the files it names: only where the scene itself has a place on disk.
+
+use glam::Vec3;
+use splashdown_io::Mesh;
+
+use super::geometry::grouped;
+use super::parse::outlet_outside;
+use super::reader::{Reported, Section};
+use super::spec::{place, rounded};
+use super::things::{Body, Emitter, MeshSource, Motion, SinkRegion};
+use super::types::{Domain, Scene};
+use crate::bodies::{check_scale, closed_solid, mesh_of, owner};
+use crate::flow::outlet;
+use crate::sample::{Filler, SampleError, Taken, file_title, mesh_title, typical_spacing};
+use crate::solid;
+
+/// A file's spacing may differ from the scene's by this part.
+const SPACING_TOLERANCE: f32 = 0.2;
+/// A point is inside a mesh that winds round it more than this many times; on the surface it is one half.
+const INSIDE: f64 = 0.75;
+/// Points of an outlet that are looked for inside bodies.
+const MOST_POINTS: usize = 64;
+/// Poses of a scripted body that are looked at.
+const POSES: u32 = 200;
+
+/// Reads every mesh and every file of particles that a whole scene names, and reports what is wrong with them, each at its line.
+pub(crate) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
+    let (bodies, placed) = check_bodies(scene, &root.sections_if_any("body")?);
+    let emitters = check_emitters(scene, &root.sections_if_any("emitter")?, &placed);
+    let sinks = check_sinks(scene, &root.sections_if_any("sink")?);
+    let fluid = check_fluid(scene, &root.section("fluid")?);
+    bodies.and(emitters).and(sinks).and(fluid)
+}
+
+/// A body's mesh where it is at t = 0.
+struct Placed<'a> {
+    body: &'a Body,
+    triangles: Vec<[Vec3; 3]>,
+    low: Vec3,
+    high: Vec3,
+}
+
+impl<'a> Placed<'a> {
+    fn new(body: &'a Body, mesh: &Mesh) -> Self {
+        let (position, rotation) = match &body.motion {
+            Motion::Scripted(script) => {
+                let pose = script.pose(0.0);
+                (pose.position, pose.orientation)
+            }
+            _ => (body.mesh.position, body.mesh.rotation),
+        };
+        let vertices: Vec<Vec3> =
+            mesh.vertices.iter().map(|v| position + rotation * Vec3::from(*v)).collect();
+        let corner = |v: u32| vertices.get(v as usize).copied().unwrap_or(Vec3::ZERO);
+        let (low, high) = vertices
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        Self { body, triangles: mesh.triangles.iter().map(|t| t.map(corner)).collect(), low, high }
+    }
+
+    /// Whether the mesh winds round a point, whichever way its triangles face.
+    fn contains(&self, x: Vec3) -> bool {
+        if x.cmplt(self.low).any() || x.cmpgt(self.high).any() {
+            return false;
+        }
+        solid::winding(&self.triangles, x).abs() > INSIDE
+    }
+}
+
+fn check_bodies<'a>(scene: &'a Scene, sections: &[Section<'_>]) -> (Result<(), Reported>, Vec<Placed<'a>>) {
+    let mut sound = Ok(());
+    let mut placed = Vec::new();
+    for (body, section) in scene.bodies.iter().zip(sections) {
+        match read_scaled(section, &owner("body", &body.name, &body.mesh), &body.mesh, &scene.domain) {
+            Ok(mesh) => {
+                let body = Placed::new(body, &mesh);
+                warn_outside(scene, &body, &mesh, section);
+                placed.push(body);
+            }
+            Err(reported) => sound = Err(reported),
+        }
+    }
+    (sound, placed)
+}
+
+/// A mesh whose file can be read and whose size makes sense.
+fn read_scaled(
+    section: &Section<'_>,
+    owner: &str,
+    source: &MeshSource,
+    domain: &Domain,
+) -> Result<Mesh, Reported> {
+    let mesh = mesh_of(owner, source).map_err(|error| {
+        section.complain("mesh", error.to_string(), "", "export it again, or name another file")
+    })?;
+    check_scale(owner, source, &mesh, domain)
+        .map_err(|error| section.complain("scale", error.to_string(), "", ""))?;
+    Ok(mesh)
+}
+
+fn warn_outside(scene: &Scene, placed: &Placed<'_>, mesh: &Mesh, section: &Section<'_>) {
+    let domain = &scene.domain;
+    let apart = |low: Vec3, high: Vec3| low.cmpgt(domain.max).any() || high.cmplt(domain.min).any();
+    let body = placed.body;
+    let outside = match &body.motion {
+        Motion::Scripted(script) => {
+            let reach = mesh.vertices.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
+            (0..=POSES).all(|k| {
+                let time = f64::from(scene.duration) * f64::from(k) / f64::from(POSES);
+                let at = script.pose(time).position;
+                apart(at - reach, at + reach)
+            })
+        }
+        _ => apart(placed.low, placed.high),
+    };
+    if outside {
+        let spans =
+            format!("it spans {} to {} m", place(placed.low.to_array()), place(placed.high.to_array()));
+        let message = format!("body {:?} lies wholly outside the domain: {spans}", body.name);
+        let hint = format!("the domain is {} to {} m: check position and scale", domain.min, domain.max);
+        section.warn("position", message, &hint);
+    }
+}
+
+fn check_emitters(scene: &Scene, sections: &[Section<'_>], bodies: &[Placed<'_>]) -> Result<(), Reported> {
+    let mut sound = Ok(());
+    for (emitter, section) in scene.emitters.iter().zip(sections) {
+        sound = sound.and(check_emitter(scene, emitter, section, bodies));
+    }
+    sound
+}
+
+fn check_emitter(
+    scene: &Scene,
+    emitter: &Emitter,
+    section: &Section<'_>,
+    bodies: &[Placed<'_>],
+) -> Result<(), Reported> {
+    let (_, layer) = outlet::nozzle(emitter, scene)
+        .map_err(|error| section.complain("mesh", error.to_string(), "", ""))?;
+    let (across, up) = outlet::axes(emitter.direction);
+    let every = layer.len().div_ceil(MOST_POINTS).max(1);
+    let points: Vec<Vec3> =
+        layer.iter().step_by(every).map(|q| emitter.position + q.x * across + q.y * up).collect();
+    let domain = &scene.domain;
+    let slack = 1e-3 * scene.fluid.particle_spacing;
+    if points.iter().any(|x| x.cmplt(domain.min - slack).any() || x.cmpgt(domain.max + slack).any()) {
+        return Err(outlet_outside(section, emitter, domain));
+    }
+    for placed in bodies {
+        let inside = points.iter().filter(|x| placed.contains(**x)).count();
+        if 2 * inside <= points.len() {
+            continue;
+        }
+        let message = format!(
+            "the outlet of emitter {:?} lies inside body {:?}: nothing can flow there",
+            emitter.name, placed.body.name
+        );
+        let hint = "move the outlet or the body; an outlet may lie on a body's surface";
+        if placed.body.motion == Motion::Static {
+            return Err(section.complain("position", message, "", hint));
+        }
+        section.warn("position", format!("{message} before the body moves away"), hint);
+    }
+    Ok(())
+}
+
+fn check_sinks(scene: &Scene, sections: &[Section<'_>]) -> Result<(), Reported> {
+    let mut sound = Ok(());
+    for (sink, section) in scene.sinks.iter().zip(sections) {
+        let SinkRegion::Mesh(source) = &sink.region else { continue };
+        let owner = owner("sink", &sink.name, source);
+        if let Err(error) = closed_solid(&owner, source, &scene.domain, scene.fluid.particle_spacing) {
+            sound = Err(section.complain("mesh", error.to_string(), "", ""));
+        }
+    }
+    sound
+}
+
+/// Fills and reads as the simulation will, and tells what is left out.
+fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<(), Reported> {
+    let fluid = &scene.fluid;
+    if fluid.meshes.is_empty() && fluid.files.is_empty() {
+        return Ok(());
+    }
+    let refuse = |section: &Section<'_>, key: &str, error: &SampleError| {
+        section.complain(key, error.to_string(), "", "")
+    };
+    let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
+    filler.blocks(fluid).map_err(|error| refuse(section, "block", &error))?;
+    let mut sound = Ok(());
+    for (index, (mesh, section)) in fluid.meshes.iter().zip(section.sections_if_any("mesh")?).enumerate() {
+        let title = mesh_title(index, mesh);
+        match filler.mesh(&title, mesh) {
+            Ok(taken) => warn_overlap(&section, &title, taken),
+            Err(error) => sound = Err(refuse(&section, "mesh", &error)),
+        }
+    }
+    for (index, (file, section)) in fluid.files.iter().zip(section.sections_if_any("file")?).enumerate() {
+        let title = file_title(index, file);
+        match filler.file(&title, file) {
+            Ok((taken, positions)) => {
+                warn_overlap(&section, &title, taken);
+                warn_stray(&section, &title, taken, scene);
+                warn_spacing(&section, &title, &positions, fluid.particle_spacing);
+            }
+            Err(error) => sound = Err(refuse(&section, "file", &error)),
+        }
+    }
+    sound
+}
+
+fn warn_overlap(section: &Section<'_>, title: &str, taken: Taken) {
+    if taken.crowded > 0 {
+        let message = format!(
+            "{title} overlaps blocks, meshes or files before it: {} of its {} particles are left out",
+            grouped(taken.crowded),
+            grouped(taken.made + taken.crowded + taken.outside)
+        );
+        section.warn("position", message, "the water there is sampled once, as the earlier section says");
+    }
+}
+
+fn warn_stray(section: &Section<'_>, title: &str, taken: Taken, scene: &Scene) {
+    if taken.outside > 0 {
+        let message = format!(
+            "{} of the {} particles of {title} lie outside the domain and are left out",
+            grouped(taken.outside),
+            grouped(taken.made + taken.crowded + taken.outside)
+        );
+        let (min, max) = (scene.domain.min, scene.domain.max);
+        let hint = format!("the domain is {min} to {max} m: check position and scale, or enlarge it");
+        section.warn("position", message, &hint);
+    }
+}
+
+fn warn_spacing(section: &Section<'_>, title: &str, positions: &[[f32; 3]], spacing: f32) {
+    let Some(found) = typical_spacing(positions) else { return };
+    if (found / spacing - 1.0).abs() <= SPACING_TOLERANCE {
+        return;
+    }
+    let message = format!(
+        "the particles of {title} are about {} m apart, but fluid.particle_spacing is {spacing} m",
+        rounded(found)
+    );
+    let hint = if found > 0.0 {
+        format!(
+            "use fluid.particle_spacing = {}, or multiply the file's scale by {}",
+            rounded(found),
+            rounded(spacing / found)
+        )
+    } else {
+        "most of them are at the same place as others: write the file again".to_owned()
+    };
+    section.warn("file", message, &hint);
+}
