@@ -2,9 +2,9 @@
 
 use crate::cells::Grid;
 use crate::flow::LoadedFlow;
+use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
 use crate::surface::{self, SurfaceParams};
-use crate::sample::{self, Inventory};
 use crate::{SimulationError, bodies};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.

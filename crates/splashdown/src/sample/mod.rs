@@ -187,8 +187,7 @@ pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
         return Ok(Inventory { particles: self::count(scene), removed: 0, emitted });
     }
     let mut particles = particles(scene)?;
-    let removed =
-        remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
+    let removed = remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
     Ok(Inventory { particles: particles.len() as u64, removed: u64::from(removed), emitted })
 }
 
