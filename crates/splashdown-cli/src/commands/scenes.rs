@@ -42,8 +42,10 @@ fn list() -> Result<(), Failure> {
     let width = presets().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     for (name, text) in presets() {
         let scene = Scene::parse(text, name)?;
-        let particles = human::count(Derived::new(&scene).particles);
-        console::print(format!("{name:width$}  {particles:>9} particles  {}", about(text)));
+        let derived = Derived::new(&scene);
+        let particles = human::count(derived.particles + derived.emitted);
+        let bound = if derived.emitted > 0 { "up to" } else { "" };
+        console::print(format!("{name:width$}  {bound:>5} {particles:>7} particles  {}", about(text)));
     }
     console::print("\nRun one with `splashdown run NAME`, print it with `splashdown scenes show NAME`.");
     Ok(())

@@ -80,6 +80,30 @@ fn check_prints_what_follows_from_a_scene() -> Outcome {
 }
 
 #[test]
+fn check_counts_what_emitters_bring_and_what_bodies_leave_out() -> Outcome {
+    let place = Place::new()?;
+    let tap = "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.8, 0.15]\n\
+               direction = [0, -1, 0]\nspeed = 50\n";
+    let block = "[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.3, 0.3, 0.3]\n";
+    place.write("tap.toml", SMALL.replace(block, tap))?;
+    let json = place.splashdown(&["check", "tap.toml", "--device", "cpu", "--json"]).output()?;
+    let report: Value = serde_json::from_slice(&json.stdout)?;
+    // Ten layers of four, and one more.
+    assert_eq!((&report["particles"], &report["emitted"]), (&Value::from(0), &Value::from(44)), "{report}");
+    assert!(report["speed"]["expected_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0), "{report}");
+    let post = "[[body]]\nname = \"post\"\nmesh = \"block\"\nposition = [0.15, 0.1, 0.15]\n";
+    place.write("post.toml", SMALL.replace("[output]", &format!("{post}[output]")))?;
+    let json = place.splashdown(&["check", "post.toml", "--device", "cpu", "--json"]).output()?;
+    let report: Value = serde_json::from_slice(&json.stdout)?;
+    let (left, removed) = (report["particles"].as_u64(), report["removed"].as_u64());
+    assert!(removed.is_some_and(|removed| removed >= 64), "{report}");
+    assert_eq!(left.zip(removed).map(|(left, removed)| left + removed), Some(216), "{report}");
+    let words = place.splashdown(&["check", "post.toml", "--device", "cpu"]).output()?;
+    assert!(stdout(&words).contains("inside bodies are left out"), "{}", stdout(&words));
+    Ok(())
+}
+
+#[test]
 fn check_reports_every_problem_at_once() -> Outcome {
     let place = Place::new()?;
     let broken = SMALL

@@ -53,7 +53,9 @@ pub enum SampleError {
         fitting: f32,
     },
     /// No particle at all.
-    #[error("the fluid has no particles: every block is smaller than the particle_spacing of {spacing} m")]
+    #[error(
+        "the fluid has no particles: there is no block, mesh, file or emitter, or every block is smaller than the particle_spacing of {spacing} m"
+    )]
     Empty {
         /// The spacing given, in m.
         spacing: f32,

@@ -9,6 +9,7 @@ use super::presets::presets;
 use super::spec::{Key, Kind, Range, Table, UNITS, Word};
 use super::types::Scene;
 use super::values::describe;
+use crate::flow::outlet;
 use crate::sample;
 
 /// The JSON schema (draft 2020-12) of the scene file, for editors: types, ranges, words, required keys; no others allowed. What depends
@@ -110,7 +111,7 @@ pub fn reference() -> String {
         String::from("# Scenes\n\n| scene | particles | method | what one sees |\n|---|---|---|---|\n");
     for (name, text) in presets() {
         let (count, method) = Scene::parse(text, name)
-            .map(|scene| (sample::count(&scene).to_string(), scene.solver.method.to_string()))
+            .map(|scene| (particles(&scene), scene.solver.method.to_string()))
             .unwrap_or_default();
         let lines = text.lines().map_while(|line| line.strip_prefix("# "));
         let _ = writeln!(
@@ -125,6 +126,16 @@ pub fn reference() -> String {
     );
     describe_table(&mut page, &ROOT, "", false);
     page
+}
+
+/// Those at the start, and those that emitters bring.
+fn particles(scene: &Scene) -> String {
+    let count = sample::count(scene);
+    match outlet::forecast(scene) {
+        Ok((emitted @ 1.., _)) if count == 0 => format!("up to {emitted}"),
+        Ok((emitted @ 1.., _)) => format!("{count}, up to {}", count + emitted),
+        _ => count.to_string(),
+    }
 }
 
 fn describe_table(page: &mut String, spec: &Table, path: &str, many: bool) {
