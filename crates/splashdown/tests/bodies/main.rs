@@ -4,6 +4,7 @@ mod devices;
 mod floating;
 mod many;
 mod motion;
+mod shared;
 mod walls;
 
 use glam::{Quat, Vec3};
