@@ -186,6 +186,8 @@ pub struct Run {
     particle_volume: f64,
     particle_steps: f64,
     waiting: VecDeque<Event>,
+    /// What is wrong with the scene's probes.
+    buried: Vec<String>,
     stats_before: Stats,
 }
 
@@ -219,6 +221,7 @@ impl Run {
             }
         };
         let mut simulation = Simulation::prepare(scene, options.device.executor()?, &told)?;
+        let buried = simulation.buried_probes(&scene.probes)?;
         let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
         if options.timing {
             simulation.enable_timing();
@@ -242,6 +245,7 @@ impl Run {
             particle_volume,
             particle_steps: 0.0,
             waiting: VecDeque::new(),
+            buried,
             stats_before: simulation.stats(),
             simulation,
         })
@@ -262,6 +266,7 @@ impl Run {
         for (body, report) in self.simulation.body_meshes().iter().zip(self.simulation.body_reports()) {
             self.waiting.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
         }
+        self.waiting.extend(std::mem::take(&mut self.buried).into_iter().map(Event::Warning));
         let removed = self.simulation.removed();
         if removed > 0 {
             let text = format!("{removed} particles of the fluid were left out: they would be inside bodies");

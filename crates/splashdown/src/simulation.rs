@@ -13,7 +13,7 @@ use crate::fields::Fields;
 use crate::flow::{Flow, LoadedFlow};
 use crate::passes::{DEAD_NON_FINITE, DEAD_UNBORN, Params, StepState, Tally};
 use crate::probes::{ProbeRows, Probes};
-use crate::scene::{Derived, Scene, SurfaceSettings};
+use crate::scene::{Derived, Probe, Quantity, Scene, SurfaceSettings};
 use crate::solid::{self, RepairReport};
 use crate::solver::{self, Solver};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
@@ -428,6 +428,27 @@ impl Simulation {
         let Some(bodies) = &self.bodies else { return Ok(0) };
         let states = bodies.states(&mut self.executor)?;
         Ok(bodies.inside(&states, particles))
+    }
+
+    /// A sentence for each gauge that is so deep inside a body that no fluid is near it, as things are now.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn buried_probes(&mut self, probes: &[Probe]) -> Result<Vec<String>, SimulationError> {
+        let Some(bodies) = &self.bodies else { return Ok(Vec::new()) };
+        let states = bodies.states(&mut self.executor)?;
+        let buried = probes.iter().filter_map(|probe| {
+            let (Quantity::Pressure(x) | Quantity::Height(x)) = probe.quantity else { return None };
+            let (distance, body) = bodies.nearest(&states, x)?;
+            let depth = -1000.0 * distance;
+            (distance < -self.params.particle_spacing).then(|| {
+                format!(
+                    "probe {:?} is {depth:.0} mm inside body {body:?}, where it measures nothing; move it to the surface",
+                    probe.name
+                )
+            })
+        });
+        Ok(buried.collect())
     }
 
     /// Where the scene's bodies are and what the fluid does to them, in its order.

@@ -178,3 +178,16 @@ fn a_run_hands_the_rows_out_with_its_frames() {
     }
     assert_eq!(counts, [0, 2, 2]);
 }
+
+#[test]
+fn a_gauge_inside_a_body_is_told() {
+    let text = TANK.replace("position = [0, 0.2, 0.34]", "position = [0.2, 0.2, 0.2]");
+    let scene = Scene::parse(&text, "tank.toml").unwrap();
+    let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(0), ..RunOptions::new(&scene) };
+    let warnings: Vec<String> = Run::new(&scene, options)
+        .unwrap()
+        .filter_map(|event| if let Event::Warning(text) = event.unwrap() { Some(text) } else { None })
+        .collect();
+    assert!(warnings[0].contains("probe \"wall\" is 75 mm inside body \"cube\""), "{warnings:?}");
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+}

@@ -300,6 +300,14 @@ impl Bodies {
         Ok(executor.read(self.bodies)?.iter().map(state_of).collect())
     }
 
+    /// How far a point is from the nearest body's surface in m, negative inside, and that body's name; by the host's own look-up.
+    pub fn nearest(&self, states: &[BodyState], x: Vec3) -> Option<(f32, &str)> {
+        let distances = self.fields.iter().zip(states).zip(&self.meshes).map(|((field, state), mesh)| {
+            (field.distance(state.orientation.conjugate() * (x - state.position)), mesh.name.as_str())
+        });
+        distances.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// How many of these particles lie inside a body, by the host's own look-up.
     pub fn inside(&self, states: &[BodyState], particles: &Particles) -> u32 {
         let within = |x: Vec3| {
