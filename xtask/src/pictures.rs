@@ -20,12 +20,17 @@ const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
 }
 
 /// Scenes and what is shown of them.
-const PICTURES: [(&str, &[Shown]); 6] = [
+const PICTURES: [(&str, &[Shown]); 11] = [
     ("dam-break", &[shown("surface", 38, "dam-break"), shown("particles", 34, "dam-break-particles")]),
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
     ("honey", &[shown("surface", 20, "honey")]),
     ("lighthouse", &[shown("surface", 20, "lighthouse")]),
     ("knot", &[shown("surface", 22, "knot")]),
+    ("floating", &[shown("surface", 14, "floating")]),
+    ("boat", &[shown("surface", 22, "boat")]),
+    ("paddle-wheel", &[shown("surface", 30, "paddle-wheel")]),
+    ("spheric2", &[shown("surface", 34, "spheric2")]),
+    ("cup", &[shown("surface", 86, "cup")]),
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 
