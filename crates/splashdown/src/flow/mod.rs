@@ -3,7 +3,8 @@
 //! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet born is dead from the
 //! start, and the sort keeps the dead behind the living. An emitter's nozzle is a short pipe that ends at its outlet. At its back
 //! face layers of particles are born on a lattice (`plan`, `emit`), and travel to the outlet as one piston (`drive`), so that
-//! fluid leaves at rest density and with the right speed. A sink marks what is in it as dead (`drain`); its places are used again.
+//! fluid leaves at rest density and with the right speed. The columns of a falling jet are staggered, or gravity, which stretches it, would
+//! draw it out into discs. A sink marks what is in it as dead (`drain`); its places are used again.
 
 mod drain;
 mod drive;
@@ -14,7 +15,7 @@ mod types;
 
 pub use types::{Drain, Nozzle, Plan};
 
-use glam::{UVec3, Vec2, Vec3};
+use glam::{UVec3, Vec3, Vec4};
 use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
 
 use crate::bodies::{BodyError, closed_solid, owner};
@@ -38,7 +39,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
 pub struct LoadedFlow {
     nozzles: Vec<Nozzle>,
     names: Vec<String>,
-    points: Vec<Vec2>,
+    /// Points along the nozzle's `across`, `up` and `direction` in m.
+    points: Vec<Vec4>,
     drains: Vec<Drain>,
     maps: Vec<f32>,
     expected: u64,
@@ -52,15 +54,13 @@ impl LoadedFlow {
     pub fn new(scene: &Scene) -> Result<Self, BodyError> {
         let mut loaded = Self::default();
         let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
+        let spacing = scene.fluid.particle_spacing;
         for emitter in &scene.emitters {
             let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
             nozzle.first_point = loaded.points.len() as u32;
-            loaded.expected = loaded.expected.saturating_add(outlet::expected(
-                &nozzle,
-                duration,
-                scene.fluid.particle_spacing,
-            ));
-            loaded.points.extend(layer);
+            loaded.expected = loaded.expected.saturating_add(outlet::expected(&nozzle, duration, spacing));
+            let depth = outlet::stagger(nozzle.direction, scene.gravity, spacing);
+            loaded.points.extend(outlet::staggered(&layer, spacing, depth));
             loaded.nozzles.push(nozzle);
             loaded.names.push(emitter.name.clone());
         }
@@ -141,7 +141,7 @@ pub struct Flow {
 struct Nozzles {
     names: Vec<String>,
     nozzles: Buffer<Nozzle>,
-    points: Buffer<Vec2>,
+    points: Buffer<Vec4>,
     plans: Buffer<u32>,
     /// The emitters of which it was told that they found no room.
     told: Vec<bool>,

@@ -1,6 +1,6 @@
 //! An emitter's outlet on the host: axes, the lattice of a layer, the nozzle behind it, and how much it will make.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::Nozzle;
 use crate::bodies::{BodyError, closed_solid, owner};
@@ -40,6 +40,24 @@ pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Vec<Vec2> {
     (0..m).flat_map(|j| (0..n).map(move |i| Vec2::new(place(i, n), place(j, m)))).collect()
 }
 
+/// A layer with its points shifted forward, each by its own share of `depth` (m): columns of fluid keep their distances, and a jet that
+/// gravity stretches comes apart evenly instead of into a pile of discs. The shares are those of Roberts' sequence R2 on the
+/// lattice, which puts neighbours far apart from each other.
+pub fn staggered(layer: &[Vec2], spacing: f32, depth: f32) -> Vec<Vec4> {
+    const PLASTIC: f32 = 1.324_718;
+    let share = |q: &Vec2| {
+        let place = (*q / spacing + 0.25).floor();
+        (place.x / PLASTIC + place.y / (PLASTIC * PLASTIC)).rem_euclid(1.0)
+    };
+    layer.iter().map(|q| q.extend(depth * share(q)).extend(0.0)).collect()
+}
+
+/// How deep a layer is staggered, in m: a spacing for a jet straight down, nothing for one that gravity does not stretch, whose layers
+/// may have to press into standing fluid as one.
+pub fn stagger(direction: Vec3, gravity: Vec3, spacing: f32) -> f32 {
+    spacing * direction.dot(gravity.normalize_or_zero()).clamp(0.0, 1.0)
+}
+
 /// Points of the mesh's cross-section at the outlet that keep half a spacing off its rim, on a square lattice along [`axes`] round
 /// `position`: of the four lattices that have a point or a square's side or middle there, the one that makes up the area best.
 fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Vec<Vec2> {
@@ -69,7 +87,7 @@ fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f3
     layers.into_iter().min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or_default()
 }
 
-/// An emitter's layer and nozzle; `first_point` is not yet set.
+/// An emitter's layer, not yet [`staggered`], and its nozzle; `first_point` is not yet set.
 ///
 /// # Errors
 /// [`BodyError`] of an outlet's mesh; of a sheet without an inside, too.
@@ -239,6 +257,33 @@ mod tests {
         let area = layer.len() as f32 * 1e-4;
         assert!((0.5..0.8).contains(&(area / (std::f32::consts::PI * 0.1 * 0.1))), "{area}");
         assert!(layer.iter().all(|q| q.length() > 0.01));
+    }
+
+    #[test]
+    fn only_what_falls_is_staggered() {
+        let gravity = Vec3::new(0.0, -9.81, 0.0);
+        let depth = |direction| stagger(direction, gravity, 0.01);
+        assert_eq!([Vec3::NEG_Y, Vec3::Y, Vec3::X].map(depth), [0.01, 0.0, 0.0]);
+        assert_eq!(stagger(Vec3::NEG_Y, Vec3::ZERO, 0.01), 0.0);
+    }
+
+    #[test]
+    fn neighbours_in_a_layer_are_born_at_different_depths() {
+        for layer in [disc_layer(0.083, 0.01), rectangle_layer([0.08, 0.05], 0.01)] {
+            let points = staggered(&layer, 0.01, 0.01);
+            assert!(points.iter().zip(&layer).all(|(p, q)| p.x == q.x && p.y == q.y));
+            assert!(points.iter().all(|p| (0.0..0.01).contains(&p.z)));
+            let mut pairs = 0;
+            for a in &points {
+                for b in points.iter().filter(|b| (a.x - b.x).hypot(a.y - b.y) < 0.0101 && *b != a) {
+                    let apart = (a.z - b.z).rem_euclid(0.01);
+                    assert!(apart.min(0.01 - apart) > 0.0024, "{a} and {b}");
+                    pairs += 1;
+                }
+            }
+            assert!(pairs > 2 * layer.len(), "{pairs}");
+            assert!(staggered(&layer, 0.01, 0.0).iter().all(|p| p.z == 0.0));
+        }
     }
 
     #[test]

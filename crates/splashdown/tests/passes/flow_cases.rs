@@ -48,8 +48,10 @@ fn nozzles() -> Vec<Nozzle> {
     vec![disc, rectangle, late, over]
 }
 
-fn points() -> Vec<Vec2> {
-    (0..25).map(|i| Vec2::new((i % 4) as f32 - 1.5, (i / 4 % 3) as f32 - 1.0) * 0.9 * SPACING).collect()
+fn points() -> Vec<Vec4> {
+    let place =
+        |i: u8| Vec4::new(f32::from(i % 4) - 1.5, f32::from(i / 4 % 3) - 1.0, 0.07 * f32::from(i), 0.0);
+    (0..25).map(|i| 0.9 * SPACING * place(i)).collect()
 }
 
 fn plan() -> Case {
@@ -146,9 +148,9 @@ fn emit() -> Case {
     let mut blocked = 0;
     for (k, nozzle) in nozzles[..2].iter().enumerate() {
         for place in 0..nozzle.points as usize {
-            let q = points[nozzle.first_point as usize + place].as_dvec2();
+            let q = points[nozzle.first_point as usize + place].as_dvec4();
             let x = nozzle.back.as_dvec3()
-                + 0.004_f32 as f64 * nozzle.direction.as_dvec3()
+                + (0.004_f32 as f64 + q.z) * nozzle.direction.as_dvec3()
                 + q.x * nozzle.across.as_dvec3()
                 + q.y * nozzle.up.as_dvec3();
             let near = |p: &Vec4| p.w == 0.0 && p.xyz().as_dvec3().distance(x) < 0.7 * f64::from(SPACING);
@@ -193,7 +195,7 @@ fn emit() -> Case {
             Data::Grid(world.grid),
             Data::U32(world.cell_start.clone()),
             Data::Nozzles(nozzles),
-            Data::Vec2(points),
+            Data::Vec4(points),
             Data::U32(plans),
             Data::Vec4(positions),
             Data::Vec4(velocities),

@@ -14,7 +14,7 @@ pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
         unreachable!()
     };
     let (params, grid) = (params.get::<Params>(), grid.get::<Grid>());
-    let (cell_start, points) = (cell_start.read::<u32>(), points.read::<Vec2>());
+    let (cell_start, points) = (cell_start.read::<u32>(), points.read::<Vec4>());
     let (positions, velocities) = (positions.write::<Vec4>(), velocities.write::<Vec4>());
     let (ids, densities) = (ids.write::<u32>(), densities.write::<Vec2>());
     let plans = plans.write::<u32>().chunks_exact_mut(Plan::WORDS);
@@ -25,7 +25,8 @@ pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
         let distance = f32::from_bits(plan[Plan::DISTANCE]);
         let first = nozzle.first_point as usize;
         for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
-            let x = nozzle.back + distance * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
+            let forward = (distance + q.z) * nozzle.direction;
+            let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
             if !is_free(&params, &grid, cell_start, positions, x) {
                 plan[Plan::BLOCKED] += 1;
                 continue;

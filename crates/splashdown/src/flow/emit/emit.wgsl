@@ -8,7 +8,7 @@
 @group(0) @binding(1) var<uniform> grid: Grid;
 @group(0) @binding(2) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(3) var<storage, read> nozzles: array<Nozzle>;
-@group(0) @binding(4) var<storage, read> points: array<vec2<f32>>;
+@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> plans: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> velocities: array<vec4<f32>>;
@@ -50,7 +50,7 @@ fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
     }
     let q = points[i];
     let distance = bitcast<f32>(atomicLoad(&plans[w + PLAN_DISTANCE]));
-    let x = nozzle.back + distance * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
+    let x = nozzle.back + (distance + q.z) * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
     if (!is_free(x)) {
         atomicAdd(&plans[w + PLAN_BLOCKED], 1u);
         return;

@@ -25,7 +25,7 @@ pub static EMIT: PassDesc = PassDesc {
         uniform::<Grid>("grid"),
         read::<u32>("cell_start"),
         read::<Nozzle>("nozzles"),
-        read::<Vec2>("points"),
+        read::<Vec4>("points"),
         write::<u32>("plans"),
         write::<Vec4>("positions"),
         write::<Vec4>("velocities"),
