@@ -48,9 +48,11 @@ pub(super) fn cup() -> Mesh {
     })
 }
 
+/// Vertices of a beaker in one circle.
+const AROUND: u32 = 96;
+
 /// A sheet: a bottom and a wall that widens upwards. Normals point out of the beaker.
 pub(super) fn thin_cup() -> Mesh {
-    const AROUND: u32 = 96;
     let corner = 0.008;
     let mut line: Vec<Vec2> = (1..=8_u8).map(|i| vec2(0.0035 * f32::from(i), 0.0)).collect();
     for i in 1..=8_u8 {
@@ -80,5 +82,17 @@ pub(super) fn thin_cup() -> Mesh {
             }
         }
     }
+    mesh
+}
+
+/// The room in a [`thin_cup`]: the same sheet with a lid.
+pub(super) fn thin_cup_filling() -> Mesh {
+    let mut mesh = thin_cup();
+    let middle = mesh.vertices.len() as u32;
+    let rim = middle - AROUND;
+    let height = mesh.vertices[rim as usize][1];
+    mesh.vertices.push([0.0, height, 0.0]);
+    mesh.normals.push([0.0, 1.0, 0.0]);
+    mesh.triangles.extend((0..AROUND).map(|j| [middle, rim + (j + 1) % AROUND, rim + j]));
     mesh
 }

@@ -46,6 +46,11 @@ const MODELS: &[Model] = &[
     ("cup", "a mug with thick walls and a handle, 0.1 m high, open on top", crockery::cup),
     ("thin-cup", "a beaker without thickness, 0.1 m high: an open sheet", crockery::thin_cup),
     (
+        "thin-cup-filling",
+        "the room inside thin-cup up to its rim, 0.1 m high: a shape to fill with fluid",
+        crockery::thin_cup_filling,
+    ),
+    (
         "spout",
         "a bent pipe with a flange; its mouth, 0.06 m wide, is at the origin and points down",
         machines::spout,

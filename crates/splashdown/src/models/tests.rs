@@ -103,7 +103,8 @@ fn volumes_are_those_of_the_formulas() {
 
 #[test]
 fn models_stand_or_float_where_they_are_said_to() {
-    for name in ["lighthouse", "figure", "cup", "thin-cup", "marin-box", "ramp", "steps"] {
+    for name in ["lighthouse", "figure", "cup", "thin-cup", "thin-cup-filling", "marin-box", "ramp", "steps"]
+    {
         let (low, _) = bounds(&model(name));
         assert!(low.y.abs() < 1e-3, "{name} stands at y = {}", low.y);
     }
@@ -112,6 +113,7 @@ fn models_stand_or_float_where_they_are_said_to() {
         ("figure", 0.97, 1.02),
         ("cup", 0.098, 0.102),
         ("thin-cup", 0.0999, 0.1001),
+        ("thin-cup-filling", 0.0999, 0.1001),
         ("marin-box", 0.161, 0.161),
     ] {
         let size = bounds(&model(name)).1.y;
