@@ -153,6 +153,9 @@ pub struct Summary {
     pub timings: Timings,
 }
 
+/// An excess of density that no sound has: something is told of it.
+const DENSE: f32 = 0.3;
+
 /// Time between two [`Event::Progress`].
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -314,6 +317,15 @@ impl Run {
     /// Puts into words what was lost since the last frame.
     fn warn(&mut self, stats: &Stats) {
         let before = std::mem::replace(&mut self.stats_before, *stats);
+        if stats.density_error > DENSE && before.density_error <= DENSE {
+            let text = format!(
+                "at {:.4} s: the density is up to {:.0} % above that at rest: more fluid than there is room for, or fluid \
+                 pushed into a wall. Look at emitters in closed or narrow places, and at particles placed inside one another",
+                stats.time,
+                100.0 * stats.density_error
+            );
+            self.waiting.push_back(Event::Warning(text));
+        }
         let mut tell = |more: u32, thing: &str, what: &str| {
             if more > 0 {
                 let plural = if more == 1 { "" } else { "s" };

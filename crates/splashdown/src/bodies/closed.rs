@@ -18,7 +18,7 @@ pub(crate) fn closed_solid(
     let mesh = mesh_of(owner, source)?;
     check_scale(owner, source, &mesh, domain)?;
     let settings = SolidSettings {
-        cell_size: cell_size(&mesh, spacing, 0.0),
+        cell_size: cell_size(&mesh, spacing, 0.0, 0.0),
         // Nothing feels it, so no node needs to know its share.
         support_radius: 0.0,
         kernels: KernelPair::WendlandC2,

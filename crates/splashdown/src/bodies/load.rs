@@ -169,11 +169,12 @@ fn load_one(
     let mesh = mesh_of(&owner, &body.mesh)?;
     check_scale(&owner, &body.mesh, &mesh, &scene.domain)?;
     let spacing = params.particle_spacing;
+    let half_thickness = half_thickness(body, spacing);
     let settings = SolidSettings {
-        cell_size: cell_size(&mesh, spacing, params.support_radius),
+        cell_size: cell_size(&mesh, spacing, params.support_radius, half_thickness),
         support_radius: params.support_radius,
         kernels,
-        half_thickness: body.half_thickness.unwrap_or(0.5 * spacing),
+        half_thickness,
         shell: body.shell,
         cache,
     };
@@ -260,22 +261,27 @@ pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
     let maps: u64 = scene
         .bodies
         .iter()
-        .filter_map(|body| mesh_of(&body.name, &body.mesh).ok())
-        .map(|mesh| {
-            let cell = cell_size(&mesh, spacing, support);
+        .filter_map(|body| Some((mesh_of(&body.name, &body.mesh).ok()?, half_thickness(body, spacing))))
+        .map(|(mesh, half)| {
+            let cell = cell_size(&mesh, spacing, support, half);
             let (low, high) = solid::bounds(&mesh);
-            let nodes = ((high - low + 2.0 * (support + 2.0 * cell)) / cell).ceil() + 1.0;
+            let nodes = ((high - low + 2.0 * (support + half + 2.0 * cell)) / cell).ceil() + 1.0;
             nodes.element_product() as u64 * size_of::<Vec2>() as u64
         })
         .sum();
     maps + particles * 2 * size_of::<Contact>() as u64
 }
 
+/// Half the thickness in m that a sheet gets.
+fn half_thickness(body: &scene::Body, spacing: f32) -> f32 {
+    body.half_thickness.unwrap_or(0.5 * spacing)
+}
+
 /// Half a particle spacing, or more where the grid would have more than this many nodes.
-pub(super) fn cell_size(mesh: &Mesh, spacing: f32, support: f32) -> f32 {
+pub(super) fn cell_size(mesh: &Mesh, spacing: f32, support: f32, half_thickness: f32) -> f32 {
     const MOST_NODES: f32 = 6e6;
     let (low, high) = solid::bounds(mesh);
-    let volume = |cell: f32| ((high - low + 2.0 * support) / cell + 4.0).element_product();
+    let volume = |cell: f32| ((high - low + 2.0 * (support + half_thickness)) / cell + 4.0).element_product();
     let mut cell = 0.5 * spacing;
     while volume(cell) > MOST_NODES && cell.is_finite() {
         cell *= 1.1;

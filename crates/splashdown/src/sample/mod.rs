@@ -190,6 +190,9 @@ pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
     }
     let mut particles = particles(scene)?;
     let removed = remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
+    if removed > 0 && particles.is_empty() && emitted == 0 {
+        return Err(SampleError::AllInside { removed }.into());
+    }
     Ok(Inventory { particles: particles.len() as u64, removed: u64::from(removed), emitted })
 }
 

@@ -73,6 +73,24 @@ fn check_bodies<'a>(scene: &'a Scene, sections: &[Section<'_>]) -> (Result<(), R
     for (body, section) in scene.bodies.iter().zip(sections) {
         match read_scaled(section, &owner("body", &body.name, &body.mesh), &body.mesh, &scene.domain) {
             Ok(mesh) => {
+                if let Some(half) = body.half_thickness {
+                    let (low, high) = solid::bounds(&mesh);
+                    let most = 0.5 * (high - low).max_element();
+                    if half > most {
+                        let message = format!(
+                            "body {:?} is {} m long: a sheet of half a thickness of {half} m would bury it",
+                            body.name,
+                            2.0 * most
+                        );
+                        let allowed = format!("at most {most} m");
+                        sound = Err(section.complain(
+                            "half_thickness",
+                            message,
+                            &allowed,
+                            "half a spacing is the default",
+                        ));
+                    }
+                }
                 let body = Placed::new(body, &mesh);
                 warn_outside(scene, &body, &mesh, section);
                 placed.push(body);

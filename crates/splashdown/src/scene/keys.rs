@@ -284,7 +284,11 @@ static BODY: Table = Table {
             "How it moves. Default: static; scripted where a keyframe, move or turn is given.",
         )
         .also(&["type", "dynamic"]),
-        key("density", a_number(1.0, 30_000.0, "kg/m^3"), "Of a dynamic body.")
+        key(
+            "density",
+            a_number(50.0, 30_000.0, "kg/m^3"),
+            "Of a dynamic body. A body lighter than a twentieth of water is thrown by it: the coupling is explicit.",
+        )
             .default("500.0")
             .also(&["rho"]),
         key("velocity", a_vector(1000.0, "m/s"), "Of a dynamic body at the start.")
@@ -380,7 +384,7 @@ static PROBE: Table = Table {
         key("quantity", Kind::Word(words::<QuantityWord>), "What it measures.")
             .required()
             .also(&["type", "kind", "measure"]),
-        key("position", a_vector(FAR, "m"), "A point, the foot of a column, or the middle of a rectangle.")
+        key("position", a_vector(FAR, "m"), "A point, the foot of a column (which keeps three spacings off closed sides), or the middle of a rectangle.")
             .also(&["point", "center"]),
         key("body", Kind::Name, "The name of the body whose force is measured."),
         key(

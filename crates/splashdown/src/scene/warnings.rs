@@ -1,17 +1,21 @@
 //! Legal, but probably not what was meant.
 
+use std::f32::consts::PI;
+
 use super::derived::Derived;
 use super::reader::Section;
-use super::things::Quantity;
+use super::things::{Outlet, Quantity, SinkRegion};
 use super::types::{DensityMode, Method, Scene, Shape};
+use crate::flow::outlet;
 
 /// More steps than this take days.
 const MANY_STEPS: u64 = 10_000_000;
 /// Below this many times the reference speed a weakly compressible fluid visibly loses volume (4 per cent).
 const SLOWEST_SOUND: f32 = 5.0;
 
-pub(crate) fn check(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>) {
+pub(crate) fn check(scene: &Scene, root: &Section<'_>, fluid: &Section<'_>, solver: &Section<'_>) {
     let derived = Derived::without_particles(scene);
+    check_flow(scene, root);
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",
@@ -86,6 +90,51 @@ pub(crate) fn check(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>) {
                 if lengths[axis].round() > lengths[axis] { "more" } else { "less" }
             );
             fluid.warn("particle_spacing", message, "sizes of whole spacings keep the volume exact");
+        }
+    }
+}
+
+/// What emitters, sinks and probes cannot do as they are.
+fn check_flow(scene: &Scene, root: &Section<'_>) {
+    let spacing = scene.fluid.particle_spacing;
+    for emitter in &scene.emitters {
+        let name = &emitter.name;
+        let (area, layer) = match &emitter.outlet {
+            Outlet::Disc { radius } => (PI * radius * radius, outlet::disc_layer(*radius, spacing)),
+            Outlet::Rectangle { size } => (size[0] * size[1], outlet::rectangle_layer(*size, spacing)),
+            Outlet::Mesh(_) => continue,
+        };
+        let share = layer.len() as f32 * spacing * spacing / area;
+        if !(0.8..1.25).contains(&share) {
+            let message = format!(
+                "emitter {name:?} is so narrow that its {} particles across bring {:.3e} m^3/s instead of {:.3e}",
+                layer.len(),
+                share * area * emitter.speed,
+                area * emitter.speed
+            );
+            root.warn("emitter", message, "use a finer particle_spacing, or an outlet of several spacings");
+        }
+        if emitter.start >= scene.duration {
+            let message = format!(
+                "emitter {name:?} begins at {} s, when the scene has ended at {} s",
+                emitter.start, scene.duration
+            );
+            root.warn("emitter", message, "begin earlier, or make the scene longer");
+        }
+    }
+    for sink in &scene.sinks {
+        if let SinkRegion::Box { min, max } = sink.region
+            && (min.cmpgt(scene.domain.max).any() || max.cmplt(scene.domain.min).any())
+        {
+            let message = format!("sink {:?} lies wholly outside the domain", sink.name);
+            root.warn("sink", message, "nothing can get there: check min and max");
+        }
+    }
+    for probe in &scene.probes {
+        if probe.interval.is_some_and(|interval| interval > scene.duration) {
+            let message =
+                format!("probe {:?} has a longer interval than the scene, and will write no row", probe.name);
+            root.warn("probe", message, "make interval shorter than duration");
         }
     }
 }

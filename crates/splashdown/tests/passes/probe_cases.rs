@@ -51,7 +51,7 @@ fn gather() -> Case {
         .collect();
     let probes = probes();
     let support = f64::from(world.params.support_radius);
-    let volume = f64::from(world.params.particle_mass) / f64::from(world.params.rest_density);
+    let volume = f64::from(SPACING).powi(3);
     let outer = world.params.body_acceleration(world.state.time).as_dvec3();
     let mut expected = vec![7.0; probes.len() * VALUES];
     let mut near = Vec::new();
@@ -197,7 +197,7 @@ fn log() -> Case {
     let values: Vec<f32> = (0..probes.len() * VALUES).map(|k| 13.0 + k as f32).collect();
     let counts: Vec<u32> = (0..probes.len() as u32).map(|k| 5_u32.wrapping_sub(2 * k)).collect();
 
-    let volume = f64::from(world.params.particle_mass) / f64::from(world.params.rest_density);
+    let volume = f64::from(SPACING).powi(3);
     let (mut new_accounts, mut new_rows, mut new_counts) =
         (wide(bytemuck::cast_slice(&accounts)), wide(&rows), counts.clone());
     let dt = f64::from(state.dt);

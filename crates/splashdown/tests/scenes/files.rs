@@ -129,13 +129,13 @@ fn an_outlet_inside_a_body_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let tap = |y: f32| {
         format!(
-            "[[emitter]]\nname = \"tap\"\nradius = 0.06\nposition = [0.7, {y}, 0.7]\ndirection = [0, 1, 0]\nspeed = 1"
+            "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.7, {y}, 0.7]\ndirection = [0, 1, 0]\nspeed = 1"
         )
     };
     let message =
         load(folder.path(), &format!("{}\n{}", body("block"), tap(0.5))).map(drop).expect_err("inside");
     assert!(
-        message.contains("emitter \"tap\" lies inside body \"rock\"") && message.contains("scene.toml:27"),
+        message.contains("emitter \"tap\" lies inside body \"rock\"") && message.contains("scene.toml:28"),
         "{message}"
     );
     let moving = format!("{}\nmove = [\"t\", \"0\", \"0\"]\n{}", body("block"), tap(0.5));

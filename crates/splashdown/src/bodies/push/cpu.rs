@@ -180,5 +180,6 @@ impl Pushed<'_> {
 
 /// Whole units of a sum; NaN counts as none.
 fn fixed(value: f32) -> i64 {
-    value.clamp(-1e18, 1e18).round_ties_even() as i64
+    // A million of the largest terms still fit into the sum.
+    value.clamp(-1e12, 1e12).round_ties_even() as i64
 }

@@ -15,7 +15,8 @@
 
 // Adds to a 64-bit fixed-point number; see push/mod.rs.
 fn add(word: u32, value: f32) {
-    let units = round(clamp(value, -1e18, 1e18));
+    // A million of the largest terms still fit into the sum.
+    let units = round(clamp(value, -1e12, 1e12));
     let high = floor(units / 4294967296.0);
     let low = u32(units - high * 4294967296.0);
     let before = atomicAdd(&sums[word], low);

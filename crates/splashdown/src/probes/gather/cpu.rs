@@ -20,7 +20,7 @@ pub(super) fn gather(_: CpuWork, slots: &mut [Slot<'_>]) {
     let (cell_start, positions) = (cell_start.read::<u32>(), sorted_positions.read::<Vec4>());
     let (densities, accelerations) = (densities.read::<Vec2>(), accelerations.read::<Vec4>());
     let values = values.write::<f32>().chunks_exact_mut(VALUES);
-    let volume = params.particle_mass / params.rest_density;
+    let volume = params.particle_spacing.powi(3);
     for (probe, values) in probes.read::<ProbePoint>().iter().zip(values) {
         let column = probe.kind == ProbePoint::HEIGHT;
         if !column && probe.kind != ProbePoint::PRESSURE {

@@ -89,7 +89,7 @@ fn gather(
     if (lane > 0u) {
         return;
     }
-    let volume = params.particle_mass / params.rest_density;
+    let volume = params.particle_spacing * params.particle_spacing * params.particle_spacing;
     let total = weights[0].x;
     var value = 0.0;
     if (probe.kind == PROBE_HEIGHT) {

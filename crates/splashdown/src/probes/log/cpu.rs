@@ -26,7 +26,7 @@ pub(super) fn log(_: CpuWork, slots: &mut [Slot<'_>]) {
                 add(&mut sums[3 + a], body.torque[a] * dt);
             }
         } else if probe.kind == ProbePoint::FLOW {
-            add(&mut sums[0], *count as i32 as f32 * params.particle_mass / params.rest_density);
+            add(&mut sums[0], *count as i32 as f32 * params.particle_spacing.powi(3));
             *count = 0;
         } else {
             add(&mut sums[0], values[0] * dt);

@@ -34,7 +34,8 @@ fn log_values(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
             add(sums + 3u + a, body.torque[a] * dt);
         }
     } else if (probe.kind == PROBE_FLOW) {
-        add(sums, f32(bitcast<i32>(counts[k])) * params.particle_mass / params.rest_density);
+        let volume = params.particle_spacing * params.particle_spacing * params.particle_spacing;
+        add(sums, f32(bitcast<i32>(counts[k])) * volume);
         counts[k] = 0u;
     } else {
         add(sums, values[k * PROBE_VALUES] * dt);

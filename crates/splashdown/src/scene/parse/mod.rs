@@ -138,7 +138,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         source: None,
     };
     let (fluid_section, solver_section) = (fluid_section?, solver_section?);
-    warnings::check(&scene, &fluid_section, &solver_section);
+    warnings::check(&scene, root, &fluid_section, &solver_section);
     if root.has_folder() {
         files::check(&scene, root)?;
     }
