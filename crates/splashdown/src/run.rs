@@ -8,7 +8,7 @@ use splashdown_gpu::{Gpu, Timings};
 use splashdown_io::{Mesh, Particles};
 
 use crate::probes::ProbeRows;
-use crate::scene::Scene;
+use crate::scene::{Domain, Motion, Scene};
 use crate::surface::Surface;
 use crate::{BodyMesh, BodyState, Device, Simulation, SimulationError, Stats};
 
@@ -191,6 +191,9 @@ pub struct Run {
     waiting: VecDeque<Event>,
     /// What is wrong with the scene's probes.
     buried: Vec<String>,
+    domain: Domain,
+    /// One per body: true if it moves by itself and has not been told lost.
+    watched: Vec<bool>,
     stats_before: Stats,
 }
 
@@ -249,6 +252,8 @@ impl Run {
             particle_steps: 0.0,
             waiting: VecDeque::new(),
             buried,
+            domain: scene.domain.clone(),
+            watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             stats_before: simulation.stats(),
             simulation,
         })
@@ -385,6 +390,8 @@ impl Run {
             let text = format!("at {time:.4} s: {inside_bodies} particle{plural} inside a body");
             self.waiting.push_back(Event::Warning(text));
         }
+        let bodies: Arc<[BodyState]> = self.simulation.body_states()?.into();
+        self.tell_lost(&bodies, time);
         Ok(Frame {
             index,
             time,
@@ -392,9 +399,26 @@ impl Run {
             particles,
             mesh: mesh.map(Arc::new),
             volume,
-            bodies: self.simulation.body_states()?.into(),
+            bodies,
             probes: self.simulation.take_probe_rows().into(),
         })
+    }
+
+    /// Tells once of each free body that is farther outside the domain than the domain is large, or nowhere.
+    fn tell_lost(&mut self, bodies: &[BodyState], time: f64) {
+        let far = self.domain.size().max_element();
+        for ((state, watched), mesh) in
+            bodies.iter().zip(&mut self.watched).zip(self.simulation.body_meshes())
+        {
+            let x = state.position;
+            let away = (self.domain.min - x).max(x - self.domain.max).max_element();
+            if *watched && (away.is_nan() || away >= far) {
+                *watched = false;
+                let text =
+                    format!("at {time:.4} s: body {:?} has left the domain for good, at {x} m", mesh.name);
+                self.waiting.push_back(Event::Warning(text));
+            }
+        }
     }
 
     fn finish(&mut self) -> Event {

@@ -1,6 +1,6 @@
 use glam::{Quat, Vec3};
 use splashdown::scene::{Body, Hinge, Motion, Scene, Shape};
-use splashdown::{Device, Simulation};
+use splashdown::{Device, Event, Run, RunOptions, Simulation};
 
 use crate::{body, free, tank};
 
@@ -95,4 +95,24 @@ fn a_race_turns_a_wheel_on_its_axle() {
     assert!(state.position.distance(Vec3::new(0.6, 0.32, 0.15)) < 1e-4, "{state:?}");
     // Water that runs along +x under the axle turns it counter-clockwise, as seen from +z.
     assert!(state.angular_velocity.z > 0.5, "{state:?}");
+}
+
+#[test]
+fn a_body_that_flies_out_of_the_tank_is_told_of_once() {
+    let mut scene = tank(0.05, [0.4, 0.4, 0.4], 0.1);
+    scene.domain.closed[1][1] = false;
+    scene.duration = 0.4;
+    let up = Motion::Dynamic {
+        density: 2500.0,
+        velocity: Vec3::new(0.0, 8.0, 0.0),
+        angular_velocity: Vec3::ZERO,
+        hinge: None,
+    };
+    scene.bodies.push(body("stone", "cube", 0.1, Vec3::new(0.2, 0.3, 0.2), up));
+    let options = RunOptions { device: Device::Cpu, surface: false, ..RunOptions::new(&scene) };
+    let told = Run::new(&scene, options).unwrap().filter_map(|event| match event.unwrap() {
+        Event::Warning(text) if text.contains("body \"stone\" has left the domain") => Some(text),
+        _ => None,
+    });
+    assert_eq!(told.count(), 1);
 }
