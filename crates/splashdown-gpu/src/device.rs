@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::GpuError;
+use crate::{GpuError, block_on};
 
 /// How to get a driver where there is none.
 pub const MISSING_DRIVER_HINT: &str = "install your graphics card's Vulkan driver or, for drawing without a GPU, \
@@ -108,7 +108,7 @@ pub fn list_adapters() -> Vec<AdapterReport> {
             info,
         }
     };
-    pollster::block_on(adapters()).iter().map(report).collect()
+    block_on(adapters()).iter().map(report).collect()
 }
 
 impl Gpu {
@@ -117,7 +117,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::NoAdapter`], [`GpuError::NoneOfKind`], [`GpuError::UnknownDevice`], [`GpuError::OpenFailed`].
     pub fn open(request: &DeviceRequest) -> Result<Self, GpuError> {
-        pollster::block_on(Self::open_async(request))
+        block_on(Self::open_async(request))
     }
 
     /// [`open`](Self::open) where blocking is not possible, as on a web page.
@@ -197,6 +197,41 @@ impl Gpu {
     /// The largest number of bytes one buffer may have.
     pub fn largest_buffer(&self) -> u64 {
         largest_buffer(&self.limits)
+    }
+
+    /// Lets finished work report itself, without waiting.
+    ///
+    /// # Errors
+    /// As [`health`](Self::health).
+    pub fn poll(&self) -> Result<(), GpuError> {
+        // An error of `poll` says that nothing was finished; a lost device shows in `health`.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.health("work on the device")
+    }
+
+    /// Waits for this submission and those before it, or for all. On a web page it does not wait: the browser reports.
+    ///
+    /// # Errors
+    /// As [`health`](Self::health).
+    pub fn wait_for(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
+        let outcome = self.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
+        self.health("work on the device")?;
+        outcome.map(drop).map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
+    }
+
+    /// What `make` makes, and the error of this kind that the device had with it. On a web page errors come later, by
+    /// [`health`](Self::health).
+    pub(crate) fn scoped<T>(
+        &self,
+        filter: wgpu::ErrorFilter,
+        make: impl FnOnce(&wgpu::Device) -> T,
+    ) -> (T, Option<wgpu::Error>) {
+        if cfg!(target_arch = "wasm32") {
+            return (make(&self.device), None);
+        }
+        let scope = self.device.push_error_scope(filter);
+        let made = make(&self.device);
+        (made, block_on(scope.pop()))
     }
 
     /// What the device has reported since, outside of any call.

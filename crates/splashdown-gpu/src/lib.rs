@@ -39,8 +39,10 @@ mod record;
 pub mod reduce;
 pub mod scan;
 pub mod sort;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod testing;
 mod timing;
+mod wait;
 pub mod wgsl;
 
 pub use device::{AdapterReport, DeviceRequest, Gpu, MISSING_DRIVER_HINT, list_adapters};
@@ -51,6 +53,7 @@ pub use host::{Slot, as_atomic};
 pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, write};
 pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording, dispatch_groups};
 pub use timing::{PassTime, Timings};
+pub use wait::block_on;
 pub use wgsl::WgslModule;
 
 /// Every pass of this crate, for the gate and the tests.

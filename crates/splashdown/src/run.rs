@@ -2,10 +2,11 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use splashdown_gpu::{Gpu, Timings};
 use splashdown_io::{Mesh, Particles};
+use web_time::Instant;
 
 use crate::probes::ProbeRows;
 use crate::scene::{Domain, Motion, Scene};

@@ -283,7 +283,7 @@ fn it_runs_without_waiting_and_writes_its_draw_arguments() {
             let request = executor.request(surface.status(), 1).unwrap();
             args = executor.read(surface.draw_args()).unwrap();
             assert!(args[0] <= surface.indices().len(), "{name}");
-            let status = request.wait(&mut executor).unwrap()[0];
+            let status = request.wait().unwrap()[0];
             surface.grow(&mut executor, &status).unwrap();
         }
         let mesh = surface.mesh(&mut executor).unwrap();

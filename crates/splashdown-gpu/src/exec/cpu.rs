@@ -1,7 +1,7 @@
 //! Runs recordings in host memory on the cores.
 
 use std::cell::Ref;
-use std::time::Instant;
+use web_time::Instant;
 
 use bytemuck::Pod;
 

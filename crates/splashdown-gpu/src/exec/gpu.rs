@@ -1,7 +1,7 @@
 //! Runs recordings on a device: one submission each, bind groups and pipelines made once.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -10,7 +10,8 @@ use super::readback::Mapping;
 use super::table::{Meta, Table};
 use super::{Readback, readback};
 use crate::{
-    BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings, dispatch_groups,
+    BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings, block_on,
+    dispatch_groups,
 };
 
 /// Dispatches timed per submission; those beyond go untimed.
@@ -28,6 +29,8 @@ pub struct GpuExecutor {
 struct Timer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
+    /// The passes of each submission, and their times on the way.
+    underway: VecDeque<(Vec<&'static str>, Mapping)>,
     timings: Timings,
 }
 
@@ -90,14 +93,15 @@ impl GpuExecutor {
         }
         let kind =
             if meta.uniform { Use::UNIFORM } else { Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX };
-        let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(&meta.label),
-            size: bytes.next_multiple_of(4),
-            usage: kind | Use::COPY_SRC | Use::COPY_DST,
-            mapped_at_creation: false,
+        let (buffer, error) = self.gpu.scoped(wgpu::ErrorFilter::OutOfMemory, |device| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(&meta.label),
+                size: bytes.next_multiple_of(4),
+                usage: kind | Use::COPY_SRC | Use::COPY_DST,
+                mapped_at_creation: false,
+            })
         });
-        if pollster::block_on(scope.pop()).is_some() {
+        if error.is_some() {
             return Err(GpuError::OutOfMemory { label: meta.label.clone(), bytes });
         }
         if self.table.poison && !meta.uniform {
@@ -134,28 +138,11 @@ impl GpuExecutor {
         encoder.copy_buffer_to_buffer(&self.buffers[id.0 as usize], 0, &staging, 0, bytes);
         let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.health("a read-back")?;
-        Ok(readback::mapping(staging, submission))
-    }
-
-    /// Lets finished work report itself, without waiting.
-    pub(super) fn poll(&mut self) -> Result<(), GpuError> {
-        // An error of `poll` says that nothing was finished; a lost device shows in `health`.
-        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
-        self.gpu.health("work on the device")
+        Ok(readback::mapping(Mapping::new(&self.gpu, staging, submission)))
     }
 
     pub(super) fn wait(&mut self) -> Result<(), GpuError> {
-        self.wait_for(None)
-    }
-
-    /// Waits for this submission and those before it, or for all.
-    pub(super) fn wait_for(
-        &mut self,
-        submission_index: Option<wgpu::SubmissionIndex>,
-    ) -> Result<(), GpuError> {
-        let outcome = self.gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
-        self.gpu.health("work on the device")?;
-        outcome.map(drop).map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
+        self.gpu.wait_for(None)
     }
 
     pub(super) fn enable_timing(&mut self) -> bool {
@@ -175,13 +162,34 @@ impl GpuExecutor {
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
+            underway: VecDeque::new(),
             timings: Timings::default(),
         });
         true
     }
 
+    /// On a web page, where nobody can wait, only the times that have arrived.
     pub(super) fn take_timings(&mut self) -> Timings {
+        self.collect_timings(!cfg!(target_arch = "wasm32"));
         self.timer.as_mut().map(|timer| std::mem::take(&mut timer.timings)).unwrap_or_default()
+    }
+
+    /// Adds up the times that have arrived; with `all`, waits for those that have not. Times that a lost device
+    /// keeps are not missed: the next call to it fails.
+    fn collect_timings(&mut self, all: bool) {
+        let Some(timer) = &mut self.timer else { return };
+        let period = f64::from(self.gpu.queue.get_timestamp_period());
+        while let Some((labels, mapping)) = timer.underway.pop_front() {
+            if !all && !mapping.is_ready().unwrap_or(true) {
+                timer.underway.push_front((labels, mapping));
+                return;
+            }
+            let stamps: Vec<u64> = block_on(mapping.take()).unwrap_or_default();
+            for (label, pair) in labels.iter().zip(stamps.chunks_exact(2)) {
+                let nanoseconds = pair[1].saturating_sub(pair[0]) as f64 * period;
+                timer.timings.add(label, Duration::from_nanos(nanoseconds as u64));
+            }
+        }
     }
 
     pub(super) fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
@@ -196,7 +204,7 @@ impl GpuExecutor {
             let mut target = Target { encoder: &mut encoder, pass: None };
             self.encode(&recording.commands, &mut target, &mut timed);
         }
-        self.finish_timing(encoder, &timed)?;
+        self.finish_timing(encoder, timed);
         self.gpu.health(&recording.label)
     }
 
@@ -278,14 +286,11 @@ impl GpuExecutor {
         }
     }
 
-    fn finish_timing(
-        &mut self,
-        mut encoder: wgpu::CommandEncoder,
-        timed: &[&'static str],
-    ) -> Result<(), GpuError> {
-        let Some(timer) = self.timer.as_ref().filter(|_| !timed.is_empty()) else {
+    /// Submits, and sends for the times if there are any.
+    fn finish_timing(&mut self, mut encoder: wgpu::CommandEncoder, timed: Vec<&'static str>) {
+        let Some(timer) = self.timer.as_mut().filter(|_| !timed.is_empty()) else {
             self.gpu.queue.submit([encoder.finish()]);
-            return Ok(());
+            return;
         };
         let stamps = 2 * timed.len() as u32;
         encoder.resolve_query_set(&timer.queries, 0..stamps, &timer.resolved, 0);
@@ -297,15 +302,8 @@ impl GpuExecutor {
         });
         encoder.copy_buffer_to_buffer(&timer.resolved, 0, &staging, 0, staging.size());
         let submission = self.gpu.queue.submit([encoder.finish()]);
-        let stamps: Vec<u64> = Mapping::new(staging, submission).wait(self)?;
-        let period = f64::from(self.gpu.queue.get_timestamp_period());
-        if let Some(timer) = &mut self.timer {
-            for (label, pair) in timed.iter().zip(stamps.chunks_exact(2)) {
-                let nanoseconds = pair[1].saturating_sub(pair[0]) as f64 * period;
-                timer.timings.add(label, Duration::from_nanos(nanoseconds as u64));
-            }
-        }
-        Ok(())
+        timer.underway.push_back((timed, Mapping::new(&self.gpu, staging, submission)));
+        self.collect_timings(false);
     }
 }
 

@@ -118,7 +118,27 @@ impl Executor {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_first<T: GpuElement>(&mut self, buffer: Buffer<T>, len: usize) -> Result<Vec<T>, GpuError> {
-        self.request(buffer, len)?.wait(self)
+        self.request(buffer, len)?.wait()
+    }
+
+    /// [`read`](Self::read) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub async fn fetch<T: GpuElement>(&mut self, buffer: Buffer<T>) -> Result<Vec<T>, GpuError> {
+        self.fetch_first(buffer, self.len(buffer)).await
+    }
+
+    /// [`read_first`](Self::read_first) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub async fn fetch_first<T: GpuElement>(
+        &mut self,
+        buffer: Buffer<T>,
+        len: usize,
+    ) -> Result<Vec<T>, GpuError> {
+        self.request(buffer, len)?.take().await
     }
 
     /// Asks for the first `len` elements as they are after all work submitted so far, without waiting.

@@ -16,8 +16,19 @@ impl Pipeline {
     pub fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Self, GpuError> {
         let source = wgsl::expand(pass.wgsl, pass.imports)
             .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
-        let device = &gpu.device;
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let ((pipeline, layout), error) =
+            gpu.scoped(wgpu::ErrorFilter::Validation, |device| Self::compile(device, pass, &source));
+        if let Some(error) = error {
+            return Err(GpuError::BadShader { pass: pass.label, reason: error.to_string() });
+        }
+        Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
+    }
+
+    fn compile(
+        device: &wgpu::Device,
+        pass: &'static PassDesc,
+        source: &str,
+    ) -> (wgpu::ComputePipeline, wgpu::BindGroupLayout) {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(pass.label),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -62,9 +73,6 @@ impl Pipeline {
             },
             cache: None,
         });
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            return Err(GpuError::BadShader { pass: pass.label, reason: error.to_string() });
-        }
-        Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
+        (pipeline, layout)
     }
 }

@@ -6,10 +6,9 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use bytemuck::Pod;
 
-use super::{Executor, GpuExecutor};
-use crate::{GpuElement, GpuError};
+use crate::{Gpu, GpuElement, GpuError, block_on};
 
-/// The answer to [`Executor::request`].
+/// The answer to [`Executor::request`](crate::Executor::request).
 pub struct Readback<T> {
     state: State,
     element: PhantomData<fn() -> T>,
@@ -24,8 +23,8 @@ pub(super) fn ready<T: GpuElement>(data: Vec<T>) -> Readback<T> {
     Readback { state: State::Ready(bytemuck::cast_slice(&data).to_vec()), element: PhantomData }
 }
 
-pub(super) fn mapping<T>(staging: wgpu::Buffer, submission: wgpu::SubmissionIndex) -> Readback<T> {
-    Readback { state: State::Mapping(Mapping::new(staging, submission)), element: PhantomData }
+pub(super) fn mapping<T>(mapping: Mapping) -> Readback<T> {
+    Readback { state: State::Mapping(mapping), element: PhantomData }
 }
 
 impl<T: GpuElement> Readback<T> {
@@ -33,13 +32,10 @@ impl<T: GpuElement> Readback<T> {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn is_ready(&self, executor: &mut Executor) -> Result<bool, GpuError> {
-        match (&self.state, executor) {
-            (State::Mapping(mapping), Executor::Gpu(gpu)) => {
-                gpu.poll()?;
-                Ok(mapping.status() != PENDING)
-            }
-            _ => Ok(true),
+    pub fn is_ready(&self) -> Result<bool, GpuError> {
+        match &self.state {
+            State::Mapping(mapping) => mapping.is_ready(),
+            State::Ready(_) => Ok(true),
         }
     }
 
@@ -47,11 +43,21 @@ impl<T: GpuElement> Readback<T> {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn wait(self, executor: &mut Executor) -> Result<Vec<T>, GpuError> {
-        match (self.state, executor) {
-            (State::Ready(bytes), _) => Ok(bytemuck::pod_collect_to_vec(&bytes)),
-            (State::Mapping(mapping), Executor::Gpu(gpu)) => mapping.wait(gpu),
-            (State::Mapping(_), Executor::Cpu(_)) => Err(lost()),
+    ///
+    /// # Panics
+    /// On a web page, where nothing can wait, if the data is not there: use [`take`](Self::take).
+    pub fn wait(self) -> Result<Vec<T>, GpuError> {
+        block_on(self.take())
+    }
+
+    /// The data, as soon as it is there. Outside of a web page this future waits when it is polled, and is then ready.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub async fn take(self) -> Result<Vec<T>, GpuError> {
+        match self.state {
+            State::Ready(bytes) => Ok(bytemuck::pod_collect_to_vec(&bytes)),
+            State::Mapping(mapping) => mapping.take().await,
         }
     }
 }
@@ -62,41 +68,98 @@ const FAILED: u8 = 2;
 
 /// A staging buffer on its way to the host.
 pub(super) struct Mapping {
+    gpu: Arc<Gpu>,
     staging: wgpu::Buffer,
+    #[cfg(not(target_arch = "wasm32"))]
     submission: wgpu::SubmissionIndex,
-    status: Arc<AtomicU8>,
+    report: Arc<Report>,
 }
 
-impl Mapping {
-    /// Starts to map a staging buffer that a submission fills.
-    pub fn new(staging: wgpu::Buffer, submission: wgpu::SubmissionIndex) -> Self {
-        let status = Arc::new(AtomicU8::new(PENDING));
-        let report = Arc::clone(&status);
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            report.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
-        });
-        Self { staging, submission, status }
-    }
+/// What the device has to say about a mapping.
+#[derive(Default)]
+struct Report {
+    status: AtomicU8,
+    /// Who waits for it: on a web page the browser makes the report, and nobody can ask for it.
+    #[cfg(target_arch = "wasm32")]
+    waker: std::sync::Mutex<Option<std::task::Waker>>,
+}
 
+impl Report {
     fn status(&self) -> u8 {
         self.status.load(Ordering::Acquire)
     }
 
+    fn make(&self, status: u8) {
+        self.status.store(status, Ordering::Release);
+        #[cfg(target_arch = "wasm32")]
+        if let Some(waker) = self.waker.lock().ok().and_then(|mut waker| waker.take()) {
+            waker.wake();
+        }
+    }
+}
+
+impl Mapping {
+    /// Starts to map a staging buffer that a submission fills.
+    pub fn new(gpu: &Arc<Gpu>, staging: wgpu::Buffer, submission: wgpu::SubmissionIndex) -> Self {
+        let report = Arc::new(Report::default());
+        let reporter = Arc::clone(&report);
+        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            reporter.make(if result.is_ok() { MAPPED } else { FAILED });
+        });
+        #[cfg(target_arch = "wasm32")]
+        let _ = submission;
+        Self {
+            gpu: Arc::clone(gpu),
+            staging,
+            #[cfg(not(target_arch = "wasm32"))]
+            submission,
+            report,
+        }
+    }
+
+    /// True once the content can be taken without waiting.
+    pub fn is_ready(&self) -> Result<bool, GpuError> {
+        self.gpu.poll()?;
+        Ok(self.report.status() != PENDING)
+    }
+
     /// The content, as soon as the submission is done.
-    pub fn wait<T: Pod>(self, gpu: &mut GpuExecutor) -> Result<Vec<T>, GpuError> {
-        if self.status() == PENDING {
-            gpu.wait_for(Some(self.submission.clone()))?;
-        }
-        // Another thread that uses the device may have taken the report off its queue without having made it yet.
-        while self.status() == PENDING {
-            gpu.poll()?;
-            std::thread::yield_now();
-        }
-        if self.status() != MAPPED {
+    pub async fn take<T: Pod>(self) -> Result<Vec<T>, GpuError> {
+        self.finish().await?;
+        if self.report.status() != MAPPED {
+            self.gpu.health("a read-back")?;
             return Err(lost());
         }
         let view = self.staging.get_mapped_range(..).map_err(|_| lost())?;
         Ok(bytemuck::pod_collect_to_vec(&view))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    async fn finish(&self) -> Result<(), GpuError> {
+        if self.report.status() == PENDING {
+            self.gpu.wait_for(Some(self.submission.clone()))?;
+        }
+        // Another thread that uses the device may have taken the report off its queue without having made it yet.
+        while self.report.status() == PENDING {
+            self.gpu.poll()?;
+            std::thread::yield_now();
+        }
+        Ok(())
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    async fn finish(&self) -> Result<(), GpuError> {
+        std::future::poll_fn(|context| {
+            if let Ok(mut waker) = self.report.waker.lock() {
+                *waker = Some(context.waker().clone());
+            }
+            match self.report.status() {
+                PENDING => std::task::Poll::Pending,
+                _ => std::task::Poll::Ready(()),
+            }
+        })
+        .await;
+        Ok(())
     }
 }
 

@@ -273,9 +273,13 @@ impl Bodies {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn resolve_collisions(&mut self, executor: &mut Executor, seconds: f32) -> Result<(), GpuError> {
+    pub async fn resolve_collisions(
+        &mut self,
+        executor: &mut Executor,
+        seconds: f32,
+    ) -> Result<(), GpuError> {
         let Some(rigid) = &mut self.rigid else { return Ok(()) };
-        let mut states = executor.read(self.bodies)?;
+        let mut states = executor.fetch(self.bodies).await?;
         if rigid.resolve(&mut states, seconds) {
             executor.write(self.bodies, &states)?;
         }
@@ -296,8 +300,8 @@ impl Bodies {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn states(&self, executor: &mut Executor) -> Result<Vec<BodyState>, GpuError> {
-        Ok(executor.read(self.bodies)?.iter().map(state_of).collect())
+    pub async fn states(&self, executor: &mut Executor) -> Result<Vec<BodyState>, GpuError> {
+        Ok(executor.fetch(self.bodies).await?.iter().map(state_of).collect())
     }
 
     /// How far a point is from the nearest body's surface in m, negative inside, and that body's name; by the host's own look-up.

@@ -245,11 +245,11 @@ impl Flow {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn count(&mut self, executor: &mut Executor) -> Result<(FlowCount, Vec<String>), GpuError> {
+    pub async fn count(&mut self, executor: &mut Executor) -> Result<(FlowCount, Vec<String>), GpuError> {
         let mut count = FlowCount::default();
         let mut told = Vec::new();
         let Some(nozzles) = &mut self.nozzles else { return Ok((count, told)) };
-        let plans = executor.read(nozzles.plans)?;
+        let plans = executor.fetch(nozzles.plans).await?;
         for (k, plan) in plans.chunks_exact(Plan::WORDS).enumerate() {
             count.emitted += plan[Plan::EMITTED];
             count.refused += plan[Plan::REFUSED];

@@ -146,9 +146,14 @@ impl Probes {
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn take(&self, executor: &mut Executor, start: f64, passed: f32) -> Result<Vec<ProbeRows>, GpuError> {
-        let mut accounts = executor.read(self.accounts)?;
-        let rows = executor.read(self.rows)?;
+    pub async fn take(
+        &self,
+        executor: &mut Executor,
+        start: f64,
+        passed: f32,
+    ) -> Result<Vec<ProbeRows>, GpuError> {
+        let mut accounts = executor.fetch(self.accounts).await?;
+        let rows = executor.fetch(self.rows).await?;
         let mut taken = Vec::with_capacity(self.points.len());
         for ((point, columns), account) in
             self.points.iter().zip(&self.columns).zip(accounts.chunks_exact_mut(Account::WORDS))

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
-use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording};
+use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording, block_on};
 use splashdown_io::Mesh;
 
 use super::params::{Lattice, NODES, ROWS, Status, SurfaceParams};
@@ -364,10 +364,18 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device was lost or the mesh does not fit it.
     pub fn extract(&mut self, executor: &mut Executor) -> Result<SurfaceStats, SurfaceError> {
+        block_on(self.extract_async(executor))
+    }
+
+    /// [`extract`](Self::extract) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`extract`](Self::extract).
+    pub async fn extract_async(&mut self, executor: &mut Executor) -> Result<SurfaceStats, SurfaceError> {
         let mut retries = 0;
         loop {
             executor.run(&self.recording)?;
-            let status = self.read_status(executor)?;
+            let status = self.read_status(executor).await?;
             if !self.grow(executor, &status)? {
                 let Status { blocks, vertices, triangles, .. } = status;
                 return Ok(SurfaceStats { vertices, triangles, blocks, retries, not_finite: 0 });
@@ -407,17 +415,25 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device was lost.
     pub fn mesh(&self, executor: &mut Executor) -> Result<Mesh, SurfaceError> {
-        let status = self.read_status(executor)?;
+        block_on(self.mesh_async(executor))
+    }
+
+    /// [`mesh`](Self::mesh) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`mesh`](Self::mesh).
+    pub async fn mesh_async(&self, executor: &mut Executor) -> Result<Mesh, SurfaceError> {
+        let status = self.read_status(executor).await?;
         let xyz = |values: Vec<Vec4>| values.into_iter().map(|v| v.truncate().to_array()).collect();
-        let vertices = executor.read_first(self.b.vertices, status.vertices as usize)?;
-        let normals = executor.read_first(self.b.normals, status.vertices as usize)?;
-        let indices = executor.read_first(self.b.indices, 3 * status.triangles as usize)?;
+        let vertices = executor.fetch_first(self.b.vertices, status.vertices as usize).await?;
+        let normals = executor.fetch_first(self.b.normals, status.vertices as usize).await?;
+        let indices = executor.fetch_first(self.b.indices, 3 * status.triangles as usize).await?;
         let triangles = indices.as_chunks::<3>().0.to_vec();
         Ok(Mesh { vertices: xyz(vertices), normals: xyz(normals), triangles })
     }
 
-    fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {
-        Ok(executor.read(self.b.status)?[0])
+    async fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {
+        Ok(executor.fetch(self.b.status).await?[0])
     }
 
     /// Gives the memory of all buffers back to the device.

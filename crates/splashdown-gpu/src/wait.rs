@@ -1,0 +1,22 @@
+//! Waiting for futures.
+
+use std::future::Future;
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
+
+/// Runs a future to its end.
+///
+/// Outside of a web page a future of this project waits for the device whenever it is polled, so that this is the same as
+/// calling a function that blocks.
+///
+/// # Panics
+/// On a web page, if the future has to wait for the browser: nothing can block there. Work on the CPU never has to.
+pub fn block_on<T>(future: impl Future<Output = T>) -> T {
+    if cfg!(not(target_arch = "wasm32")) {
+        return pollster::block_on(future);
+    }
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => value,
+        Poll::Pending => panic!("a web page cannot block: await the asynchronous form of this function"),
+    }
+}

@@ -1,0 +1,193 @@
+//! A frame, from its first step to its account.
+
+use glam::Vec4Swizzles;
+use splashdown_gpu::{Readback, block_on};
+
+use super::Simulation;
+use crate::bodies::Bodies;
+use crate::passes::{DEAD_NON_FINITE, StepState, Tally};
+use crate::{SimulationError, Stats};
+
+/// Most steps in one submission to a device: a bound on how long it does not answer.
+pub(super) const MOST_STEPS: u32 = 64;
+/// Steps in one batch on the CPU, which tests for the frame's end before each.
+const CPU_STEPS: u32 = 16;
+
+/// A frame that has begun.
+pub(super) struct FrameInProgress {
+    duration: f32,
+    /// Steps submitted so far.
+    submitted: u32,
+    /// The state behind the batch before the last: the device always has work while the host looks.
+    pending: Option<Readback<StepState>>,
+    pub(super) state: Option<StepState>,
+}
+
+impl Simulation {
+    /// Simulates `seconds`, in as many steps as stability asks for, and waits for the end.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadDuration`], [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`], and those of
+    /// the device.
+    pub fn advance(&mut self, seconds: f32) -> Result<Stats, SimulationError> {
+        block_on(self.advance_async(seconds))
+    }
+
+    /// [`advance`](Self::advance) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub async fn advance_async(&mut self, seconds: f32) -> Result<Stats, SimulationError> {
+        self.begin(seconds)?;
+        loop {
+            if let Some(stats) = self.continue_frame_async().await? {
+                return Ok(stats);
+            }
+        }
+    }
+
+    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it. A frame of no length is
+    /// complete at once, without a step.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadDuration`] if that is not a length of time, and those of the device.
+    pub fn begin(&mut self, seconds: f32) -> Result<(), SimulationError> {
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            return Err(SimulationError::BadDuration { seconds });
+        }
+        if seconds == 0.0 {
+            self.frame = None;
+            self.stats.steps_in_frame = 0;
+            return Ok(());
+        }
+        if let Some(bodies) = &self.bodies {
+            bodies.begin_frame(&mut self.executor, self.stats.time, f64::from(seconds))?;
+        }
+        self.executor.write(self.fields.duration, &[seconds])?;
+        self.executor.run(&self.begin)?;
+        self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
+        Ok(())
+    }
+
+    /// Submits the next steps of the frame, without waiting for them; the frame's account once it is complete, `None`
+    /// before.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn continue_frame(&mut self) -> Result<Option<Stats>, SimulationError> {
+        block_on(self.continue_frame_async())
+    }
+
+    /// [`continue_frame`](Self::continue_frame) where blocking is not possible, as on a web page. A frame whose future is
+    /// dropped half-way is given up.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub async fn continue_frame_async(&mut self) -> Result<Option<Stats>, SimulationError> {
+        let Some(mut frame) = self.frame.take() else { return Ok(Some(self.stats)) };
+        // What is known is one batch old, or nothing yet; one step more meets the frame's end.
+        let (steps, remaining) =
+            frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
+        let to_come = (remaining / self.stable_dt).ceil() as u32;
+        let expected = steps.saturating_add(to_come).saturating_add(1);
+        let collide = self.bodies.as_ref().is_some_and(Bodies::collide);
+        let most = if self.executor.gpu().is_some() && !collide { MOST_STEPS } else { CPU_STEPS };
+        let left = expected.saturating_sub(frame.submitted).clamp(1, most);
+        let power = left.ilog2();
+        self.executor.run(&self.batches[power as usize])?;
+        frame.submitted += 1 << power;
+        let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
+        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never is. Bodies that
+        // may collide are looked at before they go on.
+        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || collide {
+            frame.pending.take()
+        } else {
+            behind
+        };
+        if let Some(readback) = answer {
+            let state = readback.take().await?[0];
+            self.stable_dt = state.stable_dt;
+            if let Some(bodies) = &mut self.bodies
+                && collide
+            {
+                let passed = remaining - state.remaining;
+                bodies.resolve_collisions(&mut self.executor, passed).await?;
+            }
+            frame.state = Some(state);
+            // A step too small for the scene would take for ever to reach the frame's end.
+            if state.done != 0 || state.too_small != 0 {
+                return self.end_frame(state).await.map(Some);
+            }
+        }
+        self.frame = Some(frame);
+        Ok(None)
+    }
+
+    async fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
+        let last = self.stats;
+        let passed =
+            if state.done != 0 { state.frame_duration } else { state.frame_duration - state.remaining };
+        if let Some(probes) = &self.probes {
+            let taken = probes.take(&mut self.executor, last.time, passed).await?;
+            for (rows, more) in self.rows.iter_mut().zip(taken) {
+                rows.extend(more);
+            }
+        }
+        self.stats = Stats {
+            time: last.time + f64::from(passed),
+            steps: last.steps + u64::from(state.steps),
+            steps_in_frame: state.steps,
+            dt: state.stable_dt,
+            density_error: state.density_error,
+            max_speed: state.max_speed,
+            ..last
+        };
+        self.count().await?;
+        if state.too_small != 0 {
+            return Err(SimulationError::StepTooSmall {
+                time: self.stats.time,
+                min_dt: self.params.min_dt,
+                max_speed: state.max_speed,
+                max_acceleration: state.max_acceleration,
+            });
+        }
+        if self.stats.particles == 0 && self.initial > 0 && self.flow.is_none() {
+            return Err(SimulationError::NothingLeft {
+                time: self.stats.time,
+                reason: format!(
+                    "{} left through open sides, {} were not finite",
+                    self.stats.escaped, self.stats.non_finite
+                ),
+            });
+        }
+        Ok(self.stats)
+    }
+
+    /// Brings the counters of lost particles up to date.
+    pub(super) async fn count(&mut self) -> Result<(), SimulationError> {
+        let tally = self.executor.fetch(self.fields.tally).await?;
+        let stats = &mut self.stats;
+        stats.escaped = tally[Tally::ESCAPED];
+        stats.wall_corrections = tally[Tally::CORRECTIONS];
+        stats.speed_limits = tally[Tally::LIMITED];
+        stats.drained = tally[Tally::DRAINED];
+        if let Some(flow) = &mut self.flow {
+            let (count, told) = flow.count(&mut self.executor).await?;
+            (stats.emitted, stats.refused) = (count.emitted, count.refused);
+            self.told.extend(told);
+        }
+        let gone = stats.escaped + stats.drained + tally[Tally::NON_FINITE];
+        stats.particles = self.initial + stats.emitted - gone;
+        if tally[Tally::NON_FINITE] > stats.non_finite {
+            stats.non_finite = tally[Tally::NON_FINITE];
+            let positions = self.executor.fetch(self.fields.positions).await?;
+            let ids = self.executor.fetch(self.fields.ids).await?;
+            let dead = positions.iter().zip(ids).filter(|(p, _)| p.w == DEAD_NON_FINITE);
+            if let Some((p, id)) = dead.min_by_key(|(_, id)| *id) {
+                stats.non_finite_place = p.xyz().to_array();
+                stats.non_finite_id = id;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,198 @@
+//! Where a simulation comes from.
+
+use std::mem::offset_of;
+
+use glam::{Vec3, Vec4};
+use splashdown_gpu::{Executor, Flag, Recording, block_on};
+use splashdown_io::Particles;
+
+use super::Simulation;
+use super::frame::MOST_STEPS;
+use crate::bodies::{Bodies, LoadedBody};
+use crate::cells::{Cells, Grid};
+use crate::fields::Fields;
+use crate::flow::{Flow, LoadedFlow};
+use crate::passes::{DEAD_UNBORN, Params, StepState};
+use crate::probes::Probes;
+use crate::scene::{Derived, Scene};
+use crate::solid;
+use crate::solver::{self, Solver};
+use crate::{Device, SimulationError, Stats, bodies, memory, sample};
+
+impl Simulation {
+    /// Places a scene's particles on a device.
+    ///
+    /// # Errors
+    /// Any [`SimulationError`] of devices, sampling and sizes.
+    pub fn new(scene: &Scene, device: &Device) -> Result<Self, SimulationError> {
+        Self::with_executor(scene, device.executor()?)
+    }
+
+    /// Places a scene's particles on an executor that is already there.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_executor(scene: &Scene, executor: Executor) -> Result<Self, SimulationError> {
+        Self::prepare(scene, executor, &|_, _| {})
+    }
+
+    /// As [`with_executor`](Self::with_executor); `told` hears of each body whose distances are being computed, its name
+    /// and how far it is, in [0, 1]: a mesh of a hundred thousand triangles takes seconds when it is first seen.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn prepare(
+        scene: &Scene,
+        executor: Executor,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Self, SimulationError> {
+        block_on(Self::prepare_async(scene, executor, told))
+    }
+
+    /// [`prepare`](Self::prepare) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub async fn prepare_async(
+        scene: &Scene,
+        executor: Executor,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Self, SimulationError> {
+        let bodies = Self::load_bodies(scene, told)?;
+        let mut particles = sample::particles(scene)?;
+        let removed = sample::remove_inside(scene, &mut particles, &bodies);
+        if removed > 0 && particles.positions.is_empty() {
+            return Err(sample::SampleError::AllInside { removed }.into());
+        }
+        let mut simulation = Self::with_bodies(scene, executor, &particles, bodies).await?;
+        simulation.removed = removed;
+        Ok(simulation)
+    }
+
+    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
+    /// `densities`, if given, are where the continuity equation starts, in kg/m^3. Particles that lie outside the domain,
+    /// are not finite, or have a density that is not positive are taken out and counted.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_particles(
+        scene: &Scene,
+        executor: Executor,
+        particles: &Particles,
+    ) -> Result<Self, SimulationError> {
+        let bodies = Self::load_bodies(scene, &|_, _| {})?;
+        block_on(Self::with_bodies(scene, executor, particles, bodies))
+    }
+
+    pub(crate) fn load_bodies(
+        scene: &Scene,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Vec<LoadedBody>, SimulationError> {
+        let kernels = Solver::new(scene).walls();
+        let params = solver::params(scene, 0);
+        Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), told)?)
+    }
+
+    async fn with_bodies(
+        scene: &Scene,
+        mut executor: Executor,
+        particles: &Particles,
+        loaded: Vec<LoadedBody>,
+    ) -> Result<Self, SimulationError> {
+        let n = particles.positions.len();
+        let largest = executor.largest_buffer();
+        memory::check(n as u64, largest)?;
+        let solver = Solver::new(scene);
+        let loaded_flow = LoadedFlow::new(scene)?;
+        // The unborn have places of their own.
+        let (initial, n) =
+            (n as u32, loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as usize);
+        let params = solver::params(scene, n as u32);
+        let (min, max) = (scene.domain.min, scene.domain.max);
+        let grid =
+            Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
+                what: "grid cells",
+                given: u64::MAX,
+                allowed: 1 << 31,
+                advice: "make the domain smaller or particle_spacing larger".into(),
+            })?;
+        let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
+        let cells = Cells::new(&mut executor, grid, n as u32, scene.solver.sort)?;
+        let bodies = if loaded.is_empty() {
+            None
+        } else {
+            Some(Bodies::new(&mut executor, loaded, &params, solver.walls(), &scene.domain)?)
+        };
+        let flow = if loaded_flow.is_empty() {
+            None
+        } else {
+            let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
+            Some(Flow::new(&mut executor, &loaded_flow, params.particle_spacing, next_id)?)
+        };
+        upload(&mut executor, &fields, particles, &params)?;
+        let stable_dt = Derived::without_particles(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
+        let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
+        executor.write(fields.state, &[first])?;
+
+        let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
+        let step = solver.step(&cells, &fields, bodies.as_ref(), flow.as_ref(), probes.as_ref(), n as u32);
+        let done = Flag::new(fields.state, offset_of!(StepState, done));
+        let batches = (0..=MOST_STEPS.ilog2())
+            .map(|power| {
+                let mut batch = Recording::new(format!("{} steps", 1 << power));
+                batch.repeat(&step, 1 << power, done);
+                batch
+            })
+            .collect();
+        let mut simulation = Self {
+            begin: solver::begin_frame(&fields),
+            prime: solver.prime(&cells, &fields, bodies.as_ref(), n as u32),
+            executor,
+            params,
+            fields,
+            cells,
+            batches,
+            stats: Stats::default(),
+            stable_dt,
+            frame: None,
+            bodies,
+            removed: 0,
+            flow,
+            rows: vec![Vec::new(); scene.probes.len()],
+            probes,
+            initial,
+            told: Vec::new(),
+        };
+        simulation.executor.write(simulation.fields.duration, &[0.0])?;
+        simulation.executor.run(&simulation.prime)?;
+        simulation.count().await?;
+        Ok(simulation)
+    }
+}
+
+fn upload(
+    executor: &mut Executor,
+    fields: &Fields,
+    particles: &Particles,
+    params: &Params,
+) -> Result<(), SimulationError> {
+    let n = particles.positions.len();
+    let unborn = params.particle_count as usize - n;
+    let rest_density = params.rest_density;
+    let mut positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
+    positions.extend(vec![params.domain_min.extend(DEAD_UNBORN); unborn]);
+    // Passes divide by densities: one that is not positive is as good as none, and its particle is taken out as such.
+    let positive = |rho: f32| if rho > 0.0 { rho } else { f32::NAN };
+    let density = |i: usize| particles.densities.get(i).map_or(rest_density, |&rho| positive(rho));
+    let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
+    let mut velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
+    velocities.extend(vec![Vec3::ZERO.extend(rest_density); unborn]);
+    let mut ids: Vec<u32> =
+        if particles.ids.len() == n { particles.ids.clone() } else { (0..n as u32).collect() };
+    // Ids of the unborn must differ from each other and from those of the dead: they count down from the largest.
+    ids.extend((0..unborn as u32).map(|k| u32::MAX - k));
+    executor.write(fields.positions, &positions)?;
+    executor.write(fields.velocities, &velocities)?;
+    executor.write(fields.ids, &ids)?;
+    Ok(())
+}
