@@ -170,6 +170,11 @@ impl Gpu {
                 adapter: info.name.clone(),
                 reason: error.to_string(),
             })?;
+        Ok(Self::from_device(device, queue, info))
+    }
+
+    /// Takes over a device that is open already: a window's. From now on its errors are noted here.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
         let trouble = Arc::new(Mutex::new(None));
         let report = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -181,7 +186,7 @@ impl Gpu {
                 note(&report, Trouble::Lost(format!("{reason:?}: {message}")));
             }
         });
-        Ok(Self { limits: device.limits(), device, queue, info, trouble })
+        Self { limits: device.limits(), device, queue, info, trouble }
     }
 
     /// The name and the API behind it, e.g. "NVIDIA H200 (Vulkan)".

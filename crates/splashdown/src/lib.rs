@@ -22,6 +22,7 @@ mod device;
 mod error;
 mod fields;
 pub mod flow;
+pub mod hand;
 pub mod kernel;
 mod memory;
 pub mod models;
@@ -40,6 +41,7 @@ pub use bodies::{BodyMesh, BodyState};
 pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;
+pub use hand::Hand;
 pub use memory::{largest_particle_count, memory_forecast, memory_forecast_of};
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
 pub use simulation::Simulation;
@@ -47,7 +49,8 @@ pub use stats::Stats;
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
-    [passes::passes(), bodies::passes(), flow::passes(), probes::passes(), surface::passes()].concat()
+    [passes::passes(), bodies::passes(), flow::passes(), hand::passes(), probes::passes(), surface::passes()]
+        .concat()
 }
 
 /// The examples of the README.

@@ -45,6 +45,12 @@ impl GpuExecutor {
         Self { gpu, buffers: Vec::new(), table: Table::default(), pipelines: HashMap::new(), timer: None }
     }
 
+    pub(super) fn successor(&mut self) -> Self {
+        let mut pipelines = std::mem::take(&mut self.pipelines);
+        pipelines.values_mut().for_each(|pipeline| pipeline.bind_groups.clear());
+        Self { pipelines, ..Self::new(Arc::clone(&self.gpu)) }
+    }
+
     pub(super) fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }

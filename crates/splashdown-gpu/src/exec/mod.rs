@@ -46,6 +46,15 @@ macro_rules! either {
 }
 
 impl Executor {
+    /// An executor without buffers on the same device. It takes over the compiled passes; this one compiles again what it
+    /// needs again.
+    pub fn successor(&mut self) -> Self {
+        match self {
+            Self::Cpu(_) => Self::Cpu(CpuExecutor::new()),
+            Self::Gpu(e) => Self::Gpu(e.successor()),
+        }
+    }
+
     /// Makes a storage buffer of `len` elements, all bytes zero (all bits one after [`poison`](Self::poison)).
     ///
     /// # Errors

@@ -286,6 +286,31 @@ impl Bodies {
         Ok(())
     }
 
+    /// Puts bodies where they are said to be, with their velocities.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub async fn place(
+        &mut self,
+        executor: &mut Executor,
+        states: &[Option<BodyState>],
+    ) -> Result<(), GpuError> {
+        let mut bodies = executor.fetch(self.bodies).await?;
+        for (body, state) in bodies.iter_mut().zip(states) {
+            if let Some(state) = state {
+                let arm = state.orientation * body.center;
+                body.position = state.position + arm;
+                body.orientation = Vec4::from(state.orientation);
+                body.velocity = state.velocity + state.angular_velocity.cross(arm);
+                body.angular_velocity = state.angular_velocity;
+            }
+        }
+        if let Some(rigid) = &mut self.rigid {
+            rigid.place(&bodies);
+        }
+        executor.write(self.bodies, &bodies)
+    }
+
     /// The meshes, in the order of the scene.
     pub fn meshes(&self) -> &[BodyMesh] {
         &self.meshes

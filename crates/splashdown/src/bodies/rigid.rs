@@ -97,6 +97,11 @@ impl Rigid {
         collided
     }
 
+    /// Bodies have been put elsewhere: what comes next begins there.
+    pub fn place(&mut self, states: &[Body]) {
+        self.before = states.iter().map(|state| (state.position, state.rotation())).collect();
+    }
+
     fn touches(&self, handle: RigidBodyHandle) -> bool {
         self.world.bodies[handle].colliders().iter().any(|&collider| {
             self.world.narrow_phase.contact_pairs_with(collider).any(|pair| pair.has_any_active_contact())

@@ -220,23 +220,37 @@ pub(crate) fn fitting_spacing(spacing: f32, count: u64) -> f32 {
 
 /// Takes out the particles that lie inside bodies or too near to one; how many. Ids count from 0 again.
 pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) -> u32 {
+    let removed = retain_outside(scene, particles, &bodies.iter().collect::<Vec<_>>());
+    if removed > 0 {
+        particles.ids = (0..particles.positions.len() as u32).collect();
+    }
+    removed
+}
+
+/// Takes out the particles that lie inside bodies, as they stand at the start, or too near to one; how many.
+pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &[&LoadedBody]) -> u32 {
     let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
     let clearance = clearance * scene.fluid.particle_spacing;
-    let poses: Vec<_> = bodies.iter().map(LoadedBody::pose).collect();
+    let poses: Vec<_> = bodies.iter().map(|body| body.pose()).collect();
     let free = |x: Vec3| {
         bodies.iter().zip(&poses).all(|(body, (position, rotation))| {
             body.solid.field.distance(rotation.conjugate() * (x - position)) >= clearance
         })
     };
-    let kept: Vec<usize> = (0..particles.positions.len())
-        .into_par_iter()
-        .filter(|&i| free(particles.positions[i].into()))
-        .collect();
-    let removed = (particles.positions.len() - kept.len()) as u32;
+    let kept: Vec<bool> = particles.positions.par_iter().map(|&x| free(x.into())).collect();
+    let removed = kept.iter().filter(|kept| !**kept).count();
     if removed > 0 {
-        particles.positions = kept.iter().map(|&i| particles.positions[i]).collect();
-        particles.velocities = kept.iter().map(|&i| particles.velocities[i]).collect();
-        particles.ids = (0..kept.len() as u32).collect();
+        keep(&mut particles.positions, &kept);
+        keep(&mut particles.velocities, &kept);
+        keep(&mut particles.ids, &kept);
+        keep(&mut particles.densities, &kept);
+        keep(&mut particles.pressures, &kept);
     }
-    removed
+    removed as u32
+}
+
+/// Those that are kept; a quantity that particles do not have is an empty list and stays one.
+fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    values.retain(|_| *kept.next().unwrap_or(&true));
 }

@@ -92,6 +92,7 @@ impl Simulation {
         let expected = steps.saturating_add(to_come).saturating_add(1);
         let collide = self.bodies.as_ref().is_some_and(Bodies::collide);
         let most = if self.executor.gpu().is_some() && !collide { MOST_STEPS } else { CPU_STEPS };
+        let most = most.min(self.most_steps);
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
         let power = left.ilog2();
         self.executor.run(&self.batches[power as usize])?;

@@ -1,6 +1,7 @@
 //! A running simulation.
 
 mod frame;
+mod live;
 mod results;
 mod start;
 
@@ -14,8 +15,10 @@ use crate::bodies::{Bodies, BodyMesh};
 use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
+use crate::hand::Stirrer;
 use crate::passes::Params;
 use crate::probes::{ProbeRows, Probes};
+use crate::scene::Scene;
 use crate::solid::RepairReport;
 
 /// A fluid in its box, with everything that moves it, on one device.
@@ -33,6 +36,7 @@ use crate::solid::RepairReport;
 /// ```
 pub struct Simulation {
     executor: Executor,
+    scene: Scene,
     params: Params,
     fields: Fields,
     cells: Cells,
@@ -48,6 +52,9 @@ pub struct Simulation {
     removed: u32,
     flow: Option<Flow>,
     probes: Option<Probes>,
+    stirrer: Option<Stirrer>,
+    /// Most steps in one submission.
+    most_steps: u32,
     /// Rows of the probes since they were last asked for.
     rows: Vec<ProbeRows>,
     /// Particles at the start.
@@ -57,6 +64,11 @@ pub struct Simulation {
 }
 
 impl Simulation {
+    /// The scene as it is simulated now.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// The account of the last frame.
     pub fn stats(&self) -> Stats {
         self.stats

@@ -16,7 +16,7 @@ use crate::passes::{DEAD_UNBORN, Params, StepState};
 use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::solid;
-use crate::solver::{self, Solver};
+use crate::solver::{self, Solver, Things};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 
 impl Simulation {
@@ -93,7 +93,7 @@ impl Simulation {
         Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), told)?)
     }
 
-    async fn with_bodies(
+    pub(super) async fn with_bodies(
         scene: &Scene,
         mut executor: Executor,
         particles: &Particles,
@@ -135,23 +135,15 @@ impl Simulation {
         executor.write(fields.state, &[first])?;
 
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
-        let step = solver.step(&cells, &fields, bodies.as_ref(), flow.as_ref(), probes.as_ref(), n as u32);
-        let done = Flag::new(fields.state, offset_of!(StepState, done));
-        let batches = (0..=MOST_STEPS.ilog2())
-            .map(|power| {
-                let mut batch = Recording::new(format!("{} steps", 1 << power));
-                batch.repeat(&step, 1 << power, done);
-                batch
-            })
-            .collect();
         let mut simulation = Self {
             begin: solver::begin_frame(&fields),
             prime: solver.prime(&cells, &fields, bodies.as_ref(), n as u32),
             executor,
+            scene: scene.clone(),
             params,
             fields,
             cells,
-            batches,
+            batches: Vec::new(),
             stats: Stats::default(),
             stable_dt,
             frame: None,
@@ -160,13 +152,36 @@ impl Simulation {
             flow,
             rows: vec![Vec::new(); scene.probes.len()],
             probes,
+            stirrer: None,
+            most_steps: MOST_STEPS,
             initial,
             told: Vec::new(),
         };
+        simulation.record_batches();
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
         simulation.count().await?;
         Ok(simulation)
+    }
+
+    /// Records the step anew, with what is there now.
+    pub(super) fn record_batches(&mut self) {
+        let things = Things {
+            bodies: self.bodies.as_ref(),
+            flow: self.flow.as_ref(),
+            probes: self.probes.as_ref(),
+            stirrer: self.stirrer.as_ref(),
+        };
+        let step =
+            Solver::new(&self.scene).step(&self.cells, &self.fields, &things, self.params.particle_count);
+        let done = Flag::new(self.fields.state, offset_of!(StepState, done));
+        self.batches = (0..=MOST_STEPS.ilog2())
+            .map(|power| {
+                let mut batch = Recording::new(format!("{} steps", 1 << power));
+                batch.repeat(&step, 1 << power, done);
+                batch
+            })
+            .collect();
     }
 }
 

@@ -10,6 +10,7 @@ use crate::boundary::{KernelPair, wall_offset};
 use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
+use crate::hand::Stirrer;
 use crate::passes::{Params, begin, cfl, integrate, state_equation};
 use crate::probes::Probes;
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
@@ -23,6 +24,19 @@ const AKINCI_PER_SIGMA: f32 = 100.0;
 /// from one energy, so it heats up where nothing rubs: water in a tank then boils at 0.5 sqrt(g depth). The thesis and its
 /// successors set a large viscosity by hand; this much calms a tank to under one per cent after two seconds.
 const MUELLER_VISCOSITY: f32 = 0.015;
+
+/// What meets the fluid, as far as a scene has it.
+#[derive(Clone, Copy, Default)]
+pub struct Things<'a> {
+    /// Solids.
+    pub bodies: Option<&'a Bodies>,
+    /// Emitters and sinks.
+    pub flow: Option<&'a Flow>,
+    /// Gauges.
+    pub probes: Option<&'a Probes>,
+    /// A hand.
+    pub stirrer: Option<&'a Stirrer>,
+}
 
 /// What a scene's solver section asks for.
 #[derive(Clone, Copy, Debug)]
@@ -60,15 +74,8 @@ impl Solver {
     }
 
     /// One step: sort, density and pressure, accelerations, motion, next time step.
-    pub fn step(
-        &self,
-        cells: &Cells,
-        fields: &Fields,
-        bodies: Option<&Bodies>,
-        flow: Option<&Flow>,
-        probes: Option<&Probes>,
-        particles: u32,
-    ) -> Recording {
+    pub fn step(&self, cells: &Cells, fields: &Fields, things: &Things<'_>, particles: u32) -> Recording {
+        let Things { bodies, flow, probes, stirrer } = *things;
         let mut step = Recording::new("step");
         let all = Extent::Items(particles);
         cells.record(&mut step, fields);
@@ -94,6 +101,9 @@ impl Solver {
         }
         if let Some(flow) = flow {
             flow.record_before_integrate(&mut step, cells, fields, all);
+        }
+        if let Some(stirrer) = stirrer {
+            stirrer.record(&mut step, cells, fields, all);
         }
         step.dispatch(
             &integrate::INTEGRATE,

@@ -1,6 +1,7 @@
 //! Runs one pass from given buffers on an executor, and compares what it leaves.
 
 use glam::{UVec2, Vec2, Vec4};
+use splashdown::Hand;
 use splashdown::bodies::Body;
 use splashdown::cells::Grid;
 use splashdown::flow::{Drain, Nozzle};
@@ -25,6 +26,7 @@ pub enum Data {
     Drains(Vec<Drain>),
     Probes(Vec<ProbePoint>),
     Bodies(Vec<Body>),
+    Hand(Hand),
 }
 
 impl Data {
@@ -36,6 +38,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice(v),
             Self::Vec4(v) => bytemuck::cast_slice(v),
             Self::UVec2(v) => bytemuck::cast_slice(v),
+            Self::Hand(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Nozzles(v) => bytemuck::cast_slice(v),
             Self::Drains(v) => bytemuck::cast_slice(v),
             Self::Probes(v) => bytemuck::cast_slice(v),
@@ -65,6 +68,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice_mut(v),
             Self::Vec4(v) => bytemuck::cast_slice_mut(v),
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
+            Self::Hand(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Nozzles(v) => bytemuck::cast_slice_mut(v),
             Self::Drains(v) => bytemuck::cast_slice_mut(v),
             Self::Probes(v) => bytemuck::cast_slice_mut(v),
@@ -161,6 +165,7 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         Data::Drains(v) => array(executor, name, v, Data::Drains),
         Data::Probes(v) => array(executor, name, v, Data::Probes),
         Data::Bodies(v) => array(executor, name, v, Data::Bodies),
+        Data::Hand(v) => array(executor, name, &[*v], |v| Data::Hand(v[0])),
         Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
         Data::Params(v) => {
             assert!(uniform, "{name} is no uniform");

@@ -6,6 +6,7 @@
 
 mod cases;
 mod flow_cases;
+mod hand_cases;
 mod harness;
 mod neighbour_cases;
 mod oracle;
@@ -27,6 +28,7 @@ fn all_cases() -> Vec<Case> {
         neighbour_cases::cases(),
         flow_cases::cases(),
         probe_cases::cases(),
+        hand_cases::cases(),
     ];
     all.into_iter().flatten().collect()
 }

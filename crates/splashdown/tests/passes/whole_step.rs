@@ -5,7 +5,7 @@ use splashdown::boundary::KernelPair;
 use splashdown::cells::{Cells, Grid};
 use splashdown::passes::{StepState, Tally};
 use splashdown::scene::Scene;
-use splashdown::solver::{self, Solver};
+use splashdown::solver::{self, Solver, Things};
 use splashdown::{Fields, sample};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuElement, GpuExecutor, Recording, bytemuck, testing};
 
@@ -68,7 +68,7 @@ impl Rig {
             ..bytemuck::Zeroable::zeroed()
         };
         executor.write(fields.state, &[state]).unwrap();
-        let step = way.step(&cells, &fields, None, None, None, n);
+        let step = way.step(&cells, &fields, &Things::default(), n);
         Self { executor, fields, cells, step }
     }
 

@@ -1,0 +1,105 @@
+//! A simulation that is changed while it runs.
+
+use glam::Vec3;
+use splashdown::scene::{Body, BoundaryKind, MeshSource, Motion, Scene};
+use splashdown::{Device, Hand, Simulation};
+
+fn scene() -> Scene {
+    let text = include_str!("../../../scenes/dam-break-small.toml");
+    let mut scene = Scene::parse(text, "dam-break-small.toml").unwrap();
+    scene.fluid.particle_spacing *= 1.5;
+    scene
+}
+
+fn mean_velocity(simulation: &mut Simulation) -> Vec3 {
+    let velocities = simulation.particles().unwrap().velocities;
+    velocities.iter().map(|&v| Vec3::from(v)).sum::<Vec3>() / velocities.len() as f32
+}
+
+#[test]
+fn a_hand_carries_water_along_and_leaves_it_when_taken_out() {
+    let mut scene = scene();
+    scene.gravity = Vec3::ZERO;
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let middle = scene.fluid.blocks[0].shape.bounds();
+    let origin = 0.5 * (middle.0 + middle.1);
+    let hand = Hand::new(origin, Vec3::NEG_Z, Vec3::new(0.5, 0.0, 0.0), 1.0, 10.0);
+    simulation.set_hand(Some(hand)).unwrap();
+    simulation.advance(0.05).unwrap();
+    let carried = mean_velocity(&mut simulation);
+    assert!(carried.x > 0.05, "{carried}");
+    simulation.set_hand(None).unwrap();
+    simulation.advance(0.02).unwrap();
+    let after = mean_velocity(&mut simulation);
+    // Control: nothing pulls any more.
+    assert!((after.x - carried.x).abs() < 0.2 * carried.x, "{carried} then {after}");
+}
+
+#[test]
+fn other_numbers_are_adopted_and_other_things_are_not() {
+    let mut scene = scene();
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    scene.gravity = Vec3::new(3.0, 0.0, 0.0);
+    scene.fluid.material.viscosity = 0.01;
+    scene.solver.artificial_viscosity = 0.2;
+    assert!(simulation.adopt(&scene).unwrap());
+    simulation.advance(0.01).unwrap();
+    let v = mean_velocity(&mut simulation);
+    assert!(v.x > 0.01 && v.y.abs() < 0.1 * v.x, "{v}");
+    for change in [
+        |scene: &mut Scene| scene.fluid.particle_spacing *= 2.0,
+        |scene: &mut Scene| scene.fluid.material.rest_density *= 2.0,
+        |scene: &mut Scene| scene.domain.max.y *= 1.5,
+        |scene: &mut Scene| scene.solver.support_ratio = 2.5,
+    ] {
+        let mut other = scene.clone();
+        change(&mut other);
+        assert!(!simulation.adopt(&other).unwrap());
+        assert_eq!(simulation.scene(), &scene);
+    }
+}
+
+fn ball(name: &str, position: Vec3) -> Body {
+    let mut scene = Scene::parse(
+        &format!(
+            "{}\n[[body]]\nname = {name:?}\nmesh = \"sphere\"\nscale = 0.1\nmotion = \"dynamic\"\ndensity = 300\n",
+            include_str!("../../../scenes/dam-break-small.toml")
+        ),
+        "ball.toml",
+    )
+    .unwrap();
+    let mut body = scene.bodies.remove(0);
+    body.mesh = MeshSource { position, ..body.mesh };
+    body.boundary = BoundaryKind::Map;
+    assert!(matches!(body.motion, Motion::Dynamic { .. }));
+    body
+}
+
+#[test]
+fn a_ball_is_thrown_in_and_the_water_goes_on() {
+    let mut scene = scene();
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(0.05).unwrap();
+    let before = simulation.particles().unwrap();
+    let top = scene.domain.max;
+    scene.bodies.push(ball("first", Vec3::new(0.7 * top.x, 0.7 * top.y, 0.5 * top.z)));
+    let mut second = simulation.carry_over(&scene).unwrap();
+    assert_eq!(second.particles().unwrap().positions, before.positions);
+    assert_eq!(second.particles().unwrap().ids, before.ids);
+    assert_eq!(second.stats().time, simulation.stats().time);
+    second.advance(0.05).unwrap();
+    let fallen = second.body_states().unwrap()[0];
+    assert!(fallen.velocity.y < -0.3, "{fallen:?}");
+
+    // Another one: the first keeps its place and speed; a ball inside the water displaces some of it.
+    let inside = Vec3::from(second.particles().unwrap().positions[before.ids.len() / 2]);
+    scene.bodies.push(ball("second", inside));
+    let mut third = second.carry_over(&scene).unwrap();
+    let states = third.body_states().unwrap();
+    assert!(states[0].position.distance(fallen.position) < 1e-5, "{states:?}");
+    assert!(states[0].velocity.distance(fallen.velocity) < 1e-5, "{states:?}");
+    assert!(third.removed() > 0);
+    let particles = third.particles().unwrap();
+    assert_eq!(third.inside_bodies(&particles).unwrap(), 0);
+    third.advance(0.02).unwrap();
+}
