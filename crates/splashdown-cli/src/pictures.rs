@@ -234,13 +234,9 @@ impl Artist {
         });
         let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
         let empty = Frame {
-            camera: camera(&self.scene, drawn.time),
-            domain: domain(&self.scene),
-            sun: Frame::SUN,
-            particles: None,
-            surface: None,
             bodies: bodies.as_ref().map(UploadedBodies::buffers),
             caption: Some(&caption),
+            ..Frame::new(camera(&self.scene, drawn.time), domain(&self.scene))
         };
         let mut tickets = Vec::new();
         for kind in &self.kinds {

@@ -34,15 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     )?;
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
     let camera = Camera::framing(&domain, 28.0, 18.0, 35.0, aspect);
-    let empty = Frame {
-        camera,
-        domain,
-        sun: Frame::SUN,
-        particles: None,
-        surface: None,
-        bodies: None,
-        caption: None,
-    };
+    let empty = Frame::new(camera, domain);
     let colourings = [
         ("speed", Quantity::Speed, [0.0, 3.0], ColourMap::Water),
         ("density", Quantity::Density, [1000.0, 1009.0], ColourMap::Viridis),

@@ -9,7 +9,8 @@ use wgpu::{Buffer, BufferUsages, Device};
 /// Particles on the GPU. All three buffers need [`BufferUsages::STORAGE`].
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleBuffers<'a> {
-    /// `vec4<f32>` per particle: position in metres, w ignored. Particles that are not finite are not drawn.
+    /// `vec4<f32>` per particle: position in metres; w is 0, or anything else for a particle that is not in play. Neither
+    /// those nor particles that are not finite are drawn.
     pub positions: &'a Buffer,
     /// `vec4<f32>` per particle: velocity in m/s, w ignored.
     pub velocities: &'a Buffer,

@@ -67,6 +67,9 @@ pub enum RenderError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// The frame has the same liquid twice.
+    #[error("a frame has a surface or liquid particles, not both: set one of the two to None")]
+    TwoLiquids,
     /// A buffer is shorter than the number of elements promises.
     #[error("the buffer of {what} holds {given} bytes, {needed} are needed")]
     BufferTooShort {

@@ -1,12 +1,15 @@
 //! What a picture shows.
 
 use crate::globals::{EdgeGlobals, Globals};
-use crate::{BodyBuffers, Camera, ColourMap, Domain, Liquid, ParticleBuffers, RenderError, SurfaceBuffers};
+use crate::{
+    BodyBuffers, Camera, ColourMap, Domain, DrawnLiquidParticles, Liquid, ParticleBuffers, RenderError,
+    SurfaceBuffers,
+};
 use glam::{Vec2, Vec3};
 
 /// Everything about one picture.
 ///
-/// Particles and surface may both be there: the particles are then seen through the liquid.
+/// Particles and a liquid may both be there: the particles are then seen through the liquid.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// Where the picture is taken from.
@@ -17,8 +20,10 @@ pub struct Frame<'a> {
     pub sun: [f32; 3],
     /// Particles as spheres.
     pub particles: Option<DrawnParticles<'a>>,
-    /// The liquid's surface.
+    /// The liquid's surface as a mesh.
     pub surface: Option<DrawnSurface<'a>>,
+    /// The liquid's surface straight from its particles; not together with `surface`.
+    pub liquid_particles: Option<DrawnLiquidParticles<'a>>,
     /// Solids.
     pub bodies: Option<BodyBuffers<'a>>,
     /// A line of text in the lower left corner.
@@ -70,7 +75,21 @@ pub struct DrawnSurface<'a> {
     pub liquid: Liquid,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    /// An empty box under [`Frame::SUN`], to be filled by `Frame { particles: .., ..Frame::new(camera, domain) }`.
+    pub fn new(camera: Camera, domain: Domain) -> Frame<'a> {
+        Frame {
+            camera,
+            domain,
+            sun: Frame::SUN,
+            particles: None,
+            surface: None,
+            liquid_particles: None,
+            bodies: None,
+            caption: None,
+        }
+    }
+
     /// A sun that stands high on the left behind the box, seen from the +z side, so that water glitters towards the camera.
     pub const SUN: [f32; 3] = [-0.55, 0.85, -0.35];
 
@@ -126,6 +145,12 @@ impl Frame<'_> {
         if let Some(surface) = &self.surface {
             surface.fill(&mut globals)?;
         }
+        if let Some(liquid) = &self.liquid_particles {
+            if self.surface.is_some() {
+                return Err(RenderError::TwoLiquids);
+            }
+            liquid.fill(&mut globals)?;
+        }
         Ok(globals)
     }
 }
@@ -133,13 +158,7 @@ impl Frame<'_> {
 impl DrawnParticles<'_> {
     fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
-        if !(self.radius > 0.0 && self.radius.is_finite()) {
-            return Err(RenderError::Value {
-                what: "the particles' radius",
-                given: format!("{} m", self.radius),
-                allowed: "a finite number above 0",
-            });
-        }
+        check_radius(self.radius)?;
         let [low, high] = self.colouring.checked_range()?;
         globals.particle_radius = self.radius;
         globals.quantity = match self.colouring.quantity {
@@ -151,9 +170,7 @@ impl DrawnParticles<'_> {
         globals.range_scale = 1.0 / (high - low);
         // Spheres let no light through; a few layers of them are dark.
         globals.shadow_absorption = [0.35 / self.radius; 3];
-        let texel_area =
-            globals.shadow_size[0] * globals.shadow_size[1] / (crate::shadow::SIDE as f32).powi(2);
-        globals.shadow_particle_path = (2.0 * self.radius).powi(3) / (texel_area * globals.sun[1]);
+        globals.set_shadow_of_particles(self.radius);
         Ok(())
     }
 }
@@ -178,28 +195,20 @@ impl Colouring {
 impl DrawnSurface<'_> {
     fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
-        let Liquid { absorption, scattering, film, colour, refractive_index, roughness } = self.liquid;
-        let sound = absorption.iter().chain(&[scattering]).chain(&colour).all(|&x| x.is_finite() && x >= 0.0)
-            && (0.0..=1.0).contains(&film)
-            && (1.0..=3.0).contains(&refractive_index)
-            && (0.02..=1.0).contains(&roughness);
-        if !sound {
-            return Err(RenderError::Value {
-                what: "the liquid's look",
-                given: format!("{:?}", self.liquid),
-                allowed: "finite positive numbers, a film of 0 to 1, a refractive index of 1 to 3, a roughness of 0.02 to 1",
-            });
-        }
-        globals.liquid_absorption = absorption;
-        globals.liquid_scattering = scattering;
-        globals.liquid_film = film;
-        globals.liquid_colour = colour;
-        globals.refractive_index = refractive_index;
-        globals.liquid_roughness = roughness;
-        // The shadow of a clear liquid is bright and tinted; scattering takes light of all colours away.
-        globals.shadow_absorption = absorption.map(|a| 0.45 * a + 0.9 * scattering);
-        Ok(())
+        self.liquid.fill(globals)
     }
+}
+
+/// Refuses radii that would draw nothing or everything.
+pub(crate) fn check_radius(radius: f32) -> Result<(), RenderError> {
+    if radius > 0.0 && radius.is_finite() {
+        return Ok(());
+    }
+    Err(RenderError::Value {
+        what: "the particles' radius",
+        given: format!("{radius} m"),
+        allowed: "a finite number above 0",
+    })
 }
 
 fn check_sun(sun: [f32; 3]) -> Result<Vec3, RenderError> {
@@ -243,7 +252,7 @@ mod tests {
     fn frame() -> Frame<'static> {
         let domain = Domain::closed([0.0; 3], [2.0, 1.0, 1.0]);
         let camera = Camera::framing(&domain, 30.0, 20.0, 40.0, 1.5);
-        Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, bodies: None, caption: None }
+        Frame::new(camera, domain)
     }
 
     #[test]

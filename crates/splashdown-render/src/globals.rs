@@ -45,7 +45,19 @@ pub(crate) struct Globals {
     pub liquid_scattering: f32,
     pub liquid_colour: [f32; 3],
     pub liquid_roughness: f32,
+    pub splat_radius: f32,
+    pub amount_radius: f32,
+    pub amount: f32,
+    pub pad: f32,
     pub edges: [EdgeGlobals; 12],
+}
+
+impl Globals {
+    /// Metres of fluid that a particle of this radius adds to a texel of the shadow map.
+    pub fn set_shadow_of_particles(&mut self, radius: f32) {
+        let texel_area = self.shadow_size[0] * self.shadow_size[1] / (crate::shadow::SIDE as f32).powi(2);
+        self.shadow_particle_path = (2.0 * radius).powi(3) / (texel_area * self.sun[1]);
+    }
 }
 
 #[cfg(test)]
@@ -70,7 +82,8 @@ mod tests {
         let globals = layout!(Globals: clip_from_world eye near right pixel_angle up encode_srgb forward
             liquid_film sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
-            range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness edges);
+            range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
+            splat_radius amount_radius amount pad edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

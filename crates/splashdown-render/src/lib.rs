@@ -10,10 +10,8 @@
 //!
 //! let particles = UploadedParticles::new(&device, &[[0.5, 0.1, 0.5]], &[[1.0, 0.0, 0.0]], &[], &[])?;
 //! let domain = Domain::closed([0.0; 3], [1.0; 3]);
+//! let camera = Camera::framing(&domain, 30.0, 20.0, 35.0, 16.0 / 9.0);
 //! let frame = Frame {
-//!     camera: Camera::framing(&domain, 30.0, 20.0, 35.0, 16.0 / 9.0),
-//!     domain,
-//!     sun: Frame::SUN,
 //!     particles: Some(DrawnParticles {
 //!         buffers: particles.buffers(),
 //!         radius: 0.05,
@@ -24,9 +22,8 @@
 //!             colour_bar: true,
 //!         },
 //!     }),
-//!     surface: None,
-//!     bodies: None,
 //!     caption: Some("t = 0.00 s"),
+//!     ..Frame::new(camera, domain)
 //! };
 //! let rgba: Vec<u8> = target.render_to_rgba(&mut renderer, &frame)?;
 //! # Ok(())
@@ -57,7 +54,9 @@ mod offscreen;
 mod overlay;
 mod particles;
 mod pipeline;
+mod recorder;
 mod renderer;
+mod screen_space;
 mod shader;
 mod shadow;
 mod solids;
@@ -75,4 +74,5 @@ pub use frame::{Colouring, DrawnParticles, DrawnSurface, Frame, Quantity};
 pub use liquid::Liquid;
 pub use offscreen::{Offscreen, Ticket};
 pub use renderer::Renderer;
+pub use screen_space::DrawnLiquidParticles;
 pub use solids::{PlacedBody, UploadedBodies};

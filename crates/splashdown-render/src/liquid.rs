@@ -1,5 +1,8 @@
 //! How a liquid looks.
 
+use crate::RenderError;
+use crate::globals::Globals;
+
 /// Optical properties of a liquid in a picture.
 ///
 /// Real water is nearly colourless over a metre: it absorbs 0.3 of the red and next to nothing of the blue light (Pope
@@ -52,6 +55,31 @@ impl Liquid {
             "honey" => Some(Liquid::honey(size)),
             _ => None,
         }
+    }
+
+    /// Refuses looks that would draw nonsense, and hands the others to the shaders.
+    pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
+        let Liquid { absorption, scattering, film, colour, refractive_index, roughness } = *self;
+        let sound = absorption.iter().chain(&[scattering]).chain(&colour).all(|&x| x.is_finite() && x >= 0.0)
+            && (0.0..=1.0).contains(&film)
+            && (1.0..=3.0).contains(&refractive_index)
+            && (0.02..=1.0).contains(&roughness);
+        if !sound {
+            return Err(RenderError::Value {
+                what: "the liquid's look",
+                given: format!("{:?}", self),
+                allowed: "finite positive numbers, a film of 0 to 1, a refractive index of 1 to 3, a roughness of 0.02 to 1",
+            });
+        }
+        globals.liquid_absorption = absorption;
+        globals.liquid_scattering = scattering;
+        globals.liquid_film = film;
+        globals.liquid_colour = colour;
+        globals.refractive_index = refractive_index;
+        globals.liquid_roughness = roughness;
+        // The shadow of a clear liquid is bright and tinted; scattering takes light of all colours away.
+        globals.shadow_absorption = absorption.map(|a| 0.45 * a + 0.9 * scattering);
+        Ok(())
     }
 
     fn tinted(

@@ -150,6 +150,8 @@ pub(crate) enum Bind {
     /// Read by the vertex shader, texel by texel.
     VertexTexture,
     Texture,
+    /// A texture of any float format, read texel by texel without a sampler.
+    Texels,
     Sampler,
 }
 
@@ -162,13 +164,13 @@ pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind])
             visibility: match bind {
                 Bind::Uniform => ShaderStages::VERTEX_FRAGMENT,
                 Bind::Storage | Bind::VertexTexture => ShaderStages::VERTEX,
-                Bind::Texture | Bind::Sampler => ShaderStages::FRAGMENT,
+                Bind::Texture | Bind::Texels | Bind::Sampler => ShaderStages::FRAGMENT,
             },
             ty: match bind {
                 Bind::Uniform => buffer(BufferBindingType::Uniform),
                 Bind::Storage => buffer(BufferBindingType::Storage { read_only: true }),
-                Bind::Texture | Bind::VertexTexture => BindingType::Texture {
-                    sample_type: TextureSampleType::Float { filterable: true },
+                Bind::Texture | Bind::VertexTexture | Bind::Texels => BindingType::Texture {
+                    sample_type: TextureSampleType::Float { filterable: bind != &Bind::Texels },
                     view_dimension: TextureViewDimension::D2,
                     multisampled: false,
                 },

@@ -6,13 +6,14 @@ use crate::edges::Edges;
 use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
+use crate::recorder::{End, Recorder, Start};
+use crate::screen_space::ScreenSpace;
 use crate::shadow::Shadow;
 use crate::surface::Surface;
 use crate::targets::Targets;
 use crate::{Frame, RenderError};
 use wgpu::{
-    BindGroup, BindGroupLayout, BufferUsages, Color, CommandEncoder, Device, LoadOp, Operations, Queue,
-    RenderPass, RenderPassColorAttachment, RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp,
+    BindGroup, BindGroupLayout, BufferUsages, Color, CommandEncoder, Device, Queue, RenderPass,
     TextureFormat, TextureView,
 };
 
@@ -21,8 +22,8 @@ use wgpu::{
 /// The passes of a picture, in their order:
 ///
 /// 1. the fluid's shadow on the floor (256 x 256, blurred);
-/// 2. background, hidden edges, solids, particles; with a surface also its thickness, then a copy to look through, then the
-///    surface; near edges; several samples per pixel, resolved into the target;
+/// 2. background, hidden edges, solids, particles; with a liquid also a copy to look through, the liquid's thickness, then its
+///    surface, from a mesh or from smoothed distances; near edges; several samples per pixel, resolved into the target;
 /// 3. colour bar and caption, pixel on pixel.
 #[derive(Debug)]
 pub struct Renderer {
@@ -37,6 +38,7 @@ pub struct Renderer {
     bodies: Bodies,
     particles: Particles,
     surface: Surface,
+    screen_space: ScreenSpace,
     overlay: Overlay,
     targets: Option<Targets>,
 }
@@ -65,6 +67,7 @@ impl Renderer {
             bodies: Bodies::new(device, layouts, format, sample_count),
             particles: Particles::new(device, queue, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
+            screen_space: ScreenSpace::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
             shadow,
             globals_layout,
@@ -108,7 +111,8 @@ impl Renderer {
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
         let Some(targets) = &self.targets else { return Ok(()) };
 
-        self.shadow.record(&self.device, encoder, &globals, frame);
+        let recorder = &mut Recorder { encoder };
+        self.shadow.record(&self.device, recorder, &globals, frame);
         let chunks =
             frame.particles.map(|drawn| self.particles.bind(&self.device, &drawn)).unwrap_or_default();
         let scene = |pass: &mut RenderPass<'_>| {
@@ -124,44 +128,61 @@ impl Renderer {
             }
         };
 
-        let Some(drawn) = &frame.surface else {
-            let mut pass = begin(encoder, "picture", targets, target, Start::Clear, End::Discard);
+        if frame.surface.is_none() && frame.liquid_particles.is_none() {
+            let mut pass = recorder.picture("picture", targets, target, Start::Clear, End::Discard);
             scene(&mut pass);
             self.edges.record(&mut pass, behind..12);
             drop(pass);
-            self.overlay.record(encoder, target);
+            self.overlay.record(recorder, target);
             return Ok(());
-        };
-        scene(&mut begin(encoder, "scene", targets, &targets.scene, Start::Clear, End::Keep));
+        }
+        scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Keep));
         {
             // Further than anything, in 16 bits.
             let nothing = Color { r: 60_000.0, ..Color::TRANSPARENT };
-            let mut pass = begin_half(encoder, "distance of bodies", &targets.solid, nothing);
+            let mut pass = recorder.cleared("distance of bodies", &targets.solid, nothing);
             if let Some(bodies) = &frame.bodies {
                 pass.set_bind_group(0, &globals, &[]);
                 self.bodies.record_distance(&mut pass, bodies);
             }
         }
+        let liquid_chunks = frame
+            .liquid_particles
+            .map(|drawn| self.screen_space.bind(&self.device, &drawn.buffers))
+            .unwrap_or_default();
         {
-            let mut pass = begin_half(encoder, "thickness", &targets.thickness, Color::TRANSPARENT);
+            let mut pass = recorder.cleared("thickness", &targets.thickness, Color::TRANSPARENT);
             pass.set_bind_group(0, &globals, &[]);
-            self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
+            match &frame.surface {
+                Some(drawn) => {
+                    self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
+                }
+                None => self.screen_space.record_amount(&self.device, &mut pass, targets, &liquid_chunks),
+            }
         }
-        let group = self.surface.bind(&self.device, targets);
+        let group = match &frame.surface {
+            Some(_) => self.surface.bind(&self.device, targets),
+            None => {
+                self.screen_space.record_distances(&self.device, recorder, targets, &globals, &liquid_chunks)
+            }
+        };
         {
             // With one sample the scene went into a texture of its own and has to be drawn again.
             let again = targets.samples.is_none();
             let start = if again { Start::Clear } else { Start::Load };
-            let mut pass = begin(encoder, "picture", targets, target, start, End::Discard);
+            let mut pass = recorder.picture("picture", targets, target, start, End::Discard);
             if again {
                 scene(&mut pass);
             }
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
-            self.surface.record(&mut pass, &group, &drawn.buffers);
+            match &frame.surface {
+                Some(drawn) => self.surface.record(&mut pass, &group, &drawn.buffers),
+                None => self.screen_space.record(&mut pass, &group),
+            }
             self.edges.record(&mut pass, behind..12);
         }
-        self.overlay.record(encoder, target);
+        self.overlay.record(recorder, target);
         Ok(())
     }
 
@@ -185,69 +206,4 @@ pub(crate) fn check_size(device: &Device, [width, height]: [u32; 2]) -> Result<(
         true => Ok(()),
         false => Err(RenderError::PictureSize { width, height, limit }),
     }
-}
-
-/// What a pass finds in its samples and depths.
-#[derive(Clone, Copy, PartialEq)]
-enum Start {
-    Clear,
-    Load,
-}
-
-/// Whether a later pass goes on with the samples and depths.
-#[derive(Clone, Copy, PartialEq)]
-enum End {
-    Keep,
-    Discard,
-}
-
-/// Begins a pass whose result lands in `result`, by way of the samples where there are several.
-fn begin<'a>(
-    encoder: &'a mut CommandEncoder,
-    label: &str,
-    targets: &Targets,
-    result: &TextureView,
-    start: Start,
-    end: End,
-) -> RenderPass<'a> {
-    let keep = if end == End::Keep { StoreOp::Store } else { StoreOp::Discard };
-    let (view, resolve_target, store) = match &targets.samples {
-        Some(samples) => (samples, Some(result), keep),
-        None => (result, None, StoreOp::Store),
-    };
-    let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::BLACK) };
-    let load_depth = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(0.0) };
-    encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: Operations { load, store },
-        })],
-        depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
-            view: &targets.depth,
-            depth_ops: Some(Operations { load: load_depth, store: keep }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
-}
-
-fn begin_half<'a>(
-    encoder: &'a mut CommandEncoder,
-    label: &str,
-    view: &TextureView,
-    clear: Color,
-) -> RenderPass<'a> {
-    encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations { load: LoadOp::Clear(clear), store: StoreOp::Store },
-        })],
-        ..Default::default()
-    })
 }

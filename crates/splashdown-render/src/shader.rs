@@ -9,6 +9,8 @@ pub(crate) struct Shader {
 
 pub(crate) const GLOBALS: &str = include_str!("shared/globals.wgsl");
 pub(crate) const ENVIRONMENT: &str = include_str!("shared/environment.wgsl");
+pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
+pub(crate) const SPHERE: &str = include_str!("shared/sphere.wgsl");
 
 impl Shader {
     pub fn source(&self) -> String {
@@ -29,7 +31,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 11] = [
+    const ALL: [Shader; 16] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -37,6 +39,11 @@ mod tests {
         crate::particles::SHADER,
         crate::surface::THICKNESS,
         crate::surface::SHADER,
+        crate::screen_space::SPLAT,
+        crate::screen_space::AMOUNT,
+        crate::screen_space::SMOOTH,
+        crate::screen_space::CLEAN,
+        crate::screen_space::COMPOSE,
         crate::shadow::FROM_SURFACE,
         crate::shadow::FROM_PARTICLES,
         crate::shadow::BLUR,
@@ -85,8 +92,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 2,
-            "each shader has a file of its own, and two are shared: {files:?}"
+            ALL.len() + 5,
+            "each shader has a file of its own, and five are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

@@ -36,7 +36,7 @@ impl Targets {
     }
 }
 
-fn texture(
+pub(crate) fn texture(
     device: &Device,
     label: &str,
     [width, height]: [u32; 2],

@@ -11,15 +11,8 @@ const RED: Colouring =
 
 /// A box far larger than what is drawn in it, seen from +z, so that its edges and floor stay out of the way.
 fn level_frame(distance: f32) -> Frame<'static> {
-    Frame {
-        camera: Camera::orbit([0.0; 3], distance, 0.0, 0.0, 40.0),
-        domain: Domain::closed([-50.0; 3], [50.0; 3]),
-        sun: Frame::SUN,
-        particles: None,
-        surface: None,
-        bodies: None,
-        caption: None,
-    }
+    let camera = Camera::orbit([0.0; 3], distance, 0.0, 0.0, 40.0);
+    Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
 }
 
 /// Particles at rest are blue in the blue-red map, those that move by 1 m/s are red.

@@ -8,7 +8,7 @@ use splashdown_render::*;
 fn frame(azimuth: f32) -> Frame<'static> {
     let domain = Domain::closed([0.0; 3], [1.0; 3]);
     let camera = Camera::framing(&domain, azimuth, 20.0, 40.0, 1.5);
-    Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, bodies: None, caption: None }
+    Frame::new(camera, domain)
 }
 
 #[test]

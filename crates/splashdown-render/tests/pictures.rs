@@ -14,7 +14,7 @@ const ASPECT_RATIO: f32 = 1.4;
 
 fn frame(domain: Domain) -> Frame<'static> {
     let camera = Camera::framing(&domain, 28.0, 18.0, 35.0, ASPECT_RATIO);
-    Frame { camera, domain, sun: Frame::SUN, particles: None, surface: None, bodies: None, caption: None }
+    Frame::new(camera, domain)
 }
 
 fn moved(frame: Frame<'_>) -> Frame<'_> {
@@ -107,4 +107,26 @@ fn surface_and_particles_together_in_a_half_open_box() {
         !studio.draw(SIZE, &Frame { particles: None, ..good }).difference(&picture).is_small(),
         "no particles"
     );
+}
+
+#[test]
+fn liquid_from_particles() {
+    let Some(mut studio) = common::studio() else { return };
+    let cloud = sample::slump([2.0, 1.0, 1.0], 0.04);
+    let particles = UploadedParticles::new(&studio.device, &cloud.positions, &[], &[], &[]).unwrap();
+    let drawn =
+        DrawnLiquidParticles { buffers: particles.buffers(), radius: 0.02, liquid: Liquid::water(1.0) };
+    let empty = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]));
+    let good = Frame { liquid_particles: Some(drawn), ..empty };
+    let picture = studio.draw(WITH_BAR, &good);
+    picture.expect("screen-space");
+
+    assert!(!studio.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
+    for wrong in [
+        DrawnLiquidParticles { liquid: Liquid::oil(1.0), ..drawn },
+        DrawnLiquidParticles { radius: 0.012, ..drawn },
+    ] {
+        let wrong = studio.draw(WITH_BAR, &Frame { liquid_particles: Some(wrong), ..empty });
+        assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
+    }
 }

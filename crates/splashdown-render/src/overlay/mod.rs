@@ -17,13 +17,14 @@ mod colour_bar;
 mod ticks;
 
 use crate::pipeline::{Bind, OVER, Recipe, bind_group, bind_group_layout};
+use crate::recorder::Recorder;
 use crate::shader::Shader;
 use crate::{Frame, RenderError};
 use bytemuck::{Pod, Zeroable};
 use canvas::Canvas;
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, BufferUsages, CommandEncoder, Device, PrimitiveTopology,
-    Queue, RenderPipeline, TextureFormat, TextureUsages, TextureView,
+    BindGroup, BindGroupLayout, BindingResource, BufferUsages, Device, PrimitiveTopology, Queue,
+    RenderPipeline, TextureFormat, TextureUsages, TextureView,
 };
 
 pub(crate) const SHADER: Shader = Shader { label: "overlay", parts: &[include_str!("overlay.wgsl")] };
@@ -133,7 +134,7 @@ impl Overlay {
     }
 
     /// Lays the labels over the finished picture.
-    pub fn record(&self, encoder: &mut CommandEncoder, target: &TextureView) {
+    pub fn record(&self, recorder: &mut Recorder<'_>, target: &TextureView) {
         let groups: Vec<&BindGroup> = [&self.colour_bar, &self.caption]
             .into_iter()
             .flatten()
@@ -142,16 +143,7 @@ impl Overlay {
         if groups.is_empty() {
             return;
         }
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("overlay"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
+        let mut pass = recorder.over("overlay", target);
         pass.set_pipeline(&self.pipeline);
         for group in groups {
             pass.set_bind_group(0, group, &[]);

@@ -31,7 +31,7 @@
 //! times the pixels).
 
 use crate::pipeline::{Bind, Depth, Recipe, bind_group, bind_group_layout};
-use crate::shader::{GLOBALS, Shader};
+use crate::shader::{GLOBALS, SPHERE, Shader};
 use crate::{ColourMap, DrawnParticles, ParticleBuffers};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, BufferBinding, Device, Queue, RenderPass, RenderPipeline,
@@ -39,7 +39,7 @@ use wgpu::{
 };
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "particles", parts: &[GLOBALS, include_str!("particles.wgsl")] };
+    Shader { label: "particles", parts: &[GLOBALS, SPHERE, include_str!("particles.wgsl")] };
 
 /// Starts of bindings must be multiples of 256 bytes; a multiple of this many particles always is.
 const GRAIN: u32 = 256;

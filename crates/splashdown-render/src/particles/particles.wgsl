@@ -1,6 +1,7 @@
-// Spheres as impostors: a quad around the outline, the hit worked out per pixel. Needs globals.wgsl.
+// Spheres as impostors: a quad around the outline, the hit worked out per pixel. Needs globals.wgsl,
+// sphere.wgsl.
 
-@group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, w ignored
+@group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
 @group(2) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored
 @group(2) @binding(2) var<storage, read> densities: array<vec2f>;   // density, pressure
 @group(2) @binding(3) var colour_map: texture_2d<f32>;              // 256 x 1
@@ -18,31 +19,12 @@ struct Varying {
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let particle = index / 6u;
-    // Two triangles, corners 0 1 2 and 2 1 3, packed two bits each.
-    let corner = (0xDA4u >> (2u * (index % 6u))) & 3u;
-    let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
-
-    let centre = positions[particle].xyz - globals.eye;
-    let distance_squared = dot(centre, centre);
-    let radius = globals.particle_radius;
+    let corner = sphere_corner(positions[particle], globals.particle_radius, index);
     var out: Varying;
-    // Also false for NaN and infinity, so that a broken particle is not drawn, and for one that holds the eye.
-    if !(distance_squared > 1.02 * radius * radius && distance_squared < 1e30) {
-        out.position = vec4f(2.0, 2.0, 2.0, 1.0);
-        return out;
-    }
-    let distance = sqrt(distance_squared);
-    let axis = centre / distance;
-    // The plane through the centre cuts the cone that touches the sphere in a circle of this radius.
-    let outline = distance * radius * inverseSqrt(distance_squared - radius * radius);
-    let u = normalize(cross(axis, globals.up + 0.001 * globals.right));
-    let v = cross(u, axis);
-    // One pixel more on every side for the soft edge.
-    let reach = 1.0 + distance * globals.pixel_angle / outline;
-    out.across = side * reach;
-    out.ray = centre + (u * side.x + v * side.y) * (outline * reach);
-    out.centre = vec4f(centre, distance);
-    out.position = globals.clip_from_world * vec4f(globals.eye + out.ray, 1.0);
+    out.position = corner.position;
+    out.across = corner.across;
+    out.ray = corner.ray;
+    out.centre = corner.centre;
 
     var quantity = length(velocities[particle].xyz);
     if globals.quantity == 1u {
@@ -80,11 +62,8 @@ fn fragment_main(in: Varying) -> Output {
     if covered == 0u {
         discard;
     }
-    let q2 = dot(in.across, in.across);
-    // |s ray - centre| = radius, written so that nothing cancels: see particles/mod.rs.
     let distance = in.centre.w;
-    let rise = globals.particle_radius * sqrt(max(1.0 - q2, 0.0));
-    let s = distance * (distance - rise) / dot(in.ray, in.ray);
+    let s = sphere_entry(in.across, in.ray, distance, globals.particle_radius);
     let normal = (s * in.ray - in.centre.xyz) / globals.particle_radius;
 
     let to_eye = -in.centre.xyz / distance;

@@ -15,10 +15,11 @@
 //! Caustics: bend each vertex's ray at the surface and divide by the area it lands on.
 
 use crate::pipeline::{ADD, Bind, Recipe, bind_group, bind_group_layout, linear_sampler};
+use crate::recorder::Recorder;
 use crate::shader::{GLOBALS, Shader};
-use crate::{DrawnParticles, DrawnSurface, Frame, bodies, particles, surface};
+use crate::{DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame, bodies, particles, surface};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, CommandEncoder, Device, PrimitiveTopology, RenderPipeline,
+    BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, RenderPipeline,
     TextureFormat, TextureUsages, TextureView,
 };
 
@@ -94,17 +95,22 @@ impl Shadow {
     pub fn record(
         &self,
         device: &Device,
-        encoder: &mut CommandEncoder,
+        recorder: &mut Recorder<'_>,
         globals: &BindGroup,
         frame: &Frame<'_>,
     ) {
+        let particles = match (&frame.liquid_particles, &frame.particles) {
+            (Some(DrawnLiquidParticles { buffers, .. }), _) => Some(buffers),
+            (None, Some(DrawnParticles { buffers, .. })) => Some(buffers),
+            (None, None) => None,
+        };
         {
-            let mut pass = begin(encoder, "shadow", &self.maps[0]);
+            let mut pass = recorder.cleared("shadow", &self.maps[0], Color::TRANSPARENT);
             pass.set_bind_group(0, globals, &[]);
             if let Some(DrawnSurface { buffers, .. }) = &frame.surface {
                 pass.set_pipeline(&self.from_surface);
                 surface::draw(&mut pass, buffers);
-            } else if let Some(DrawnParticles { buffers, .. }) = &frame.particles {
+            } else if let Some(buffers) = particles {
                 pass.set_pipeline(&self.from_particles);
                 for (start, count) in particles::chunks(device, buffers.count) {
                     let positions = particles::part(buffers.positions, 16, start, count);
@@ -121,28 +127,12 @@ impl Shadow {
             }
         }
         for (blur, source) in self.blurs.iter().zip([0, 1]) {
-            let mut pass = begin(encoder, "shadow blur", &self.maps[1 - source]);
+            let mut pass = recorder.cleared("shadow blur", &self.maps[1 - source], Color::TRANSPARENT);
             pass.set_pipeline(blur);
             pass.set_bind_group(0, &self.blur_sources[source], &[]);
             pass.draw(0..3, 0..1);
         }
     }
-}
-
-fn begin<'a>(encoder: &'a mut CommandEncoder, label: &str, view: &TextureView) -> wgpu::RenderPass<'a> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..Default::default()
-    })
 }
 
 fn map(device: &Device, label: &str) -> TextureView {

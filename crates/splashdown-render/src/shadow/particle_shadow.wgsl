@@ -4,11 +4,12 @@
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let p = positions[index].xyz;
+    let particle = positions[index];
+    let p = particle.xyz;
     let on_floor = p.xz - globals.sun.xz * ((p.y - globals.floor_height) / globals.sun.y);
     let uv = (on_floor - globals.shadow_min) / globals.shadow_size;
     // Written so that NaN falls outside.
-    if !(all(uv > vec2f(0.0)) && all(uv < vec2f(1.0))) {
+    if !(all(uv > vec2f(0.0)) && all(uv < vec2f(1.0)) && particle.w == 0.0) {
         return vec4f(2.0, 2.0, 2.0, 1.0);
     }
     return vec4f(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.5, 1.0);

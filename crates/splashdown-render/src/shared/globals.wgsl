@@ -38,6 +38,10 @@ struct Globals {
     liquid_scattering: f32, // per metre
     liquid_colour: vec3f,
     liquid_roughness: f32,
+    splat_radius: f32,      // of the spheres that the liquid is merged from
+    amount_radius: f32,     // of the disc that a particle's volume is spread over
+    amount: f32,            // metres of liquid in the middle of such a disc
+    pad: f32,
     edges: array<Edge, 12>,
 }
 

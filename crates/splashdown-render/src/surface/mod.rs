@@ -22,7 +22,7 @@
 //! Foam from the particles' speed; total reflection on the inner side; a second bend where the ray leaves.
 
 use crate::pipeline::{ADD, Bind, Depth, Recipe, bind_group, bind_group_layout, linear_sampler};
-use crate::shader::{ENVIRONMENT, GLOBALS, Shader};
+use crate::shader::{ENVIRONMENT, GLOBALS, LIQUID, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets};
 use crate::{Draw, SurfaceBuffers};
 use wgpu::{
@@ -31,7 +31,7 @@ use wgpu::{
 };
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, include_str!("surface.wgsl")] };
+    Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, LIQUID, include_str!("surface.wgsl")] };
 pub(crate) const THICKNESS: Shader =
     Shader { label: "thickness", parts: &[GLOBALS, include_str!("thickness.wgsl")] };
 

@@ -1,0 +1,154 @@
+//! Draws the same fluid in every way there is, to be looked at side by side, and compares their times.
+//!
+//! `cargo run --release -p splashdown-render --example ways -- [FOLDER] [PARTICLES.ply SURFACE.ply PARTICLE_SPACING]`
+//!
+//! The files are those that `splashdown run` writes. Without them a column that has begun to slump is drawn, 64,000
+//! particles, beside a mesh of 298,000 triangles that has nothing to do with it.
+
+#[path = "../tests/common/sample.rs"]
+#[expect(dead_code, reason = "the ball is for others")]
+mod sample;
+
+use splashdown_render::*;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+const SIZE: [u32; 2] = [1280, 720];
+const REPETITIONS: u32 = 5;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let folder = PathBuf::from(arguments.first().map_or("out/ways", String::as_str));
+    std::fs::create_dir_all(&folder)?;
+    let (device, queue, info) = open_device()?;
+    let (cloud, mesh, spacing) = match &arguments[..] {
+        [_, particles, surface, spacing] => {
+            (read_particles(Path::new(particles))?, read_mesh(Path::new(surface))?, spacing.parse()?)
+        }
+        _ => {
+            let size = [2.0, 1.0, 1.0];
+            (sample::slump(size, 0.0185), sample::waves([0.0; 3], size, 384), 0.0185)
+        }
+    };
+    eprintln!(
+        "{}: {} particles, {} triangles, {} x {}",
+        info.name,
+        cloud.positions.len(),
+        mesh.triangles.len(),
+        SIZE[0],
+        SIZE[1]
+    );
+    let particles = UploadedParticles::new(
+        &device,
+        &cloud.positions,
+        &cloud.velocities,
+        &cloud.densities,
+        &cloud.pressures,
+    )?;
+    let surface = UploadedSurface::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles)?;
+    let domain = domain_of(&cloud.positions, 0.5 * spacing);
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let far = Camera::framing(&domain, 25.0, 16.0, 35.0, aspect);
+    let middle: [f32; 3] = std::array::from_fn(|axis| 0.5 * (domain.min[axis] + domain.max[axis]));
+    let distance = (0..3).map(|axis| (far.eye[axis] - middle[axis]).powi(2)).sum::<f32>().sqrt();
+    let views = [
+        ("far", far),
+        ("near", Camera::orbit(middle, 0.4 * distance, 25.0, 12.0, 35.0)),
+        ("above", Camera::orbit(middle, 0.7 * distance, -30.0, 50.0, 35.0)),
+    ];
+
+    let liquid = Liquid::water(domain.max[1] - domain.min[1]);
+    let radius = 0.5 * spacing;
+    let buffers = particles.buffers();
+    let colouring =
+        Colouring { quantity: Quantity::Speed, range: [0.0, 3.0], map: ColourMap::Water, colour_bar: true };
+    let empty = Frame::new(far, domain);
+    let ways = [
+        ("empty", empty),
+        ("particles", Frame { particles: Some(DrawnParticles { buffers, radius, colouring }), ..empty }),
+        ("surface", Frame { surface: Some(DrawnSurface { buffers: surface.buffers(), liquid }), ..empty }),
+        (
+            "screen-space",
+            Frame { liquid_particles: Some(DrawnLiquidParticles { buffers, radius, liquid }), ..empty },
+        ),
+    ];
+    for samples in [4, 1] {
+        let mut renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, samples)?;
+        let mut target = Offscreen::new(&device, &queue, SIZE)?;
+        for (name, frame) in &ways {
+            let rgba = target.render_to_rgba(&mut renderer, frame)?;
+            if samples == 4 {
+                save(&folder.join(format!("{name}-far.png")), &rgba)?;
+                for (view, camera) in &views[1..] {
+                    let rgba = target.render_to_rgba(&mut renderer, &Frame { camera: *camera, ..*frame })?;
+                    save(&folder.join(format!("{name}-{view}.png")), &rgba)?;
+                }
+            }
+            let start = Instant::now();
+            for _ in 0..REPETITIONS {
+                target.render_to_rgba(&mut renderer, frame)?;
+            }
+            let milliseconds = 1e3 * start.elapsed().as_secs_f64() / f64::from(REPETITIONS);
+            eprintln!("{samples} samples, {name}: {milliseconds:.0} ms");
+        }
+    }
+    Ok(())
+}
+
+fn save(path: &Path, rgba: &[u8]) -> Result<(), image::ImageError> {
+    image::save_buffer(path, rgba, SIZE[0], SIZE[1], image::ExtendedColorType::Rgba8)
+}
+
+/// The box around all particles.
+fn domain_of(positions: &[[f32; 3]], margin: f32) -> Domain {
+    let bound = |start: f32, choose: fn(f32, f32) -> f32| -> [f32; 3] {
+        std::array::from_fn(|axis| positions.iter().map(|p| p[axis]).fold(start, choose))
+    };
+    let (low, high) = (bound(f32::INFINITY, f32::min), bound(f32::NEG_INFINITY, f32::max));
+    Domain::closed(low.map(|x| x - margin), high.map(|x| x + margin))
+}
+
+/// The numbers of a binary .ply file's header, and what follows it.
+fn open_ply(path: &Path) -> Result<(Vec<usize>, Vec<u8>), Box<dyn Error>> {
+    let bytes = std::fs::read(path)?;
+    let end = b"end_header\n";
+    let header = bytes.windows(end.len()).position(|window| window == end).ok_or("no end of the header")?;
+    let counts = String::from_utf8_lossy(&bytes[..header])
+        .lines()
+        .filter(|line| line.starts_with("element"))
+        .filter_map(|line| line.split(' ').next_back()?.parse().ok())
+        .collect();
+    Ok((counts, bytes[header + end.len()..].to_vec()))
+}
+
+fn float(bytes: &[u8], index: usize) -> f32 {
+    f32::from_le_bytes([0, 1, 2, 3].map(|byte| bytes[4 * index + byte]))
+}
+
+fn read_particles(path: &Path) -> Result<sample::Cloud, Box<dyn Error>> {
+    let (_, bytes) = open_ply(path)?;
+    let mut cloud = sample::Cloud::default();
+    // Place, velocity, density, pressure and a number.
+    for particle in bytes.chunks_exact(36) {
+        cloud.positions.push([0, 1, 2].map(|axis| float(particle, axis)));
+        cloud.velocities.push([3, 4, 5].map(|axis| float(particle, axis)));
+        cloud.densities.push(float(particle, 6));
+        cloud.pressures.push(float(particle, 7));
+    }
+    Ok(cloud)
+}
+
+fn read_mesh(path: &Path) -> Result<sample::Mesh, Box<dyn Error>> {
+    let (counts, bytes) = open_ply(path)?;
+    let vertices = counts.first().copied().ok_or("no vertices")?;
+    let (points, faces) = bytes.split_at(24 * vertices);
+    let points = || points.chunks_exact(24);
+    // A byte for the number of corners, then three of them.
+    let corner = |face: &[u8], index: usize| float(&face[1..], index).to_bits();
+    Ok(sample::Mesh {
+        vertices: points().map(|point| [0, 1, 2].map(|axis| float(point, axis))).collect(),
+        normals: points().map(|point| [3, 4, 5].map(|axis| float(point, axis))).collect(),
+        triangles: faces.chunks_exact(13).map(|face| [0, 1, 2].map(|index| corner(face, index))).collect(),
+    })
+}

@@ -1,0 +1,103 @@
+//! One way to begin the passes of a picture.
+
+use crate::targets::Targets;
+use wgpu::{
+    Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
+};
+
+/// Records passes into the caller's encoder.
+#[derive(Debug)]
+pub(crate) struct Recorder<'a> {
+    pub encoder: &'a mut CommandEncoder,
+}
+
+/// What a pass finds in its samples and depths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Start {
+    Clear,
+    Load,
+}
+
+/// Whether a later pass goes on with the samples and depths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    Keep,
+    Discard,
+}
+
+impl Recorder<'_> {
+    /// A pass whose result lands in `result`, by way of the samples where there are several.
+    pub fn picture(
+        &mut self,
+        label: &'static str,
+        targets: &Targets,
+        result: &TextureView,
+        start: Start,
+        end: End,
+    ) -> RenderPass<'_> {
+        let keep = if end == End::Keep { StoreOp::Store } else { StoreOp::Discard };
+        let (view, resolve_target, store) = match &targets.samples {
+            Some(samples) => (samples, Some(result), keep),
+            None => (result, None, StoreOp::Store),
+        };
+        let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::BLACK) };
+        let load_depth = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(0.0) };
+        let colour = RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: Operations { load, store },
+        };
+        self.begin(label, colour, Some((&targets.depth, Operations { load: load_depth, store: keep })))
+    }
+
+    /// A pass into a texture that is cleared first.
+    pub fn cleared(&mut self, label: &'static str, view: &TextureView, clear: Color) -> RenderPass<'_> {
+        self.begin(label, colour(view, LoadOp::Clear(clear)), None)
+    }
+
+    /// A pass into a texture that is cleared first, with depths of its own that nobody reads afterwards.
+    pub fn cleared_with_depth(
+        &mut self,
+        label: &'static str,
+        view: &TextureView,
+        clear: Color,
+        depth: &TextureView,
+    ) -> RenderPass<'_> {
+        let operations = Operations { load: LoadOp::Clear(0.0), store: StoreOp::Discard };
+        self.begin(label, colour(view, LoadOp::Clear(clear)), Some((depth, operations)))
+    }
+
+    /// A pass over what is there already.
+    pub fn over(&mut self, label: &'static str, view: &TextureView) -> RenderPass<'_> {
+        self.begin(label, colour(view, LoadOp::Load), None)
+    }
+
+    fn begin(
+        &mut self,
+        label: &'static str,
+        colour: RenderPassColorAttachment<'_>,
+        depth: Option<(&TextureView, Operations<f32>)>,
+    ) -> RenderPass<'_> {
+        self.encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some(label),
+            color_attachments: &[Some(colour)],
+            depth_stencil_attachment: depth.map(|(view, operations)| RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(operations),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        })
+    }
+}
+
+fn colour(view: &TextureView, load: LoadOp<Color>) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations { load, store: StoreOp::Store },
+    }
+}
