@@ -11,7 +11,7 @@ use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture};
 use splashdown_render::{
     Camera, ColourMap, Colouring, Domain, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody,
-    Quantity, RenderError, Renderer, UploadedBodies, UploadedParticles, UploadedSurface,
+    Quantity, RenderError, Renderer, SurfaceStyle, UploadedBodies, UploadedParticles, UploadedSurface,
 };
 
 use crate::exit::Failure;
@@ -250,9 +250,11 @@ impl Artist {
                     ..empty
                 },
                 PictureKind::Surface => Frame {
-                    surface: surface
-                        .as_ref()
-                        .map(|surface| DrawnSurface { buffers: surface.buffers(), liquid: self.liquid }),
+                    surface: surface.as_ref().map(|surface| DrawnSurface {
+                        buffers: surface.buffers(),
+                        liquid: self.liquid,
+                        style: SurfaceStyle::Liquid,
+                    }),
                     ..empty
                 },
             };

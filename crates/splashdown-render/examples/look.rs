@@ -52,12 +52,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     eprintln!("{} triangles", mesh.triangles.len());
     for name in ["water", "honey", "oil", "glycerin"] {
         let liquid = Liquid::from_name(name, 1.0).unwrap_or(Liquid::water(1.0));
-        let surface = Some(DrawnSurface { buffers: waves.buffers(), liquid });
+        let surface = Some(DrawnSurface { buffers: waves.buffers(), liquid, style: SurfaceStyle::Liquid });
         studio.draw(name, &Frame { surface, caption: Some(name), ..empty })?;
     }
     let ball = sample::ball([1.0, 0.5, 0.5], 0.35, 64);
     let ball = UploadedSurface::new(&device, &ball.vertices, &ball.normals, &ball.triangles)?;
-    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(1.0) });
+    let surface = Some(DrawnSurface {
+        buffers: ball.buffers(),
+        liquid: Liquid::water(1.0),
+        style: SurfaceStyle::Liquid,
+    });
     studio.draw("ball", &Frame { surface, ..empty })?;
     studio.draw("empty", &empty)?;
 

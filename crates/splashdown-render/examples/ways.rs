@@ -64,10 +64,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     let colouring =
         Colouring { quantity: Quantity::Speed, range: [0.0, 3.0], map: ColourMap::Water, colour_bar: true };
     let empty = Frame::new(far, domain);
+    let slice = DrawnSlice {
+        buffers,
+        axis: Axis::Z,
+        position: middle[2],
+        support_radius: 2.0 * spacing,
+        radius,
+        colouring: Colouring {
+            quantity: Quantity::Density,
+            range: [990.0, 1010.0],
+            map: ColourMap::Viridis,
+            colour_bar: true,
+        },
+    };
+    let meshed =
+        |style| Frame { surface: Some(DrawnSurface { buffers: surface.buffers(), liquid, style }), ..empty };
     let ways = [
-        ("empty", empty),
         ("particles", Frame { particles: Some(DrawnParticles { buffers, radius, colouring }), ..empty }),
-        ("surface", Frame { surface: Some(DrawnSurface { buffers: surface.buffers(), liquid }), ..empty }),
+        ("empty", empty),
+        ("surface", meshed(SurfaceStyle::Liquid)),
+        ("surface-lines", meshed(SurfaceStyle::LiquidWithLines)),
+        ("lines", meshed(SurfaceStyle::Lines)),
+        ("slice", Frame { slice: Some(slice), ..empty }),
         (
             "screen-space",
             Frame { liquid_particles: Some(DrawnLiquidParticles { buffers, radius, liquid }), ..empty },
@@ -75,7 +93,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     for samples in [4, 1] {
         let mut renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, samples)?;
+        renderer.set_timing(true);
         let mut target = Offscreen::new(&device, &queue, SIZE)?;
+        let mut particles_take = f64::NAN;
         for (name, frame) in &ways {
             let rgba = target.render_to_rgba(&mut renderer, frame)?;
             if samples == 4 {
@@ -90,7 +110,19 @@ fn main() -> Result<(), Box<dyn Error>> {
                 target.render_to_rgba(&mut renderer, frame)?;
             }
             let milliseconds = 1e3 * start.elapsed().as_secs_f64() / f64::from(REPETITIONS);
-            eprintln!("{samples} samples, {name}: {milliseconds:.0} ms");
+            if *name == "particles" {
+                particles_take = milliseconds;
+            }
+            let passes: Vec<String> = renderer
+                .pass_times()
+                .iter()
+                .map(|PassTime { label, milliseconds }| format!("{label} {milliseconds:.0}"))
+                .collect();
+            let ratio = milliseconds / particles_take;
+            eprintln!(
+                "{samples} samples, {name}: {ratio:.2} times the particles, {milliseconds:.0} ms: {}",
+                passes.join(", ")
+            );
         }
     }
     Ok(())

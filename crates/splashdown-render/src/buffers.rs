@@ -1,6 +1,6 @@
 //! The GPU buffers that are drawn, straight from where a simulation left them, and their upload from host slices.
 
-use crate::RenderError;
+use crate::{RenderError, SurfaceStyle};
 use bytemuck::Pod;
 use glam::Vec3;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -83,6 +83,21 @@ impl BodyBuffers<'_> {
 }
 
 impl SurfaceBuffers<'_> {
+    /// Whether shaders can read the mesh themselves, which lines need.
+    pub(crate) fn check_style(&self, device: &Device, style: SurfaceStyle) -> Result<(), RenderError> {
+        if style == SurfaceStyle::Liquid {
+            return Ok(());
+        }
+        let limit = device.limits().max_storage_buffer_binding_size;
+        for (what, buffer) in [("vertices", self.vertices), ("indices", self.indices)] {
+            check_buffer(what, buffer, BufferUsages::STORAGE, 0)?;
+            if buffer.size() > limit {
+                return Err(RenderError::BufferTooLong { what, given: buffer.size(), limit });
+            }
+        }
+        Ok(())
+    }
+
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         check_buffer("vertices", self.vertices, BufferUsages::VERTEX, 0)?;
         check_buffer("normals", self.normals, BufferUsages::VERTEX, 0)?;
@@ -194,9 +209,14 @@ impl UploadedSurface {
             false => padded(normals),
         };
         Ok(UploadedSurface {
-            vertices: upload(device, "vertices", &padded(vertices), BufferUsages::VERTEX),
+            vertices: upload(
+                device,
+                "vertices",
+                &padded(vertices),
+                BufferUsages::VERTEX | BufferUsages::STORAGE,
+            ),
             normals: upload(device, "normals", &normals, BufferUsages::VERTEX),
-            indices: upload(device, "indices", triangles, BufferUsages::INDEX),
+            indices: upload(device, "indices", triangles, BufferUsages::INDEX | BufferUsages::STORAGE),
             index_count: 3 * triangles.len() as u32,
         })
     }

@@ -1,5 +1,7 @@
 //! From a number between 0 and 1 to a colour that an eye can order.
 
+use wgpu::{Device, Queue, TextureView};
+
 /// A colour map. All but [`ColourMap::BlueRed`] grow lighter from end to end, so that they also read in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
@@ -75,6 +77,25 @@ impl ColourMap {
                 [r, g, b, 255]
             })
             .collect()
+    }
+}
+
+/// All maps as textures of 256 x 1 texels.
+#[derive(Clone, Debug)]
+pub(crate) struct ColourTextures([TextureView; ColourMap::ALL.len()]);
+
+impl ColourTextures {
+    pub fn new(device: &Device, queue: &Queue) -> ColourTextures {
+        ColourTextures(
+            ColourMap::ALL.map(|map| {
+                crate::overlay::upload_texture(device, queue, "colour map", [256, 1], &map.texels())
+            }),
+        )
+    }
+
+    pub fn of(&self, map: ColourMap) -> &TextureView {
+        // ALL holds the maps in the order of their declaration.
+        &self.0[map as usize]
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::RenderError;
 use wgpu::{
-    AdapterInfo, Device, DeviceDescriptor, Instance, InstanceDescriptor, Queue, RequestAdapterOptions,
+    AdapterInfo, Device, DeviceDescriptor, Features, Instance, InstanceDescriptor, Queue,
+    RequestAdapterOptions,
 };
 
 /// Opens the best adapter there is for drawing without a window, a software one if need be.
@@ -21,6 +22,8 @@ pub fn open_device() -> Result<(Device, Queue, AdapterInfo), RenderError> {
     let info = adapter.get_info();
     let descriptor = DeviceDescriptor {
         label: Some("pictures"),
+        // To measure passes with, where there is a clock.
+        required_features: adapter.features() & Features::TIMESTAMP_QUERY,
         // Everything the adapter has: pictures and meshes may be large.
         required_limits: adapter.limits(),
         ..DeviceDescriptor::default()

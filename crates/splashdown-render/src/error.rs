@@ -80,6 +80,19 @@ pub enum RenderError {
         /// The size that the counts ask for.
         needed: u64,
     },
+    /// A buffer is larger than a shader can see.
+    #[error(
+        "the buffer of {what} holds {given} bytes, more than the {limit} that a shader can see on this device; draw the \
+         surface without lines"
+    )]
+    BufferTooLong {
+        /// Which buffer.
+        what: &'static str,
+        /// Its size in bytes.
+        given: u64,
+        /// The device's limit.
+        limit: u64,
+    },
     /// A buffer was made without a usage that drawing needs.
     #[error("the buffer of {what} lacks the usage {missing:?}; create it with that usage")]
     BufferUsage {

@@ -2,8 +2,8 @@
 
 use crate::globals::{EdgeGlobals, Globals};
 use crate::{
-    BodyBuffers, Camera, ColourMap, Domain, DrawnLiquidParticles, Liquid, ParticleBuffers, RenderError,
-    SurfaceBuffers,
+    BodyBuffers, Camera, ColourMap, Domain, DrawnLiquidParticles, DrawnSlice, Liquid, ParticleBuffers,
+    RenderError, SurfaceBuffers,
 };
 use glam::{Vec2, Vec3};
 
@@ -24,6 +24,8 @@ pub struct Frame<'a> {
     pub surface: Option<DrawnSurface<'a>>,
     /// The liquid's surface straight from its particles; not together with `surface`.
     pub liquid_particles: Option<DrawnLiquidParticles<'a>>,
+    /// A plane through the fluid.
+    pub slice: Option<DrawnSlice<'a>>,
     /// Solids.
     pub bodies: Option<BodyBuffers<'a>>,
     /// A line of text in the lower left corner.
@@ -73,6 +75,22 @@ pub struct DrawnSurface<'a> {
     pub buffers: SurfaceBuffers<'a>,
     /// How the liquid looks.
     pub liquid: Liquid,
+    /// Whether the mesh itself is to be seen.
+    pub style: SurfaceStyle,
+}
+
+/// What of a surface is drawn.
+///
+/// Lines need buffers of vertices and indices with [`wgpu::BufferUsages::STORAGE`], and draw arguments whose base vertex is 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SurfaceStyle {
+    /// The liquid.
+    #[default]
+    Liquid,
+    /// The liquid, and the edges of the triangles on it.
+    LiquidWithLines,
+    /// The edges of the triangles alone; those that face away are fainter.
+    Lines,
 }
 
 impl<'a> Frame<'a> {
@@ -85,6 +103,7 @@ impl<'a> Frame<'a> {
             particles: None,
             surface: None,
             liquid_particles: None,
+            slice: None,
             bodies: None,
             caption: None,
         }
@@ -137,6 +156,9 @@ impl<'a> Frame<'a> {
         if let Some(particles) = &self.particles {
             particles.fill(&mut globals)?;
         }
+        if let Some(slice) = &self.slice {
+            slice.fill(&mut globals)?;
+        }
         if let Some(bodies) = &self.bodies {
             bodies.check()?;
             // Solids let no light through; the liquid's own values, if there is one, take this place.
@@ -161,17 +183,24 @@ impl DrawnParticles<'_> {
         check_radius(self.radius)?;
         let [low, high] = self.colouring.checked_range()?;
         globals.particle_radius = self.radius;
-        globals.quantity = match self.colouring.quantity {
-            Quantity::Speed => 0,
-            Quantity::Density => 1,
-            Quantity::Pressure => 2,
-        };
+        globals.quantity = self.colouring.quantity.index();
         globals.range_low = low;
         globals.range_scale = 1.0 / (high - low);
         // Spheres let no light through; a few layers of them are dark.
         globals.shadow_absorption = [0.35 / self.radius; 3];
         globals.set_shadow_of_particles(self.radius);
         Ok(())
+    }
+}
+
+impl Quantity {
+    /// As in `shared/quantity.wgsl`.
+    pub(crate) fn index(self) -> u32 {
+        match self {
+            Quantity::Speed => 0,
+            Quantity::Density => 1,
+            Quantity::Pressure => 2,
+        }
     }
 }
 

@@ -48,7 +48,14 @@ pub(crate) struct Globals {
     pub splat_radius: f32,
     pub amount_radius: f32,
     pub amount: f32,
-    pub pad: f32,
+    pub slice_quantity: u32,
+    pub slice_axis: u32,
+    pub slice_position: f32,
+    pub slice_support_radius: f32,
+    pub slice_full: f32,
+    pub slice_low: f32,
+    pub slice_scale: f32,
+    pub pad: [f32; 2],
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -83,7 +90,8 @@ mod tests {
             liquid_film sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
-            splat_radius amount_radius amount pad edges);
+            splat_radius amount_radius amount slice_quantity slice_axis slice_position slice_support_radius
+            slice_full slice_low slice_scale pad edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

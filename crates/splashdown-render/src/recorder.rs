@@ -1,15 +1,17 @@
 //! One way to begin the passes of a picture.
 
 use crate::targets::Targets;
+use crate::timer::Timer;
 use wgpu::{
-    Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    Color, CommandEncoder, Device, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
 };
 
 /// Records passes into the caller's encoder.
 #[derive(Debug)]
 pub(crate) struct Recorder<'a> {
-    pub encoder: &'a mut CommandEncoder,
+    encoder: &'a mut CommandEncoder,
+    timer: Option<&'a mut Timer>,
 }
 
 /// What a pass finds in its samples and depths.
@@ -26,7 +28,26 @@ pub(crate) enum End {
     Discard,
 }
 
-impl Recorder<'_> {
+impl<'a> Recorder<'a> {
+    /// Starts a picture; with a timer its passes are measured.
+    pub fn new(
+        device: &Device,
+        encoder: &'a mut CommandEncoder,
+        mut timer: Option<&'a mut Timer>,
+    ) -> Recorder<'a> {
+        if let Some(timer) = &mut timer {
+            timer.begin(device);
+        }
+        Recorder { encoder, timer }
+    }
+
+    /// Ends the picture.
+    pub fn finish(self) {
+        if let Some(timer) = self.timer {
+            timer.end(self.encoder);
+        }
+    }
+
     /// A pass whose result lands in `result`, by way of the samples where there are several.
     pub fn picture(
         &mut self,
@@ -88,6 +109,7 @@ impl Recorder<'_> {
                 depth_ops: Some(operations),
                 stencil_ops: None,
             }),
+            timestamp_writes: self.timer.as_mut().and_then(|timer| timer.pass(label)),
             ..Default::default()
         })
     }

@@ -2,6 +2,7 @@
 
 use crate::background::Background;
 use crate::bodies::Bodies;
+use crate::colour_map::ColourTextures;
 use crate::edges::Edges;
 use crate::overlay::Overlay;
 use crate::particles::Particles;
@@ -9,9 +10,11 @@ use crate::pipeline::{Bind, bind_group, bind_group_layout};
 use crate::recorder::{End, Recorder, Start};
 use crate::screen_space::ScreenSpace;
 use crate::shadow::Shadow;
+use crate::slice::Slice;
 use crate::surface::Surface;
 use crate::targets::Targets;
-use crate::{Frame, RenderError};
+use crate::timer::Timer;
+use crate::{Frame, PassTime, RenderError, SurfaceStyle};
 use wgpu::{
     BindGroup, BindGroupLayout, BufferUsages, Color, CommandEncoder, Device, Queue, RenderPass,
     TextureFormat, TextureView,
@@ -22,9 +25,10 @@ use wgpu::{
 /// The passes of a picture, in their order:
 ///
 /// 1. the fluid's shadow on the floor (256 x 256, blurred);
-/// 2. background, hidden edges, solids, particles; with a liquid also a copy to look through, the liquid's thickness, then its
-///    surface, from a mesh or from smoothed distances; near edges; several samples per pixel, resolved into the target;
-/// 3. colour bar and caption, pixel on pixel.
+/// 2. the sums of a slice;
+/// 3. background, hidden edges, solids, particles, slice; with a liquid also a copy to look through, the liquid's thickness, then its
+///    surface, from a mesh or from smoothed distances; its lines; near edges; several samples per pixel, resolved into the target;
+/// 4. colour bar and caption, pixel on pixel.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
@@ -37,10 +41,12 @@ pub struct Renderer {
     edges: Edges,
     bodies: Bodies,
     particles: Particles,
+    slice: Slice,
     surface: Surface,
     screen_space: ScreenSpace,
     overlay: Overlay,
     targets: Option<Targets>,
+    timer: Option<Timer>,
 }
 
 impl Renderer {
@@ -61,11 +67,13 @@ impl Renderer {
         let globals_layout = bind_group_layout(device, "globals", &[Bind::Uniform]);
         let shadow = Shadow::new(device, &globals_layout);
         let layouts = [&globals_layout, &shadow.environment_layout];
+        let colours = ColourTextures::new(device, queue);
         Ok(Renderer {
             background: Background::new(device, layouts, format, sample_count),
             edges: Edges::new(device, [&globals_layout], format, sample_count),
             bodies: Bodies::new(device, layouts, format, sample_count),
-            particles: Particles::new(device, queue, layouts, format, sample_count),
+            particles: Particles::new(device, layouts, format, sample_count, colours.clone()),
+            slice: Slice::new(device, layouts, format, sample_count, colours),
             surface: Surface::new(device, layouts, format, sample_count),
             screen_space: ScreenSpace::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
@@ -76,12 +84,32 @@ impl Renderer {
             format,
             sample_count,
             targets: None,
+            timer: None,
         })
     }
 
     /// Format of the textures this renderer draws into.
     pub fn format(&self) -> TextureFormat {
         self.format
+    }
+
+    /// Starts or stops measuring the time of each pass; returns whether it is measured now. That needs a device with
+    /// [`wgpu::Features::TIMESTAMP_QUERY`].
+    pub fn set_timing(&mut self, on: bool) -> bool {
+        if !on {
+            self.timer = None;
+        } else if self.timer.is_none() {
+            self.timer = Timer::new(&self.device, &self.queue);
+        }
+        self.timer.is_some()
+    }
+
+    /// Times of the passes of a picture in their order, of the latest one whose times have come back; empty before that, and
+    /// without [`Renderer::set_timing`].
+    ///
+    /// Nobody waits for them: they come some pictures late, and only if the device is polled, which every submission does.
+    pub fn pass_times(&mut self) -> &[PassTime] {
+        self.timer.as_mut().map(Timer::latest).unwrap_or_default()
     }
 
     /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of this renderer's format
@@ -92,8 +120,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`RenderError::PictureSize`] for an empty or too large picture, and [`RenderError::Camera`],
-    /// [`RenderError::Value`], [`RenderError::BufferTooShort`] or [`RenderError::BufferUsage`] if the frame cannot be
-    /// drawn. Nothing is recorded then.
+    /// [`RenderError::Value`], [`RenderError::TwoLiquids`], [`RenderError::BufferTooShort`],
+    /// [`RenderError::BufferTooLong`] or [`RenderError::BufferUsage`] if the frame cannot be drawn. Nothing is recorded then.
     pub fn draw(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -103,6 +131,9 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         check_size(&self.device, size)?;
         let globals = frame.globals(size, self.format.is_srgb())?;
+        if let Some(surface) = &frame.surface {
+            surface.buffers.check_style(&self.device, surface.style)?;
+        }
         let behind = frame.domain.edges(globals.eye.into()).iter().filter(|edge| edge.behind).count() as u32;
         let globals = self.bind_globals(bytemuck::bytes_of(&globals));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
@@ -111,8 +142,11 @@ impl Renderer {
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
         let Some(targets) = &self.targets else { return Ok(()) };
 
-        let recorder = &mut Recorder { encoder };
-        self.shadow.record(&self.device, recorder, &globals, frame);
+        let mut recorder = Recorder::new(&self.device, encoder, self.timer.as_mut());
+        self.shadow.record(&self.device, &mut recorder, &globals, frame);
+        let slice = frame
+            .slice
+            .map(|drawn| self.slice.gather(&self.device, &mut recorder, targets, &globals, &drawn));
         let chunks =
             frame.particles.map(|drawn| self.particles.bind(&self.device, &drawn)).unwrap_or_default();
         let scene = |pass: &mut RenderPass<'_>| {
@@ -126,18 +160,13 @@ impl Renderer {
             if !chunks.is_empty() {
                 self.particles.record(pass, &chunks);
             }
+            if let Some(group) = &slice {
+                self.slice.record(pass, group);
+            }
         };
-
-        if frame.surface.is_none() && frame.liquid_particles.is_none() {
-            let mut pass = recorder.picture("picture", targets, target, Start::Clear, End::Discard);
-            scene(&mut pass);
-            self.edges.record(&mut pass, behind..12);
-            drop(pass);
-            self.overlay.record(recorder, target);
-            return Ok(());
-        }
-        scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Keep));
-        {
+        let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
+        if surface.is_some() || frame.liquid_particles.is_some() {
+            scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Keep));
             // Further than anything, in 16 bits.
             let nothing = Color { r: 60_000.0, ..Color::TRANSPARENT };
             let mut pass = recorder.cleared("distance of bodies", &targets.solid, nothing);
@@ -146,43 +175,45 @@ impl Renderer {
                 self.bodies.record_distance(&mut pass, bodies);
             }
         }
-        let liquid_chunks = frame
-            .liquid_particles
-            .map(|drawn| self.screen_space.bind(&self.device, &drawn.buffers))
-            .unwrap_or_default();
-        {
+        let liquid = if let Some(drawn) = &surface {
             let mut pass = recorder.cleared("thickness", &targets.thickness, Color::TRANSPARENT);
             pass.set_bind_group(0, &globals, &[]);
-            match &frame.surface {
-                Some(drawn) => {
-                    self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
-                }
-                None => self.screen_space.record_amount(&self.device, &mut pass, targets, &liquid_chunks),
+            self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
+            Some(self.surface.bind(&self.device, targets))
+        } else if let Some(drawn) = &frame.liquid_particles {
+            let chunks = self.screen_space.bind(&self.device, &drawn.buffers);
+            {
+                let mut pass = recorder.cleared("amount", &targets.thickness, Color::TRANSPARENT);
+                pass.set_bind_group(0, &globals, &[]);
+                self.screen_space.record_amount(&self.device, &mut pass, targets, &chunks);
             }
-        }
-        let group = match &frame.surface {
-            Some(_) => self.surface.bind(&self.device, targets),
-            None => {
-                self.screen_space.record_distances(&self.device, recorder, targets, &globals, &liquid_chunks)
-            }
+            let space = &mut self.screen_space;
+            Some(space.record_distances(&self.device, &mut recorder, targets, &globals, &chunks))
+        } else {
+            None
         };
         {
             // With one sample the scene went into a texture of its own and has to be drawn again.
-            let again = targets.samples.is_none();
-            let start = if again { Start::Clear } else { Start::Load };
+            let goes_on = liquid.is_some() && targets.samples.is_some();
+            let start = if goes_on { Start::Load } else { Start::Clear };
             let mut pass = recorder.picture("picture", targets, target, start, End::Discard);
-            if again {
+            if !goes_on {
                 scene(&mut pass);
             }
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
-            match &frame.surface {
-                Some(drawn) => self.surface.record(&mut pass, &group, &drawn.buffers),
-                None => self.screen_space.record(&mut pass, &group),
+            match (&liquid, &surface) {
+                (Some(group), Some(drawn)) => self.surface.record(&mut pass, group, &drawn.buffers),
+                (Some(group), None) => self.screen_space.record(&mut pass, group),
+                (None, _) => {}
+            }
+            if let Some(drawn) = &frame.surface {
+                self.surface.record_lines(&self.device, &mut pass, drawn);
             }
             self.edges.record(&mut pass, behind..12);
         }
-        self.overlay.record(recorder, target);
+        self.overlay.record(&mut recorder, target);
+        recorder.finish();
         Ok(())
     }
 

@@ -10,6 +10,7 @@ pub(crate) struct Shader {
 pub(crate) const GLOBALS: &str = include_str!("shared/globals.wgsl");
 pub(crate) const ENVIRONMENT: &str = include_str!("shared/environment.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
+pub(crate) const QUANTITY: &str = include_str!("shared/quantity.wgsl");
 pub(crate) const SPHERE: &str = include_str!("shared/sphere.wgsl");
 
 impl Shader {
@@ -31,7 +32,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 16] = [
+    const ALL: [Shader; 19] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -44,6 +45,9 @@ mod tests {
         crate::screen_space::SMOOTH,
         crate::screen_space::CLEAN,
         crate::screen_space::COMPOSE,
+        crate::surface::LINES,
+        crate::slice::GATHER,
+        crate::slice::SHADER,
         crate::shadow::FROM_SURFACE,
         crate::shadow::FROM_PARTICLES,
         crate::shadow::BLUR,
@@ -92,8 +96,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 5,
-            "each shader has a file of its own, and five are shared: {files:?}"
+            ALL.len() + 6,
+            "each shader has a file of its own, and six are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

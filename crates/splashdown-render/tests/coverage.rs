@@ -127,7 +127,7 @@ fn a_surface_hides_and_is_hidden() {
     // Nearly opaque, so that what lies behind does not show.
     let ink =
         Liquid { absorption: [40.0; 3], scattering: 40.0, colour: [0.0, 0.4, 0.0], ..Liquid::water(1.0) };
-    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: ink });
+    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: ink, style: SurfaceStyle::Liquid });
     let frame = Frame { surface, ..level_frame(5.0) };
     let centre = [100, 80];
     let front = spheres(&mut studio, &[([0.0, 0.0, 1.0], 1.0)], 0.2, frame);
@@ -137,7 +137,10 @@ fn a_surface_hides_and_is_hidden() {
     assert!(g > r && g > b, "{:?}", behind.pixel(centre));
     // Clear liquid lets the same particle through.
     let clear = Liquid { absorption: [0.0; 3], scattering: 0.0, film: 0.0, ..Liquid::water(1.0) };
-    let frame = Frame { surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: clear }), ..frame };
+    let frame = Frame {
+        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: clear, style: SurfaceStyle::Liquid }),
+        ..frame
+    };
     assert!(is_red(spheres(&mut studio, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame).pixel(centre)));
 }
 
@@ -158,7 +161,7 @@ fn indirect_draws_equal_direct_ones() {
         (arguments(3 * mesh.triangles.len() as u32), arguments(3 * mesh.triangles.len() as u32 / 2));
     let mut draw = |draw| {
         let buffers = SurfaceBuffers { draw, ..ball.buffers() };
-        let surface = Some(DrawnSurface { buffers, liquid: Liquid::water(1.0) });
+        let surface = Some(DrawnSurface { buffers, liquid: Liquid::water(1.0), style: SurfaceStyle::Liquid });
         studio.draw(SIZE, &Frame { surface, ..level_frame(5.0) })
     };
     let direct = draw(ball.buffers().draw);
@@ -195,7 +198,11 @@ fn one_sample_and_unencoded_targets_show_the_same_picture() {
     let Some(mut studio) = common::studio() else { return };
     let mesh = sample::ball([0.0, 0.0, 0.0], 0.8, 48);
     let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(1.0) });
+    let surface = Some(DrawnSurface {
+        buffers: ball.buffers(),
+        liquid: Liquid::water(1.0),
+        style: SurfaceStyle::Liquid,
+    });
     let domain = Domain::closed([-1.0; 3], [1.0; 3]);
     let frame = Frame { surface, domain, ..level_frame(6.0) };
     let four = studio.draw(SIZE, &frame);

@@ -114,7 +114,11 @@ fn empty_input_is_a_picture_of_the_empty_box() {
         Colouring { quantity: Quantity::Speed, range: [0.0, 0.0], map: ColourMap::Water, colour_bar: false };
     let both = Frame {
         particles: Some(DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring }),
-        surface: Some(DrawnSurface { buffers: mesh.buffers(), liquid: Liquid::water(1.0) }),
+        surface: Some(DrawnSurface {
+            buffers: mesh.buffers(),
+            liquid: Liquid::water(1.0),
+            style: SurfaceStyle::Liquid,
+        }),
         ..frame(0.0)
     };
     let drawn = target.render_to_rgba(&mut renderer, &both).unwrap();

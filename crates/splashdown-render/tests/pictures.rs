@@ -65,7 +65,7 @@ fn surfaces() {
     let waves = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     for name in ["water", "honey"] {
         let liquid = Liquid::from_name(name, 1.0).unwrap();
-        let drawn = DrawnSurface { buffers: waves.buffers(), liquid };
+        let drawn = DrawnSurface { buffers: waves.buffers(), liquid, style: SurfaceStyle::Liquid };
         let good = Frame { surface: Some(drawn), ..frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0])) };
         let picture = studio.draw(SIZE, &good);
         picture.expect(&format!("surface-{name}"));
@@ -75,7 +75,10 @@ fn surfaces() {
         assert!(!studio.draw(SIZE, &wrong).difference(&picture).is_small(), "another liquid");
         let flat: Vec<[f32; 3]> = vec![[0.0, 1.0, 0.0]; mesh.vertices.len()];
         let flat = UploadedSurface::new(&studio.device, &mesh.vertices, &flat, &mesh.triangles).unwrap();
-        let wrong = Frame { surface: Some(DrawnSurface { buffers: flat.buffers(), liquid }), ..good };
+        let wrong = Frame {
+            surface: Some(DrawnSurface { buffers: flat.buffers(), liquid, style: SurfaceStyle::Liquid }),
+            ..good
+        };
         assert!(!studio.draw(SIZE, &wrong).difference(&picture).is_small(), "wrong normals");
     }
 }
@@ -97,7 +100,11 @@ fn surface_and_particles_together_in_a_half_open_box() {
         Domain { closed: [false, true, true, false, true, true], ..Domain::closed([0.0; 3], [1.0; 3]) };
     let good = Frame {
         particles: Some(DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring }),
-        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(1.0) }),
+        surface: Some(DrawnSurface {
+            buffers: ball.buffers(),
+            liquid: Liquid::water(1.0),
+            style: SurfaceStyle::Liquid,
+        }),
         ..frame(domain)
     };
     let picture = studio.draw(SIZE, &good);
@@ -129,4 +136,44 @@ fn liquid_from_particles() {
         let wrong = studio.draw(WITH_BAR, &Frame { liquid_particles: Some(wrong), ..empty });
         assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
     }
+}
+
+#[test]
+fn slices_and_lines() {
+    let Some(mut studio) = common::studio() else { return };
+    let empty = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]));
+    let cloud = sample::slump([2.0, 1.0, 1.0], 0.05);
+    let particles =
+        UploadedParticles::new(&studio.device, &cloud.positions, &[], &cloud.densities, &cloud.pressures)
+            .unwrap();
+    let colouring = Colouring {
+        quantity: Quantity::Pressure,
+        range: [0.0, 9000.0],
+        map: ColourMap::Viridis,
+        colour_bar: true,
+    };
+    let buffers = particles.buffers();
+    let slice =
+        DrawnSlice { buffers, axis: Axis::Z, position: 0.5, support_radius: 0.1, radius: 0.025, colouring };
+    let good = Frame { slice: Some(slice), ..empty };
+    let picture = studio.draw(WITH_BAR, &good);
+    picture.expect("slice");
+    for wrong in [
+        DrawnSlice { position: 0.6, ..slice },
+        DrawnSlice { colouring: Colouring { quantity: Quantity::Density, ..colouring }, ..slice },
+    ] {
+        let wrong = studio.draw(WITH_BAR, &Frame { slice: Some(wrong), ..empty });
+        assert!(!wrong.difference(&picture).is_small(), "another place, another quantity");
+    }
+
+    let mesh = sample::waves([0.0; 3], [2.0, 1.0, 1.0], 24);
+    let waves = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let mut draw = |style| {
+        let drawn = DrawnSurface { buffers: waves.buffers(), liquid: Liquid::water(1.0), style };
+        studio.draw(SIZE, &Frame { surface: Some(drawn), ..empty })
+    };
+    let picture = draw(SurfaceStyle::LiquidWithLines);
+    picture.expect("surface-lines");
+    assert!(!draw(SurfaceStyle::Lines).difference(&picture).is_small(), "lines alone");
+    assert!(!draw(SurfaceStyle::Liquid).difference(&picture).is_small(), "no lines");
 }

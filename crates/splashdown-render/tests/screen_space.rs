@@ -209,7 +209,7 @@ fn the_same_liquid_twice_is_refused() {
     let particles = UploadedParticles::new(&device, &[[0.0; 3]], &[], &[], &[]).unwrap();
     let merged = DrawnLiquidParticles { buffers: particles.buffers(), radius: RADIUS, liquid: ink() };
     let twice = Frame {
-        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: ink() }),
+        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: ink(), style: SurfaceStyle::Liquid }),
         liquid_particles: Some(merged),
         ..frame()
     };

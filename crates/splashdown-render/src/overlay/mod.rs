@@ -79,7 +79,9 @@ impl Overlay {
         size: [u32; 2],
         frame: &Frame<'_>,
     ) -> Result<(), RenderError> {
-        let colouring = frame.particles.map(|drawn| drawn.colouring).filter(|colouring| colouring.colour_bar);
+        let colourings =
+            [frame.particles.map(|drawn| drawn.colouring), frame.slice.map(|drawn| drawn.colouring)];
+        let colouring = colourings.into_iter().flatten().find(|colouring| colouring.colour_bar);
         let bar = match &colouring {
             Some(colouring) => Some((format!("{size:?} {colouring:?}"), colouring.checked_range()?)),
             None => None,

@@ -30,16 +30,17 @@
 //! Ambient occlusion from the cells of the neighbour search; a triangle instead of the quad (half the vertices, 1.3
 //! times the pixels).
 
+use crate::colour_map::ColourTextures;
 use crate::pipeline::{Bind, Depth, Recipe, bind_group, bind_group_layout};
-use crate::shader::{GLOBALS, SPHERE, Shader};
-use crate::{ColourMap, DrawnParticles, ParticleBuffers};
+use crate::shader::{GLOBALS, QUANTITY, SPHERE, Shader};
+use crate::{DrawnParticles, ParticleBuffers};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, BufferBinding, Device, Queue, RenderPass, RenderPipeline,
-    TextureFormat, TextureView,
+    BindGroup, BindGroupLayout, BindingResource, BufferBinding, Device, RenderPass, RenderPipeline,
+    TextureFormat,
 };
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "particles", parts: &[GLOBALS, SPHERE, include_str!("particles.wgsl")] };
+    Shader { label: "particles", parts: &[GLOBALS, SPHERE, QUANTITY, include_str!("particles.wgsl")] };
 
 /// Starts of bindings must be multiples of 256 bytes; a multiple of this many particles always is.
 const GRAIN: u32 = 256;
@@ -48,7 +49,7 @@ const GRAIN: u32 = 256;
 pub(crate) struct Particles {
     pipeline: RenderPipeline,
     layout: BindGroupLayout,
-    colour_maps: Vec<(ColourMap, TextureView)>,
+    colours: ColourTextures,
 }
 
 /// Particles that fit into one binding.
@@ -61,10 +62,10 @@ pub(crate) struct Chunk {
 impl Particles {
     pub fn new(
         device: &Device,
-        queue: &Queue,
         [globals, environment]: [&BindGroupLayout; 2],
         format: TextureFormat,
         samples: u32,
+        colours: ColourTextures,
     ) -> Particles {
         let bindings = [Bind::Storage, Bind::Storage, Bind::Storage, Bind::VertexTexture];
         let layout = bind_group_layout(device, "particles", &bindings);
@@ -76,18 +77,12 @@ impl Particles {
             constants: &constants,
             ..Recipe::new(SHADER, &layouts, format)
         };
-        Particles {
-            pipeline: recipe.build(device),
-            colour_maps: ColourMap::ALL.map(|map| (map, colour_map_texture(device, queue, map))).into(),
-            layout,
-        }
+        Particles { pipeline: recipe.build(device), colours, layout }
     }
 
     /// Binds the particles, in as many pieces as the device's largest binding asks for.
     pub fn bind(&self, device: &Device, drawn: &DrawnParticles<'_>) -> Vec<Chunk> {
-        let Some((_, colours)) = self.colour_maps.iter().find(|(map, _)| *map == drawn.colouring.map) else {
-            return Vec::new();
-        };
+        let colours = self.colours.of(drawn.colouring.map);
         let ParticleBuffers { positions, velocities, densities, count } = drawn.buffers;
         chunks(device, count)
             .map(|(start, count)| Chunk {
@@ -130,8 +125,4 @@ pub(crate) fn chunks(device: &Device, count: u32) -> impl Iterator<Item = (u32, 
 pub(crate) fn part(buffer: &wgpu::Buffer, stride: u64, start: u32, count: u32) -> BindingResource<'_> {
     let size = std::num::NonZeroU64::new(stride * u64::from(count));
     BindingResource::Buffer(BufferBinding { buffer, offset: stride * u64::from(start), size })
-}
-
-fn colour_map_texture(device: &Device, queue: &Queue, map: ColourMap) -> TextureView {
-    crate::overlay::upload_texture(device, queue, "colour map", [256, 1], &map.texels())
 }

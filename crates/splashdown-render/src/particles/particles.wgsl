@@ -1,5 +1,5 @@
 // Spheres as impostors: a quad around the outline, the hit worked out per pixel. Needs globals.wgsl,
-// sphere.wgsl.
+// sphere.wgsl, quantity.wgsl.
 
 @group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
 @group(2) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored
@@ -26,12 +26,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     out.ray = corner.ray;
     out.centre = corner.centre;
 
-    var quantity = length(velocities[particle].xyz);
-    if globals.quantity == 1u {
-        quantity = densities[particle].x;
-    } else if globals.quantity == 2u {
-        quantity = densities[particle].y;
-    }
+    let quantity = quantity_of(globals.quantity, velocities[particle], densities[particle]);
     let place = clamp((quantity - globals.range_low) * globals.range_scale, 0.0, 1.0);
     out.base = textureLoad(colour_map, vec2u(u32(255.0 * place + 0.5), 0u), 0).rgb;
     return out;

@@ -41,7 +41,14 @@ struct Globals {
     splat_radius: f32,      // of the spheres that the liquid is merged from
     amount_radius: f32,     // of the disc that a particle's volume is spread over
     amount: f32,            // metres of liquid in the middle of such a disc
-    pad: f32,
+    slice_quantity: u32,    // as `quantity`
+    slice_axis: u32,        // the plane is perpendicular to: 0 x, 1 y, 2 z
+    slice_position: f32,    // along that axis
+    slice_support_radius: f32,
+    slice_full: f32,        // sum of the kernel's weights inside the fluid, where its middle is 1
+    slice_low: f32,
+    slice_scale: f32,       // 1 / (high - low)
+    pad: vec2f,
     edges: array<Edge, 12>,
 }
 

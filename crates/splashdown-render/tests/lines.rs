@@ -1,0 +1,182 @@
+//! The lines of a mesh, and the times of passes.
+
+mod common;
+
+use common::{Picture, Studio, sample};
+use splashdown_render::*;
+
+const SIZE: [u32; 2] = [400, 320];
+
+fn frame() -> Frame<'static> {
+    let camera = Camera::orbit([0.0; 3], 4.0, 0.0, 10.0, 40.0);
+    Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
+}
+
+fn brightness(picture: &Picture, [x, y]: [u32; 2]) -> i32 {
+    picture.pixel([x, y]).iter().map(|&channel| i32::from(channel)).sum()
+}
+
+/// By how much a picture is darker than another in the darkest of the pixels around a place.
+fn darkest(picture: &Picture, base: &Picture, [x, y]: [f32; 2]) -> i32 {
+    let around = (0..9).map(|n| [x as u32 + n % 3 - 1, y as u32 + n / 3 - 1]);
+    around.map(|pixel| brightness(base, pixel) - brightness(picture, pixel)).max().unwrap()
+}
+
+#[test]
+fn lines_lie_on_the_edges_of_the_front_alone() {
+    let Some(mut studio) = common::studio() else { return };
+    let mesh = sample::ball([0.0; 3], 1.0, 8);
+    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let drawn = |style| Frame {
+        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(4.0), style }),
+        ..frame()
+    };
+    let plain = studio.draw(SIZE, &drawn(SurfaceStyle::Liquid));
+    let lined = studio.draw(SIZE, &drawn(SurfaceStyle::LiquidWithLines));
+    let alone = studio.draw(SIZE, &drawn(SurfaceStyle::Lines));
+    let empty = studio.draw(SIZE, &frame());
+    let view = frame();
+    let project = |p: [f32; 3]| view.camera.project(p, SIZE).unwrap().unwrap();
+    let mean = |points: &[[f32; 3]]| -> [f32; 3] {
+        std::array::from_fn(|axis| points.iter().map(|p| p[axis]).sum::<f32>() / points.len() as f32)
+    };
+    let mut counted = 0;
+    for corners in &mesh.triangles {
+        let corners = corners.map(|corner| mesh.vertices[corner as usize]);
+        let centre = mean(&corners);
+        // Large and well in front, or the nearest edge of another triangle is too near.
+        if centre[2] < 0.55 || centre[1].abs() > 0.7 {
+            continue;
+        }
+        counted += 1;
+        for [a, b] in [[0, 1], [1, 2], [2, 0]] {
+            let at = project(mean(&[corners[a], corners[b]]));
+            let (over, alone) = (darkest(&lined, &plain, at), darkest(&alone, &empty, at));
+            assert!(over > 30 && alone > 60, "an edge at {at:?} is only {over} and {alone} darker");
+        }
+        let at = project(centre);
+        let apart = darkest(&lined, &plain, at);
+        assert!(apart <= 6, "the middle of a triangle at {at:?} is {apart} darker");
+    }
+    assert!(counted > 20, "{counted} triangles");
+    // The far side shows through the lines alone, and only there.
+    let darker = |picture: &Picture, base: &Picture| {
+        let pairs = picture.rgba.chunks_exact(4).zip(base.rgba.chunks_exact(4));
+        pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| b.saturating_sub(*a) > 12)).count()
+    };
+    let (over, alone) = (darker(&lined, &plain), darker(&alone, &empty));
+    assert!(alone > over + over / 4, "{alone} pixels of lines alone, {over} on the surface");
+}
+
+#[test]
+fn lines_can_be_drawn_from_indirect_arguments() {
+    use wgpu::util::DeviceExt;
+    let Some(mut studio) = common::studio() else { return };
+    let mesh = sample::ball([0.0; 3], 1.0, 8);
+    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let mut draw = |count: Option<u32>| {
+        let arguments = studio.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents: bytemuck::cast_slice(&[7, count.unwrap_or(0), 1, 0, 0, 0]),
+            usage: wgpu::BufferUsages::INDIRECT,
+        });
+        let buffers = match count {
+            Some(_) => SurfaceBuffers { draw: Draw::Indirect(&arguments, 4), ..ball.buffers() },
+            None => ball.buffers(),
+        };
+        let drawn = DrawnSurface { buffers, liquid: Liquid::water(4.0), style: SurfaceStyle::Lines };
+        studio.draw(SIZE, &Frame { surface: Some(drawn), ..frame() }).rgba
+    };
+    let direct = draw(None);
+    let all = 3 * mesh.triangles.len() as u32;
+    assert_eq!(draw(Some(all)), direct);
+    assert_ne!(draw(Some(all / 2)), direct, "negative control: half of the triangles");
+}
+
+#[test]
+fn lines_need_buffers_that_shaders_may_read() {
+    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+    let mesh = sample::ball([0.0; 3], 1.0, 8);
+    let ball = UploadedSurface::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let vertices = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 16 * mesh.vertices.len() as u64,
+        usage: wgpu::BufferUsages::VERTEX,
+        mapped_at_creation: false,
+    });
+    let buffers = SurfaceBuffers { vertices: &vertices, ..ball.buffers() };
+    let mut target = Offscreen::new(&device, &queue, [30, 20]).unwrap();
+    let mut draw = |style| {
+        let drawn = DrawnSurface { buffers, liquid: Liquid::water(4.0), style };
+        target.render_to_rgba(&mut renderer, &Frame { surface: Some(drawn), ..frame() })
+    };
+    let error = draw(SurfaceStyle::Lines).unwrap_err();
+    assert!(error.to_string().contains("vertices lacks the usage"), "{error}");
+    assert!(draw(SurfaceStyle::Liquid).is_ok());
+}
+
+#[test]
+fn times_of_passes_come_back_by_themselves() {
+    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+    let mut target = Offscreen::new(&device, &queue, SIZE).unwrap();
+    let particles = UploadedParticles::new(&device, &[[0.0; 3]; 64], &[], &[], &[]).unwrap();
+    let drawn =
+        DrawnLiquidParticles { buffers: particles.buffers(), radius: 0.1, liquid: Liquid::water(1.0) };
+    let view = Frame { liquid_particles: Some(drawn), ..frame() };
+    target.render_to_rgba(&mut renderer, &view).unwrap();
+    assert!(renderer.pass_times().is_empty(), "nobody asked for times");
+    if !renderer.set_timing(true) {
+        eprintln!("SKIPPED: the adapter has no timestamps");
+        return;
+    }
+    let start = std::time::Instant::now();
+    for _ in 0..6 {
+        target.render_to_rgba(&mut renderer, &view).unwrap();
+    }
+    let wall = 1e3 * start.elapsed().as_secs_f32();
+    let times = renderer.pass_times().to_vec();
+    let labels: Vec<&str> = times.iter().map(|time| time.label).collect();
+    let expected = [
+        "shadow",
+        "shadow blur",
+        "scene",
+        "distance of bodies",
+        "amount",
+        "splat",
+        "smooth",
+        "clean",
+        "picture",
+    ];
+    assert_eq!(labels, expected);
+    let sum: f32 = times.iter().map(|time| time.milliseconds).sum();
+    assert!(sum > 0.0 && sum < wall, "{sum} ms in one of six pictures that took {wall} ms");
+    // Another picture has other passes; they replace the old ones.
+    for _ in 0..6 {
+        target.render_to_rgba(&mut renderer, &frame()).unwrap();
+    }
+    let labels: Vec<&str> = renderer.pass_times().iter().map(|time| time.label).collect();
+    assert_eq!(labels, ["shadow", "picture"]);
+    // Encoders that are thrown away do not stop the clock for good.
+    let view = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: Offscreen::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    let view = view.create_view(&wgpu::TextureViewDescriptor::default());
+    for _ in 0..64 {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.draw(&mut encoder, &view, [8, 8], &frame()).unwrap();
+    }
+    let lit = Frame { caption: Some("t = 1 s"), ..frame() };
+    for _ in 0..6 {
+        target.render_to_rgba(&mut renderer, &lit).unwrap();
+    }
+    assert!(renderer.pass_times().iter().any(|time| time.label == "overlay"));
+    renderer.set_timing(false);
+    assert!(renderer.pass_times().is_empty());
+}
