@@ -8,7 +8,7 @@ use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
 use crate::recorder::{End, Recorder, Start};
-use crate::screen_space::ScreenSpace;
+use crate::screen_space::{ScreenSpace, margin};
 use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
@@ -130,7 +130,8 @@ impl Renderer {
         frame: &Frame<'_>,
     ) -> Result<(), RenderError> {
         check_size(&self.device, size)?;
-        let globals = frame.globals(size, self.format.is_srgb())?;
+        let mut globals = frame.globals(size, self.format.is_srgb())?;
+        globals.splat_margin = margin(&self.device, size) as f32;
         if let Some(surface) = &frame.surface {
             surface.buffers.check_style(&self.device, surface.style)?;
         }

@@ -56,9 +56,9 @@ fn a_block_covers_its_square() {
     let Some(mut studio) = common::studio() else { return };
     let empty = studio.draw(SIZE, &frame());
     let picture = liquid(&mut studio, &block([0.0; 3], [12, 12, 3], 2.0 * RADIUS), ink(), frame());
-    // Spheres of 1.45 radii on a lattice reach 1.325 radii on average beyond the outermost centres, and the outline where
-    // 0.56 of the surroundings are liquid lies 0.151 deviations of 0.65 * 1.45 radii further in.
-    let half_side = (11.0 + 1.325 - 0.151 * 0.65 * 1.45) * RADIUS;
+    // Spheres of 1.7 radii on a lattice reach 1.597 radii on average beyond the outermost centres, and the outline where
+    // 0.66 of the surroundings are liquid lies 0.412 deviations of 0.6 * 1.7 radii further in.
+    let half_side = (11.0 + 1.597 - 0.412 * 0.6 * 1.7) * RADIUS;
     let front = DISTANCE - 2.0 * RADIUS;
     let pixels = 2.0 * half_side / front / 20f32.to_radians().tan() * 80.0;
     let (covered, expected) = (changed(&picture, &empty) as f32, pixels * pixels);
@@ -93,8 +93,8 @@ fn near_liquid_leaves_no_halo_on_far_liquid() {
         far.iter().copied().chain(block([0.0, 0.0, 0.6], [6, 6, 3], 2.0 * RADIUS)).collect();
     let far = liquid(&mut studio, &far, ink(), frame());
     let both = liquid(&mut studio, &both, ink(), frame());
-    // The near block's outermost centres are 5 radii from the middle, its spheres reach 1.45 further; two pixels more.
-    let outline = 6.45 * RADIUS / (DISTANCE - 0.6 - 2.0 * RADIUS) / 20f32.to_radians().tan() * 80.0;
+    // The near block's outermost centres are 5 radii from the middle, its spheres reach 1.7 further; two pixels more.
+    let outline = 6.7 * RADIUS / (DISTANCE - 0.6 - 2.0 * RADIUS) / 20f32.to_radians().tan() * 80.0;
     let beside = 100 + (outline + 2.0) as u32;
     for x in beside..beside + 12 {
         let (with, without) = (both.pixel([x, 80]), far.pixel([x, 80]));
@@ -219,4 +219,37 @@ fn the_same_liquid_twice_is_refused() {
     let flat = DrawnLiquidParticles { radius: f32::NAN, ..merged };
     let error = target.submit(&mut renderer, &Frame { liquid_particles: Some(flat), ..frame() }).unwrap_err();
     assert!(error.to_string().contains("radius"), "{error}");
+}
+
+#[test]
+fn the_surface_does_not_bend_at_the_picture_s_border() {
+    let Some(mut studio) = common::studio() else { return };
+    // A slab that tilts away from the eye and reaches far beyond the picture.
+    let tilted: Vec<[f32; 3]> = block([0.0; 3], [70, 60, 3], 2.0 * RADIUS)
+        .into_iter()
+        .map(|[x, y, z]| [x, 0.8 * y - 0.6 * z, 0.8 * z - 0.6 * y])
+        .collect();
+    let wide_size = [280, 224];
+    let wide_angle = 2.0 * (1.4 * 20f32.to_radians().tan()).atan().to_degrees();
+    let wide = Frame { camera: Camera { field_of_view_deg: wide_angle, ..frame().camera }, ..frame() };
+    let particles = UploadedParticles::new(&studio.device, &tilted, &[], &[], &[]).unwrap();
+    let drawn = DrawnLiquidParticles { buffers: particles.buffers(), radius: RADIUS, liquid: ink() };
+    let wide = studio.draw(wide_size, &Frame { liquid_particles: Some(drawn), ..wide });
+    // The outermost columns of the picture against the same pixels of the wide one.
+    let largest = |picture: &Picture| {
+        let rows = (0..SIZE[1]).flat_map(|y| [[0, y], [1, y], [SIZE[0] - 2, y], [SIZE[0] - 1, y]]);
+        let apart = |[x, y]: [u32; 2]| {
+            let pairs = picture.pixel([x, y]).into_iter().zip(wide.pixel([x + 40, y + 32]));
+            pairs.map(|(a, b)| a.abs_diff(b)).max().unwrap()
+        };
+        rows.map(apart).max().unwrap()
+    };
+    let whole = liquid(&mut studio, &tilted, ink(), frame());
+    assert!(largest(&whole) <= 3, "{}", largest(&whole));
+    // Negative control: a slab that ends at the border.
+    let [left, right] = [0, SIZE[0]].map(|x| (x as f32 - 100.0) / 80.0 * 20f32.to_radians().tan());
+    let inside = |p: &&[f32; 3]| (left..right).contains(&(p[0] / (DISTANCE - p[2])));
+    let cut: Vec<[f32; 3]> = tilted.iter().filter(inside).copied().collect();
+    let cut = liquid(&mut studio, &cut, ink(), frame());
+    assert!(largest(&cut) > 12, "{}", largest(&cut));
 }

@@ -4,9 +4,9 @@
 
 const NOTHING = 1e30;
 // Share of liquid around a pixel at the outline, and the deviation of the average, in radii of the splats. A straight edge has
-// a share of 0.5; the middle of a single drop has 0.69.
-const OUTLINE = 0.56;
-const SHARE_DEVIATION = 0.65;
+// a share of 0.5; the middle of a single drop has 0.75.
+const OUTLINE = 0.66;
+const SHARE_DEVIATION = 0.6;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -15,11 +15,12 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 }
 
 fn sample_distance(texel: vec2i) -> f32 {
+    let place = texel + vec2i(i32(globals.splat_margin));
     let size = vec2i(textureDimensions(distances));
-    if any(texel < vec2i(0)) || any(texel >= size) {
+    if any(place < vec2i(0)) || any(place >= size) {
         return NOTHING;
     }
-    return textureLoad(distances, texel, 0).r;
+    return textureLoad(distances, place, 0).r;
 }
 
 // Where the liquid is in a pixel, from the eye.
@@ -27,20 +28,24 @@ fn place(texel: vec2i, distance: f32) -> vec3f {
     return view_ray(vec2f(texel) + 0.5) * distance;
 }
 
-// The surface's slope along an axis of the picture. Over an edge one of the two differences is large and wrong, so
-// the smaller one counts there; elsewhere both do.
+// The surface's slope along an axis of the picture, from the differences to both sides. Over an edge one of them is large and
+// wrong, so each counts the less the larger it is; a switch from one to the other would leave dotted rims.
 fn slope(texel: vec2i, axis: vec2i, here: vec3f) -> vec3f {
     let ahead = sample_distance(texel + axis);
     let behind = sample_distance(texel - axis);
-    let forth = place(texel + axis, ahead) - here;
-    let back = here - place(texel - axis, behind);
     let middle = dot(here, globals.forward);
-    let rise = abs(ahead - middle);
-    let fall = abs(behind - middle);
-    if max(rise, fall) > 2.0 * min(rise, fall) + globals.splat_radius {
-        return select(back, forth, rise < fall);
-    }
-    return 0.5 * (forth + back);
+    let least = 0.2 * globals.splat_radius;
+    let rise = max(abs(ahead - middle), least);
+    let fall = max(abs(behind - middle), least);
+    // Squares of the smaller over the larger: 1 where both are alike, 0 for the one at an edge.
+    let share_ahead = min(fall / rise, 1.0);
+    let share_behind = min(rise / fall, 1.0);
+    let weight_ahead = share_ahead * share_ahead;
+    let weight_behind = share_behind * share_behind;
+    // Nothing is so far away that its difference could not be multiplied by 0.
+    let forth = place(texel + axis, min(ahead, 2.0 * middle)) - here;
+    let back = here - place(texel - axis, min(behind, 2.0 * middle));
+    return (weight_ahead * forth + weight_behind * back) / (weight_ahead + weight_behind);
 }
 
 struct Output {
@@ -51,7 +56,7 @@ struct Output {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> Output {
     let pixel = vec2i(position.xy);
-    let own = textureLoad(distances, pixel, 0);
+    let own = textureLoad(distances, pixel + vec2i(i32(globals.splat_margin)), 0);
     let distance = own.r;
     if distance >= NOTHING {
         discard;

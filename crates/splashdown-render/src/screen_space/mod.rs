@@ -11,6 +11,9 @@
 //! normals from the distances' differences, the smaller one at edges; then the light of `shared/liquid.wgsl`, which the
 //! mesh has too.
 //!
+//! Distances are drawn with a margin around the picture: smoothing that knows nothing of what lies beyond the border would bend the
+//! surface there.
+//!
 //! The outline of a heap of spheres is bumpy, and no filter of distances mends it. So the first round of smoothing also
 //! averages the share of pixels that have liquid, and the outline is drawn where that falls below a bound: bumps are cut off, and the same
 //! number says how much of a pixel is inside. Depth is that of the smoothed surface, so solids and the box's lines cut it as they do the mesh.
@@ -57,9 +60,10 @@ const DISTANCE_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 const NOTHING: Color = Color { r: 1e30, ..Color::TRANSPARENT };
 /// Reach of the two rounds of smoothing, in radii of the splats. The second one removes what the first leaves where its
 /// samples stand apart.
-const REACH: [f64; 2] = [2.2, 1.0];
-/// Radius of the splats, in particle radii: spheres on a lattice close the gaps between four of them from 1.42 on.
-const SPLAT_REACH: f32 = 1.45;
+const REACH: [f64; 2] = [1.9, 0.9];
+/// Radius of the splats, in particle radii. Spheres on a lattice close the gaps between four of them from 1.42 on; larger ones
+/// have a smoother outline, of which compose.wgsl cuts off what is too much.
+const SPLAT_REACH: f32 = 1.7;
 /// Radius of the discs that the amount is spread over, in particle radii.
 const AMOUNT_REACH: f32 = 3.0;
 
@@ -73,6 +77,9 @@ pub struct DrawnLiquidParticles<'a> {
     /// How the liquid looks.
     pub liquid: Liquid,
 }
+
+/// As many pixels as the filter looks at on each side, where its samples do not stand apart.
+const MARGIN: u32 = 24;
 
 #[derive(Debug)]
 pub(crate) struct ScreenSpace {
@@ -89,7 +96,7 @@ pub(crate) struct ScreenSpace {
     maps: Option<Maps>,
 }
 
-/// Textures of the picture's size.
+/// Textures of the picture's size and a margin.
 #[derive(Debug)]
 struct Maps {
     size: [u32; 2],
@@ -182,8 +189,9 @@ impl ScreenSpace {
         globals: &BindGroup,
         chunks: &[(BindGroup, u32)],
     ) -> BindGroup {
-        let kept = self.maps.take().filter(|maps| maps.size == targets.size);
-        let maps = kept.unwrap_or_else(|| Maps::new(device, targets.size));
+        let size = targets.size.map(|side| side + 2 * margin(device, targets.size));
+        let kept = self.maps.take().filter(|maps| maps.size == size);
+        let maps = kept.unwrap_or_else(|| Maps::new(device, size));
         // Made anew each time: the thickness belongs to the picture's other textures.
         let sources = maps.distances.each_ref().map(|view| {
             let views = [view, &targets.thickness].map(BindingResource::TextureView);
@@ -224,6 +232,12 @@ impl ScreenSpace {
         pass.set_bind_group(2, group, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// Pixels by which the distances' picture is wider on each side than the picture.
+pub(crate) fn margin(device: &Device, [width, height]: [u32; 2]) -> u32 {
+    let limit = device.limits().max_texture_dimension_2d;
+    MARGIN.min((limit - limit.min(width.max(height))) / 2)
 }
 
 impl Maps {

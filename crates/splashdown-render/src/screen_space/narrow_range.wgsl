@@ -9,8 +9,8 @@
 // Where there is no liquid.
 const NOTHING = 1e30;
 // Range of the filter, and how far behind the middle a sample beyond the range is taken to be, in radii of the splats. The
-// authors' range is 10.5; half of that keeps milky rims off liquid that has other liquid not far behind it.
-const RANGE = 4.5;
+// authors' range is 10.5; less of it keeps milky rims off liquid that has other liquid not far behind it.
+const RANGE = 4.0;
 const PUSH = 1.0;
 
 struct Filter {
@@ -31,7 +31,7 @@ fn load(texel: vec2i) -> vec2f {
     return textureLoad(distances, clamp(texel, vec2i(0), last), 0).rg;
 }
 
-// As a sample of the filter: outside of the picture it counts as liquid in front, so that its mirror image is left out too
+// As a sample of the filter: outside of the texture it counts as liquid in front, so that its mirror image is left out too
 // and the surface goes on as it comes.
 fn sample_distance(texel: vec2i) -> f32 {
     let size = vec2i(textureDimensions(distances));

@@ -10,7 +10,7 @@ override SHARE: u32 = 1u;
 
 const MOST_TAPS = 24.0;
 // Reach of the average of the share of liquid, in radii of the splats; the deviation is half of it.
-const SHARE_REACH = 1.3;
+const SHARE_REACH = 1.2;
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -55,14 +55,20 @@ fn neighbour(here: vec2i) -> f32 {
     return NOTHING;
 }
 
+// Discs of volume reach farther than spheres: where there is none, no sphere is near.
+fn liquid_is_near(here: vec2i) -> bool {
+    let seen = here - vec2i(i32(globals.splat_margin));
+    let last = vec2i(globals.picture_size) - 1;
+    return textureLoad(thickness, clamp(seen, vec2i(0), last) / 2, 0).r > 0.0;
+}
+
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = vec2i(position.xy);
     let own = load(here);
     var share = own.g;
     if own.r >= NOTHING {
-        // Discs of volume reach farther than spheres: where there is none, no sphere is near.
-        if SHARE == 1u && textureLoad(thickness, here / 2, 0).r > 0.0 {
+        if SHARE == 1u && liquid_is_near(here) {
             let distance = neighbour(here);
             if distance < NOTHING {
                 share = share_around(here, distance);

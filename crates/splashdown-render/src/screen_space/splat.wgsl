@@ -12,7 +12,10 @@ struct Varying {
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let corner = sphere_corner(positions[index / 6u], globals.splat_radius, index);
-    return Varying(corner.position, corner.across, corner.ray, corner.centre.w);
+    // The picture is a little larger than what is seen, so that smoothing knows what lies beyond the border.
+    let shrink = globals.picture_size / (globals.picture_size + 2.0 * globals.splat_margin);
+    let position = vec4f(corner.position.xy * shrink, corner.position.zw);
+    return Varying(position, corner.across, corner.ray, corner.centre.w);
 }
 
 struct Output {

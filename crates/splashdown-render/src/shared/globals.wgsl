@@ -48,7 +48,8 @@ struct Globals {
     slice_full: f32,        // sum of the kernel's weights inside the fluid, where its middle is 1
     slice_low: f32,
     slice_scale: f32,       // 1 / (high - low)
-    pad: vec2f,
+    splat_margin: f32,      // pixels by which the distances' picture is wider on each side
+    pad: f32,
     edges: array<Edge, 12>,
 }
 
