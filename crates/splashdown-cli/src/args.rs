@@ -25,6 +25,8 @@ pub struct Arguments {
 pub enum Command {
     /// Simulate a scene and write its frames
     Run(RunArguments),
+    /// Open a window to watch a scene and to play with it
+    View(ViewArguments),
     /// Validate a scene and print what follows from it, without simulating
     Check(CheckArguments),
     /// List the devices of this machine, what fits on them, and what is missing
@@ -35,6 +37,31 @@ pub enum Command {
     Bench(BenchArguments),
     /// Print completions for a shell
     Completions(CompletionsArguments),
+}
+
+/// Options of `view`.
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Scene file (TOML), or the name of one that comes with the program
+    #[arg(value_name = "SCENE", default_value = "dam-break")]
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Width and height of the window
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = window_size)]
+    pub size: [f32; 2],
+}
+
+/// Two numbers with an x between them.
+fn window_size(text: &str) -> Result<[f32; 2], String> {
+    let side = |side: &str| side.parse().ok().filter(|side| (200.0..=16_384.0).contains(side));
+    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+        Some((Some(width), Some(height))) => Ok([width, height]),
+        _ => {
+            Err("a size is two numbers between 200 and 16384 with an x between them, such as 1280x800"
+                .to_owned())
+        }
+    }
 }
 
 const RUN_EXAMPLES: &str = "\

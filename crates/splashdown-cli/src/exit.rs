@@ -9,6 +9,7 @@ use splashdown::surface::SurfaceError;
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;
+use splashdown_viewer::ViewerError;
 
 /// What the program's exit code says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +104,12 @@ impl From<IoError> for Failure {
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         Self::new(Exit::Device, format!("the pictures cannot be drawn: {error}"))
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Self {
+        Self::new(Exit::Device, error.to_string())
     }
 }
 

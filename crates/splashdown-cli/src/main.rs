@@ -73,6 +73,7 @@ fn quieten_drivers() {
 fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
     match command {
         Command::Run(arguments) => return commands::run::run(arguments),
+        Command::View(arguments) => commands::view::view(arguments)?,
         Command::Check(arguments) => commands::check::run(arguments)?,
         Command::Doctor(arguments) => commands::doctor::run(arguments),
         Command::Scenes(arguments) => commands::scenes::run(arguments)?,

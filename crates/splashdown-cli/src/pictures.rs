@@ -5,14 +5,15 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
-use splashdown::scene::{ColourBy, Derived, PictureKind, Scene};
+use splashdown::scene::{PictureKind, Scene};
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture};
 use splashdown_render::{
-    Camera, ColourMap, Colouring, Domain, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody,
-    Quantity, RenderError, Renderer, SurfaceStyle, UploadedBodies, UploadedParticles, UploadedSurface,
+    Colouring, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
+    SurfaceStyle, UploadedBodies, UploadedParticles, UploadedSurface,
 };
+use splashdown_viewer::stage;
 
 use crate::exit::Failure;
 use crate::layout::Layout;
@@ -173,11 +174,7 @@ impl Artist {
     ) -> Result<Self, Failure> {
         let renderer = Renderer::new(&gpu.device, &gpu.queue, Offscreen::FORMAT, 4)?;
         let target = Offscreen::new(&gpu.device, &gpu.queue, scene.output.picture_size)?;
-        let size = scene.domain.size();
-        let tint = size.y.min(0.5 * size.x.max(size.z));
-        let liquid =
-            Liquid::from_name(&scene.fluid.material.name, tint).unwrap_or_else(|| Liquid::water(tint));
-        let colouring = colouring(scene);
+        let (liquid, colouring) = (stage::liquid(scene), stage::colouring(scene, scene.output.colour_by));
         Ok(Self {
             gpu,
             scene: scene.clone(),
@@ -236,7 +233,7 @@ impl Artist {
         let empty = Frame {
             bodies: bodies.as_ref().map(UploadedBodies::buffers),
             caption: Some(&caption),
-            ..Frame::new(camera(&self.scene, drawn.time), domain(&self.scene))
+            ..Frame::new(stage::camera(&self.scene, drawn.time), stage::domain(&self.scene))
         };
         let mut tickets = Vec::new();
         for kind in &self.kinds {
@@ -265,35 +262,4 @@ impl Artist {
             |ticket| self.target.collect(ticket).map(|rgba| Arc::new(Picture { width, height, rgba }));
         tickets.into_iter().map(collect).collect()
     }
-}
-
-fn camera(scene: &Scene, time: f64) -> Camera {
-    let camera = &scene.camera;
-    let azimuth = f64::from(camera.azimuth) + f64::from(camera.orbit_speed) * time;
-    Camera::orbit(
-        camera.target.into(),
-        camera.distance,
-        azimuth as f32,
-        camera.elevation,
-        camera.field_of_view,
-    )
-}
-
-fn domain(scene: &Scene) -> Domain {
-    let [[x0, x1], [y0, y1], [z0, z1]] = scene.domain.closed;
-    Domain { min: scene.domain.min.into(), max: scene.domain.max.into(), closed: [x0, x1, y0, y1, z0, z1] }
-}
-
-/// Colours over the range of the scene, or over the one to expect: the same in every frame, so that a film does not
-/// flicker.
-fn colouring(scene: &Scene) -> Colouring {
-    let derived = Derived::new(scene);
-    let density = scene.fluid.material.rest_density;
-    let (quantity, expected) = match scene.output.colour_by {
-        ColourBy::Speed => (Quantity::Speed, [0.0, 0.7 * derived.reference_speed]),
-        ColourBy::Density => (Quantity::Density, [0.97 * density, 1.03 * density]),
-        ColourBy::Pressure => (Quantity::Pressure, [0.0, density * scene.gravity.length() * derived.head]),
-    };
-    let range = scene.output.colour_range.unwrap_or(expected);
-    Colouring { quantity, range, map: ColourMap::Water, colour_bar: true }
 }

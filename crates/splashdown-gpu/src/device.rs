@@ -6,6 +6,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use crate::exec::Mapping;
 use crate::{GpuError, block_on};
 
 /// How to get a driver where there is none.
@@ -83,17 +84,22 @@ fn is_software(info: &wgpu::AdapterInfo) -> bool {
     info.device_type == wgpu::DeviceType::Cpu
 }
 
-/// Adapters, the best first.
-async fn adapters() -> Vec<wgpu::Adapter> {
+/// Real hardware first.
+fn rank(kind: wgpu::DeviceType) -> u8 {
     use wgpu::DeviceType as D;
-    let mut found = instance().enumerate_adapters(wgpu::Backends::all()).await;
-    found.sort_by_key(|adapter| match adapter.get_info().device_type {
+    match kind {
         D::DiscreteGpu => 0,
         D::IntegratedGpu => 1,
         D::VirtualGpu => 2,
         D::Other => 3,
         D::Cpu => 4,
-    });
+    }
+}
+
+/// Adapters, the best first.
+async fn adapters() -> Vec<wgpu::Adapter> {
+    let mut found = instance().enumerate_adapters(wgpu::Backends::all()).await;
+    found.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     found
 }
 
@@ -126,50 +132,61 @@ impl Gpu {
     /// As [`open`](Self::open).
     pub async fn open_async(request: &DeviceRequest) -> Result<Self, GpuError> {
         let found = adapters().await;
-        let fits = |adapter: &&wgpu::Adapter| {
-            let info = adapter.get_info();
-            match request {
-                DeviceRequest::Auto => true,
-                DeviceRequest::Hardware => !is_software(&info),
-                DeviceRequest::Software => is_software(&info),
-                DeviceRequest::Named(name) => {
-                    !name.is_empty() && describe(&info).to_lowercase().contains(&name.to_lowercase())
-                }
+        Self::from_adapter(Self::choose(&found, request)?).await
+    }
+
+    /// The best of these adapters that is meant. Those of OpenGL are not, whatever is asked for.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::NoneOfKind`], [`GpuError::UnknownDevice`].
+    pub fn choose<'a>(
+        found: impl IntoIterator<Item = &'a wgpu::Adapter>,
+        request: &DeviceRequest,
+    ) -> Result<&'a wgpu::Adapter, GpuError> {
+        let mut found: Vec<_> = found.into_iter().map(|adapter| (adapter, adapter.get_info())).collect();
+        found.retain(|(_, info)| info.backend != wgpu::Backend::Gl);
+        found.sort_by_key(|(_, info)| rank(info.device_type));
+        let fits = |(_, info): &&(_, wgpu::AdapterInfo)| match request {
+            DeviceRequest::Auto => true,
+            DeviceRequest::Hardware => !is_software(info),
+            DeviceRequest::Software => is_software(info),
+            DeviceRequest::Named(name) => {
+                !name.is_empty() && describe(info).to_lowercase().contains(&name.to_lowercase())
             }
         };
-        let adapter = found.iter().find(fits).ok_or_else(|| {
-            let available = || found.iter().map(|a| describe(&a.get_info())).collect::<Vec<_>>().join("; ");
-            match request {
-                DeviceRequest::Named(name) => GpuError::UnknownDevice {
-                    name: name.clone(),
-                    available: if found.is_empty() { "none (only the CPU)".into() } else { available() },
-                },
-                _ if found.is_empty() => GpuError::NoAdapter { hint: MISSING_DRIVER_HINT },
-                DeviceRequest::Software => {
-                    GpuError::NoneOfKind { wanted: "software driver", available: available() }
-                }
-                _ => GpuError::NoneOfKind { wanted: "GPU", available: available() },
+        if let Some((adapter, _)) = found.iter().find(fits) {
+            return Ok(adapter);
+        }
+        let available = || found.iter().map(|(_, info)| describe(info)).collect::<Vec<_>>().join("; ");
+        Err(match request {
+            DeviceRequest::Named(name) => GpuError::UnknownDevice {
+                name: name.clone(),
+                available: if found.is_empty() { "none (only the CPU)".into() } else { available() },
+            },
+            _ if found.is_empty() => GpuError::NoAdapter { hint: MISSING_DRIVER_HINT },
+            DeviceRequest::Software => {
+                GpuError::NoneOfKind { wanted: "software driver", available: available() }
             }
-        })?;
-        Self::from_adapter(adapter).await
+            _ => GpuError::NoneOfKind { wanted: "GPU", available: available() },
+        })
+    }
+
+    /// What to ask of an adapter: its own limits, not WebGPU's smallest, so that a buffer may be as large as the memory allows;
+    /// and clocks, where it has them.
+    pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        wgpu::DeviceDescriptor {
+            label: Some("splashdown"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }
     }
 
     async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let wanted = wgpu::Features::TIMESTAMP_QUERY;
-        // The adapter's own limits, not WebGPU's smallest: a buffer may then be as large as the memory allows.
-        let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                label: Some("splashdown"),
-                required_features: adapter.features() & wanted,
-                required_limits: adapter.limits(),
-                ..Default::default()
-            })
-            .await
-            .map_err(|error| GpuError::OpenFailed {
-                adapter: info.name.clone(),
-                reason: error.to_string(),
-            })?;
+        let (device, queue) = adapter.request_device(&Self::descriptor(adapter)).await.map_err(|error| {
+            GpuError::OpenFailed { adapter: info.name.clone(), reason: error.to_string() }
+        })?;
         Ok(Self::from_device(device, queue, info))
     }
 
@@ -202,6 +219,18 @@ impl Gpu {
     /// The largest number of bytes one buffer may have.
     pub fn largest_buffer(&self) -> u64 {
         largest_buffer(&self.limits)
+    }
+
+    /// The content of a buffer with [`wgpu::BufferUsages::MAP_READ`] that a submission fills, as soon as that is done.
+    ///
+    /// # Errors
+    /// [`GpuError::DeviceLost`].
+    pub async fn read_back(
+        self: &Arc<Self>,
+        staging: wgpu::Buffer,
+        submission: wgpu::SubmissionIndex,
+    ) -> Result<Vec<u8>, GpuError> {
+        Mapping::new(self, staging, submission).take().await
     }
 
     /// Lets finished work report itself, without waiting.

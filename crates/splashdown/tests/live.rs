@@ -3,6 +3,7 @@
 use glam::Vec3;
 use splashdown::scene::{Body, BoundaryKind, MeshSource, Motion, Scene};
 use splashdown::{Device, Hand, Simulation};
+use splashdown_gpu::block_on;
 
 fn scene() -> Scene {
     let text = include_str!("../../../scenes/dam-break-small.toml");
@@ -102,4 +103,27 @@ fn a_ball_is_thrown_in_and_the_water_goes_on() {
     let particles = third.particles().unwrap();
     assert_eq!(third.inside_bodies(&particles).unwrap(), 0);
     third.advance(0.02).unwrap();
+}
+
+#[test]
+fn a_held_body_comes_along_and_its_water_stays_outside() {
+    let mut scene = scene();
+    let top = scene.domain.max;
+    scene.bodies.push(ball("held", Vec3::new(0.7 * top.x, 0.3 * top.y, 0.5 * top.z)));
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let (anchor, target) = (Vec3::new(0.0, 0.03, 0.0), Vec3::new(0.6 * top.x, 0.8 * top.y, 0.5 * top.z));
+    for _ in 0..60 {
+        block_on(simulation.pull_body_async(0, anchor, target, 12.0)).unwrap();
+        simulation.advance(0.01).unwrap();
+    }
+    let state = simulation.body_states().unwrap()[0];
+    let held = state.position + state.orientation * anchor;
+    // It sags by what it falls between two pulls.
+    assert!(held.distance(target) < 0.02, "{held} is not near {target}");
+    let particles = simulation.particles().unwrap();
+    assert_eq!(simulation.inside_bodies(&particles).unwrap(), 0);
+    // Control: let go, it falls.
+    simulation.advance(0.2).unwrap();
+    let fallen = simulation.body_states().unwrap()[0];
+    assert!(fallen.position.y < state.position.y - 0.05, "{fallen:?}");
 }

@@ -6,3 +6,4 @@ pub mod completions;
 pub mod doctor;
 pub mod run;
 pub mod scenes;
+pub mod view;

@@ -76,6 +76,10 @@ impl CpuExecutor {
         true
     }
 
+    pub(super) fn disable_timing(&mut self) {
+        self.timings = None;
+    }
+
     pub(super) fn take_timings(&mut self) -> Timings {
         self.timings.as_mut().map(std::mem::take).unwrap_or_default()
     }

@@ -174,6 +174,10 @@ impl GpuExecutor {
         true
     }
 
+    pub(super) fn disable_timing(&mut self) {
+        self.timer = None;
+    }
+
     /// On a web page, where nobody can wait, only the times that have arrived.
     pub(super) fn take_timings(&mut self) -> Timings {
         self.collect_timings(!cfg!(target_arch = "wasm32"));

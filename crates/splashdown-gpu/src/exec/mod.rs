@@ -8,6 +8,7 @@ mod table;
 
 pub use cpu::CpuExecutor;
 pub use gpu::GpuExecutor;
+pub(crate) use readback::Mapping;
 pub use readback::Readback;
 
 use std::marker::PhantomData;
@@ -195,6 +196,11 @@ impl Executor {
     /// Returns false where the device has no timestamps.
     pub fn enable_timing(&mut self) -> bool {
         either!(self, e => e.enable_timing())
+    }
+
+    /// From now on dispatches are not timed.
+    pub fn disable_timing(&mut self) {
+        either!(self, e => e.disable_timing());
     }
 
     /// The times since the last call.

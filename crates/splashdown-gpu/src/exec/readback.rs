@@ -67,7 +67,7 @@ const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
 /// A staging buffer on its way to the host.
-pub(super) struct Mapping {
+pub(crate) struct Mapping {
     gpu: Arc<Gpu>,
     staging: wgpu::Buffer,
     #[cfg(not(target_arch = "wasm32"))]

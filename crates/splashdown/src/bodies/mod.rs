@@ -311,6 +311,26 @@ impl Bodies {
         executor.write(self.bodies, &bodies)
     }
 
+    /// Pulls a free body by one of its points: see [`Body::pull`].
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub async fn pull(
+        &self,
+        executor: &mut Executor,
+        body: usize,
+        anchor: Vec3,
+        target: Vec3,
+        rate: f32,
+    ) -> Result<(), GpuError> {
+        let mut bodies = executor.fetch(self.bodies).await?;
+        if let Some(body) = bodies.get_mut(body).filter(|body| body.kind == Body::DYNAMIC) {
+            body.pull(anchor, target, rate);
+            executor.write(self.bodies, &bodies)?;
+        }
+        Ok(())
+    }
+
     /// The meshes, in the order of the scene.
     pub fn meshes(&self) -> &[BodyMesh] {
         &self.meshes

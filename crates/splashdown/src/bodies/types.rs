@@ -155,6 +155,27 @@ impl Body {
         self.velocity + self.angular_velocity.cross(x - self.position)
     }
 
+    /// Takes the velocity that brings the point `anchor` of its own frame towards `target` (m) at `rate` times its distance per
+    /// second, by an impulse at that point.
+    pub fn pull(&mut self, anchor: Vec3, target: Vec3, rate: f32) {
+        let q = self.rotation();
+        let arm = q * (anchor - self.center);
+        let missing = rate * (target - self.position - arm) - self.velocity_at(self.position + arm);
+        let turn = |v: Vec3| q * (self.inverse_inertia_matrix() * (q.conjugate() * v));
+        // Change of the point's velocity per impulse there.
+        let column = |axis: Vec3| self.inverse_mass * axis + turn(arm.cross(axis)).cross(arm);
+        let response = Mat3::from_cols(column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
+        // On a hinge the point goes only one way, and nothing has an inverse; a small part of its size mends that.
+        let size = response.x_axis.x + response.y_axis.y + response.z_axis.z;
+        if size <= 0.0 {
+            return;
+        }
+        let impulse = (response + Mat3::from_diagonal(Vec3::splat(1e-4 * size))).inverse() * missing;
+        let spin = turn(arm.cross(impulse));
+        self.velocity += self.inverse_mass * impulse;
+        self.angular_velocity += spin;
+    }
+
     /// The inertia about `center` in the mesh's frame.
     pub fn inertia_matrix(&self) -> Mat3 {
         symmetric(self.inertia, self.inertia_products)

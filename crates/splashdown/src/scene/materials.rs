@@ -17,6 +17,18 @@ pub struct KnownMaterial {
     pub surface_tension: f32,
 }
 
+impl KnownMaterial {
+    /// As a scene has it.
+    pub fn material(&self) -> Material {
+        Material {
+            name: self.name.to_owned(),
+            rest_density: self.rest_density,
+            viscosity: self.viscosity,
+            surface_tension: self.surface_tension,
+        }
+    }
+}
+
 /// The liquids that a scene file can name. Sources:
 ///
 /// | liquid | density | dynamic viscosity | surface tension |

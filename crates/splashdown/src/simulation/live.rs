@@ -1,5 +1,6 @@
 //! Changing a simulation while it runs: a hand in the water, other numbers, other things.
 
+use glam::Vec3;
 use splashdown_gpu::block_on;
 
 use super::Simulation;
@@ -29,6 +30,24 @@ impl Simulation {
             self.record_batches();
         }
         Ok(())
+    }
+
+    /// Pulls a free body by the point `anchor` (m, in its own frame) towards `target` (m): its velocity becomes, once, the one
+    /// that brings the point there at `rate` times its distance per second. For between two frames.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub async fn pull_body_async(
+        &mut self,
+        body: usize,
+        anchor: Vec3,
+        target: Vec3,
+        rate: f32,
+    ) -> Result<(), SimulationError> {
+        match &self.bodies {
+            Some(bodies) => Ok(bodies.pull(&mut self.executor, body, anchor, target, rate).await?),
+            None => Ok(()),
+        }
     }
 
     /// At most this many steps go to a device at once, between 1 and 64: fewer leave it free for drawing sooner. On the CPU it

@@ -156,6 +156,11 @@ impl Simulation {
         self.executor.enable_timing()
     }
 
+    /// From now on passes are not timed.
+    pub fn disable_timing(&mut self) {
+        self.executor.disable_timing();
+    }
+
     /// Time per pass since the last call.
     pub fn take_timings(&mut self) -> Timings {
         self.executor.take_timings()

@@ -1,0 +1,147 @@
+//! The camera in the user's hands: it orbits a point, slides, comes nearer, or flies.
+
+use glam::{Vec2, Vec3};
+use splashdown::scene::Scene;
+use splashdown_render::Camera;
+
+/// Degrees per point of the screen.
+const ORBIT: f32 = 0.3;
+/// Lengths of the view per second of flight.
+const FLIGHT: f32 = 0.8;
+
+/// A camera on a sphere round a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// The point in the middle of the picture, in m.
+    pub target: Vec3,
+    /// Distance of the eye from it, in m.
+    pub distance: f32,
+    /// Degrees round the y axis; 0 stands on the +z side, 90 on the +x side.
+    pub azimuth: f32,
+    /// Degrees above the horizon.
+    pub elevation: f32,
+    /// Vertical angle of view in degrees.
+    pub field_of_view: f32,
+    /// Length of the scene's diagonal, in m: nearer than a thousandth of it nothing is seen.
+    extent: f32,
+}
+
+impl Orbit {
+    /// The scene's own camera.
+    pub fn of_scene(scene: &Scene) -> Self {
+        let camera = scene.camera;
+        Self {
+            target: camera.target,
+            distance: camera.distance,
+            azimuth: camera.azimuth,
+            elevation: camera.elevation,
+            field_of_view: camera.field_of_view,
+            extent: scene.domain.size().length(),
+        }
+    }
+
+    /// As the renderer wants it.
+    pub fn camera(&self) -> Camera {
+        Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, self.field_of_view)
+    }
+
+    /// Turns by a drag of this many points.
+    pub fn orbit(&mut self, drag: Vec2) {
+        self.azimuth = (self.azimuth - ORBIT * drag.x).rem_euclid(360.0);
+        self.elevation = (self.elevation + ORBIT * drag.y).clamp(-89.0, 89.0);
+    }
+
+    /// Slides with the mouse: what is under it in the target's distance stays under it. `height` is the picture's, in points.
+    pub fn pan(&mut self, drag: Vec2, height: f32) {
+        let [right, up, _] = self.axes();
+        let scale = 2.0 * self.distance * (0.5 * self.field_of_view).to_radians().tan() / height.max(1.0);
+        self.target += scale * (drag.y * up - drag.x * right);
+        self.keep_near();
+    }
+
+    /// Comes nearer by this factor above 1, or goes away.
+    pub fn zoom(&mut self, factor: f32) {
+        if factor > 0.0 && factor.is_finite() {
+            self.distance = (self.distance / factor).clamp(1e-3 * self.extent, 20.0 * self.extent);
+        }
+    }
+
+    /// Flies for `seconds`: right, up and ahead in [-1, 1].
+    pub fn fly(&mut self, direction: Vec3, seconds: f32) {
+        let [right, _, forward] = self.axes();
+        let way = direction.x * right + direction.y * Vec3::Y + direction.z * forward;
+        self.target += FLIGHT * self.distance.max(0.2 * self.extent) * seconds * way;
+        self.keep_near();
+    }
+
+    /// A point of the picture as a ray: the eye in m, and a unit vector. `point` and `size` are in points.
+    pub fn ray(&self, point: Vec2, size: Vec2) -> (Vec3, Vec3) {
+        let [right, up, forward] = self.axes();
+        let half = (0.5 * self.field_of_view).to_radians().tan();
+        let x = (2.0 * point.x / size.x - 1.0) * half * size.x / size.y.max(1.0);
+        let y = (1.0 - 2.0 * point.y / size.y) * half;
+        (Vec3::from(self.camera().eye), (forward + x * right + y * up).normalize_or(forward))
+    }
+
+    /// Right, up and ahead of the picture.
+    pub fn axes(&self) -> [Vec3; 3] {
+        let camera = self.camera();
+        let forward = (self.target - Vec3::from(camera.eye)).normalize_or(Vec3::NEG_Z);
+        let right = forward.cross(camera.up.into()).normalize_or(Vec3::X);
+        [right, right.cross(forward), forward]
+    }
+
+    /// Nobody gets lost.
+    fn keep_near(&mut self) {
+        let limit = Vec3::splat(10.0 * self.extent);
+        self.target = self.target.clamp(-limit, limit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn orbit() -> Orbit {
+        Orbit {
+            target: Vec3::new(0.3, 0.2, -0.1),
+            distance: 2.0,
+            azimuth: 30.0,
+            elevation: 20.0,
+            field_of_view: 40.0,
+            extent: 1.5,
+        }
+    }
+
+    #[test]
+    fn a_ray_goes_through_what_is_projected_onto_its_point() {
+        let (orbit, size) = (orbit(), Vec2::new(640.0, 360.0));
+        let seen = Vec3::new(0.5, 0.1, 0.2);
+        let [x, y] = orbit.camera().project(seen.into(), [640, 360]).unwrap().unwrap();
+        let (eye, direction) = orbit.ray(Vec2::new(x, y), size);
+        let off = (seen - eye).cross(direction).length();
+        assert!(off < 1e-4, "{off}");
+        // Control: another point's ray does not.
+        let (eye, direction) = orbit.ray(Vec2::new(x + 5.0, y), size);
+        assert!((seen - eye).cross(direction).length() > 1e-3);
+    }
+
+    #[test]
+    fn a_pan_keeps_the_target_under_the_mouse() {
+        let mut orbit = orbit();
+        let before = orbit.target;
+        orbit.pan(Vec2::new(50.0, -20.0), 360.0);
+        let [x, y] = orbit.camera().project(before.into(), [640, 360]).unwrap().unwrap();
+        assert!((x - 370.0).abs() < 0.1 && (y - 160.0).abs() < 0.1, "{x} {y}");
+    }
+
+    #[test]
+    fn nobody_gets_too_near_or_over_the_pole() {
+        let mut orbit = orbit();
+        orbit.zoom(1e9);
+        orbit.orbit(Vec2::new(0.0, 1e6));
+        assert!(orbit.distance > 1e-4 && orbit.elevation <= 89.0);
+        orbit.zoom(f32::NAN);
+        assert!(orbit.camera().project([0.0; 3], [64, 64]).is_ok());
+    }
+}

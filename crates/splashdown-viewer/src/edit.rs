@@ -1,0 +1,126 @@
+//! Things that a user throws into a scene.
+
+use std::path::PathBuf;
+
+use glam::{Quat, Vec3};
+use splashdown::scene::{Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Scene, UpAxis};
+
+/// Density of what is thrown in, over the fluid's.
+const BUOYANT: f32 = 0.5;
+/// Size of what is thrown in, over the smallest edge of the box.
+const SIZE: f32 = 0.2;
+/// The tap's name.
+const TAP: &str = "tap";
+
+/// Adds a floating ball that falls from under the top of the box.
+pub fn add_ball(scene: &mut Scene) {
+    // The model is 0.2 m across.
+    let scale = thrown_size(scene) / 0.2;
+    let shape = MeshShape::Model("sphere".to_owned());
+    let colours = [[0.8, 0.25, 0.15], [0.9, 0.6, 0.1], [0.2, 0.5, 0.25], [0.55, 0.3, 0.6]];
+    let colour = colours[scene.bodies.len() % colours.len()];
+    add_body(scene, "ball", shape, scale, Vec3::ZERO, Some(colour));
+}
+
+/// Adds a mesh from a file with this bounding box, in the file's units; it is scaled to fit and floats.
+pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
+    let size = (high - low).max_element();
+    let scale = if size > 0.0 && size.is_finite() { 1.5 * thrown_size(scene) / size } else { 1.0 };
+    let name = file.file_stem().map_or_else(|| "mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '-' })
+        .collect();
+    let middle = scale * 0.5 * (low + high);
+    add_body(scene, &name, MeshShape::File(file), scale, middle, None);
+}
+
+/// Opens a tap over the middle of the box, or closes it; true if it is open now.
+pub fn turn_tap(scene: &mut Scene) -> bool {
+    if let Some(place) = scene.emitters.iter().position(|emitter| emitter.name == TAP) {
+        scene.emitters.remove(place);
+        return false;
+    }
+    let (size, spacing) = (scene.domain.size(), scene.fluid.particle_spacing);
+    let radius = (0.08 * size.min_element()).max(2.5 * spacing);
+    let top = scene.domain.max.y - 3.0 * spacing;
+    let center = scene.domain.center();
+    scene.emitters.push(Emitter {
+        name: TAP.to_owned(),
+        outlet: Outlet::Disc { radius },
+        position: Vec3::new(center.x, top, center.z),
+        direction: Vec3::NEG_Y,
+        speed: (0.25 * size.y * 9.81).sqrt(),
+        start: 0.0,
+        end: None,
+        max_particles: None,
+    });
+    true
+}
+
+fn thrown_size(scene: &Scene) -> f32 {
+    (SIZE * scene.domain.size().min_element()).max(5.0 * scene.fluid.particle_spacing)
+}
+
+/// `middle` is the middle of the scaled mesh, from its origin.
+fn add_body(
+    scene: &mut Scene,
+    name: &str,
+    shape: MeshShape,
+    scale: f32,
+    middle: Vec3,
+    colour: Option<[f32; 3]>,
+) {
+    let thrown = scene.bodies.iter().filter(|body| body.name.starts_with(name)).count();
+    let mut number = thrown + 1;
+    while scene.bodies.iter().any(|body| body.name == format!("{name}-{number}")) {
+        number += 1;
+    }
+    let (low, size) = (scene.domain.min, scene.domain.size());
+    // Golden angles: two in a row do not fall onto one another.
+    let angle = 2.399_963 * number as f32;
+    let aside = Vec3::new(0.2 * size.x * angle.cos(), 0.0, 0.2 * size.z * angle.sin());
+    let place = low + Vec3::new(0.5, 0.8, 0.5) * size + aside;
+    scene.bodies.push(Body {
+        name: format!("{name}-{number}"),
+        mesh: MeshSource { shape, scale, up: UpAxis::Y, position: place - middle, rotation: Quat::IDENTITY },
+        motion: Motion::Dynamic {
+            density: BUOYANT * scene.fluid.material.rest_density,
+            velocity: Vec3::ZERO,
+            angular_velocity: Vec3::ZERO,
+            hinge: None,
+        },
+        friction: 0.2,
+        adhesion: 0.0,
+        boundary: BoundaryKind::Map,
+        half_thickness: None,
+        shell: None,
+        colour,
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use splashdown::scene::presets;
+    use splashdown::{Device, Simulation};
+
+    #[test]
+    fn what_is_thrown_in_is_accepted_and_stays_apart() {
+        let (name, text) = presets()[1];
+        let mut scene = Scene::parse(text, name).unwrap();
+        scene.fluid.particle_spacing *= 1.5;
+        for _ in 0..3 {
+            add_ball(&mut scene);
+        }
+        assert!(turn_tap(&mut scene));
+        let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+        let stats = simulation.advance(0.05).unwrap();
+        assert!(stats.emitted > 0, "{stats:?}");
+        let places: Vec<Vec3> =
+            simulation.body_states().unwrap().iter().map(|state| state.position).collect();
+        assert!(places[0].distance(places[1]) > thrown_size(&scene), "{places:?}");
+        assert!(!turn_tap(&mut scene));
+        assert!(scene.emitters.is_empty());
+    }
+}

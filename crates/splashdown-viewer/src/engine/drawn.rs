@@ -1,0 +1,165 @@
+//! Buffers that are drawn, apart from those that are simulated: the window may draw one moment while the next is computed.
+
+use std::sync::Arc;
+
+use splashdown::Simulation;
+use splashdown::surface::{Surface, SurfaceStats};
+use splashdown_gpu::{Buffer, Executor, Gpu, GpuElement};
+use splashdown_render::{Draw, ParticleBuffers, SurfaceBuffers};
+use wgpu::BufferUsages as Use;
+
+/// Copies of the particles and, where wanted, of the surface.
+pub struct Drawn {
+    positions: wgpu::Buffer,
+    velocities: wgpu::Buffer,
+    densities: wgpu::Buffer,
+    count: u32,
+    mesh: Option<DrawnMesh>,
+}
+
+/// A copy of the surface.
+pub struct DrawnMesh {
+    vertices: wgpu::Buffer,
+    normals: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    /// Its size.
+    pub stats: SurfaceStats,
+}
+
+impl Drawn {
+    /// The particles, to be drawn.
+    pub fn particles(&self) -> ParticleBuffers<'_> {
+        ParticleBuffers {
+            positions: &self.positions,
+            velocities: &self.velocities,
+            densities: &self.densities,
+            count: self.count,
+        }
+    }
+
+    /// The surface, to be drawn.
+    pub fn mesh(&self) -> Option<&DrawnMesh> {
+        self.mesh.as_ref()
+    }
+}
+
+impl DrawnMesh {
+    /// The buffers, to be drawn.
+    pub fn buffers(&self) -> SurfaceBuffers<'_> {
+        SurfaceBuffers {
+            vertices: &self.vertices,
+            normals: &self.normals,
+            indices: &self.indices,
+            draw: Draw::Direct { index_count: 3 * self.stats.triangles },
+        }
+    }
+}
+
+/// Takes copies. Those that the window has given back are used again.
+pub(super) struct Copies {
+    gpu: Arc<Gpu>,
+    pool: Vec<Arc<Drawn>>,
+}
+
+impl Copies {
+    pub fn new(gpu: Arc<Gpu>) -> Self {
+        Self { gpu, pool: Vec::new() }
+    }
+
+    /// Copies the particles as they are after all work submitted so far, and the surface extracted last.
+    pub fn take(
+        &mut self,
+        simulation: &mut Simulation,
+        surface: Option<(&Surface, SurfaceStats)>,
+    ) -> Arc<Drawn> {
+        let fields = *simulation.fields();
+        let count = simulation.params().particle_count;
+        let mut old = self.reuse();
+        let mut mesh = old.as_mut().and_then(|drawn| drawn.mesh.take());
+        let mut copy = Copy {
+            gpu: &self.gpu,
+            encoder: self
+                .gpu
+                .device
+                .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("snapshot") }),
+            executor: simulation.executor(),
+        };
+        let (p, v, d) = match old {
+            Some(Drawn { positions, velocities, densities, .. }) => {
+                (Some(positions), Some(velocities), Some(densities))
+            }
+            None => (None, None, None),
+        };
+        let n = count as usize;
+        let drawn = Drawn {
+            positions: copy.take(fields.positions, n, p, Use::STORAGE),
+            velocities: copy.take(fields.velocities, n, v, Use::STORAGE),
+            densities: copy.take(fields.densities, n, d, Use::STORAGE),
+            count,
+            mesh: surface.map(|(surface, stats)| {
+                let (vertices, triangles) = (stats.vertices as usize, 3 * stats.triangles as usize);
+                let (v, n, i) = match mesh.take() {
+                    Some(old) => (Some(old.vertices), Some(old.normals), Some(old.indices)),
+                    None => (None, None, None),
+                };
+                DrawnMesh {
+                    vertices: copy.take(surface.vertices(), vertices, v, Use::VERTEX),
+                    normals: copy.take(surface.normals(), vertices, n, Use::VERTEX),
+                    indices: copy.take(surface.indices(), triangles, i, Use::INDEX),
+                    stats,
+                }
+            }),
+        };
+        let commands = copy.encoder.finish();
+        self.gpu.queue.submit([commands]);
+        let drawn = Arc::new(drawn);
+        self.pool.push(Arc::clone(&drawn));
+        drawn
+    }
+
+    /// A copy that nobody looks at any more.
+    fn reuse(&mut self) -> Option<Drawn> {
+        let free = self.pool.iter().position(|drawn| Arc::strong_count(drawn) == 1)?;
+        Arc::into_inner(self.pool.swap_remove(free))
+    }
+}
+
+struct Copy<'a> {
+    gpu: &'a Gpu,
+    encoder: wgpu::CommandEncoder,
+    executor: &'a mut Executor,
+}
+
+impl Copy<'_> {
+    /// The first `len` elements of a buffer, in the old copy if it is large enough.
+    fn take<T: GpuElement>(
+        &mut self,
+        from: Buffer<T>,
+        len: usize,
+        old: Option<wgpu::Buffer>,
+        usage: Use,
+    ) -> wgpu::Buffer {
+        let bytes = (len * size_of::<T>()) as u64;
+        let to = old.filter(|old| old.size() >= bytes).unwrap_or_else(|| {
+            self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("snapshot"),
+                // Room to grow, and never empty.
+                size: (bytes + bytes / 4).next_multiple_of(16).max(16),
+                usage: usage | Use::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        if bytes > 0 {
+            match self.executor.wgpu_buffer(from.id()) {
+                Some(from) => self.encoder.copy_buffer_to_buffer(from, 0, &to, 0, bytes),
+                None => {
+                    let queue = &self.gpu.queue;
+                    self.executor.with_host(from, |all: &[T]| {
+                        queue.write_buffer(&to, 0, bytemuck::cast_slice(&all[..len]));
+                    });
+                }
+            }
+        }
+        to
+    }
+}

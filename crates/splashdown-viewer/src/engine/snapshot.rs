@@ -1,0 +1,65 @@
+//! What the engine shows.
+
+use std::sync::Arc;
+
+use splashdown::scene::Scene;
+use splashdown::{BodyMesh, BodyState, Stats};
+use splashdown_gpu::Timings;
+use splashdown_io::{Mesh, Particles};
+
+use super::Drawn;
+
+/// A scene that is being simulated.
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// The meshes of its bodies.
+    pub bodies: Vec<BodyMesh>,
+    /// What simulates it.
+    pub device: String,
+    /// Bytes in its buffers.
+    pub memory: u64,
+    /// Counts the scenes: pictures of an older one are not of this one.
+    pub number: u32,
+}
+
+/// The fluid at one moment.
+pub struct Snapshot {
+    /// The [`Opened`] it belongs to.
+    pub number: u32,
+    /// The simulation's account.
+    pub stats: Stats,
+    /// What is drawn.
+    pub drawn: Arc<Drawn>,
+    /// Where the bodies are.
+    pub bodies: Vec<BodyState>,
+    /// Steps per second of wall time, lately.
+    pub steps_per_second: f64,
+    /// Simulated seconds per second of wall time, lately.
+    pub speed: f64,
+    /// Time per pass over the last half second, where it is wanted.
+    pub timings: Arc<Timings>,
+    /// Steps that `timings` are of.
+    pub timed_steps: u64,
+    /// True if the clock runs.
+    pub playing: bool,
+}
+
+/// Something to tell the user.
+pub enum Message {
+    /// Something worth knowing.
+    Note(String),
+    /// What the scene cannot do; the simulation stands still.
+    Failed(String),
+    /// The engine has ended by a fault of its own.
+    Stopped,
+    /// What [`Command::Export`](super::Command::Export) asked for.
+    Exported {
+        /// The particles in order of id.
+        particles: Arc<Particles>,
+        /// The surface.
+        mesh: Arc<Mesh>,
+    },
+    /// A body's distances are being computed: its name and how far, in [0, 1].
+    Preparing(String, f32),
+}

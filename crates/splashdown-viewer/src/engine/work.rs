@@ -1,0 +1,336 @@
+//! The engine's own side: obeys commands, simulates, takes snapshots.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use splashdown::scene::Scene;
+use splashdown::surface::{Surface, SurfaceStats};
+use splashdown::{Device, Hand, Simulation, SimulationError};
+use splashdown_gpu::{Executor, Gpu, GpuExecutor, Timings};
+use web_time::Instant;
+
+use super::drawn::Copies;
+use super::inbox::Inbox;
+use super::pace::Pace;
+use super::{Command, Grip, Message, Opened, Outbox, Simulate, Snapshot, lock};
+
+/// How long a step takes is looked at this often.
+const MEASURE: Duration = Duration::from_millis(500);
+/// Wall time that steps submitted at once may take: the window draws in between.
+const BATCH: f64 = 0.008;
+/// How long the engine sleeps when nothing is due.
+const NAP: Duration = Duration::from_millis(2);
+/// How quickly a held body comes along, in 1/s.
+const GRIP_RATE: f32 = 12.0;
+
+pub(super) struct Worker {
+    gpu: Arc<Gpu>,
+    simulate: Simulate,
+    inbox: Arc<Inbox>,
+    outbox: Arc<Mutex<Outbox>>,
+    repaint: Box<dyn Fn()>,
+    copies: Copies,
+    simulation: Option<Simulation>,
+    surface: Option<Surface>,
+    scene: Option<Scene>,
+    number: u32,
+    playing: bool,
+    wants_surface: bool,
+    wants_timing: bool,
+    hand: Option<Hand>,
+    grip: Option<Grip>,
+    pace: Pace,
+    meter: Meter,
+}
+
+/// What was done lately.
+struct Meter {
+    since: Instant,
+    steps: u64,
+    simulated: f64,
+    steps_per_second: f64,
+    speed: f64,
+    timings: Arc<Timings>,
+    timed_steps: u64,
+}
+
+impl Meter {
+    fn new() -> Self {
+        Self {
+            since: Instant::now(),
+            steps: 0,
+            simulated: 0.0,
+            steps_per_second: 0.0,
+            speed: 0.0,
+            timings: Arc::default(),
+            timed_steps: 0,
+        }
+    }
+
+    fn count(&mut self, steps: u32, simulated: f64, simulation: &mut Simulation) {
+        self.steps += u64::from(steps);
+        self.simulated += simulated;
+        let passed = self.since.elapsed();
+        if passed >= MEASURE {
+            self.steps_per_second = self.steps as f64 / passed.as_secs_f64();
+            self.speed = self.simulated / passed.as_secs_f64();
+            self.timings = Arc::new(simulation.take_timings());
+            self.timed_steps = self.steps;
+            (self.since, self.steps, self.simulated) = (Instant::now(), 0, 0.0);
+        }
+    }
+
+    fn stand_still(&mut self) {
+        *self = Self { timings: Arc::clone(&self.timings), timed_steps: self.timed_steps, ..Self::new() };
+    }
+}
+
+impl Worker {
+    pub fn new(
+        gpu: Arc<Gpu>,
+        simulate: Simulate,
+        inbox: Arc<Inbox>,
+        outbox: Arc<Mutex<Outbox>>,
+        repaint: Box<dyn Fn()>,
+    ) -> Self {
+        Self {
+            copies: Copies::new(Arc::clone(&gpu)),
+            gpu,
+            simulate,
+            inbox,
+            outbox,
+            repaint,
+            simulation: None,
+            surface: None,
+            scene: None,
+            number: 0,
+            playing: false,
+            wants_surface: false,
+            wants_timing: false,
+            hand: None,
+            grip: None,
+            pace: Pace::new(),
+            meter: Meter::new(),
+        }
+    }
+
+    /// Works until it is told to quit.
+    pub async fn work(&mut self) {
+        loop {
+            for command in self.inbox.take() {
+                if matches!(command, Command::Quit) {
+                    return;
+                }
+                if let Err(error) = self.obey(command).await {
+                    self.fail(&error);
+                }
+            }
+            let due = match &self.simulation {
+                Some(simulation) if self.playing => self.pace.tick(Instant::now(), simulation.dt().into()),
+                _ => None,
+            };
+            match due {
+                Some(seconds) => {
+                    if let Err(error) = self.advance(seconds as f32).await {
+                        self.fail(&error);
+                    }
+                }
+                None => self.inbox.sleep(NAP).await,
+            }
+        }
+    }
+
+    async fn obey(&mut self, command: Command) -> Result<(), SimulationError> {
+        match command {
+            Command::Open(scene) => return self.open(*scene).await,
+            Command::Reset => {
+                if let Some(scene) = self.scene.clone() {
+                    return self.open(scene).await;
+                }
+            }
+            Command::Change(scene) => return self.change(*scene).await,
+            Command::Play(playing) => {
+                self.playing = playing && self.simulation.is_some();
+                self.pace.pause();
+                self.meter.stand_still();
+                return self.show().await;
+            }
+            Command::Advance(seconds) => {
+                self.playing = false;
+                return self.advance(seconds).await;
+            }
+            Command::TimeScale(scale) => self.pace.set_scale(scale),
+            Command::Hand(hand) => {
+                self.hand = hand;
+                if let Some(simulation) = &mut self.simulation {
+                    simulation.set_hand(hand)?;
+                }
+            }
+            Command::Grip(grip) => self.grip = grip,
+            Command::Surface(wanted) => {
+                let changed = std::mem::replace(&mut self.wants_surface, wanted) != wanted;
+                if changed && wanted {
+                    return self.show().await;
+                }
+            }
+            Command::Timing(wanted) => {
+                self.wants_timing = wanted;
+                if let Some(simulation) = &mut self.simulation {
+                    if wanted {
+                        simulation.enable_timing();
+                    } else {
+                        simulation.disable_timing();
+                    }
+                }
+            }
+            Command::Export => return self.export().await,
+            Command::Quit => {}
+        }
+        Ok(())
+    }
+
+    fn executor(&self) -> Result<Executor, SimulationError> {
+        match self.simulate {
+            Simulate::WhereDrawn => Ok(GpuExecutor::new(Arc::clone(&self.gpu)).into()),
+            Simulate::OnCpu => Ok(Device::Cpu.executor()?),
+        }
+    }
+
+    async fn open(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        // Its memory may be needed.
+        let executor = match self.simulation.take() {
+            Some(mut old) => old.executor().successor(),
+            None => self.executor()?,
+        };
+        self.surface = None;
+        self.scene = Some(scene.clone());
+        let outbox = Arc::clone(&self.outbox);
+        let told = move |body: &str, part: f32| {
+            lock(&outbox).messages.push(Message::Preparing(body.to_owned(), part));
+        };
+        let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
+        self.begin(simulation).await
+    }
+
+    async fn change(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        let Some(simulation) = &mut self.simulation else { return self.open(scene).await };
+        let surface_differs = simulation.scene().surface != scene.surface;
+        self.scene = Some(scene.clone());
+        if simulation.adopt(&scene)? {
+            if surface_differs {
+                self.surface = None;
+            }
+            self.publish_scene();
+            return self.show().await;
+        }
+        let next = simulation.carry_over_async(&scene).await?;
+        self.begin(next).await
+    }
+
+    /// Takes over a simulation that was just made.
+    async fn begin(&mut self, mut simulation: Simulation) -> Result<(), SimulationError> {
+        if self.wants_timing {
+            simulation.enable_timing();
+        }
+        simulation.set_hand(self.hand)?;
+        self.simulation = Some(simulation);
+        self.surface = None;
+        self.grip = None;
+        self.pace.forget();
+        self.meter = Meter::new();
+        self.publish_scene();
+        self.show().await
+    }
+
+    fn publish_scene(&mut self) {
+        let Some(simulation) = &self.simulation else { return };
+        self.number += 1;
+        let opened = Opened {
+            scene: simulation.scene().clone(),
+            bodies: simulation.body_meshes().to_vec(),
+            device: simulation.device_name(),
+            memory: simulation.memory(),
+            number: self.number,
+        };
+        lock(&self.outbox).opened = Some(Arc::new(opened));
+    }
+
+    async fn advance(&mut self, seconds: f32) -> Result<(), SimulationError> {
+        let begun = Instant::now();
+        let Some(simulation) = &mut self.simulation else { return Ok(()) };
+        if let Some(grip) = self.grip {
+            simulation.pull_body_async(grip.body, grip.anchor, grip.target, GRIP_RATE).await?;
+        }
+        let before = simulation.stats();
+        let stats = simulation.advance_async(seconds).await?;
+        let steps = (stats.steps - before.steps) as u32;
+        let told = simulation.take_warnings();
+        lock(&self.outbox).messages.extend(told.into_iter().map(Message::Note));
+        let stepped = begun.elapsed();
+        if steps > 0 {
+            let per_step = stepped.as_secs_f64() / f64::from(steps);
+            simulation.set_steps_at_once((BATCH / per_step.max(1e-7)) as u32);
+        }
+        self.meter.count(steps, f64::from(seconds), simulation);
+        // A window that has not drawn the last snapshot does not want another.
+        let wanted = lock(&self.outbox).is_seen || !self.playing;
+        let shown = if wanted { self.show().await } else { Ok(()) };
+        self.pace.learn(f64::from(seconds), stepped, begun.elapsed() - stepped);
+        shown
+    }
+
+    /// Takes a snapshot.
+    async fn show(&mut self) -> Result<(), SimulationError> {
+        let Some(simulation) = &mut self.simulation else { return Ok(()) };
+        let mut extracted: Option<SurfaceStats> = None;
+        if self.wants_surface {
+            if self.surface.is_none() {
+                let settings = simulation.scene().surface.clone();
+                self.surface = Some(simulation.surface(&settings)?);
+            }
+            if let Some(surface) = &mut self.surface {
+                extracted = Some(simulation.extract_async(surface).await?);
+            }
+        }
+        let bodies = simulation.body_states_async().await?;
+        let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted));
+        let snapshot = Snapshot {
+            number: self.number,
+            stats: simulation.stats(),
+            drawn,
+            bodies,
+            steps_per_second: self.meter.steps_per_second,
+            speed: self.meter.speed,
+            timings: Arc::clone(&self.meter.timings),
+            timed_steps: self.meter.timed_steps,
+            playing: self.playing,
+        };
+        let mut outbox = lock(&self.outbox);
+        (outbox.snapshot, outbox.is_seen) = (Some(Arc::new(snapshot)), false);
+        drop(outbox);
+        (self.repaint)();
+        Ok(())
+    }
+
+    async fn export(&mut self) -> Result<(), SimulationError> {
+        let Some(simulation) = &mut self.simulation else { return Ok(()) };
+        if self.surface.is_none() {
+            let settings = simulation.scene().surface.clone();
+            self.surface = Some(simulation.surface(&settings)?);
+        }
+        let Some(surface) = &mut self.surface else { return Ok(()) };
+        simulation.extract_async(surface).await?;
+        let mesh = Arc::new(simulation.mesh_async(surface).await?);
+        let particles = Arc::new(simulation.particles_async().await?);
+        lock(&self.outbox).messages.push(Message::Exported { particles, mesh });
+        (self.repaint)();
+        Ok(())
+    }
+
+    /// The simulation stands still, and the user hears why.
+    fn fail(&mut self, error: &SimulationError) {
+        self.playing = false;
+        lock(&self.outbox).messages.push(Message::Failed(error.to_string()));
+        (self.repaint)();
+    }
+}

@@ -1,0 +1,98 @@
+//! Keys: what they do, and doing it.
+
+use egui::{Context, Grid, Key, RichText, Window};
+use glam::Vec3;
+
+use crate::look::Way;
+use crate::state::{Action, State};
+
+/// What is written in the help, line by line.
+const LINES: [(&str, &str); 18] = [
+    ("drag", "look round (with the tool Look)"),
+    ("right or middle drag", "slide"),
+    ("wheel, pinch", "come nearer, go away"),
+    ("W A S D, Q E", "fly"),
+    ("F", "the scene's own view"),
+    ("Shift + drag", "drag water and floating bodies"),
+    ("Space", "play, pause"),
+    (".", "one frame"),
+    ("R", "back to the beginning"),
+    ("1, 2, ...", "ways to see the fluid"),
+    ("B", "drop a ball"),
+    ("P", "turn the tap on or off"),
+    ("drop a file", "a scene opens; a mesh falls in"),
+    ("G", "scenes"),
+    ("Tab", "hide the controls, show them"),
+    ("T", "write a picture"),
+    ("Ctrl + S", "write the scene as it is now"),
+    ("H", "this help"),
+];
+
+/// Does what keys say, unless somebody types into a field.
+pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
+    if ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    let pressed = |key| ctx.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
+    if pressed(Key::Space) {
+        actions.push(Action::Play(!state.playing));
+    }
+    for (key, action) in [
+        (Key::Period, Action::Step),
+        (Key::R, Action::Reset),
+        (Key::B, Action::DropBall),
+        (Key::P, Action::Pour),
+        (Key::T, Action::Screenshot),
+    ] {
+        if pressed(key) {
+            actions.push(action);
+        }
+    }
+    if ctx.input(|input| input.key_pressed(Key::S) && input.modifiers.command) {
+        actions.push(Action::SaveScene);
+    }
+    if pressed(Key::H) || pressed(Key::F1) {
+        state.shown.help = !state.shown.help;
+    }
+    if pressed(Key::G) {
+        state.shown.gallery = !state.shown.gallery;
+    }
+    if pressed(Key::Tab) {
+        state.shown.bare = !state.shown.bare;
+    }
+    if pressed(Key::Escape) {
+        (state.shown.help, state.shown.gallery) = (false, false);
+    }
+    if pressed(Key::F) {
+        state.orbit = crate::camera::Orbit::of_scene(&state.scene);
+    }
+    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
+    for (key, way) in numbers.into_iter().zip(Way::ALL) {
+        if pressed(key) {
+            state.look.way = way;
+        }
+    }
+    let along = |plus, minus| f32::from(u8::from(down(plus))) - f32::from(u8::from(down(minus)));
+    let direction = Vec3::new(along(Key::D, Key::A), along(Key::E, Key::Q), along(Key::W, Key::S));
+    if direction != Vec3::ZERO {
+        let seconds = ctx.input(|input| input.stable_dt).min(0.1);
+        state.orbit.fly(direction, seconds);
+        ctx.request_repaint();
+    }
+}
+
+pub(super) fn show(ctx: &Context, state: &mut State) {
+    Window::new("Keys and mouse").open(&mut state.shown.help).resizable(false).collapsible(false).show(
+        ctx,
+        |ui| {
+            Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                for (keys, what) in LINES {
+                    ui.label(RichText::new(keys).strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
+        },
+    );
+}

@@ -1,0 +1,41 @@
+//! The panels: each shows a part of the state, changes what is its own, and says what it wants done.
+
+mod controls;
+mod figures;
+mod gallery;
+mod gravity;
+mod help;
+mod notes;
+mod toolbar;
+mod viewport;
+
+use egui::{Panel, Ui};
+
+use crate::state::{Action, State};
+
+pub use viewport::Viewport;
+
+/// All of the window. `picture` is the texture to show in the middle; the size that the next one should have comes back with what
+/// is to be done.
+pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
+    let mut actions = Vec::new();
+    help::keys(ui.ctx(), state, &mut actions);
+    Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, state, &mut actions));
+    Panel::bottom("figures").show(ui, |ui| figures::show(ui, state));
+    if !state.shown.bare {
+        Panel::right("controls")
+            .resizable(true)
+            .default_size(270.0)
+            .size_range(220.0..=420.0)
+            .show(ui, |ui| controls::show(ui, state, &mut actions));
+    }
+    let viewport = egui::CentralPanel::default()
+        .frame(egui::Frame::NONE)
+        .show(ui, |ui| viewport::show(ui, state, picture, &mut actions))
+        .inner;
+    notes::show(ui.ctx(), state, viewport.rect);
+    gallery::show(ui.ctx(), state, &mut actions);
+    help::show(ui.ctx(), state);
+    figures::show_timings(ui.ctx(), state);
+    (viewport, actions)
+}

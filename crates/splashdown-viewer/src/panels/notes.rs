@@ -1,0 +1,44 @@
+//! What the user is told: notes that go by themselves, and bad news that stay until they are clicked away.
+
+use egui::{Align2, Area, Color32, Context, Frame, Id, ProgressBar, Rect, RichText};
+
+use crate::state::State;
+
+pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
+    let now = ctx.input(|input| input.time);
+    state.notes.retain(|note| note.until > now);
+    if state.notes.is_empty() && state.preparing.is_none() {
+        return;
+    }
+    let mut gone = None;
+    Area::new(Id::unique("notes"))
+        .pivot(Align2::LEFT_TOP)
+        .fixed_pos(over.left_top() + egui::vec2(10.0, 10.0))
+        .show(ctx, |ui| {
+            ui.set_max_width((over.width() - 20.0).clamp(120.0, 520.0));
+            if let Some((what, part)) = &state.preparing {
+                ui.add(ProgressBar::new(*part).text(format!("distances of {what:?}")).desired_width(240.0));
+            }
+            for (number, note) in state.notes.iter().enumerate() {
+                Frame::popup(ui.style()).show(ui, |ui| {
+                    let text = RichText::new(&note.text);
+                    let text = if note.is_error {
+                        text.color(Color32::from_rgb(220, 80, 60)).strong()
+                    } else {
+                        text
+                    };
+                    ui.horizontal_wrapped(|ui| {
+                        ui.label(text);
+                        if note.is_error && ui.small_button("close").clicked() {
+                            gone = Some(number);
+                        }
+                    });
+                });
+            }
+        });
+    if let Some(number) = gone {
+        state.notes.remove(number);
+    }
+    // A note goes without anybody moving the mouse.
+    ctx.request_repaint_after(std::time::Duration::from_millis(500));
+}

@@ -1,0 +1,53 @@
+//! The line at the top: scene, clock, tools, ways to see.
+
+use egui::{Button, RichText, Slider, Ui};
+
+use crate::look::Way;
+use crate::state::{Action, State, Tool};
+
+pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        let title = state.scene.name.clone();
+        if ui.button(RichText::new(title).strong()).on_hover_text("Choose a scene (G)").clicked() {
+            state.shown.gallery = !state.shown.gallery;
+        }
+        ui.separator();
+        let (sign, hint) = if state.playing { ("Pause", "Pause (Space)") } else { ("Play", "Play (Space)") };
+        if ui.add(Button::new(sign).min_size([52.0, 0.0].into())).on_hover_text(hint).clicked() {
+            actions.push(Action::Play(!state.playing));
+        }
+        if ui.button("Step").on_hover_text("One frame of the scene (.)").clicked() {
+            actions.push(Action::Step);
+        }
+        if ui.button("Reset").on_hover_text("Back to the beginning (R)").clicked() {
+            actions.push(Action::Reset);
+        }
+        let speed = Slider::new(&mut state.time_scale, 0.05..=4.0)
+            .logarithmic(true)
+            .max_decimals(2)
+            .suffix(" x")
+            .text("speed");
+        let speed = ui.add(speed).on_hover_text(
+            "Simulated seconds per second. A machine that is too slow for it simulates slower; the window does not",
+        );
+        if speed.changed() {
+            actions.push(Action::TimeScale);
+        }
+        ui.separator();
+        for tool in Tool::ALL {
+            ui.selectable_value(&mut state.tool, tool, tool.name()).on_hover_text(tool.hint());
+        }
+        ui.separator();
+        for (number, way) in Way::ALL.into_iter().enumerate() {
+            let hint = format!("{} ({})", way.hint(), number + 1);
+            ui.selectable_value(&mut state.look.way, way, way.name()).on_hover_text(hint);
+        }
+        ui.separator();
+        if ui.button("Theme").on_hover_text("Light or dark").clicked() {
+            actions.push(Action::SwapTheme);
+        }
+        if ui.button("Help").on_hover_text("What keys and mouse do (H)").clicked() {
+            state.shown.help = !state.shown.help;
+        }
+    });
+}

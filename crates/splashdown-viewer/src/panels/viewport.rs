@@ -1,0 +1,144 @@
+//! The picture in the middle, and what the mouse does to it.
+
+use egui::{PointerButton, Rect, Response, Sense, TextureId, Ui};
+use glam::{Quat, Vec2, Vec3};
+
+use crate::state::{Action, State, Tool};
+
+/// Degrees of tilt per point.
+const TILT: f32 = 0.25;
+/// How stiffly a shaken box follows the mouse, in 1/s.
+const SHAKE_RATE: f32 = 12.0;
+
+/// Where the picture is.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewport {
+    /// In points.
+    pub rect: Rect,
+    /// In pixels.
+    pub size: [u32; 2],
+    /// Where a button went down on the picture in this frame with the hand, in points of the picture.
+    pub touched: Option<Vec2>,
+}
+
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    picture: Option<TextureId>,
+    actions: &mut Vec<Action>,
+) -> Viewport {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    if let Some(picture) = picture {
+        let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+        ui.painter().image(picture, rect, whole, egui::Color32::WHITE);
+    }
+    zoom(ui, &response, state);
+    let drag = response.drag_delta();
+    let drag = Vec2::new(drag.x, drag.y);
+    let by = |button| response.dragged_by(button);
+    if by(PointerButton::Secondary) || by(PointerButton::Middle) {
+        state.orbit.pan(drag, rect.height());
+    }
+    let tool = if ui.input(|input| input.modifiers.shift) { Tool::Hand } else { state.tool };
+    let mut touched = None;
+    match tool {
+        Tool::Orbit if by(PointerButton::Primary) => state.orbit.orbit(drag),
+        Tool::Hand => touched = hand(ui, &response, state, actions),
+        Tool::Tilt => tilt(&response, drag, state, actions),
+        Tool::Shake => shake(ui, &response, drag, state, actions),
+        Tool::Orbit => {}
+    }
+    if tool != Tool::Hand && state.hand.take().is_some() {
+        state.grip = None;
+        actions.push(Action::LetGo);
+    }
+    if tool != Tool::Shake && state.shaken != Vec3::ZERO {
+        rest(state, actions);
+    }
+    let scale = ui.ctx().pixels_per_point();
+    let size = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
+    Viewport { rect, size, touched }
+}
+
+fn zoom(ui: &Ui, response: &Response, state: &mut State) {
+    if !response.hovered() {
+        return;
+    }
+    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+    state.orbit.zoom((0.002 * scroll).exp() * pinch);
+    if let Some(touch) = ui.input(egui::InputState::multi_touch) {
+        let slide = touch.translation_delta;
+        state.orbit.pan(Vec2::new(slide.x, slide.y), response.rect.height());
+    }
+}
+
+/// The hand follows the mouse in the plane through the camera's target, or the held body's distance.
+fn hand(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
+    let size = Vec2::new(response.rect.width(), response.rect.height());
+    let place = response.interact_pointer_pos().map(|at| at - response.rect.min);
+    let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) else {
+        if state.hand.take().is_some() {
+            state.grip = None;
+            actions.push(Action::LetGo);
+        }
+        return None;
+    };
+    let at = Vec2::new(at.x, at.y);
+    let ray = state.orbit.ray(at, size);
+    let Some(before) = state.hand.replace(at) else { return Some(at) };
+    if let Some((mut grip, distance)) = state.grip {
+        grip.target = ray.0 + distance * ray.1;
+        state.grip = Some((grip, distance));
+        actions.push(Action::Grip(grip));
+        return None;
+    }
+    let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.1);
+    let old = state.orbit.ray(before, size);
+    let depth = state.orbit.distance;
+    let velocity = (ray.0 + depth * ray.1 - old.0 - depth * old.1) / seconds;
+    actions.push(Action::Stir { ray, velocity });
+    None
+}
+
+/// Turns gravity, which is what fluid in a tilted box feels.
+fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Action>) {
+    if response.double_clicked() {
+        state.scene.gravity = state.upright;
+        actions.push(Action::Change);
+    } else if response.dragged_by(PointerButton::Primary) && drag != Vec2::ZERO {
+        let [_, _, forward] = state.orbit.axes();
+        let ahead = Vec3::new(forward.x, 0.0, forward.z).normalize_or(Vec3::NEG_Z);
+        let aside = ahead.cross(Vec3::Y);
+        // The box leans the way it is dragged: gravity, seen from the box, the other way.
+        let turn = Quat::from_axis_angle(ahead, -(TILT * drag.x).to_radians())
+            * Quat::from_axis_angle(aside, -(TILT * drag.y).to_radians());
+        state.scene.gravity = turn * state.scene.gravity;
+        actions.push(Action::Change);
+    }
+}
+
+/// The box follows the mouse; its fluid feels the acceleration.
+fn shake(ui: &Ui, response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Action>) {
+    if !response.dragged_by(PointerButton::Primary) {
+        rest(state, actions);
+        return;
+    }
+    let [right, up, _] = state.orbit.axes();
+    let scale = 2.0 * state.orbit.distance * (0.5 * state.orbit.field_of_view).to_radians().tan()
+        / response.rect.height().max(1.0);
+    state.shaken += scale * (drag.x * right - drag.y * up);
+    let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.1);
+    // What is left to go fades; the box accelerates towards where the mouse has been.
+    let acceleration = SHAKE_RATE * SHAKE_RATE * state.shaken;
+    state.shaken *= (-SHAKE_RATE * seconds).exp();
+    state.scene.gravity = state.upright - acceleration.clamp_length_max(40.0);
+    actions.push(Action::Change);
+}
+
+fn rest(state: &mut State, actions: &mut Vec<Action>) {
+    if state.shaken != Vec3::ZERO {
+        state.shaken = Vec3::ZERO;
+        state.scene.gravity = state.upright;
+        actions.push(Action::Change);
+    }
+}

@@ -1,0 +1,177 @@
+//! The picture of a snapshot, in a texture that the window shows.
+
+use std::sync::Arc;
+
+use splashdown::BodyState;
+use splashdown_gpu::Gpu;
+use splashdown_render::{
+    Camera, Colouring, DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame, PlacedBody, RenderError,
+    Renderer, UploadedBodies,
+};
+
+use crate::engine::{Opened, Snapshot};
+use crate::look::{Look, Way};
+use crate::stage;
+
+/// Colours as egui wants its textures.
+pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Draws snapshots.
+pub struct Picture {
+    gpu: Arc<Gpu>,
+    renderer: Renderer,
+    target: Option<Target>,
+    stage: Option<Stage>,
+    placed: Option<Placed>,
+}
+
+struct Target {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    size: [u32; 2],
+}
+
+/// What belongs to a scene.
+struct Stage {
+    number: u32,
+    bodies: Vec<PlacedBody>,
+}
+
+/// The bodies as they were drawn last: most pictures show them where they were.
+struct Placed {
+    number: u32,
+    states: Vec<BodyState>,
+    uploaded: UploadedBodies,
+}
+
+impl Picture {
+    /// Makes what draws on this device. Software drivers draw without smoothing of edges, which costs them most.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn new(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
+        let samples = if gpu.is_software() { 1 } else { 4 };
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, FORMAT, samples)?;
+        Ok(Self { gpu, renderer, target: None, stage: None, placed: None })
+    }
+
+    /// Draws into the texture of this size, in pixels, and hands it out.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw(
+        &mut self,
+        size: [u32; 2],
+        opened: &Opened,
+        snapshot: &Snapshot,
+        look: &Look,
+        camera: Camera,
+    ) -> Result<(), RenderError> {
+        self.place(opened, snapshot)?;
+        if self.target.as_ref().is_none_or(|target| target.size != size) {
+            self.target = Some(self.texture(size));
+        }
+        let Some(target) = &self.target else { return Ok(()) };
+        let scene = &opened.scene;
+        let colouring = Colouring { map: look.map, ..stage::colouring(scene, look.colour_by) };
+        let drawn = &snapshot.drawn;
+        let balls = || DrawnParticles {
+            buffers: drawn.particles(),
+            radius: scene.fluid.particle_radius(),
+            colouring,
+        };
+        let mut frame = Frame {
+            bodies: self.placed.as_ref().map(|placed| placed.uploaded.buffers()),
+            ..Frame::new(camera, stage::domain(scene))
+        };
+        match (look.way, drawn.mesh()) {
+            (Way::Particles, _) => frame.particles = Some(balls()),
+            (Way::Surface, Some(mesh)) => {
+                frame.surface = Some(DrawnSurface { buffers: mesh.buffers(), liquid: stage::liquid(scene) });
+            }
+            // Until the first surface comes, what the particles say of it.
+            (Way::Fluid | Way::Surface, _) => {
+                frame.liquid_particles = Some(DrawnLiquidParticles {
+                    buffers: drawn.particles(),
+                    radius: scene.fluid.particle_radius(),
+                    liquid: stage::liquid(scene),
+                });
+            }
+        }
+        let mut encoder = self
+            .gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+        self.renderer.draw(&mut encoder, &target.view, size, &frame)?;
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// The texture drawn last.
+    pub fn view(&self) -> Option<&wgpu::TextureView> {
+        self.target.as_ref().map(|target| &target.view)
+    }
+
+    /// The texture drawn last, to be read, and its size in pixels.
+    pub fn texture_drawn(&self) -> Option<(&wgpu::Texture, [u32; 2])> {
+        self.target.as_ref().map(|target| (&target.texture, target.size))
+    }
+
+    fn place(&mut self, opened: &Opened, snapshot: &Snapshot) -> Result<(), RenderError> {
+        if self.stage.as_ref().is_none_or(|stage| stage.number != opened.number) {
+            let bodies = opened.bodies.iter().map(|body| {
+                let colour = body.colour.unwrap_or(PlacedBody::COLOUR);
+                PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
+            });
+            self.stage = Some(Stage { number: opened.number, bodies: bodies.collect::<Result<_, _>>()? });
+            self.placed = None;
+        }
+        let Some(stage) = self.stage.as_ref().filter(|stage| stage.bodies.len() == snapshot.bodies.len())
+        else {
+            self.placed = None;
+            return Ok(());
+        };
+        let still = |placed: &Placed| {
+            placed.number == stage.number
+                && placed
+                    .states
+                    .iter()
+                    .zip(&snapshot.bodies)
+                    .all(|(a, b)| a.position == b.position && a.orientation == b.orientation)
+        };
+        if stage.bodies.is_empty() || self.placed.as_ref().is_some_and(still) {
+            return Ok(());
+        }
+        let bodies = stage.bodies.iter().zip(&snapshot.bodies);
+        let placed =
+            bodies.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array()));
+        self.placed = Some(Placed {
+            number: stage.number,
+            states: snapshot.bodies.clone(),
+            uploaded: UploadedBodies::new(&self.gpu.device, placed),
+        });
+        Ok(())
+    }
+
+    fn texture(&self, [width, height]: [u32; 2]) -> Target {
+        let limit = self.gpu.limits.max_texture_dimension_2d;
+        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d {
+                width: width.clamp(1, limit),
+                height: height.clamp(1, limit),
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Target { texture, view, size: [width, height] }
+    }
+}

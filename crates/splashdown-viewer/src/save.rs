@@ -1,0 +1,175 @@
+//! The scene as it was changed, as a file that the command line runs.
+
+use glam::Vec3;
+use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
+
+use crate::camera::Orbit;
+
+/// The scene's file with what differs from it put in; comments and order stay. `text` is what the scene came from.
+///
+/// # Errors
+/// A sentence, if the text cannot say what the scene is: that of a scene whose own things were taken out.
+pub fn scene(text: &str, scene: &Scene, orbit: &Orbit) -> Result<String, String> {
+    let source =
+        scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
+    let old = Scene::parse(text, &source).map_err(|error| error.to_string())?;
+    let mut document: DocumentMut = text.parse().map_err(|error| format!("{source}: {error}"))?;
+    numbers(&mut document, &old, scene);
+    camera(&mut document, orbit);
+    for body in &scene.bodies[old.bodies.len().min(scene.bodies.len())..] {
+        tables(&mut document, "body").push(body_table(body)?);
+    }
+    for emitter in &scene.emitters[old.emitters.len().min(scene.emitters.len())..] {
+        tables(&mut document, "emitter").push(emitter_table(emitter)?);
+    }
+    let written = document.to_string();
+    // What was written is what is meant, or it is not written.
+    let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
+    read.camera = scene.camera;
+    let (source, warnings) = (scene.source.clone(), scene.warnings.clone());
+    if (Scene { source, warnings, ..read }) != *scene {
+        return Err("this scene has been changed in ways that a scene file cannot say".to_owned());
+    }
+    Ok(written)
+}
+
+fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
+    let mut set = |section: &str, key: &str, differs: bool, item: Item| {
+        if differs {
+            let section = document.entry(section).or_insert(Item::Table(Table::new()));
+            if let Some(table) = section.as_table_like_mut() {
+                table.insert(key, item);
+            }
+        }
+    };
+    set("scene", "gravity", old.gravity != new.gravity, vector(new.gravity));
+    let (a, b) = (&old.fluid, &new.fluid);
+    let spacing = number(b.particle_spacing);
+    set("fluid", "particle_spacing", a.particle_spacing != b.particle_spacing, spacing);
+    let (a, b) = (&a.material, &b.material);
+    set("fluid", "material", a.name != b.name, value(&b.name));
+    set("fluid", "density", a.rest_density != b.rest_density, number(b.rest_density));
+    set("fluid", "viscosity", a.viscosity != b.viscosity, number(b.viscosity));
+    set("fluid", "surface_tension", a.surface_tension != b.surface_tension, number(b.surface_tension));
+    let (a, b) = (&old.solver, &new.solver);
+    set("solver", "method", a.method != b.method, value(b.method.name()));
+    // Its default depends on the method.
+    let differs = a.exponent != b.exponent || a.method != b.method;
+    set("solver", "exponent", differs, number(b.exponent));
+    let model = value(b.surface_tension.name());
+    set("solver", "surface_tension", a.surface_tension != b.surface_tension, model);
+    let damping = number(b.artificial_viscosity);
+    set("solver", "artificial_viscosity", a.artificial_viscosity != b.artificial_viscosity, damping);
+    set("solver", "wall_friction", a.wall_friction != b.wall_friction, number(b.wall_friction));
+    let (a, b) = (&old.surface, &new.surface);
+    set("surface", "cell_size", a.cell_size != b.cell_size || old.fluid != new.fluid, number(b.cell_size));
+    let rounds = value(i64::from(b.smoothing_iterations));
+    set("surface", "smoothing_iterations", a.smoothing_iterations != b.smoothing_iterations, rounds);
+}
+
+fn camera(document: &mut DocumentMut, orbit: &Orbit) {
+    let section = document.entry("camera").or_insert(Item::Table(Table::new()));
+    if let Some(table) = section.as_table_like_mut() {
+        table.insert("target", vector(orbit.target));
+        table.insert("distance", number(orbit.distance));
+        table.insert("azimuth", number(orbit.azimuth));
+        table.insert("elevation", number(orbit.elevation));
+    }
+}
+
+fn tables<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut ArrayOfTables {
+    let item = document.entry(name).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+    if !item.is_array_of_tables() {
+        *item = Item::ArrayOfTables(std::mem::take(item).into_array_of_tables().unwrap_or_default());
+    }
+    item.as_array_of_tables_mut().unwrap_or_else(|| unreachable!("it was just made one"))
+}
+
+fn body_table(body: &Body) -> Result<Table, String> {
+    let mut table = Table::new();
+    table.insert("name", value(&body.name));
+    let mesh = match &body.mesh.shape {
+        MeshShape::Model(name) => name.clone(),
+        MeshShape::File(path) => path.to_str().ok_or("a mesh's path is no text")?.to_owned(),
+    };
+    table.insert("mesh", value(mesh));
+    table.insert("scale", number(body.mesh.scale));
+    table.insert("position", vector(body.mesh.position));
+    let Motion::Dynamic { density, .. } = body.motion else {
+        return Err("only bodies that were thrown in can be added to a scene file".to_owned());
+    };
+    table.insert("motion", value("dynamic"));
+    table.insert("density", number(density));
+    table.insert("friction", number(body.friction));
+    if let Some(colour) = body.colour {
+        table.insert("colour", vector(Vec3::from(colour)));
+    }
+    Ok(table)
+}
+
+fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
+    let Outlet::Disc { radius } = emitter.outlet else {
+        return Err("only taps can be added to a scene file".to_owned());
+    };
+    let mut table = Table::new();
+    table.insert("name", value(&emitter.name));
+    table.insert("shape", value("disc"));
+    table.insert("radius", number(radius));
+    table.insert("position", vector(emitter.position));
+    table.insert("direction", vector(emitter.direction));
+    table.insert("speed", number(emitter.speed));
+    Ok(table)
+}
+
+/// The shortest number that is read back as the same.
+fn shortest(x: f32) -> f64 {
+    x.to_string().parse().unwrap_or(f64::from(x))
+}
+
+fn number(x: f32) -> Item {
+    value(shortest(x))
+}
+
+fn vector(v: Vec3) -> Item {
+    value(v.to_array().map(shortest).into_iter().collect::<Array>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edit;
+    use splashdown::scene::{Method, presets};
+
+    #[test]
+    fn every_scene_is_saved_as_it_was_changed() {
+        for (name, text) in presets() {
+            let mut changed = Scene::parse(text, name).unwrap();
+            changed.gravity = Vec3::new(0.1, -9.0, 1.0 / 3.0);
+            changed.fluid.particle_spacing *= 1.1;
+            changed.surface.cell_size *= 1.1;
+            changed.fluid.material.viscosity = 1.0 / 700.0;
+            changed.solver.artificial_viscosity = 0.07;
+            changed.solver.method = Method::Wcsph;
+            edit::add_ball(&mut changed);
+            edit::turn_tap(&mut changed);
+            let mut orbit = Orbit::of_scene(&changed);
+            orbit.azimuth = 77.0;
+            let saved = scene(text, &changed, &orbit).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let read = Scene::parse(&saved, name).unwrap();
+            assert_eq!(read.camera.azimuth, 77.0, "{name}");
+            assert_eq!(read.bodies, changed.bodies, "{name}");
+            // Comments are kept.
+            assert_eq!(text.lines().next(), saved.lines().next(), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_a_file_cannot_say_is_refused() {
+        let (name, text) = presets()[0];
+        let mut changed = Scene::parse(text, name).unwrap();
+        changed.domain.max.x *= 2.0;
+        let orbit = Orbit::of_scene(&changed);
+        assert!(scene(text, &changed, &orbit).is_err());
+    }
+}

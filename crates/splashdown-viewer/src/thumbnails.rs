@@ -1,0 +1,54 @@
+//! Small pictures of the scenes that come with the program.
+
+use egui::{ColorImage, Context, Id, TextureHandle, TextureId};
+use splashdown::scene::presets;
+
+/// Width of a thumbnail, in points.
+pub const WIDTH: f32 = 144.0;
+
+/// Names and first comments of the scenes.
+pub fn scenes() -> impl Iterator<Item = (&'static str, String)> {
+    presets().iter().map(|(name, text)| (*name, about(text)))
+}
+
+/// The comment that a scene file begins with.
+fn about(text: &str) -> String {
+    let lines = text.lines().take_while(|line| line.starts_with('#'));
+    lines.map(|line| line.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")
+}
+
+/// The thumbnail, uploaded once; `None` for a scene that has none.
+pub fn texture(ctx: &Context, name: &str) -> Option<TextureId> {
+    let id = Id::unique(("thumbnail", name));
+    if let Some(handle) = ctx.data(|data| data.get_temp::<TextureHandle>(id)) {
+        return Some(handle.id());
+    }
+    let (_, png) = PICTURES.iter().find(|(scene, _)| *scene == name)?;
+    let picture = image::load_from_memory(png).ok()?.to_rgb8();
+    let size = [picture.width() as usize, picture.height() as usize];
+    let handle = ctx.load_texture(name, ColorImage::from_rgb(size, &picture), egui::TextureOptions::LINEAR);
+    let texture = handle.id();
+    ctx.data_mut(|data| data.insert_temp(id, handle));
+    Some(texture)
+}
+
+macro_rules! pictures {
+    ($($name:literal),+ $(,)?) => {
+        &[$(($name, include_bytes!(concat!("../thumbnails/", $name, ".png")))),+]
+    };
+}
+
+/// PNG files of 192 x 108, made from the pictures of the README by `cargo xtask pictures`.
+const PICTURES: &[(&str, &[u8])] = pictures![
+    "boat",
+    "cup",
+    "dam-break",
+    "falling-drop",
+    "floating",
+    "honey",
+    "knot",
+    "lighthouse",
+    "paddle-wheel",
+    "sloshing-tank",
+    "spheric2",
+];

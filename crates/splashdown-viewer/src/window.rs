@@ -1,0 +1,64 @@
+//! The window of a desktop.
+
+use std::sync::Arc;
+
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use splashdown::scene::Scene;
+use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
+
+use crate::engine::Simulate;
+use crate::{Viewer, ViewerError};
+
+/// What is shown, and on what.
+pub struct ViewOptions {
+    /// The scene to begin with.
+    pub scene: Scene,
+    /// Its file's text.
+    pub text: String,
+    /// The device that draws.
+    pub device: DeviceRequest,
+    /// Which device simulates; `None`: the one that draws, if that is real hardware.
+    pub simulate: Option<Simulate>,
+    /// Width and height of the window in points.
+    pub size: [f32; 2],
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// [`ViewerError::NoWindow`] without a display or a driver.
+pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
+    let ViewOptions { scene, text, device, simulate, size } = options;
+    let title = format!("Splashdown - {}", scene.name);
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_inner_size(size)
+            .with_title(title)
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: wgpu_options(device),
+        ..eframe::NativeOptions::default()
+    };
+    let create = move |context: &eframe::CreationContext<'_>| {
+        let render_state = context.wgpu_render_state.as_ref().ok_or("the window came without a device")?;
+        let viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, simulate)?;
+        Ok(Box::new(viewer) as Box<dyn eframe::App>)
+    };
+    eframe::run_native("splashdown", native, Box::new(create))
+        .map_err(|error| ViewerError::NoWindow { reason: error.to_string(), hint: MISSING_DRIVER_HINT })
+}
+
+/// A device with all that its adapter can do: buffers as large as the memory allows, and clocks for passes.
+fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
+    let choose = move |adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>| {
+        let shows =
+            |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
+        Gpu::choose(adapters.iter().filter(shows), &device).cloned().map_err(|error| error.to_string())
+    };
+    let setup = WgpuSetupCreateNew {
+        native_adapter_selector: Some(Arc::new(choose)),
+        device_descriptor: Arc::new(Gpu::descriptor),
+        ..WgpuSetupCreateNew::without_display_handle()
+    };
+    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}
