@@ -240,6 +240,8 @@ impl Viewer {
         if std::mem::replace(&mut self.seen.wants_timing, timing) != timing {
             self.engine.send(Command::Timing(timing));
         }
+        let times = self.picture.time_passes(timing);
+        self.state.figures.drawing = times.iter().map(|pass| (pass.label, pass.milliseconds)).collect();
     }
 
     /// Takes in what the engine tells.

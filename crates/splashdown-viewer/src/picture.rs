@@ -5,8 +5,8 @@ use std::sync::Arc;
 use splashdown::BodyState;
 use splashdown_gpu::Gpu;
 use splashdown_render::{
-    Camera, Colouring, DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame, PlacedBody, RenderError,
-    Renderer, UploadedBodies,
+    Axis, Camera, Colouring, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
+    PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 
 use crate::engine::{Opened, Snapshot};
@@ -23,6 +23,7 @@ pub struct Picture {
     target: Option<Target>,
     stage: Option<Stage>,
     placed: Option<Placed>,
+    timing: bool,
 }
 
 struct Target {
@@ -52,7 +53,7 @@ impl Picture {
     pub fn new(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
         let samples = if gpu.is_software() { 1 } else { 4 };
         let renderer = Renderer::new(&gpu.device, &gpu.queue, FORMAT, samples)?;
-        Ok(Self { gpu, renderer, target: None, stage: None, placed: None })
+        Ok(Self { gpu, renderer, target: None, stage: None, placed: None, timing: false })
     }
 
     /// Draws into the texture of this size, in pixels, and hands it out.
@@ -86,11 +87,31 @@ impl Picture {
         };
         match (look.way, drawn.mesh()) {
             (Way::Particles, _) => frame.particles = Some(balls()),
-            (Way::Surface, Some(mesh)) => {
-                frame.surface = Some(DrawnSurface { buffers: mesh.buffers(), liquid: stage::liquid(scene) });
+            (Way::Surface | Way::Mesh, Some(mesh)) => {
+                let style = match look.way {
+                    Way::Mesh => SurfaceStyle::Lines,
+                    _ => SurfaceStyle::Liquid,
+                };
+                let (buffers, liquid) = (mesh.buffers(), stage::liquid(scene));
+                frame.surface = Some(DrawnSurface { buffers, liquid, style });
+            }
+            (Way::Slice, _) => {
+                let (axis, low, high) = match look.slice_axis {
+                    Axis::X => (Axis::X, scene.domain.min.x, scene.domain.max.x),
+                    Axis::Y => (Axis::Y, scene.domain.min.y, scene.domain.max.y),
+                    Axis::Z => (Axis::Z, scene.domain.min.z, scene.domain.max.z),
+                };
+                frame.slice = Some(DrawnSlice {
+                    buffers: drawn.particles(),
+                    axis,
+                    position: low + look.slice_at * (high - low),
+                    support_radius: 2.0 * scene.fluid.particle_spacing,
+                    radius: scene.fluid.particle_radius(),
+                    colouring,
+                });
             }
             // Until the first surface comes, what the particles say of it.
-            (Way::Fluid | Way::Surface, _) => {
+            (Way::Fluid | Way::Surface | Way::Mesh, _) => {
                 frame.liquid_particles = Some(DrawnLiquidParticles {
                     buffers: drawn.particles(),
                     radius: scene.fluid.particle_radius(),
@@ -105,6 +126,15 @@ impl Picture {
         self.renderer.draw(&mut encoder, &target.view, size, &frame)?;
         self.gpu.queue.submit([encoder.finish()]);
         Ok(())
+    }
+
+    /// From now on passes are timed, or not; and the times of a picture a few pictures ago.
+    pub fn time_passes(&mut self, wanted: bool) -> &[PassTime] {
+        if self.timing != wanted {
+            self.timing = wanted;
+            self.renderer.set_timing(wanted);
+        }
+        if wanted { self.renderer.pass_times() } else { &[] }
     }
 
     /// The texture drawn last.

@@ -118,6 +118,8 @@ pub struct Figures {
     pub timings: Arc<Timings>,
     /// Steps that `timings` are of.
     pub timed_steps: u64,
+    /// Time per pass of drawing, in ms.
+    pub drawing: Vec<(&'static str, f32)>,
 }
 
 /// Something the user is told for a while.

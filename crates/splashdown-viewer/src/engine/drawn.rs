@@ -103,9 +103,9 @@ impl Copies {
                     None => (None, None, None),
                 };
                 DrawnMesh {
-                    vertices: copy.take(surface.vertices(), vertices, v, Use::VERTEX),
+                    vertices: copy.take(surface.vertices(), vertices, v, Use::VERTEX | Use::STORAGE),
                     normals: copy.take(surface.normals(), vertices, n, Use::VERTEX),
-                    indices: copy.take(surface.indices(), triangles, i, Use::INDEX),
+                    indices: copy.take(surface.indices(), triangles, i, Use::INDEX | Use::STORAGE),
                     stats,
                 }
             }),

@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, Ui};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
-use splashdown_render::ColourMap;
+use splashdown_render::{Axis, ColourMap};
 
 use super::gravity;
 use crate::look::Way;
@@ -147,7 +147,7 @@ fn name(method: Method) -> &'static str {
 
 fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let look = &mut state.look;
-    if look.way == Way::Particles {
+    if look.way.has_colours() {
         ui.horizontal(|ui| {
             ui.label("colour by");
             for (quantity, text) in
@@ -161,7 +161,15 @@ fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                 ui.selectable_value(&mut look.map, map, map.name());
             }
         });
-    } else if look.way == Way::Surface {
+        if look.way == Way::Slice {
+            ui.horizontal(|ui| {
+                for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
+                    ui.selectable_value(&mut look.slice_axis, axis, name);
+                }
+                ui.add(Slider::new(&mut look.slice_at, 0.0..=1.0).text("where"));
+            });
+        }
+    } else if look.way.needs_surface() {
         let surface = &mut state.scene.surface;
         let rounds = Slider::new(&mut surface.smoothing_iterations, 0..=25).text("smoothing");
         let rounds = ui.add(rounds).on_hover_text("Rounds of smoothing of the mesh");

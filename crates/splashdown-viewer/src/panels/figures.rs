@@ -34,7 +34,7 @@ pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
     let figures = &state.figures;
     let steps = figures.timed_steps.max(1) as f64;
     Window::new("Time per pass").open(&mut state.shown.timings).resizable(false).show(ctx, |ui| {
-        if figures.timings.passes.is_empty() {
+        if figures.timings.passes.is_empty() && figures.drawing.is_empty() {
             ui.label("Nothing has been timed yet, or this device has no clock.");
             return;
         }
@@ -46,8 +46,18 @@ pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
                 ui.monospace(seconds(time.total.as_secs_f64() / steps));
                 ui.end_row();
             }
-            ui.strong("all, per step");
+            ui.strong("a step");
             ui.monospace(seconds(figures.timings.total().as_secs_f64() / steps));
+            ui.end_row();
+            let mut picture = 0.0;
+            for (label, milliseconds) in &figures.drawing {
+                ui.label(*label);
+                ui.monospace(seconds(1e-3 * f64::from(*milliseconds)));
+                ui.end_row();
+                picture += 1e-3 * f64::from(*milliseconds);
+            }
+            ui.strong("a picture");
+            ui.monospace(seconds(picture));
             ui.end_row();
         });
     });
