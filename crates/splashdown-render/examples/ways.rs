@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         _ => {
             let size = [2.0, 1.0, 1.0];
-            (sample::slump(size, 0.0185), sample::waves([0.0; 3], size, 384), 0.0185)
+            (sample::slump(size, 0.0218), sample::waves([0.0; 3], size, 384), 0.0218)
         }
     };
     eprintln!(
