@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p splashdown-render --example ways -- [FOLDER] [PARTICLES.ply SURFACE.ply PARTICLE_SPACING]`
 //!
-//! The files are those that `splashdown run` writes. Without them a column that has begun to slump is drawn, 64,000
+//! The files are those that `splashdown run` writes. Without them a column that has begun to slump is drawn, 63,000
 //! particles, beside a mesh of 298,000 triangles that has nothing to do with it.
 
 #[path = "../tests/common/sample.rs"]

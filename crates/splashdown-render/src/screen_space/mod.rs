@@ -21,6 +21,10 @@
 //! 16-bit floats hold the amount to a thousandth; where more than a thousand particles lie behind each other, the sum stops
 //! growing, long after the liquid has become opaque.
 //!
+//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores, 63,000 particles, 1280 x 720, four samples, all in one run of `examples/ways.rs`:
+//! 1.4 times as long as the same particles as spheres, 1.2 times a mesh of 298,000 triangles; a quarter each for amount, splats and
+//! smoothing. With one sample, where spheres need half the time, 2.7 and 2.4 times.
+//!
 //! # Why not the other way
 //! Curvature flow (van der Laan et al. 2009) needs some fifty passes for the same smoothness. A bilateral filter keeps
 //! the spheres of thin layers and rounds steps into each other. Ellipsoids from the neighbours' covariance are smoother
