@@ -102,6 +102,8 @@ impl Viewer {
         let size = viewport.size.map(|side| if coarse { side.div_ceil(2) } else { side });
         self.draw(size, render_state, &ctx);
         self.engine.picture_drawn();
+        #[cfg(target_arch = "wasm32")]
+        crate::page::set_figures(self.state.figures.to_json());
         let passed = ctx.input(|input| input.stable_dt).max(1e-4);
         self.seen.frames_per_second += 0.1 * (1.0 / passed - self.seen.frames_per_second);
         if self.state.playing {
@@ -110,9 +112,11 @@ impl Viewer {
     }
 
     /// The picture as it is: 8-bit RGBA rows from the top, and its size in pixels.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn picture(&self) -> Option<(Vec<u8>, [u32; 2])> {
         let (texture, size) = self.picture.texture_drawn()?;
-        Some((pixels::read(&self.gpu, texture, size)?, size))
+        let rgba = splashdown_gpu::block_on(pixels::read(Arc::clone(&self.gpu), texture, size))?;
+        Some((rgba, size))
     }
 
     /// What the window knows and shows.
@@ -207,13 +211,26 @@ impl Viewer {
         self.engine.send(Command::Change(Box::new(self.state.scene.clone())));
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     fn screenshot(&mut self, now: f64) {
         let name = format!("{}.png", self.state.scene.name);
-        let kept = self
-            .picture()
-            .ok_or_else(|| "the device did not hand it out".to_owned())
-            .and_then(|(rgba, size)| keep::png(&name, size, rgba));
+        let picture = self.picture().ok_or_else(|| "the device did not hand it out".to_owned());
+        let kept = picture.and_then(|(rgba, size)| keep::png(&name, size, rgba));
         self.tell_kept("the picture", kept, now);
+    }
+
+    /// The page gets the picture when the browser has it.
+    #[cfg(target_arch = "wasm32")]
+    fn screenshot(&mut self, now: f64) {
+        let Some((texture, size)) = self.picture.texture_drawn() else { return };
+        let (gpu, name) = (Arc::clone(&self.gpu), format!("{}.png", self.state.scene.name));
+        self.state.tell(format!("the picture is in your downloads, as {name}"), false, now);
+        wasm_bindgen_futures::spawn_local(async move {
+            if let Some(rgba) = pixels::read(gpu, texture, size).await {
+                // It has been told already where it is; without it the browser says why.
+                let _ = keep::png(&name, size, rgba);
+            }
+        });
     }
 
     fn save_scene(&mut self, now: f64) {
@@ -285,6 +302,7 @@ impl Viewer {
         figures.triangles = snapshot.drawn.mesh().map(|mesh| mesh.stats.triangles);
         figures.timings = Arc::clone(&snapshot.timings);
         figures.timed_steps = snapshot.timed_steps;
+        figures.mean_height = snapshot.mean_height;
         if let Some(opened) = self.engine.opened() {
             figures.memory = opened.memory;
             figures.device.clone_from(&opened.device);

@@ -15,6 +15,8 @@ pub mod engine;
 mod error;
 mod keep;
 pub mod look;
+#[cfg(target_arch = "wasm32")]
+mod page;
 pub mod panels;
 mod pick;
 pub mod picture;
@@ -28,5 +30,7 @@ mod window;
 
 pub use app::Viewer;
 pub use error::ViewerError;
+#[cfg(target_arch = "wasm32")]
+pub use page::{figures, start_on_page};
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::{ViewOptions, view};

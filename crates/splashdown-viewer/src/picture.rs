@@ -143,8 +143,8 @@ impl Picture {
     }
 
     /// The texture drawn last, to be read, and its size in pixels.
-    pub fn texture_drawn(&self) -> Option<(&wgpu::Texture, [u32; 2])> {
-        self.target.as_ref().map(|target| (&target.texture, target.size))
+    pub fn texture_drawn(&self) -> Option<(wgpu::Texture, [u32; 2])> {
+        self.target.as_ref().map(|target| (target.texture.clone(), target.size))
     }
 
     fn place(&mut self, opened: &Opened, snapshot: &Snapshot) -> Result<(), RenderError> {

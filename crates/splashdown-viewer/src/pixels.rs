@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use splashdown_gpu::{Gpu, block_on};
+use splashdown_gpu::Gpu;
 
-/// 8-bit RGBA rows from the top; `None` if the device is lost. Waits for the device.
-pub fn read(gpu: &Arc<Gpu>, texture: &wgpu::Texture, [width, height]: [u32; 2]) -> Option<Vec<u8>> {
+/// 8-bit RGBA rows from the top; `None` if the device is lost.
+pub async fn read(gpu: Arc<Gpu>, texture: wgpu::Texture, [width, height]: [u32; 2]) -> Option<Vec<u8>> {
     let row = 4 * width;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -28,6 +28,6 @@ pub fn read(gpu: &Arc<Gpu>, texture: &wgpu::Texture, [width, height]: [u32; 2]) 
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     let submission = gpu.queue.submit([encoder.finish()]);
-    let bytes = block_on(gpu.read_back(staging, submission)).ok()?;
+    let bytes = gpu.read_back(staging, submission).await.ok()?;
     Some(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
 }

@@ -106,6 +106,8 @@ pub struct Figures {
     pub dt: f32,
     /// Particles.
     pub particles: u32,
+    /// Mean height of the particles in m, now and then; NaN while unknown.
+    pub mean_height: f32,
     /// Triangles of the surface, if there is one.
     pub triangles: Option<u32>,
     /// Largest relative excess of density.
@@ -120,6 +122,23 @@ pub struct Figures {
     pub timed_steps: u64,
     /// Time per pass of drawing, in ms.
     pub drawing: Vec<(&'static str, f32)>,
+}
+
+impl Figures {
+    /// The numbers that tests of the page look at.
+    pub fn to_json(&self) -> String {
+        let mean_height =
+            if self.mean_height.is_finite() { self.mean_height.to_string() } else { "null".into() };
+        format!(
+            "{{\"time\":{},\"particles\":{},\"mean_height\":{mean_height},\"triangles\":{},\"frames_per_second\":{},\
+             \"steps_per_second\":{}}}",
+            self.time,
+            self.particles,
+            self.triangles.unwrap_or(0),
+            self.frames_per_second,
+            self.steps_per_second
+        )
+    }
 }
 
 /// Something the user is told for a while.

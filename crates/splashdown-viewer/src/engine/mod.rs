@@ -28,7 +28,8 @@ struct Outbox {
     snapshot: Option<Arc<Snapshot>>,
     /// True if the window has drawn it.
     is_seen: bool,
-    messages: Vec<Message>,
+    /// Apart from the rest: threads that prepare a body speak too.
+    messages: Arc<Mutex<Vec<Message>>>,
 }
 
 /// The window's end of it. Dropping it stops the engine.
@@ -74,15 +75,13 @@ impl Engine {
     }
 
     /// Once per picture: the engine takes the next snapshot then, and on a web page works between two pictures.
-    pub fn picture_drawn(&self) {
+    pub fn picture_drawn(&mut self) {
         lock(&self.outbox).is_seen = true;
         self.inbox.wake();
         #[cfg(not(target_arch = "wasm32"))]
         if self.thread.as_ref().is_some_and(std::thread::JoinHandle::is_finished) {
-            let mut outbox = lock(&self.outbox);
-            if !outbox.messages.iter().any(|message| matches!(message, Message::Stopped)) {
-                outbox.messages.push(Message::Stopped);
-            }
+            self.thread = None;
+            self.tell(Message::Stopped);
         }
     }
 
@@ -98,12 +97,12 @@ impl Engine {
 
     /// What there was to tell since the last call.
     pub fn take_messages(&self) -> Vec<Message> {
-        std::mem::take(&mut lock(&self.outbox).messages)
+        std::mem::take(&mut lock(&lock(&self.outbox).messages))
     }
 
     #[cfg(not(target_arch = "wasm32"))]
     fn tell(&self, message: Message) {
-        lock(&self.outbox).messages.push(message);
+        lock(&lock(&self.outbox).messages).push(message);
     }
 }
 

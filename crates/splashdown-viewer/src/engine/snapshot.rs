@@ -33,6 +33,8 @@ pub struct Snapshot {
     pub drawn: Arc<Drawn>,
     /// Where the bodies are.
     pub bodies: Vec<BodyState>,
+    /// Mean height of the particles in m, a half second old at most; NaN where there are too many to look.
+    pub mean_height: f32,
     /// Steps per second of wall time, lately.
     pub steps_per_second: f64,
     /// Simulated seconds per second of wall time, lately.

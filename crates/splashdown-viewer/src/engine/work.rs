@@ -20,6 +20,8 @@ const MEASURE: Duration = Duration::from_millis(500);
 const BATCH: f64 = 0.008;
 /// How long the engine sleeps when nothing is due.
 const NAP: Duration = Duration::from_millis(2);
+/// Up to this many particles their mean height is looked at.
+const FEW: u32 = 20_000;
 /// How quickly a held body comes along, in 1/s.
 const GRIP_RATE: f32 = 12.0;
 
@@ -52,6 +54,7 @@ struct Meter {
     speed: f64,
     timings: Arc<Timings>,
     timed_steps: u64,
+    mean_height: f32,
 }
 
 impl Meter {
@@ -64,10 +67,16 @@ impl Meter {
             speed: 0.0,
             timings: Arc::default(),
             timed_steps: 0,
+            mean_height: f32::NAN,
         }
     }
 
-    fn count(&mut self, steps: u32, simulated: f64, simulation: &mut Simulation) {
+    async fn count(
+        &mut self,
+        steps: u32,
+        simulated: f64,
+        simulation: &mut Simulation,
+    ) -> Result<(), SimulationError> {
         self.steps += u64::from(steps);
         self.simulated += simulated;
         let passed = self.since.elapsed();
@@ -76,12 +85,20 @@ impl Meter {
             self.speed = self.simulated / passed.as_secs_f64();
             self.timings = Arc::new(simulation.take_timings());
             self.timed_steps = self.steps;
+            if simulation.stats().particles <= FEW {
+                let positions = simulation.particles_async().await?.positions;
+                let heights = positions.iter().map(|x| f64::from(x[1]));
+                self.mean_height = (heights.sum::<f64>() / positions.len().max(1) as f64) as f32;
+            }
             (self.since, self.steps, self.simulated) = (Instant::now(), 0, 0.0);
         }
+        Ok(())
     }
 
     fn stand_still(&mut self) {
-        *self = Self { timings: Arc::clone(&self.timings), timed_steps: self.timed_steps, ..Self::new() };
+        let (timings, timed_steps, mean_height) =
+            (Arc::clone(&self.timings), self.timed_steps, self.mean_height);
+        *self = Self { timings, timed_steps, mean_height, ..Self::new() };
     }
 }
 
@@ -204,9 +221,9 @@ impl Worker {
         };
         self.surface = None;
         self.scene = Some(scene.clone());
-        let outbox = Arc::clone(&self.outbox);
+        let messages = Arc::clone(&lock(&self.outbox).messages);
         let told = move |body: &str, part: f32| {
-            lock(&outbox).messages.push(Message::Preparing(body.to_owned(), part));
+            lock(&messages).push(Message::Preparing(body.to_owned(), part));
         };
         let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
         self.begin(simulation).await
@@ -265,13 +282,13 @@ impl Worker {
         let stats = simulation.advance_async(seconds).await?;
         let steps = (stats.steps - before.steps) as u32;
         let told = simulation.take_warnings();
-        lock(&self.outbox).messages.extend(told.into_iter().map(Message::Note));
+        lock(&lock(&self.outbox).messages).extend(told.into_iter().map(Message::Note));
         let stepped = begun.elapsed();
         if steps > 0 {
             let per_step = stepped.as_secs_f64() / f64::from(steps);
             simulation.set_steps_at_once((BATCH / per_step.max(1e-7)) as u32);
         }
-        self.meter.count(steps, f64::from(seconds), simulation);
+        self.meter.count(steps, f64::from(seconds), simulation).await?;
         // A window that has not drawn the last snapshot does not want another.
         let wanted = lock(&self.outbox).is_seen || !self.playing;
         let shown = if wanted { self.show().await } else { Ok(()) };
@@ -299,6 +316,7 @@ impl Worker {
             stats: simulation.stats(),
             drawn,
             bodies,
+            mean_height: self.meter.mean_height,
             steps_per_second: self.meter.steps_per_second,
             speed: self.meter.speed,
             timings: Arc::clone(&self.meter.timings),
@@ -322,7 +340,7 @@ impl Worker {
         simulation.extract_async(surface).await?;
         let mesh = Arc::new(simulation.mesh_async(surface).await?);
         let particles = Arc::new(simulation.particles_async().await?);
-        lock(&self.outbox).messages.push(Message::Exported { particles, mesh });
+        lock(&lock(&self.outbox).messages).push(Message::Exported { particles, mesh });
         (self.repaint)();
         Ok(())
     }
@@ -330,7 +348,7 @@ impl Worker {
     /// The simulation stands still, and the user hears why.
     fn fail(&mut self, error: &SimulationError) {
         self.playing = false;
-        lock(&self.outbox).messages.push(Message::Failed(error.to_string()));
+        lock(&lock(&self.outbox).messages).push(Message::Failed(error.to_string()));
         (self.repaint)();
     }
 }

@@ -16,6 +16,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) {
         item(format!("t = {:7.3} s", figures.time), "Simulated time");
         item(format!("dt = {}", seconds(figures.dt.into())), "Length of a time step");
         item(format!("{} particles", count(figures.particles.into())), "Particles alive");
+        if figures.mean_height.is_finite() {
+            item(format!("{:.3} m high", figures.mean_height), "Mean height of the particles");
+        }
         if let Some(triangles) = figures.triangles {
             item(format!("{} triangles", count(triangles.into())), "Triangles of the surface");
         }

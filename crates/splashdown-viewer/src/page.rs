@@ -1,0 +1,69 @@
+//! The web page: the same program on a canvas.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use splashdown::scene::{Scene, presets};
+use splashdown_gpu::Gpu;
+use wasm_bindgen::JsValue;
+
+use crate::Viewer;
+
+thread_local! {
+    /// What [`figures`] tells, written anew with every picture.
+    static FIGURES: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Starts the program on a canvas. `scene` is the name of a scene that comes with the program, or the text of a scene file.
+///
+/// # Errors
+/// What is wrong with the scene, or why there is no device, as words.
+pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> Result<(), JsValue> {
+    let (scene, text) = open(scene).map_err(|error| JsValue::from_str(&error))?;
+    let setup = WgpuSetupCreateNew {
+        instance_descriptor: wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::BROWSER_WEBGPU,
+            ..WgpuSetupCreateNew::without_display_handle().instance_descriptor
+        },
+        device_descriptor: Arc::new(Gpu::descriptor),
+        ..WgpuSetupCreateNew::without_display_handle()
+    };
+    let options = eframe::WebOptions {
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::CreateNew(setup),
+            ..WgpuConfiguration::default()
+        },
+        ..eframe::WebOptions::default()
+    };
+    let create = move |context: &eframe::CreationContext<'_>| {
+        let render_state = context.wgpu_render_state.as_ref().ok_or("the page came without a device")?;
+        let viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, None)?;
+        Ok(Box::new(viewer) as Box<dyn eframe::App>)
+    };
+    eframe::WebRunner::new().start(canvas, options, Box::new(create)).await
+}
+
+fn open(scene: &str) -> Result<(Scene, String), String> {
+    let preset = presets().iter().find(|(name, _)| *name == scene);
+    let (name, text) = match preset {
+        Some((name, text)) => (*name, *text),
+        None if scene.contains('=') => ("this link", scene),
+        None => {
+            let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();
+            return Err(format!("there is no scene {scene:?}; there are {}", names.join(", ")));
+        }
+    };
+    Scene::parse(text, name).map(|scene| (scene, text.to_owned())).map_err(|error| error.to_string())
+}
+
+/// Numbers about the running program, as JSON; empty before the first picture.
+pub fn figures() -> String {
+    FIGURES.with_borrow(Clone::clone)
+}
+
+/// Writes what [`figures`] tells.
+pub(crate) fn set_figures(figures: String) {
+    FIGURES.with_borrow_mut(|told| *told = figures);
+}
