@@ -10,6 +10,12 @@ mod entry {
         splashdown_viewer::start_on_page(canvas, &scene).await
     }
 
+    /// Compiles every pass on this browser's device: for the page's tests.
+    #[wasm_bindgen]
+    pub async fn try_passes(broken: bool) -> Result<String, JsValue> {
+        splashdown_viewer::try_passes(broken).await
+    }
+
     /// Numbers about the running program, as JSON: for the page's tests.
     #[wasm_bindgen]
     pub fn figures() -> String {

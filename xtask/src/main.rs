@@ -4,12 +4,15 @@
 mod bench;
 mod demo;
 mod layers;
+mod page;
 mod pictures;
 mod process;
+mod serve;
 mod setup;
 mod suite;
 mod test_output;
 mod validate;
+mod web;
 
 use std::process::ExitCode;
 
@@ -21,6 +24,8 @@ Usage: cargo xtask <WORD> [OPTIONS]
   test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
   bench [--quick]   the numbers of docs/performance.md as Markdown tables (--quick: small sizes only)
   pictures [SCENE]  make the pictures of the README anew
+  web [--build] [--port N]
+                    the web page: build it and serve it on localhost (--build: build it only)
   validate [CASE]   the checks against measurements at full resolution, in release mode: figures, plots, one page
   setup             check what demo and test need and install it where that is possible
   help              this text
@@ -39,6 +44,7 @@ fn main() -> ExitCode {
         "test" => suite::run(rest),
         "bench" => bench::run(rest),
         "pictures" => pictures::run(rest),
+        "web" => web::run(rest),
         "validate" => validate::run(rest),
         "setup" => setup::run(rest),
         "help" | "--help" | "-h" => {

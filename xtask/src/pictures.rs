@@ -59,7 +59,19 @@ pub fn run(arguments: &[String]) -> Result<()> {
             fs::create_dir_all(to.with_file_name(""))?;
             fs::copy(&from, &to).with_context(|| format!("cannot copy {}", from.display()))?;
             say(format!("docs/pictures/{name}.png"));
+            if name == scene {
+                thumbnail(name)?;
+            }
         }
     }
     Ok(())
+}
+
+/// A small picture for the gallery of the window, with few colours: all of them travel with the program.
+fn thumbnail(name: &str) -> Result<()> {
+    let from = format!("docs/pictures/{name}.png");
+    let to = format!("crates/splashdown-viewer/thumbnails/{name}.png");
+    let filter = "scale=192:108:flags=lanczos,split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse";
+    let mut ffmpeg = process::command("ffmpeg");
+    process::run(ffmpeg.args(["-y", "-loglevel", "error", "-i", &from, "-filter_complex", filter, &to]))
 }

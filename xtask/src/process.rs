@@ -42,13 +42,17 @@ pub fn cargo<I: IntoIterator<Item = S>, S: AsRef<OsStr>>(arguments: I) -> Comman
     command
 }
 
+/// Where cargo builds.
+pub fn target() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    root().join(target)
+}
+
 /// Builds the command line in release mode and returns the path of the binary.
 pub fn build_release() -> Result<PathBuf> {
     say("Building (release) ...");
     run(&mut cargo(["build", "--release", "--package", "splashdown-cli"]))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    let binary =
-        root().join(target).join("release").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
+    let binary = target().join("release").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
     ensure!(binary.exists(), "the build went well, but {} is not there", binary.display());
     Ok(binary)
 }

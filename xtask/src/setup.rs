@@ -50,7 +50,7 @@ pub fn ensure_requirements() -> Result<()> {
     say(format!("Requirements: missing {}.", missing.names()));
     if can_install() {
         say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
-        if let Err(error) = install() {
+        if let Err(error) = install(&PACKAGES) {
             say(format!("WARNING: the installation failed: {error:#}. Is there a network?"));
         }
         missing = Missing::find();
@@ -69,7 +69,7 @@ pub fn ensure_requirements() -> Result<()> {
 }
 
 /// Debian or Ubuntu, and allowed to install.
-fn can_install() -> bool {
+pub fn can_install() -> bool {
     cfg!(target_os = "linux") && is_root() && process::exists("apt-get", "--version")
 }
 
@@ -78,11 +78,12 @@ fn is_root() -> bool {
     output.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
 }
 
-fn install() -> Result<()> {
+/// Installs packages of Debian.
+pub fn install(packages: &[&str]) -> Result<()> {
     process::run(process::command("apt-get").args(["update", "-qq"]))?;
     let mut install = process::command("apt-get");
     install.env("DEBIAN_FRONTEND", "noninteractive");
-    install.args(["install", "-y", "-qq", "--no-install-recommends"]).args(PACKAGES);
+    install.args(["install", "-y", "-qq", "--no-install-recommends"]).args(packages);
     // The list of unpacked packages is long and tells nobody anything; errors go to stderr.
     install.stdout(std::process::Stdio::null());
     process::run(&mut install)

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 
 use crate::layers::{Outcome, Report, filtered, succeeds};
 use crate::process::{cargo, command, say};
-use crate::setup;
+use crate::{page, setup};
 
 /// Systems that are checked without being there.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -44,6 +44,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
             succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))
         });
+        report.layer("web page", |_| page::test());
         for (name, target) in OTHER_SYSTEMS {
             report.layer(&format!("{name} ({target})"), |_| check_for(target));
         }

@@ -48,7 +48,7 @@ pub mod wgsl;
 pub use device::{AdapterReport, DeviceRequest, Gpu, MISSING_DRIVER_HINT, list_adapters};
 pub use element::{Field, GpuElement, GpuMember, GpuStruct};
 pub use error::GpuError;
-pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback};
+pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback, refused_passes};
 pub use host::{Slot, as_atomic};
 pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, write};
 pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording, dispatch_groups};

@@ -16,6 +16,7 @@ use crate::keep;
 use crate::panels;
 use crate::pick;
 use crate::picture::Picture;
+#[cfg(target_arch = "wasm32")]
 use crate::pixels;
 use crate::save;
 use crate::state::{Action, State};
@@ -109,14 +110,6 @@ impl Viewer {
         if self.state.playing {
             ctx.request_repaint();
         }
-    }
-
-    /// The picture as it is: 8-bit RGBA rows from the top, and its size in pixels.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn picture(&self) -> Option<(Vec<u8>, [u32; 2])> {
-        let (texture, size) = self.picture.texture_drawn()?;
-        let rgba = splashdown_gpu::block_on(pixels::read(Arc::clone(&self.gpu), texture, size))?;
-        Some((rgba, size))
     }
 
     /// What the window knows and shows.
@@ -214,8 +207,9 @@ impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
     fn screenshot(&mut self, now: f64) {
         let name = format!("{}.png", self.state.scene.name);
-        let picture = self.picture().ok_or_else(|| "the device did not hand it out".to_owned());
-        let kept = picture.and_then(|(rgba, size)| keep::png(&name, size, rgba));
+        let size = self.picture.texture_drawn().map_or([0, 0], |(_, size)| size);
+        let picture = self.picture.read().ok_or_else(|| "the device did not hand it out".to_owned());
+        let kept = picture.and_then(|rgba| keep::png(&name, size, rgba));
         self.tell_kept("the picture", kept, now);
     }
 
@@ -296,6 +290,7 @@ impl Viewer {
         figures.steps_per_second = snapshot.steps_per_second;
         figures.speed = snapshot.speed;
         figures.time = snapshot.stats.time;
+        figures.playing = snapshot.playing;
         figures.dt = snapshot.stats.dt;
         figures.particles = snapshot.stats.particles;
         figures.density_error = snapshot.stats.density_error;
@@ -350,8 +345,9 @@ impl Viewer {
         let (Some(opened), Some(snapshot)) = (self.engine.opened(), self.engine.snapshot()) else { return };
         let mut camera = self.state.orbit;
         camera.target -= self.state.shaken;
+        let aspect = size[0] as f32 / size[1] as f32;
         let before = self.picture.view().cloned();
-        let drawn = self.picture.draw(size, &opened, &snapshot, &self.state.look, camera.camera());
+        let drawn = self.picture.draw(size, &opened, &snapshot, &self.state.look, camera.camera(aspect));
         if let Err(error) = drawn {
             let now = ctx.input(|input| input.time);
             self.state.tell(error.to_string(), true, now);

@@ -6,6 +6,8 @@ use splashdown_render::Camera;
 
 /// Degrees per point of the screen.
 const ORBIT: f32 = 0.3;
+/// Width over height of the pictures that scenes set their cameras for.
+const USUAL_ASPECT: f32 = 16.0 / 9.0;
 /// Lengths of the view per second of flight.
 const FLIGHT: f32 = 0.8;
 
@@ -40,9 +42,27 @@ impl Orbit {
         }
     }
 
-    /// As the renderer wants it.
-    pub fn camera(&self) -> Camera {
-        Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, self.field_of_view)
+    /// As the renderer wants it, for a picture of this aspect ratio (width over height).
+    pub fn camera(&self, aspect_ratio: f32) -> Camera {
+        let angle = self.vertical_angle(aspect_ratio);
+        Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, angle)
+    }
+
+    /// A picture narrower than those that scenes are made for sees as much of the width, and so more of the height. In degrees.
+    fn vertical_angle(&self, aspect_ratio: f32) -> f32 {
+        let wider = (USUAL_ASPECT / aspect_ratio.clamp(0.1, 10.0)).max(1.0);
+        (2.0 * (self.half_height() * wider).atan().to_degrees()).min(150.0)
+    }
+
+    /// Half the height of what a usual picture shows at unit distance.
+    fn half_height(&self) -> f32 {
+        (0.5 * self.field_of_view).to_radians().tan()
+    }
+
+    /// Metres per point in the target's distance, in a picture of this size in points.
+    pub fn metres_per_point(&self, size: Vec2) -> f32 {
+        let angle = self.vertical_angle(size.x / size.y.max(1.0));
+        2.0 * self.distance * (0.5 * angle).to_radians().tan() / size.y.max(1.0)
     }
 
     /// Turns by a drag of this many points.
@@ -51,10 +71,10 @@ impl Orbit {
         self.elevation = (self.elevation + ORBIT * drag.y).clamp(-89.0, 89.0);
     }
 
-    /// Slides with the mouse: what is under it in the target's distance stays under it. `height` is the picture's, in points.
-    pub fn pan(&mut self, drag: Vec2, height: f32) {
+    /// Slides with the mouse: what is under it in the target's distance stays under it. `size` is the picture's, in points.
+    pub fn pan(&mut self, drag: Vec2, size: Vec2) {
         let [right, up, _] = self.axes();
-        let scale = 2.0 * self.distance * (0.5 * self.field_of_view).to_radians().tan() / height.max(1.0);
+        let scale = self.metres_per_point(size);
         self.target += scale * (drag.y * up - drag.x * right);
         self.keep_near();
     }
@@ -77,15 +97,14 @@ impl Orbit {
     /// A point of the picture as a ray: the eye in m, and a unit vector. `point` and `size` are in points.
     pub fn ray(&self, point: Vec2, size: Vec2) -> (Vec3, Vec3) {
         let [right, up, forward] = self.axes();
-        let half = (0.5 * self.field_of_view).to_radians().tan();
-        let x = (2.0 * point.x / size.x - 1.0) * half * size.x / size.y.max(1.0);
-        let y = (1.0 - 2.0 * point.y / size.y) * half;
-        (Vec3::from(self.camera().eye), (forward + x * right + y * up).normalize_or(forward))
+        let scale = self.metres_per_point(size) / self.distance;
+        let (x, y) = (scale * (point.x - 0.5 * size.x), scale * (0.5 * size.y - point.y));
+        (Vec3::from(self.camera(USUAL_ASPECT).eye), (forward + x * right + y * up).normalize_or(forward))
     }
 
     /// Right, up and ahead of the picture.
     pub fn axes(&self) -> [Vec3; 3] {
-        let camera = self.camera();
+        let camera = self.camera(USUAL_ASPECT);
         let forward = (self.target - Vec3::from(camera.eye)).normalize_or(Vec3::NEG_Z);
         let right = forward.cross(camera.up.into()).normalize_or(Vec3::X);
         [right, right.cross(forward), forward]
@@ -117,10 +136,16 @@ mod tests {
     fn a_ray_goes_through_what_is_projected_onto_its_point() {
         let (orbit, size) = (orbit(), Vec2::new(640.0, 360.0));
         let seen = Vec3::new(0.5, 0.1, 0.2);
-        let [x, y] = orbit.camera().project(seen.into(), [640, 360]).unwrap().unwrap();
+        let [x, y] = orbit.camera(640.0 / 360.0).project(seen.into(), [640, 360]).unwrap().unwrap();
         let (eye, direction) = orbit.ray(Vec2::new(x, y), size);
         let off = (seen - eye).cross(direction).length();
         assert!(off < 1e-4, "{off}");
+        // In a narrow picture too.
+        let [x, y] = orbit.camera(0.5).project(seen.into(), [300, 600]).unwrap().unwrap();
+        let (eye, direction) = orbit.ray(Vec2::new(x, y), Vec2::new(300.0, 600.0));
+        let off = (seen - eye).cross(direction).length();
+        assert!(off < 1e-4, "{off}");
+        let [x, y] = orbit.camera(640.0 / 360.0).project(seen.into(), [640, 360]).unwrap().unwrap();
         // Control: another point's ray does not.
         let (eye, direction) = orbit.ray(Vec2::new(x + 5.0, y), size);
         assert!((seen - eye).cross(direction).length() > 1e-3);
@@ -130,8 +155,8 @@ mod tests {
     fn a_pan_keeps_the_target_under_the_mouse() {
         let mut orbit = orbit();
         let before = orbit.target;
-        orbit.pan(Vec2::new(50.0, -20.0), 360.0);
-        let [x, y] = orbit.camera().project(before.into(), [640, 360]).unwrap().unwrap();
+        orbit.pan(Vec2::new(50.0, -20.0), Vec2::new(640.0, 360.0));
+        let [x, y] = orbit.camera(640.0 / 360.0).project(before.into(), [640, 360]).unwrap().unwrap();
         assert!((x - 370.0).abs() < 0.1 && (y - 160.0).abs() < 0.1, "{x} {y}");
     }
 
@@ -142,6 +167,6 @@ mod tests {
         orbit.orbit(Vec2::new(0.0, 1e6));
         assert!(orbit.distance > 1e-4 && orbit.elevation <= 89.0);
         orbit.zoom(f32::NAN);
-        assert!(orbit.camera().project([0.0; 3], [64, 64]).is_ok());
+        assert!(orbit.camera(1.0).project([0.0; 3], [64, 64]).is_ok());
     }
 }

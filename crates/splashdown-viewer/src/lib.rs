@@ -31,6 +31,6 @@ mod window;
 pub use app::Viewer;
 pub use error::ViewerError;
 #[cfg(target_arch = "wasm32")]
-pub use page::{figures, start_on_page};
+pub use page::{figures, start_on_page, try_passes};
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::{ViewOptions, view};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use splashdown::scene::{Scene, presets};
-use splashdown_gpu::Gpu;
+use splashdown_gpu::{DeviceRequest, Gpu, PassDesc, refused_passes};
 use wasm_bindgen::JsValue;
 
 use crate::Viewer;
@@ -57,6 +57,35 @@ fn open(scene: &str) -> Result<(Scene, String), String> {
     };
     Scene::parse(text, name).map(|scene| (scene, text.to_owned())).map_err(|error| error.to_string())
 }
+
+/// Compiles every pass of the program on this browser's device. JSON: how many there are, and what the browser says of those
+/// that it refuses. With `broken`, one more is compiled that no device can accept.
+///
+/// # Errors
+/// Why there is no device, as words.
+pub async fn try_passes(broken: bool) -> Result<String, JsValue> {
+    let gpu =
+        Gpu::open_async(&DeviceRequest::Auto).await.map_err(|error| JsValue::from_str(&error.to_string()))?;
+    let mut passes = [splashdown_gpu::passes(), splashdown::passes()].concat();
+    if broken {
+        passes.push(&BROKEN);
+    }
+    let refused = refused_passes(&gpu, &passes).await;
+    let refused: Vec<String> = refused.iter().map(|error| format!("{:?}", error.to_string())).collect();
+    Ok(format!("{{\"passes\":{},\"refused\":[{}]}}", passes.len(), refused.join(",")))
+}
+
+/// Asks for more than any device has.
+static BROKEN: PassDesc = PassDesc {
+    label: "broken",
+    wgsl: "@compute @workgroup_size(1000000) fn broken() {}",
+    imports: &[],
+    entry: "broken",
+    workgroup_size: [1_000_000, 1, 1],
+    constants: &[],
+    bindings: &[],
+    cpu: |_, _| {},
+};
 
 /// Numbers about the running program, as JSON; empty before the first picture.
 pub fn figures() -> String {

@@ -11,7 +11,7 @@ use splashdown_render::{
 
 use crate::engine::{Opened, Snapshot};
 use crate::look::{Look, Way};
-use crate::stage;
+use crate::{pixels, stage};
 
 /// Colours as egui wants its textures.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -145,6 +145,13 @@ impl Picture {
     /// The texture drawn last, to be read, and its size in pixels.
     pub fn texture_drawn(&self) -> Option<(wgpu::Texture, [u32; 2])> {
         self.target.as_ref().map(|target| (target.texture.clone(), target.size))
+    }
+
+    /// The picture drawn last: 8-bit RGBA rows from the top; `None` before the first, or if the device is lost. Waits for the device.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn read(&self) -> Option<Vec<u8>> {
+        let (texture, size) = self.texture_drawn()?;
+        splashdown_gpu::block_on(pixels::read(Arc::clone(&self.gpu), texture, size))
     }
 
     fn place(&mut self, opened: &Opened, snapshot: &Snapshot) -> Result<(), RenderError> {

@@ -104,6 +104,8 @@ pub struct Figures {
     pub time: f64,
     /// Time step in s.
     pub dt: f32,
+    /// Whether the simulation's clock runs, as it says itself.
+    pub playing: bool,
     /// Particles.
     pub particles: u32,
     /// Mean height of the particles in m, now and then; NaN while unknown.
@@ -130,9 +132,10 @@ impl Figures {
         let mean_height =
             if self.mean_height.is_finite() { self.mean_height.to_string() } else { "null".into() };
         format!(
-            "{{\"time\":{},\"particles\":{},\"mean_height\":{mean_height},\"triangles\":{},\"frames_per_second\":{},\
+            "{{\"time\":{},\"playing\":{},\"particles\":{},\"mean_height\":{mean_height},\"triangles\":{},\"frames_per_second\":{},\
              \"steps_per_second\":{}}}",
             self.time,
+            self.playing,
             self.particles,
             self.triangles.unwrap_or(0),
             self.frames_per_second,
@@ -163,6 +166,8 @@ pub struct Shown {
     pub timings: bool,
     /// The side panel is hidden.
     pub bare: bool,
+    /// The window is too narrow for the side panel.
+    pub narrow: bool,
 }
 
 /// What the window knows and shows.

@@ -46,6 +46,15 @@ macro_rules! either {
     };
 }
 
+/// Compiles passes on a device and tells of those that it refuses: what works with one driver need not with another.
+pub async fn refused_passes(gpu: &crate::Gpu, passes: &[&'static crate::PassDesc]) -> Vec<GpuError> {
+    let mut refused = Vec::new();
+    for pass in passes {
+        refused.extend(pipeline::Pipeline::try_out(gpu, pass).await.err());
+    }
+    refused
+}
+
 impl Executor {
     /// An executor without buffers on the same device. It takes over the compiled passes; this one compiles again what it
     /// needs again.

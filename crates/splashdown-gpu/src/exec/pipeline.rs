@@ -24,6 +24,18 @@ impl Pipeline {
         Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
     }
 
+    /// Compiles a pass for the sake of what the device has to say about it.
+    pub async fn try_out(gpu: &Gpu, pass: &'static PassDesc) -> Result<(), GpuError> {
+        let source = wgsl::expand(pass.wgsl, pass.imports)
+            .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        Self::compile(&gpu.device, pass, &source);
+        match scope.pop().await {
+            Some(error) => Err(GpuError::BadShader { pass: pass.label, reason: error.to_string() }),
+            None => Ok(()),
+        }
+    }
+
     fn compile(
         device: &wgpu::Device,
         pass: &'static PassDesc,

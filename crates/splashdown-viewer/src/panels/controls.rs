@@ -104,7 +104,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
     });
     let mut tension = solver.surface_tension != SurfaceTension::None;
-    let box_of_tension = ui.checkbox(&mut tension, "surface tension").on_hover_text(
+    let box_of_tension = ui.checkbox(&mut tension, "with surface tension").on_hover_text(
         "Akinci, Akinci and Teschner 2013, or Müller, Charypar and Gross 2003: makes drops and films",
     );
     if box_of_tension.changed() {
@@ -192,7 +192,7 @@ fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
         for (text, hint, action) in [
             ("Picture", "Write the picture as PNG (T)", Action::Screenshot),
             ("Scene", "Write the scene as it is set now, for the command line (Ctrl + S)", Action::SaveScene),
-            ("Mesh", "Write the surface as a closed mesh, PLY", Action::SaveMesh),
+            ("Mesh", "Write the surface as a closed mesh, PLY (M)", Action::SaveMesh),
         ] {
             if ui.button(text).on_hover_text(hint).clicked() {
                 actions.push(action);

@@ -7,7 +7,7 @@ use crate::look::Way;
 use crate::state::{Action, State};
 
 /// What is written in the help, line by line.
-const LINES: [(&str, &str); 18] = [
+const LINES: [(&str, &str); 19] = [
     ("drag", "look round (with the tool Look)"),
     ("right or middle drag", "slide"),
     ("wheel, pinch", "come nearer, go away"),
@@ -24,6 +24,7 @@ const LINES: [(&str, &str); 18] = [
     ("G", "scenes"),
     ("Tab", "hide the controls, show them"),
     ("T", "write a picture"),
+    ("M", "write the surface as a mesh"),
     ("Ctrl + S", "write the scene as it is now"),
     ("H", "this help"),
 ];
@@ -44,6 +45,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
         (Key::T, Action::Screenshot),
+        (Key::M, Action::SaveMesh),
     ] {
         if pressed(key) {
             actions.push(action);

@@ -15,6 +15,9 @@ use crate::state::{Action, State};
 
 pub use viewport::Viewport;
 
+/// Windows narrower than this, in points, begin without controls.
+const NARROW: f32 = 700.0;
+
 /// All of the window. `picture` is the texture to show in the middle; the size that the next one should have comes back with what
 /// is to be done.
 pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
@@ -22,6 +25,11 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
     help::keys(ui.ctx(), state, &mut actions);
     Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, state, &mut actions));
     Panel::bottom("figures").show(ui, |ui| figures::show(ui, state));
+    // On a telephone the controls would leave nothing of the water.
+    let narrow = ui.max_rect().width() < NARROW;
+    if std::mem::replace(&mut state.shown.narrow, narrow) != narrow {
+        state.shown.bare = narrow;
+    }
     if !state.shown.bare {
         Panel::right("controls")
             .resizable(true)

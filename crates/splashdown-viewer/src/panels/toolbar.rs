@@ -43,6 +43,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             ui.selectable_value(&mut state.look.way, way, way.name()).on_hover_text(hint);
         }
         ui.separator();
+        let controls = if state.shown.bare { "Controls" } else { "Hide controls" };
+        if ui.button(controls).on_hover_text("Fluid, gravity, solver and more (Tab)").clicked() {
+            state.shown.bare = !state.shown.bare;
+        }
         if ui.button("Theme").on_hover_text("Light or dark").clicked() {
             actions.push(Action::SwapTheme);
         }

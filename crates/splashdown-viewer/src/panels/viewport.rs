@@ -37,7 +37,7 @@ pub(super) fn show(
     let drag = Vec2::new(drag.x, drag.y);
     let by = |button| response.dragged_by(button);
     if by(PointerButton::Secondary) || by(PointerButton::Middle) {
-        state.orbit.pan(drag, rect.height());
+        state.orbit.pan(drag, size_of(rect));
     }
     let tool = if ui.input(|input| input.modifiers.shift) { Tool::Hand } else { state.tool };
     let mut touched = None;
@@ -60,6 +60,10 @@ pub(super) fn show(
     Viewport { rect, size, touched }
 }
 
+fn size_of(rect: Rect) -> Vec2 {
+    Vec2::new(rect.width(), rect.height())
+}
+
 fn zoom(ui: &Ui, response: &Response, state: &mut State) {
     if !response.hovered() {
         return;
@@ -68,13 +72,13 @@ fn zoom(ui: &Ui, response: &Response, state: &mut State) {
     state.orbit.zoom((0.002 * scroll).exp() * pinch);
     if let Some(touch) = ui.input(egui::InputState::multi_touch) {
         let slide = touch.translation_delta;
-        state.orbit.pan(Vec2::new(slide.x, slide.y), response.rect.height());
+        state.orbit.pan(Vec2::new(slide.x, slide.y), size_of(response.rect));
     }
 }
 
 /// The hand follows the mouse in the plane through the camera's target, or the held body's distance.
 fn hand(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
-    let size = Vec2::new(response.rect.width(), response.rect.height());
+    let size = size_of(response.rect);
     let place = response.interact_pointer_pos().map(|at| at - response.rect.min);
     let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) else {
         if state.hand.take().is_some() {
@@ -124,8 +128,7 @@ fn shake(ui: &Ui, response: &Response, drag: Vec2, state: &mut State, actions: &
         return;
     }
     let [right, up, _] = state.orbit.axes();
-    let scale = 2.0 * state.orbit.distance * (0.5 * state.orbit.field_of_view).to_radians().tan()
-        / response.rect.height().max(1.0);
+    let scale = state.orbit.metres_per_point(size_of(response.rect));
     state.shaken += scale * (drag.x * right - drag.y * up);
     let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.1);
     // What is left to go fades; the box accelerates towards where the mouse has been.

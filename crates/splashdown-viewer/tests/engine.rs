@@ -1,0 +1,121 @@
+//! The engine beside a window that is not there: what it is told to do, it does, on software Vulkan.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use splashdown::scene::Scene;
+use splashdown_gpu::{Gpu, testing};
+use splashdown_render::Camera;
+use splashdown_viewer::engine::{Command, Engine, Message, Simulate, Snapshot};
+use splashdown_viewer::look::{Look, Way};
+use splashdown_viewer::picture::Picture;
+
+const SCENE: &str = r#"
+[scene]
+name = "small"
+duration = 2
+[domain]
+min = [0, 0, 0]
+max = [1, 0.6, 0.3]
+[fluid]
+particle_spacing = 0.05
+[[fluid.block]]
+position = [0, 0, 0]
+size = [0.4, 0.4, 0.3]
+[solver]
+sound_speed = 10
+"#;
+
+fn scene() -> Scene {
+    Scene::parse(SCENE, "small.toml").unwrap()
+}
+
+/// The first snapshot that is as wanted, and everything told until then.
+fn until(engine: &mut Engine, wanted: impl Fn(&Snapshot) -> bool) -> (Arc<Snapshot>, Vec<Message>) {
+    let (begun, mut told) = (Instant::now(), Vec::new());
+    loop {
+        told.extend(engine.take_messages());
+        if let Some(snapshot) = engine.snapshot().filter(|snapshot| wanted(snapshot)) {
+            return (snapshot, told);
+        }
+        engine.picture_drawn();
+        assert!(begun.elapsed() < Duration::from_secs(60), "no such snapshot");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn start(gpu: &Arc<Gpu>, simulate: Simulate) -> Engine {
+    let engine = Engine::start(Arc::clone(gpu), simulate, || {});
+    engine.send(Command::Open(Box::new(scene())));
+    engine
+}
+
+#[test]
+fn it_plays_pauses_steps_and_begins_anew() {
+    let Some(gpu) = testing::gpu_or_skip("it_plays_pauses_steps_and_begins_anew") else { return };
+    for simulate in [Simulate::OnCpu, Simulate::WhereDrawn] {
+        let mut engine = start(&gpu, simulate);
+        let (first, _) = until(&mut engine, |_| true);
+        assert_eq!((first.stats.time, first.stats.particles), (0.0, 8 * 8 * 6));
+        engine.send(Command::Play(true));
+        until(&mut engine, |now| now.stats.time > 0.02);
+        engine.send(Command::Play(false));
+        let (paused, _) = until(&mut engine, |now| !now.playing);
+        std::thread::sleep(Duration::from_millis(100));
+        assert_eq!(engine.snapshot().unwrap().stats.time, paused.stats.time);
+        engine.send(Command::Advance(0.01));
+        let (stepped, _) = until(&mut engine, |now| now.stats.time > paused.stats.time);
+        assert!((stepped.stats.time - paused.stats.time - 0.01).abs() < 1e-4);
+        engine.send(Command::Reset);
+        let (reset, _) = until(&mut engine, |now| now.stats.time == 0.0);
+        assert!(reset.number > stepped.number);
+    }
+}
+
+#[test]
+fn a_failure_is_told_and_the_next_scene_runs() {
+    let Some(gpu) = testing::gpu_or_skip("a_failure_is_told_and_the_next_scene_runs") else { return };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    until(&mut engine, |_| true);
+    let mut broken = scene();
+    broken.domain.max = Vec3::splat(1e6);
+    engine.send(Command::Open(Box::new(broken)));
+    engine.send(Command::Play(true));
+    engine.send(Command::Open(Box::new(scene())));
+    engine.send(Command::Play(true));
+    let (_, told) = until(&mut engine, |now| now.stats.time > 0.01);
+    assert!(told.iter().any(|message| matches!(message, Message::Failed(text) if text.contains("cells"))));
+}
+
+/// Width, height and grey mean of what is drawn.
+fn picture(gpu: &Arc<Gpu>, engine: &Engine, way: Way) -> Vec<u8> {
+    let mut picture = Picture::new(Arc::clone(gpu)).unwrap();
+    let (opened, snapshot) = (engine.opened().unwrap(), engine.snapshot().unwrap());
+    let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
+    let look = Look { way, ..Look::default() };
+    picture.draw([160, 90], &opened, &snapshot, &look, camera).unwrap();
+    picture.read().unwrap()
+}
+
+#[test]
+fn every_way_shows_the_water() {
+    let Some(gpu) = testing::gpu_or_skip("every_way_shows_the_water") else { return };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    engine.send(Command::Surface(true));
+    until(&mut engine, |now| now.drawn.mesh().is_some());
+    let pictures: Vec<_> = Way::ALL.into_iter().map(|way| picture(&gpu, &engine, way)).collect();
+    let differing = |a: &[u8], b: &[u8]| {
+        a.chunks_exact(4)
+            .zip(b.chunks_exact(4))
+            .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24))
+            .count()
+    };
+    for (i, a) in pictures.iter().enumerate() {
+        for (j, b) in pictures.iter().enumerate().skip(i + 1) {
+            assert!(differing(a, b) > 100, "{:?} and {:?} look alike", Way::ALL[i], Way::ALL[j]);
+        }
+        // Control: the same way twice.
+        assert_eq!(differing(a, &picture(&gpu, &engine, Way::ALL[i])), 0);
+    }
+}

@@ -1,0 +1,166 @@
+//! The panels as a person uses them, without a device: what is clicked, typed and dragged becomes the right action.
+
+use egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::Vec3;
+use splashdown::scene::{ColourBy, Method, Scene, presets};
+use splashdown_viewer::look::Way;
+use splashdown_viewer::panels;
+use splashdown_viewer::state::{Action, State, Tool};
+
+type Both = (State, Vec<Action>);
+
+fn window(size: [f32; 2]) -> Harness<'static, Both> {
+    let (name, text) = presets()[1];
+    let state = State::new(Scene::parse(text, name).unwrap());
+    let show = |ui: &mut egui::Ui, (state, all): &mut Both| {
+        let (_, actions) = panels::show(ui, state, None);
+        all.extend(actions);
+    };
+    let mut window =
+        Harness::builder().with_size(vec2(size[0], size[1])).build_ui_state(show, (state, Vec::new()));
+    window.run_steps(3);
+    window
+}
+
+fn wide() -> Harness<'static, Both> {
+    window([1280.0, 800.0])
+}
+
+fn actions(window: &mut Harness<'_, Both>) -> Vec<Action> {
+    window.run_steps(3);
+    std::mem::take(&mut window.state_mut().1)
+}
+
+#[test]
+fn buttons_do_what_they_say() {
+    let mut window = wide();
+    assert_eq!(actions(&mut window), []);
+    for (label, action) in [
+        ("Pause", Action::Play(false)),
+        ("Step", Action::Step),
+        ("Reset", Action::Reset),
+        ("Drop a ball", Action::DropBall),
+        ("Open the tap", Action::Pour),
+        ("Picture", Action::Screenshot),
+        ("Scene", Action::SaveScene),
+        ("Theme", Action::SwapTheme),
+    ] {
+        window.get_by_label(label).click();
+        assert_eq!(actions(&mut window), [action], "{label}");
+    }
+    window.get_by_label("Hand").click();
+    window.get_by_label("Particles").click();
+    window.run_steps(2);
+    assert_eq!((window.state().0.tool, window.state().0.look.way), (Tool::Hand, Way::Particles));
+    window.get_by_label("density").click();
+    window.run_steps(2);
+    assert_eq!(window.state().0.look.colour_by, ColourBy::Density);
+}
+
+#[test]
+fn keys_do_what_the_help_says() {
+    let mut window = wide();
+    for (key, action) in [
+        (Key::Space, Action::Play(false)),
+        (Key::Period, Action::Step),
+        (Key::R, Action::Reset),
+        (Key::B, Action::DropBall),
+        (Key::P, Action::Pour),
+        (Key::T, Action::Screenshot),
+        (Key::M, Action::SaveMesh),
+    ] {
+        window.key_press(key);
+        assert_eq!(actions(&mut window), [action], "{key:?}");
+    }
+    window.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    assert_eq!(actions(&mut window), [Action::SaveScene]);
+    // The help opens and closes, and lists the keys above.
+    assert!(window.query_by_label("drop a ball").is_none());
+    window.key_press(Key::H);
+    window.run_steps(3);
+    assert!(window.query_by_label("drop a ball").is_some());
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    assert!(!window.state().0.shown.help);
+    for (number, way) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().zip(Way::ALL) {
+        window.key_press(number);
+        window.run_steps(2);
+        assert_eq!(window.state().0.look.way, way);
+    }
+}
+
+#[test]
+fn the_solver_is_changed_and_its_models_follow() {
+    let mut window = wide();
+    window.get_by_label("with surface tension").click();
+    let told = actions(&mut window);
+    assert_eq!(told, [Action::Change]);
+    let before = window.state().0.scene.solver.clone();
+    window.get_by_label("method").click();
+    window.run_steps(3);
+    window.get_by_label("mueller2003 (the thesis's)").click();
+    assert_eq!(actions(&mut window), [Action::Change]);
+    let after = &window.state().0.scene.solver;
+    assert_eq!(after.method, Method::Mueller2003);
+    assert_ne!(after.surface_tension, before.surface_tension);
+    assert_eq!(after.exponent, 1.0);
+}
+
+#[test]
+fn dragging_turns_the_view_and_the_hand_stirs() {
+    let mut window = wide();
+    let drag = |window: &mut Harness<'_, Both>| {
+        window.drag_at(egui::pos2(300.0, 300.0));
+        window.run_steps(2);
+        for step in 1..=4 {
+            window.hover_at(egui::pos2(300.0 + 15.0 * step as f32, 300.0 + 5.0 * step as f32));
+            window.run_steps(1);
+        }
+    };
+    let before = window.state().0.orbit;
+    drag(&mut window);
+    window.drop_at(egui::pos2(360.0, 320.0));
+    assert_eq!(actions(&mut window), []);
+    let after = window.state().0.orbit;
+    assert!(after.azimuth != before.azimuth && after.elevation > before.elevation, "{after:?}");
+
+    window.state_mut().0.tool = Tool::Hand;
+    drag(&mut window);
+    let stirred = actions(&mut window);
+    let Some(Action::Stir { velocity, .. }) = stirred
+        .iter()
+        .find(|action| matches!(action, Action::Stir { velocity, .. } if *velocity != Vec3::ZERO))
+    else {
+        panic!("{stirred:?}")
+    };
+    // To the right of the picture.
+    assert!(velocity.dot(after.axes()[0]) > 0.0, "{velocity}");
+    window.drop_at(egui::pos2(360.0, 320.0));
+    assert!(actions(&mut window).contains(&Action::LetGo));
+    assert_eq!(window.state().0.orbit, after, "the hand turned the camera");
+}
+
+#[test]
+fn a_narrow_window_begins_with_the_water() {
+    let mut window = window([400.0, 700.0]);
+    assert!(window.state().0.shown.bare);
+    assert!(window.query_by_label("Drop a ball").is_none());
+    window.get_by_label("Controls").click();
+    window.run_steps(3);
+    assert!(window.query_by_label("Drop a ball").is_some());
+}
+
+#[test]
+fn bad_news_stay_and_notes_go() {
+    let mut window = wide();
+    window.state_mut().0.tell("nothing is left", true, 0.0);
+    window.state_mut().0.tell("the picture is in a.png", false, -100.0);
+    window.run_steps(3);
+    assert!(window.query_by_label("nothing is left").is_some());
+    assert!(window.query_by_label("the picture is in a.png").is_none());
+    window.get_by_label("close").click();
+    window.run_steps(3);
+    assert!(window.query_by_label("nothing is left").is_none());
+}

@@ -1,0 +1,162 @@
+// The page as a person uses it, in a real Chromium: node page.mjs ADDRESS CHROMIUM PICTURE
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { chromium } from "playwright-core";
+
+const [address, executablePath, picture] = process.argv.slice(2);
+// Software Vulkan beneath WebGPU, and a canvas that shows something.
+const args = ["--headless=new", "--no-sandbox", "--enable-unsafe-webgpu", "--enable-features=Vulkan",
+  "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--disable-background-networking",
+  "--disable-component-update", "--no-first-run"];
+const browser = await chromium.launch({ executablePath, headless: false, args });
+const scene = `
+[scene]
+name = "small"
+duration = 2
+[domain]
+min = [0, 0, 0]
+max = [1, 0.6, 0.3]
+[fluid]
+particle_spacing = 0.05
+[[fluid.block]]
+position = [0, 0, 0]
+size = [0.4, 0.4, 0.3]
+[solver]
+sound_speed = 10
+`;
+
+async function open(path, prepare = async () => {}) {
+  const page = await browser.newPage({ viewport: { width: 720, height: 420 }, acceptDownloads: true });
+  const errors = [];
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  page.on("pageerror", (error) => errors.push(String(error)));
+  await prepare(page);
+  await page.goto(address + path);
+  return { page, errors };
+}
+
+async function until(what, seconds, look) {
+  const end = Date.now() + 1000 * seconds;
+  let last;
+  while (Date.now() < end) {
+    last = await look();
+    if (last) return last;
+    await new Promise((resolve) => setTimeout(resolve, 200));
+  }
+  assert.fail(`${what} did not happen within ${seconds} s`);
+}
+
+const figures = (page) => page.evaluate(() => window.splashdown?.figures());
+
+async function runs() {
+  const { page, errors } = await open("#toml=" + encodeURIComponent(scene));
+  const before = await until("a first height", 60, async () => {
+    const now = await figures(page).catch(() => undefined);
+    return now?.mean_height ? now : undefined;
+  });
+  assert.equal(before.particles, 8 * 8 * 6);
+  const after = await until("a fall of the water", 60, async () => {
+    const now = await figures(page);
+    return now.mean_height < before.mean_height - 0.005 ? now : undefined;
+  });
+  assert(after.time > before.time);
+  assert.equal(after.particles, before.particles);
+
+  // A drag turns the picture, and a click on Pause stops the clock.
+  const clip = { x: 40, y: 80, width: 320, height: 240 };
+  await page.keyboard.press("Space");
+  const paused = await until("a pause", 20, async () => {
+    const now = await figures(page);
+    return now.playing ? undefined : now;
+  });
+  await page.mouse.move(360, 300);
+  await new Promise((resolve) => setTimeout(resolve, 1500));
+  const still = await page.screenshot({ clip });
+  await new Promise((resolve) => setTimeout(resolve, 1000));
+  assert(still.equals(await page.screenshot({ clip })), "nothing moves, and the picture does");
+  await page.mouse.move(150, 200);
+  await page.mouse.down();
+  await page.mouse.move(230, 220, { steps: 4 });
+  await page.mouse.up();
+  await page.mouse.move(360, 300);
+  await new Promise((resolve) => setTimeout(resolve, 1500));
+  assert(!still.equals(await page.screenshot({ clip })), "a drag did not turn the picture");
+  assert.equal((await figures(page)).time, paused.time);
+
+  // The mesh that is downloaded is a PLY with as many triangles as it says.
+  const download = page.waitForEvent("download", { timeout: 60_000 });
+  await page.keyboard.press("m");
+  const file = await (await download).path();
+  const ply = fs.readFileSync(file);
+  closed(ply);
+
+  // The surface is drawn, and the picture of it kept for whoever looks.
+  await page.keyboard.press("3");
+  await until("a surface", 60, async () => (await figures(page)).triangles > 100);
+  await new Promise((resolve) => setTimeout(resolve, 1500));
+  await page.screenshot({ path: picture });
+  assert.deepEqual(errors, []);
+  await page.close();
+}
+
+// Every edge twice, in opposite senses: by nothing of ours.
+function closed(ply) {
+  const end = ply.indexOf("end_header\n") + "end_header\n".length;
+  const header = ply.subarray(0, end).toString();
+  const count = (name) => Number(header.match(new RegExp(`element ${name} (\\d+)`))[1]);
+  const properties = header.split("element face")[0].match(/property float/g).length;
+  const [vertices, triangles] = [count("vertex"), count("face")];
+  assert(vertices > 50 && triangles > 100, `${vertices} vertices, ${triangles} triangles`);
+  const edges = new Map();
+  let at = end + vertices * properties * 4;
+  for (let t = 0; t < triangles; t++) {
+    assert.equal(ply[at], 3);
+    const v = [0, 1, 2].map((k) => ply.readUInt32LE(at + 1 + 4 * k));
+    for (let k = 0; k < 3; k++) {
+      const edge = `${v[k]},${v[(k + 1) % 3]}`;
+      assert(!edges.has(edge), `edge ${edge} twice`);
+      edges.set(edge, true);
+    }
+    at += 13;
+  }
+  assert.equal(at, ply.length);
+  for (const edge of edges.keys()) {
+    assert(edges.has(edge.split(",").reverse().join(",")), `edge ${edge} has no other side`);
+  }
+}
+
+async function compilesEveryPass() {
+  const { page } = await open("#toml=" + encodeURIComponent(scene));
+  await until("the start", 60, () => page.evaluate(() => !!window.splashdown));
+  const sound = await page.evaluate(() => window.splashdown.tryPasses(false));
+  assert(sound.passes > 60, `only ${sound.passes} passes`);
+  assert.deepEqual(sound.refused, []);
+  // Control: one that no device accepts.
+  const broken = await page.evaluate(() => window.splashdown.tryPasses(true));
+  assert.equal(broken.passes, sound.passes + 1);
+  assert.equal(broken.refused.length, 1);
+  assert.match(broken.refused[0], /broken/);
+  await page.close();
+  return sound.passes;
+}
+
+async function saysWhatIsMissing() {
+  const hide = (page) => page.addInitScript(() => Object.defineProperty(navigator, "gpu", { value: undefined }));
+  const { page } = await open("", hide);
+  await until("a message", 20, () => page.evaluate(() => document.body.innerText.includes("has no WebGPU")));
+  await page.close();
+  const wrong = await open("?scene=no-such-scene");
+  await until("a message", 60, () => wrong.page.evaluate(() => document.body.innerText.includes("there is no scene")));
+  await wrong.page.close();
+}
+
+try {
+  const begun = Date.now();
+  await runs();
+  console.log("ok: runs, is dragged and paused, hands out a closed mesh");
+  console.log(`ok: ${await compilesEveryPass()} passes compile`);
+  await saysWhatIsMissing();
+  console.log(`ok: says what is missing (${((Date.now() - begun) / 1000).toFixed(0)} s in all)`);
+} finally {
+  await browser.close();
+}

@@ -1,0 +1,56 @@
+//! The web page in a real browser.
+
+use std::thread;
+
+use anyhow::{Result, ensure};
+
+use crate::layers::Outcome;
+use crate::process::{self, command, say};
+use crate::{serve, setup, web};
+
+/// Names under which Chromium goes.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+const PACKAGES: [&str; 3] = ["chromium", "nodejs", "npm"];
+
+/// Builds the page and uses it as a person would; skipped only where there is no browser and none can be installed.
+pub fn test() -> Result<Outcome> {
+    let mut browser = browser();
+    let missing = |browser: Option<&str>| browser.is_none() || !process::exists("npm", "--version");
+    if missing(browser) && setup::can_install() {
+        say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
+        if let Err(error) = setup::install(&PACKAGES) {
+            say(format!("WARNING: the installation failed: {error:#}. Is there a network?"));
+        }
+        browser = self::browser();
+    }
+    let Some(browser) = browser.filter(|_| !missing(browser)) else {
+        let reason =
+            "it needs Chromium, node and npm (Debian and Ubuntu: `apt-get install chromium nodejs npm`)";
+        return Ok(Outcome::Skipped(reason.to_owned()));
+    };
+    let folder = web::build()?;
+    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    let install =
+        ["install", "--prefix", "web/test", "--no-package-lock", "--no-audit", "--no-fund", "--silent"];
+    process::run(command(npm).args(install))?;
+    let server = serve::Server::new(&folder, 0)?;
+    let address = server.address();
+    thread::Builder::new().name("server".to_owned()).spawn(move || server.serve())?;
+    let picture = process::target().join("page.png");
+    let mut test = command("node");
+    test.args(["web/test/page.mjs", &address, &which(browser)?]).arg(&picture);
+    process::run(&mut test)?;
+    say(format!("The page as it was seen is in {}.", picture.display()));
+    Ok(Outcome::Passed)
+}
+
+fn browser() -> Option<&'static str> {
+    BROWSERS.into_iter().find(|name| process::exists(name, "--version"))
+}
+
+/// The path of a program: Playwright wants no mere name.
+fn which(program: &str) -> Result<String> {
+    let output = command("which").arg(program).output()?;
+    ensure!(output.status.success(), "`which {program}` finds nothing");
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}

@@ -1,0 +1,87 @@
+//! The web page: built into `target/page`, served to this machine alone.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::process::{self, cargo, command, say};
+use crate::serve;
+
+/// What the page may weigh, compressed, in bytes.
+const BUDGET: u64 = 5_000_000;
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// The word `web`: `--build` only builds, `--port N` serves there.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let mut port = 8080;
+    let mut only_build = false;
+    let mut arguments = arguments.iter();
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--build" => only_build = true,
+            "--port" => {
+                let value = arguments.next().context("--port needs a number")?;
+                port = value
+                    .parse()
+                    .with_context(|| format!("--port {value:?} is no number from 0 to 65535"))?;
+            }
+            other => bail!("web takes --build or --port N, got {other}"),
+        }
+    }
+    let folder = build()?;
+    if only_build {
+        return Ok(());
+    }
+    let server = serve::Server::new(&folder, port)?;
+    say(format!("Splashdown is at {} (Ctrl-C ends it)", server.address()));
+    server.serve()
+}
+
+/// Builds the page; where it is.
+pub fn build() -> Result<PathBuf> {
+    let added = command("rustup").args(["target", "add", TARGET]).output().context("cannot start rustup")?;
+    ensure!(
+        added.status.success(),
+        "`rustup target add {TARGET}` failed: {}",
+        String::from_utf8_lossy(&added.stderr).trim()
+    );
+    say("Building the page ...");
+    process::run(&mut cargo([
+        "build",
+        "--package",
+        "splashdown-web",
+        "--target",
+        TARGET,
+        "--profile",
+        "web",
+    ]))?;
+    let target = process::target();
+    let folder = target.join("page");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let module = target.join(TARGET).join("web/splashdown_web.wasm");
+    let mut bindgen = cargo(["run", "--quiet", "--package", "splashdown-bindgen", "--"]);
+    process::run(bindgen.arg(&module).arg(&folder))?;
+    fs::copy(process::root().join("web/index.html"), folder.join("index.html"))?;
+    weigh(&folder)?;
+    Ok(folder)
+}
+
+/// Compresses what is fetched, as a server would, and holds it against the budget.
+fn weigh(folder: &Path) -> Result<()> {
+    let mut sum = 0;
+    for name in ["splashdown_web_bg.wasm", "splashdown_web.js", "index.html"] {
+        let file = folder.join(name);
+        let packed = Command::new("gzip").args(["-9", "--stdout"]).arg(&file).output();
+        let bytes = match packed {
+            Ok(output) if output.status.success() => output.stdout.len() as u64,
+            // Without gzip the whole file counts.
+            _ => fs::metadata(&file)?.len(),
+        };
+        say(format!("  {name}: {:.2} MB compressed", bytes as f64 / 1e6));
+        sum += bytes;
+    }
+    ensure!(sum <= BUDGET, "the page weighs {sum} bytes compressed, allowed are {BUDGET}");
+    Ok(())
+}
