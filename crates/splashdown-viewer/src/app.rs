@@ -10,9 +10,11 @@ use splashdown::scene::{Scene, presets};
 use splashdown_gpu::Gpu;
 
 use crate::ViewerError;
+use crate::camera::Orbit;
 use crate::edit;
 use crate::engine::{Command, Engine, Message, Simulate, Snapshot};
 use crate::keep;
+use crate::look::Look;
 use crate::panels;
 use crate::pick;
 use crate::picture::Picture;
@@ -36,6 +38,24 @@ pub struct Viewer {
     /// What the scene file said, for saving.
     text: String,
     seen: Seen,
+    drawn: Option<Drawn>,
+    /// The picture's size in pixels at full resolution.
+    size: [u32; 2],
+}
+
+/// What the picture shows.
+struct Drawn {
+    snapshot: Arc<Snapshot>,
+    size: [u32; 2],
+    look: Look,
+    camera: Orbit,
+}
+
+impl Drawn {
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.snapshot, &other.snapshot)
+            && (self.size, self.look, self.camera) == (other.size, other.look, other.camera)
+    }
 }
 
 /// What has been sent to the engine, or come from it.
@@ -79,6 +99,8 @@ impl Viewer {
             state: State::new(scene),
             text,
             seen: Seen::default(),
+            drawn: None,
+            size: [1, 1],
         };
         viewer.restart();
         Ok(viewer)
@@ -99,6 +121,7 @@ impl Viewer {
         }
         self.ask_for_what_is_shown();
         // A software driver draws as many pixels as it can while the water moves, and all of them when it stands still.
+        self.size = viewport.size;
         let coarse = self.gpu.is_software() && self.state.playing;
         let size = viewport.size.map(|side| if coarse { side.div_ceil(2) } else { side });
         self.draw(size, render_state, &ctx);
@@ -131,6 +154,7 @@ impl Viewer {
     fn open(&mut self, scene: Scene, text: String) {
         self.state.open(scene);
         self.text = text;
+        self.engine.send(Command::Hand(None));
         self.restart();
     }
 
@@ -144,10 +168,7 @@ impl Viewer {
                     Err(error) => self.state.tell(error.to_string(), true, now),
                 }
             }
-            Action::Restart => {
-                self.state.upright = self.state.scene.gravity;
-                self.restart();
-            }
+            Action::Restart => self.restart(),
             Action::Change => self.change(),
             Action::Play(playing) => {
                 self.state.playing = playing;
@@ -158,8 +179,15 @@ impl Viewer {
                 self.engine.send(Command::Advance(self.state.scene.frame_duration()));
             }
             Action::Reset => {
-                self.engine.send(Command::Reset);
-                self.engine.send(Command::Play(self.state.playing));
+                let source = self.state.scene.source.clone();
+                let name = source
+                    .as_ref()
+                    .map_or_else(|| self.state.scene.name.clone(), |path| path.display().to_string());
+                let text = self.text.clone();
+                match Scene::parse(&text, &name) {
+                    Ok(scene) => self.open(Scene { source, ..scene }, text),
+                    Err(error) => self.state.tell(error.to_string(), true, now),
+                }
             }
             Action::TimeScale => self.engine.send(Command::TimeScale(self.state.time_scale.into())),
             Action::Stir { ray, velocity } => {
@@ -175,7 +203,11 @@ impl Viewer {
                 self.engine.send(Command::Hand(None));
                 self.engine.send(Command::Grip(None));
             }
-            Action::Grip(grip) => self.engine.send(Command::Grip(Some(grip))),
+            Action::Grip(mut grip) => {
+                let domain = &self.state.scene.domain;
+                grip.target = grip.target.clamp(domain.min, domain.max);
+                self.engine.send(Command::Grip(Some(grip)));
+            }
             Action::DropBall => {
                 edit::add_ball(&mut self.state.scene);
                 self.change();
@@ -207,6 +239,7 @@ impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
     fn screenshot(&mut self, now: f64) {
         let name = format!("{}.png", self.state.scene.name);
+        self.draw_in_full();
         let size = self.picture.texture_drawn().map_or([0, 0], |(_, size)| size);
         let picture = self.picture.read().ok_or_else(|| "the device did not hand it out".to_owned());
         let kept = picture.and_then(|rgba| keep::png(&name, size, rgba));
@@ -216,6 +249,7 @@ impl Viewer {
     /// The page gets the picture when the browser has it.
     #[cfg(target_arch = "wasm32")]
     fn screenshot(&mut self, now: f64) {
+        self.draw_in_full();
         let Some((texture, size)) = self.picture.texture_drawn() else { return };
         let (gpu, name) = (Arc::clone(&self.gpu), format!("{}.png", self.state.scene.name));
         self.state.tell(format!("the picture is in your downloads, as {name}"), false, now);
@@ -227,8 +261,19 @@ impl Viewer {
         });
     }
 
+    /// Draws with all pixels what is shown with fewer while the water moves. The next picture of the window is drawn anew.
+    fn draw_in_full(&mut self) {
+        let Some(drawn) = self.drawn.take() else { return };
+        let aspect = self.size[0] as f32 / self.size[1] as f32;
+        // An error of this picture was told when it was drawn for the window.
+        let _ = self.picture.draw(self.size, &drawn.snapshot, &drawn.look, drawn.camera.camera(aspect));
+    }
+
     fn save_scene(&mut self, now: f64) {
-        let name = format!("{}.toml", self.state.scene.name);
+        // Beside the file that it came from: its meshes are named from there.
+        let folder = self.state.scene.source.as_deref().and_then(std::path::Path::parent);
+        let name = folder.unwrap_or(std::path::Path::new("")).join(format!("{}.toml", self.state.scene.name));
+        let name = name.to_string_lossy().into_owned();
         let kept = save::scene(&self.text, &self.state.scene, &self.state.orbit)
             .and_then(|text| keep::text(&name, &text));
         self.tell_kept("the scene", kept, now);
@@ -264,6 +309,11 @@ impl Viewer {
                 Message::Failed(text) => {
                     self.state.playing = false;
                     self.state.preparing = None;
+                    self.back_to_what_runs();
+                    self.state.tell(text, true, now);
+                }
+                Message::Refused(text) => {
+                    self.back_to_what_runs();
                     self.state.tell(text, true, now);
                 }
                 Message::Stopped => {
@@ -298,21 +348,36 @@ impl Viewer {
         figures.timings = Arc::clone(&snapshot.timings);
         figures.timed_steps = snapshot.timed_steps;
         figures.mean_height = snapshot.mean_height;
-        if let Some(opened) = self.engine.opened() {
-            figures.memory = opened.memory;
-            figures.device.clone_from(&opened.device);
+        figures.memory = snapshot.opened.memory;
+        figures.device.clone_from(&snapshot.opened.device);
+    }
+
+    /// Forgets changes that were not accepted.
+    fn back_to_what_runs(&mut self) {
+        if let Some(snapshot) = self.engine.snapshot() {
+            self.state.scene = snapshot.opened.scene.clone();
+            self.state.pouring = edit::has_tap(&self.state.scene);
         }
     }
 
     /// The hand takes what the ray meets first: a free body by the point, else the water.
     fn take_hold(&mut self, ray: (Vec3, Vec3)) {
-        let (Some(opened), Some(snapshot)) = (self.engine.opened(), self.engine.snapshot()) else { return };
-        if let Some((grip, distance)) = pick::body(&opened, &snapshot.bodies, ray) {
+        let Some(snapshot) = self.engine.snapshot() else { return };
+        if let Some((grip, distance)) = pick::body(&snapshot.opened, &snapshot.bodies, ray) {
             self.state.grip = Some((grip, distance));
             self.engine.send(Command::Grip(Some(grip)));
         }
     }
 
+    #[cfg(target_arch = "wasm32")]
+    fn dropped_files(&mut self, ctx: &Context) {
+        if ctx.input(|input| !input.raw.dropped_files.is_empty()) {
+            let now = ctx.input(|input| input.time);
+            self.state.tell("a page takes no files yet; the desktop's `splashdown view` does", true, now);
+        }
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
     fn dropped_files(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         let files = ctx.input(|input| input.raw.dropped_files.clone());
@@ -342,17 +407,23 @@ impl Viewer {
     }
 
     fn draw(&mut self, size: [u32; 2], render_state: &RenderState, ctx: &Context) {
-        let (Some(opened), Some(snapshot)) = (self.engine.opened(), self.engine.snapshot()) else { return };
+        let Some(snapshot) = self.engine.snapshot() else { return };
         let mut camera = self.state.orbit;
-        camera.target -= self.state.shaken;
+        camera.target -= self.state.shaking.map_or(Vec3::ZERO, |shaking| shaking.offset);
+        // A picture of what was drawn last is there already.
+        let shown = Drawn { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.is(&shown)) {
+            return;
+        }
         let aspect = size[0] as f32 / size[1] as f32;
         let before = self.picture.view().cloned();
-        let drawn = self.picture.draw(size, &opened, &snapshot, &self.state.look, camera.camera(aspect));
+        let drawn = self.picture.draw(size, &snapshot, &self.state.look, camera.camera(aspect));
         if let Err(error) = drawn {
             let now = ctx.input(|input| input.time);
             self.state.tell(error.to_string(), true, now);
             return;
         }
+        self.drawn = Some(shown);
         let Some(view) = self.picture.view() else { return };
         if self.texture.is_some() && before.as_ref() == Some(view) {
             return;

@@ -9,6 +9,8 @@ use splashdown::scene::{Body, BoundaryKind, Emitter, MeshShape, MeshSource, Moti
 const BUOYANT: f32 = 0.5;
 /// Size of what is thrown in, over the smallest edge of the box.
 const SIZE: f32 = 0.2;
+/// How long a tap can run, in s.
+const TAP_TIME: f32 = 60.0;
 /// The tap's name.
 const TAP: &str = "tap";
 
@@ -45,6 +47,9 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     let radius = (0.08 * size.min_element()).max(2.5 * spacing);
     let top = scene.domain.max.y - 3.0 * spacing;
     let center = scene.domain.center();
+    // Room for what it pours is made beforehand, for as long as the scene lasts.
+    scene.duration = scene.duration.max(TAP_TIME);
+    let most = (2 * splashdown::sample::count(scene)).clamp(20_000, 500_000) as u32;
     scene.emitters.push(Emitter {
         name: TAP.to_owned(),
         outlet: Outlet::Disc { radius },
@@ -53,9 +58,14 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
         speed: (0.25 * size.y * 9.81).sqrt(),
         start: 0.0,
         end: None,
-        max_particles: None,
+        max_particles: Some(most),
     });
     true
+}
+
+/// True if a tap is open.
+pub fn has_tap(scene: &Scene) -> bool {
+    scene.emitters.iter().any(|emitter| emitter.name == TAP)
 }
 
 fn thrown_size(scene: &Scene) -> f32 {

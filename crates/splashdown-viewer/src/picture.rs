@@ -9,7 +9,7 @@ use splashdown_render::{
     PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 
-use crate::engine::{Opened, Snapshot};
+use crate::engine::Snapshot;
 use crate::look::{Look, Way};
 use crate::{pixels, stage};
 
@@ -63,17 +63,16 @@ impl Picture {
     pub fn draw(
         &mut self,
         size: [u32; 2],
-        opened: &Opened,
         snapshot: &Snapshot,
         look: &Look,
         camera: Camera,
     ) -> Result<(), RenderError> {
-        self.place(opened, snapshot)?;
+        self.place(snapshot)?;
         if self.target.as_ref().is_none_or(|target| target.size != size) {
             self.target = Some(self.texture(size));
         }
         let Some(target) = &self.target else { return Ok(()) };
-        let scene = &opened.scene;
+        let scene = &snapshot.opened.scene;
         let colouring = Colouring { map: look.map, ..stage::colouring(scene, look.colour_by) };
         let drawn = &snapshot.drawn;
         let balls = || DrawnParticles {
@@ -154,7 +153,8 @@ impl Picture {
         splashdown_gpu::block_on(pixels::read(Arc::clone(&self.gpu), texture, size))
     }
 
-    fn place(&mut self, opened: &Opened, snapshot: &Snapshot) -> Result<(), RenderError> {
+    fn place(&mut self, snapshot: &Snapshot) -> Result<(), RenderError> {
+        let opened = &snapshot.opened;
         if self.stage.as_ref().is_none_or(|stage| stage.number != opened.number) {
             let bodies = opened.bodies.iter().map(|body| {
                 let colour = body.colour.unwrap_or(PlacedBody::COLOUR);

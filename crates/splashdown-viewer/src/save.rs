@@ -43,6 +43,7 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
             }
         }
     };
+    set("scene", "duration", old.duration != new.duration, number(new.duration));
     set("scene", "gravity", old.gravity != new.gravity, vector(new.gravity));
     let (a, b) = (&old.fluid, &new.fluid);
     let spacing = number(b.particle_spacing);
@@ -119,6 +120,9 @@ fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
     table.insert("position", vector(emitter.position));
     table.insert("direction", vector(emitter.direction));
     table.insert("speed", number(emitter.speed));
+    if let Some(most) = emitter.max_particles {
+        table.insert("max_particles", value(i64::from(most)));
+    }
     Ok(table)
 }
 

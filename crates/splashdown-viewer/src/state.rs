@@ -54,7 +54,7 @@ impl Tool {
 pub enum Action {
     /// Open a scene that comes with the program.
     OpenPreset(&'static str),
-    /// Start `State::scene` anew: its particles have changed.
+    /// Start `State::scene` anew.
     Restart,
     /// Go on under `State::scene`.
     Change,
@@ -62,7 +62,7 @@ pub enum Action {
     Play(bool),
     /// Simulate one frame of the scene.
     Step,
-    /// Back to the scene's beginning.
+    /// Back to the scene's file.
     Reset,
     /// `State::time_scale` has changed.
     TimeScale,
@@ -89,6 +89,19 @@ pub enum Action {
     SaveMesh,
     /// Dark instead of light, or the other way round.
     SwapTheme,
+}
+
+/// A box that follows the mouse by a spring, and returns when it is let go.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shaking {
+    /// Where the mouse wants the box, in m from its place.
+    pub wanted: Vec3,
+    /// Where it is, in m from its place.
+    pub offset: Vec3,
+    /// Its velocity in m/s.
+    pub velocity: Vec3,
+    /// Gravity of the box at rest, in m/s^2.
+    pub gravity: Vec3,
 }
 
 /// What is shown at a glance.
@@ -194,8 +207,8 @@ pub struct State {
     pub preparing: Option<(String, f32)>,
     /// Gravity of the scene as it was opened, in m/s^2.
     pub upright: Vec3,
-    /// How far the box is out of place while it is shaken, in m.
-    pub shaken: Vec3,
+    /// The motion of the box while it is shaken.
+    pub shaking: Option<Shaking>,
     /// The last place of the hand, in points, if it is in the water.
     pub hand: Option<Vec2>,
     /// A held body and the distance of its anchor from the eye, in m.
@@ -220,7 +233,7 @@ impl State {
             figures: Figures::default(),
             preparing: None,
             upright: scene.gravity,
-            shaken: Vec3::ZERO,
+            shaking: None,
             hand: None,
             grip: None,
             particles_wanted: splashdown::sample::count(&scene).max(1) as f32,

@@ -44,8 +44,10 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
         let viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, simulate)?;
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
-    eframe::run_native("splashdown", native, Box::new(create))
-        .map_err(|error| ViewerError::NoWindow { reason: error.to_string(), hint: MISSING_DRIVER_HINT })
+    eframe::run_native("splashdown", native, Box::new(create)).map_err(|error| ViewerError::NoWindow {
+        reason: error.to_string().trim_end_matches('.').to_owned(),
+        hint: MISSING_DRIVER_HINT,
+    })
 }
 
 /// A device with all that its adapter can do: buffers as large as the memory allows, and clocks for passes.

@@ -69,7 +69,7 @@ fn it_plays_pauses_steps_and_begins_anew() {
         assert!((stepped.stats.time - paused.stats.time - 0.01).abs() < 1e-4);
         engine.send(Command::Reset);
         let (reset, _) = until(&mut engine, |now| now.stats.time == 0.0);
-        assert!(reset.number > stepped.number);
+        assert!(reset.opened.number > stepped.opened.number);
     }
 }
 
@@ -88,14 +88,35 @@ fn a_failure_is_told_and_the_next_scene_runs() {
     assert!(told.iter().any(|message| matches!(message, Message::Failed(text) if text.contains("cells"))));
 }
 
-/// Width, height and grey mean of what is drawn.
 fn picture(gpu: &Arc<Gpu>, engine: &Engine, way: Way) -> Vec<u8> {
     let mut picture = Picture::new(Arc::clone(gpu)).unwrap();
-    let (opened, snapshot) = (engine.opened().unwrap(), engine.snapshot().unwrap());
+    let snapshot = engine.snapshot().unwrap();
     let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
     let look = Look { way, ..Look::default() };
-    picture.draw([160, 90], &opened, &snapshot, &look, camera).unwrap();
+    picture.draw([160, 90], &snapshot, &look, camera).unwrap();
     picture.read().unwrap()
+}
+
+#[test]
+fn what_cannot_be_changed_leaves_the_water_as_it_is() {
+    let Some(gpu) = testing::gpu_or_skip("what_cannot_be_changed_leaves_the_water_as_it_is") else { return };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    engine.send(Command::Play(true));
+    until(&mut engine, |now| now.playing && now.stats.time > 0.02);
+    let mut broken = scene();
+    broken.domain.max = Vec3::splat(1e6);
+    engine.send(Command::Change(Box::new(broken)));
+    let (begun, mut refused) = (Instant::now(), false);
+    while !refused {
+        refused = engine.take_messages().iter().any(|message| matches!(message, Message::Refused(_)));
+        assert!(begun.elapsed() < Duration::from_secs(60), "nothing was refused");
+    }
+    let time = engine.snapshot().unwrap().stats.time;
+    let (later, _) = until(&mut engine, |now| now.stats.time > time);
+    assert!(later.playing);
+    assert_eq!(later.opened.scene, scene());
+    engine.send(Command::Reset);
+    until(&mut engine, |now| now.stats.time < time);
 }
 
 #[test]

@@ -40,6 +40,7 @@ fn buttons_do_what_they_say() {
     for (label, action) in [
         ("Pause", Action::Play(false)),
         ("Step", Action::Step),
+        ("Restart", Action::Restart),
         ("Reset", Action::Reset),
         ("Drop a ball", Action::DropBall),
         ("Open the tap", Action::Pour),
@@ -65,7 +66,7 @@ fn keys_do_what_the_help_says() {
     for (key, action) in [
         (Key::Space, Action::Play(false)),
         (Key::Period, Action::Step),
-        (Key::R, Action::Reset),
+        (Key::R, Action::Restart),
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
         (Key::T, Action::Screenshot),

@@ -22,8 +22,15 @@ impl Inbox {
         self.wake();
     }
 
+    /// All commands, but for those that the next one makes void: a slider sends many.
     pub fn take(&self) -> Vec<Command> {
-        std::mem::take(&mut lock(&self.commands))
+        let mut commands = std::mem::take(&mut *lock(&self.commands));
+        let void: Vec<bool> = (0..commands.len())
+            .map(|i| commands.get(i + 1).is_some_and(|next| is_void(&commands[i], next)))
+            .collect();
+        let mut void = void.into_iter();
+        commands.retain(|_| void.next() == Some(false));
+        commands
     }
 
     /// Ends a sleep on a web page; a thread wakes up by itself.
@@ -46,7 +53,8 @@ impl Inbox {
     /// Sleeps until a command comes, but no longer than this; on a web page until the next picture.
     #[cfg(target_arch = "wasm32")]
     pub async fn sleep(&self, _: Duration) {
-        let mut slept = false;
+        // What came while the engine was busy has woken nobody.
+        let mut slept = !lock(&self.commands).is_empty();
         std::future::poll_fn(|context| {
             if std::mem::replace(&mut slept, true) {
                 return std::task::Poll::Ready(());
@@ -55,5 +63,38 @@ impl Inbox {
             std::task::Poll::Pending
         })
         .await;
+    }
+}
+
+/// True if obeying the second leaves nothing of the first.
+fn is_void(command: &Command, next: &Command) -> bool {
+    use Command as C;
+    matches!(
+        (command, next),
+        (C::Change(_), C::Change(_) | C::Open(_))
+            | (C::Open(_), C::Open(_))
+            | (C::Hand(_), C::Hand(_))
+            | (C::Grip(_), C::Grip(_))
+            | (C::TimeScale(_), C::TimeScale(_))
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_like_commands_the_last_is_obeyed() {
+        let inbox = Inbox::default();
+        for scale in [0.1, 0.2, 0.3] {
+            inbox.put(Command::TimeScale(scale));
+        }
+        inbox.put(Command::Play(true));
+        inbox.put(Command::TimeScale(0.4));
+        let taken = inbox.take();
+        assert_eq!(taken.len(), 3);
+        assert!(matches!(taken[0], Command::TimeScale(0.3)));
+        assert!(matches!(taken[2], Command::TimeScale(0.4)));
+        assert!(inbox.take().is_empty());
     }
 }

@@ -24,7 +24,6 @@ use work::Worker;
 /// What the engine has to show; the newest only.
 #[derive(Default)]
 struct Outbox {
-    opened: Option<Arc<Opened>>,
     snapshot: Option<Arc<Snapshot>>,
     /// True if the window has drawn it.
     is_seen: bool,
@@ -88,11 +87,6 @@ impl Engine {
     /// The newest state of the fluid.
     pub fn snapshot(&self) -> Option<Arc<Snapshot>> {
         lock(&self.outbox).snapshot.clone()
-    }
-
-    /// The scene that was opened last.
-    pub fn opened(&self) -> Option<Arc<Opened>> {
-        lock(&self.outbox).opened.clone()
     }
 
     /// What there was to tell since the last call.

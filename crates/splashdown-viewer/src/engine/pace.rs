@@ -45,9 +45,9 @@ impl Pace {
     /// Simulated seconds to compute now, if it is time; `least` is what a step takes.
     pub fn tick(&mut self, now: Instant, least: f64) -> Option<f64> {
         let passed = self.last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64());
-        self.due = (self.due + passed * self.scale).min(FORGIVEN * self.scale);
         // Slow motion may ask for less than a step per beat.
         let beat = (BEAT * self.scale).max(least);
+        self.due = (self.due + passed * self.scale).min((FORGIVEN * self.scale).max(beat));
         if self.due < beat {
             return None;
         }
@@ -103,6 +103,9 @@ mod tests {
         assert!((fast - 2.0).abs() < 0.05, "{fast}");
         let (slow_motion, _) = run(0.1, 0.2, 0.0, 2.0);
         assert!((slow_motion - 0.2).abs() < 0.01, "{slow_motion}");
+        // A step every second and a half.
+        let (slower, _) = run(1e-4 / 1.5, 0.2, 0.0, 6.0);
+        assert!((slower - 4e-4).abs() < 1.1e-4, "{slower}");
         let (slow, longest) = run(1.0, 20.0, 0.0, 5.0);
         // All that the machine can do, and the window hears of it often.
         assert!((slow - 5.0 / 20.0).abs() < 0.02, "{slow}");

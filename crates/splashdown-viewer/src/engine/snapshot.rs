@@ -19,14 +19,14 @@ pub struct Opened {
     pub device: String,
     /// Bytes in its buffers.
     pub memory: u64,
-    /// Counts the scenes: pictures of an older one are not of this one.
+    /// Counts the scenes, and their changes.
     pub number: u32,
 }
 
 /// The fluid at one moment.
 pub struct Snapshot {
-    /// The [`Opened`] it belongs to.
-    pub number: u32,
+    /// The scene that it shows.
+    pub opened: Arc<Opened>,
     /// The simulation's account.
     pub stats: Stats,
     /// What is drawn.
@@ -53,6 +53,8 @@ pub enum Message {
     Note(String),
     /// What the scene cannot do; the simulation stands still.
     Failed(String),
+    /// What cannot be changed; the simulation goes on as it was.
+    Refused(String),
     /// The engine has ended by a fault of its own.
     Stopped,
     /// What [`Command::Export`](super::Command::Export) asked for.

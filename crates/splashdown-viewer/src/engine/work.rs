@@ -20,6 +20,8 @@ const MEASURE: Duration = Duration::from_millis(500);
 const BATCH: f64 = 0.008;
 /// How long the engine sleeps when nothing is due.
 const NAP: Duration = Duration::from_millis(2);
+/// How long it sleeps when the clock stands still; a command wakes it.
+const REST: Duration = Duration::from_millis(200);
 /// Up to this many particles their mean height is looked at.
 const FEW: u32 = 20_000;
 /// How quickly a held body comes along, in 1/s.
@@ -34,7 +36,9 @@ pub(super) struct Worker {
     copies: Copies,
     simulation: Option<Simulation>,
     surface: Option<Surface>,
+    /// The scene that runs, as it was changed last.
     scene: Option<Scene>,
+    opened: Option<Arc<Opened>>,
     number: u32,
     playing: bool,
     wants_surface: bool,
@@ -120,6 +124,7 @@ impl Worker {
             simulation: None,
             surface: None,
             scene: None,
+            opened: None,
             number: 0,
             playing: false,
             wants_surface: false,
@@ -152,7 +157,7 @@ impl Worker {
                         self.fail(&error);
                     }
                 }
-                None => self.inbox.sleep(NAP).await,
+                None => self.inbox.sleep(if self.playing { NAP } else { REST }).await,
             }
         }
     }
@@ -165,7 +170,13 @@ impl Worker {
                     return self.open(scene).await;
                 }
             }
-            Command::Change(scene) => return self.change(*scene).await,
+            Command::Change(scene) => {
+                // What cannot be changed leaves the water as it is.
+                if let Err(error) = self.change(*scene).await {
+                    lock(&lock(&self.outbox).messages).push(Message::Refused(error.to_string()));
+                    (self.repaint)();
+                }
+            }
             Command::Play(playing) => {
                 self.playing = playing && self.simulation.is_some();
                 self.pace.pause();
@@ -220,20 +231,21 @@ impl Worker {
             None => self.executor()?,
         };
         self.surface = None;
-        self.scene = Some(scene.clone());
+        self.copies = Copies::new(Arc::clone(&self.gpu));
         let messages = Arc::clone(&lock(&self.outbox).messages);
         let told = move |body: &str, part: f32| {
             lock(&messages).push(Message::Preparing(body.to_owned(), part));
         };
         let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
+        self.scene = Some(scene);
         self.begin(simulation).await
     }
 
     async fn change(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let Some(simulation) = &mut self.simulation else { return self.open(scene).await };
         let surface_differs = simulation.scene().surface != scene.surface;
-        self.scene = Some(scene.clone());
         if simulation.adopt(&scene)? {
+            self.scene = Some(scene);
             if surface_differs {
                 self.surface = None;
             }
@@ -241,6 +253,7 @@ impl Worker {
             return self.show().await;
         }
         let next = simulation.carry_over_async(&scene).await?;
+        self.scene = Some(scene);
         self.begin(next).await
     }
 
@@ -262,14 +275,13 @@ impl Worker {
     fn publish_scene(&mut self) {
         let Some(simulation) = &self.simulation else { return };
         self.number += 1;
-        let opened = Opened {
+        self.opened = Some(Arc::new(Opened {
             scene: simulation.scene().clone(),
             bodies: simulation.body_meshes().to_vec(),
             device: simulation.device_name(),
             memory: simulation.memory(),
             number: self.number,
-        };
-        lock(&self.outbox).opened = Some(Arc::new(opened));
+        }));
     }
 
     async fn advance(&mut self, seconds: f32) -> Result<(), SimulationError> {
@@ -298,7 +310,7 @@ impl Worker {
 
     /// Takes a snapshot.
     async fn show(&mut self) -> Result<(), SimulationError> {
-        let Some(simulation) = &mut self.simulation else { return Ok(()) };
+        let (Some(simulation), Some(opened)) = (&mut self.simulation, &self.opened) else { return Ok(()) };
         let mut extracted: Option<SurfaceStats> = None;
         if self.wants_surface {
             if self.surface.is_none() {
@@ -312,7 +324,7 @@ impl Worker {
         let bodies = simulation.body_states_async().await?;
         let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted));
         let snapshot = Snapshot {
-            number: self.number,
+            opened: Arc::clone(opened),
             stats: simulation.stats(),
             drawn,
             bodies,

@@ -1,6 +1,6 @@
 //! The panel on the right: what the water is, what moves it, how it is computed and shown.
 
-use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, Ui};
+use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, SliderClamping, Ui};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
 use splashdown_render::{Axis, ColourMap};
 
@@ -25,6 +25,7 @@ fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
 
 fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let wanted = Slider::new(&mut state.particles_wanted, 500.0..=2_000_000.0)
+        .clamping(SliderClamping::Edits)
         .logarithmic(true)
         .max_decimals(0)
         .text("particles");
@@ -50,6 +51,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
     });
     let viscosity = Slider::new(&mut material.viscosity, 0.0..=0.1)
+        .clamping(SliderClamping::Edits)
         .logarithmic(true)
         .smallest_positive(1e-7)
         .suffix(" m²/s")
@@ -58,8 +60,10 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         .add(viscosity)
         .on_hover_text("Kinematic viscosity: water has 0.000001, olive oil 0.00009, honey 0.007 m²/s");
     changed |= viscosity.changed();
-    let tension =
-        Slider::new(&mut material.surface_tension, 0.0..=0.5).suffix(" N/m").text("surface tension");
+    let tension = Slider::new(&mut material.surface_tension, 0.0..=0.5)
+        .clamping(SliderClamping::Edits)
+        .suffix(" N/m")
+        .text("surface tension");
     let tension = ui
         .add_enabled(state.scene.solver.surface_tension != SurfaceTension::None, tension)
         .on_hover_text("Water against air has 0.073 N/m")
@@ -112,7 +116,10 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         changed = true;
     }
     let mut slider = |value: &mut f32, range, text: &str, hint: &str| {
-        changed |= ui.add(Slider::new(value, range).text(text)).on_hover_text(hint).changed();
+        changed |= ui
+            .add(Slider::new(value, range).clamping(SliderClamping::Edits).text(text))
+            .on_hover_text(hint)
+            .changed();
     };
     slider(
         &mut solver.artificial_viscosity,
@@ -166,18 +173,24 @@ fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                 for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
                     ui.selectable_value(&mut look.slice_axis, axis, name);
                 }
-                ui.add(Slider::new(&mut look.slice_at, 0.0..=1.0).text("where"));
+                ui.add(
+                    Slider::new(&mut look.slice_at, 0.0..=1.0).clamping(SliderClamping::Edits).text("where"),
+                );
             });
         }
     } else if look.way.needs_surface() {
         let surface = &mut state.scene.surface;
-        let rounds = Slider::new(&mut surface.smoothing_iterations, 0..=25).text("smoothing");
+        let rounds = Slider::new(&mut surface.smoothing_iterations, 0..=25)
+            .clamping(SliderClamping::Edits)
+            .text("smoothing");
         let rounds = ui.add(rounds).on_hover_text("Rounds of smoothing of the mesh");
         let spacing = state.scene.fluid.particle_spacing;
         let mut cell = surface.cell_size / spacing;
-        let size = ui.add(Slider::new(&mut cell, 0.3..=1.5).text("cell")).on_hover_text(
-            "Size of a cell of marching cubes, in particle spacings: smaller is finer and slower",
-        );
+        let size = ui
+            .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell"))
+            .on_hover_text(
+                "Size of a cell of marching cubes, in particle spacings: smaller is finer and slower",
+            );
         if size.changed() {
             surface.cell_size = cell * spacing;
         }

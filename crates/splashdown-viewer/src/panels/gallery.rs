@@ -1,31 +1,28 @@
 //! The scenes that come with the program.
 
-use egui::{Context, ScrollArea, Window};
+use egui::{Button, Context, Grid, ScrollArea, Ui, Window, vec2};
 
 use crate::state::{Action, State};
 use crate::thumbnails;
+
+/// Between two pictures, in points.
+const GAP: f32 = 12.0;
 
 pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
     let mut chosen = None;
     Window::new("Scenes").open(&mut state.shown.gallery).default_width(640.0).show(ctx, |ui| {
         ScrollArea::vertical().max_height(440.0).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for (name, about) in thumbnails::scenes() {
-                    ui.vertical(|ui| {
-                        ui.set_width(thumbnails::WIDTH);
-                        let clicked = match thumbnails::texture(ui.ctx(), name) {
-                            Some(texture) => {
-                                let size = egui::vec2(thumbnails::WIDTH, thumbnails::WIDTH * 9.0 / 16.0);
-                                ui.add(egui::Button::image((texture, size))).on_hover_text(&about).clicked()
-                            }
-                            None => false,
-                        };
-                        if ui.selectable_label(state.scene.name == name, name).on_hover_text(about).clicked()
-                            || clicked
-                        {
-                            chosen = Some(name);
+            let columns =
+                ((ui.available_width() + GAP) / (thumbnails::WIDTH + GAP)).floor().max(1.0) as usize;
+            let scenes: Vec<_> = thumbnails::scenes().collect();
+            Grid::new("scenes").spacing([GAP, GAP]).show(ui, |ui| {
+                for row in scenes.chunks(columns) {
+                    for (name, about) in row {
+                        if tile(ui, name, about, state.scene.name == *name) {
+                            chosen = Some(*name);
                         }
-                    });
+                    }
+                    ui.end_row();
                 }
             });
         });
@@ -34,4 +31,19 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         actions.push(Action::OpenPreset(name));
         state.shown.gallery = false;
     }
+}
+
+/// A picture with a name under it; true if it is clicked.
+fn tile(ui: &mut Ui, name: &str, about: &str, is_open: bool) -> bool {
+    let size = vec2(thumbnails::WIDTH, thumbnails::WIDTH * 9.0 / 16.0);
+    ui.vertical(|ui| {
+        ui.set_width(thumbnails::WIDTH);
+        let picture = match thumbnails::texture(ui.ctx(), name) {
+            Some(texture) => ui.add(Button::image((texture, size))),
+            None => ui.add_sized(size, Button::new(name)),
+        };
+        let label = ui.selectable_label(is_open, name);
+        picture.on_hover_text(about).clicked() || label.on_hover_text(about).clicked()
+    })
+    .inner
 }

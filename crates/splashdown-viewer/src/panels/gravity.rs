@@ -1,6 +1,6 @@
 //! Gravity as a ball to drag: where the ball is, there is down.
 
-use egui::{Color32, Sense, Slider, Stroke, Ui, vec2};
+use egui::{Color32, Sense, Slider, SliderClamping, Stroke, Ui, vec2};
 use glam::{Vec2, Vec3};
 
 use crate::camera::Orbit;
@@ -31,7 +31,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         ui.painter().circle_filled(knob, 7.0, Color32::from_rgb(60, 140, 200));
         ui.vertical(|ui| {
             let mut strength = state.scene.gravity.length();
-            let slider = Slider::new(&mut strength, 0.0..=30.0).suffix(" m/s²").max_decimals(2);
+            let slider = Slider::new(&mut strength, 0.0..=30.0)
+                .clamping(SliderClamping::Edits)
+                .suffix(" m/s²")
+                .max_decimals(2);
             if ui.add(slider).on_hover_text("Earth 9.81, Moon 1.62, Mars 3.71 m/s²").changed() {
                 let down = state
                     .scene

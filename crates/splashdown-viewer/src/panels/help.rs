@@ -1,6 +1,6 @@
 //! Keys: what they do, and doing it.
 
-use egui::{Context, Grid, Key, RichText, Window};
+use egui::{Context, Event, Grid, Key, RichText, Window};
 use glam::Vec3;
 
 use crate::look::Way;
@@ -16,13 +16,13 @@ const LINES: [(&str, &str); 19] = [
     ("Shift + drag", "drag water and floating bodies"),
     ("Space", "play, pause"),
     (".", "one frame"),
-    ("R", "back to the beginning"),
+    ("R", "from the beginning, with what was changed"),
     ("1, 2, ...", "ways to see the fluid"),
     ("B", "drop a ball"),
     ("P", "turn the tap on or off"),
     ("drop a file", "a scene opens; a mesh falls in"),
     ("G", "scenes"),
-    ("Tab", "hide the controls, show them"),
+    ("C", "hide the controls, show them"),
     ("T", "write a picture"),
     ("M", "write the surface as a mesh"),
     ("Ctrl + S", "write the scene as it is now"),
@@ -34,14 +34,25 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     if ctx.egui_wants_keyboard_input() {
         return;
     }
-    let pressed = |key| ctx.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    // The modifiers of the key's own moment: where pictures are slow, those of the picture's end are others.
+    let struck = |wanted: Key, command: bool| {
+        ctx.input(|input| {
+            input.events.iter().any(|event| match event {
+                Event::Key { key, pressed: true, repeat: false, modifiers, .. } => {
+                    *key == wanted && modifiers.command == command && !modifiers.alt
+                }
+                _ => false,
+            })
+        })
+    };
+    let pressed = |key| struck(key, false);
     let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
     if pressed(Key::Space) {
         actions.push(Action::Play(!state.playing));
     }
     for (key, action) in [
         (Key::Period, Action::Step),
-        (Key::R, Action::Reset),
+        (Key::R, Action::Restart),
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
         (Key::T, Action::Screenshot),
@@ -51,7 +62,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
             actions.push(action);
         }
     }
-    if ctx.input(|input| input.key_pressed(Key::S) && input.modifiers.command) {
+    if struck(Key::S, true) {
         actions.push(Action::SaveScene);
     }
     if pressed(Key::H) || pressed(Key::F1) {
@@ -60,7 +71,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     if pressed(Key::G) {
         state.shown.gallery = !state.shown.gallery;
     }
-    if pressed(Key::Tab) {
+    if pressed(Key::C) {
         state.shown.bare = !state.shown.bare;
     }
     if pressed(Key::Escape) {

@@ -1,6 +1,6 @@
 //! The line at the top: scene, clock, tools, ways to see.
 
-use egui::{Button, RichText, Slider, Ui};
+use egui::{Button, RichText, Slider, SliderClamping, Ui};
 
 use crate::look::Way;
 use crate::state::{Action, State, Tool};
@@ -19,10 +19,13 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if ui.button("Step").on_hover_text("One frame of the scene (.)").clicked() {
             actions.push(Action::Step);
         }
-        if ui.button("Reset").on_hover_text("Back to the beginning (R)").clicked() {
+        if ui.button("Restart").on_hover_text("From the beginning, with what was changed (R)").clicked() {
+            actions.push(Action::Restart);
+        }
+        if ui.button("Reset").on_hover_text("From the beginning, as the scene's file says").clicked() {
             actions.push(Action::Reset);
         }
-        let speed = Slider::new(&mut state.time_scale, 0.05..=4.0)
+        let speed = Slider::new(&mut state.time_scale, 0.05..=4.0).clamping(SliderClamping::Edits)
             .logarithmic(true)
             .max_decimals(2)
             .suffix(" x")
@@ -44,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
         ui.separator();
         let controls = if state.shown.bare { "Controls" } else { "Hide controls" };
-        if ui.button(controls).on_hover_text("Fluid, gravity, solver and more (Tab)").clicked() {
+        if ui.button(controls).on_hover_text("Fluid, gravity, solver and more (C)").clicked() {
             state.shown.bare = !state.shown.bare;
         }
         if ui.button("Theme").on_hover_text("Light or dark").clicked() {

@@ -3,7 +3,7 @@
 use egui::{PointerButton, Rect, Response, Sense, TextureId, Ui};
 use glam::{Quat, Vec2, Vec3};
 
-use crate::state::{Action, State, Tool};
+use crate::state::{Action, Shaking, State, Tool};
 
 /// Degrees of tilt per point.
 const TILT: f32 = 0.25;
@@ -45,16 +45,21 @@ pub(super) fn show(
         Tool::Orbit if by(PointerButton::Primary) => state.orbit.orbit(drag),
         Tool::Hand => touched = hand(ui, &response, state, actions),
         Tool::Tilt => tilt(&response, drag, state, actions),
-        Tool::Shake => shake(ui, &response, drag, state, actions),
+        Tool::Shake if by(PointerButton::Primary) => {
+            let [right, up, _] = state.orbit.axes();
+            let way = state.orbit.metres_per_point(size_of(rect)) * (drag.x * right - drag.y * up);
+            let gravity = state.scene.gravity;
+            state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).wanted += way;
+        }
+        Tool::Shake => {}
         Tool::Orbit => {}
     }
     if tool != Tool::Hand && state.hand.take().is_some() {
         state.grip = None;
         actions.push(Action::LetGo);
     }
-    if tool != Tool::Shake && state.shaken != Vec3::ZERO {
-        rest(state, actions);
-    }
+    let held = tool == Tool::Shake && by(PointerButton::Primary);
+    shake(ui, held, state, actions);
     let scale = ui.ctx().pixels_per_point();
     let size = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
     Viewport { rect, size, touched }
@@ -121,27 +126,23 @@ fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Ac
     }
 }
 
-/// The box follows the mouse; its fluid feels the acceleration.
-fn shake(ui: &Ui, response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Action>) {
-    if !response.dragged_by(PointerButton::Primary) {
-        rest(state, actions);
-        return;
+/// The box follows the mouse by a critically damped spring, and its fluid feels the acceleration. It comes to rest where it
+/// was, so that in the end nothing has pushed the fluid anywhere.
+fn shake(ui: &Ui, held: bool, state: &mut State, actions: &mut Vec<Action>) {
+    let Some(shaking) = &mut state.shaking else { return };
+    if !held {
+        shaking.wanted = Vec3::ZERO;
     }
-    let [right, up, _] = state.orbit.axes();
-    let scale = state.orbit.metres_per_point(size_of(response.rect));
-    state.shaken += scale * (drag.x * right - drag.y * up);
-    let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.1);
-    // What is left to go fades; the box accelerates towards where the mouse has been.
-    let acceleration = SHAKE_RATE * SHAKE_RATE * state.shaken;
-    state.shaken *= (-SHAKE_RATE * seconds).exp();
-    state.scene.gravity = state.upright - acceleration.clamp_length_max(40.0);
+    let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.05);
+    let acceleration =
+        SHAKE_RATE * SHAKE_RATE * (shaking.wanted - shaking.offset) - 2.0 * SHAKE_RATE * shaking.velocity;
+    shaking.velocity += seconds * acceleration;
+    shaking.offset += seconds * shaking.velocity;
+    state.scene.gravity = shaking.gravity - acceleration;
+    if !held && shaking.offset.length() < 1e-3 * state.orbit.distance && acceleration.length() < 0.1 {
+        state.scene.gravity = shaking.gravity;
+        state.shaking = None;
+    }
+    ui.ctx().request_repaint();
     actions.push(Action::Change);
-}
-
-fn rest(state: &mut State, actions: &mut Vec<Action>) {
-    if state.shaken != Vec3::ZERO {
-        state.shaken = Vec3::ZERO;
-        state.scene.gravity = state.upright;
-        actions.push(Action::Change);
-    }
 }

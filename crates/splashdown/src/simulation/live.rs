@@ -6,7 +6,7 @@ use splashdown_gpu::block_on;
 use super::Simulation;
 use crate::bodies::{BodyState, LoadedBody};
 use crate::hand::{Hand, Stirrer};
-use crate::passes::StepState;
+use crate::passes::{Params, StepState};
 use crate::scene::{Motion, Scene, Solver};
 use crate::{SimulationError, sample, solver};
 
@@ -87,7 +87,9 @@ impl Simulation {
         if twin != *old {
             return Ok(false);
         }
+        // Water that moves was made for its speed of sound: with a lower one it would be soft, and pressures burst.
         let params = solver::params(scene, self.params.particle_count);
+        let params = Params { sound_speed: params.sound_speed.max(self.params.sound_speed), ..params };
         self.executor.write(self.fields.params, &[params])?;
         self.params = params;
         self.scene = scene.clone();

@@ -1,4 +1,4 @@
-//! Adds the hand's acceleration: see [`Hand`](super::Hand).
+//! Adds the hand's acceleration: see [`Hand`].
 
 mod cpu;
 
