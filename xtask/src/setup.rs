@@ -9,6 +9,20 @@ use crate::process::{self, say};
 
 const PACKAGES: [&str; 3] = ["mesa-vulkan-drivers", "libvulkan1", "ffmpeg"];
 
+/// For a window on a machine without a screen.
+const SCREEN_PACKAGES: [&str; 10] = [
+    "xvfb",
+    "xdotool",
+    "imagemagick",
+    "libxkbcommon-x11-0",
+    "libxcb-xkb1",
+    "libxcursor1",
+    "libxi6",
+    "libxrandr2",
+    "libx11-xcb1",
+    "fonts-dejavu-core",
+];
+
 /// What is missing.
 #[derive(Debug, Default)]
 pub struct Missing {
@@ -66,6 +80,18 @@ pub fn ensure_requirements() -> Result<()> {
     }
     say("  Going on without: particles and meshes are written all the same.");
     Ok(())
+}
+
+/// An X server that nobody sees, for the test of the window; without it that test is skipped, and says so.
+pub fn ensure_screen() {
+    let there = [("Xvfb", "-help"), ("xdotool", "version"), ("import", "-version")];
+    if there.iter().all(|(tool, argument)| process::exists_at_all(tool, argument)) || !can_install() {
+        return;
+    }
+    say(format!("Installing {} (apt-get) ...", SCREEN_PACKAGES.join(", ")));
+    if let Err(error) = install(&SCREEN_PACKAGES) {
+        say(format!("WARNING: the installation failed: {error:#}. The test of the window will be skipped."));
+    }
 }
 
 /// Debian or Ubuntu, and allowed to install.

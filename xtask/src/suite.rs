@@ -20,6 +20,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let mut report = Report::default();
     report.layer("requirements", |_| {
         setup::ensure_requirements()?;
+        setup::ensure_screen();
         Ok(Outcome::Passed)
     });
     report.layer("format", |_| succeeds(&mut cargo(["fmt", "--all", "--", "--check"])));

@@ -1,5 +1,6 @@
 //! Things that a user throws into a scene.
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
@@ -24,6 +25,7 @@ pub fn add_ball(scene: &mut Scene) {
     add_body(scene, "ball", shape, scale, Vec3::ZERO, Some(colour));
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 /// Adds a mesh from a file with this bounding box, in the file's units; it is scaled to fit and floats.
 pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
     let size = (high - low).max_element();

@@ -21,6 +21,8 @@ pub mod panels;
 mod pick;
 pub mod picture;
 mod pixels;
+#[cfg(not(target_arch = "wasm32"))]
+mod record;
 pub mod save;
 pub mod stage;
 pub mod state;

@@ -11,7 +11,9 @@ use splashdown_render::{
 
 use crate::engine::Snapshot;
 use crate::look::{Look, Way};
-use crate::{pixels, stage};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::pixels;
+use crate::stage;
 
 /// Colours as egui wants its textures.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -87,6 +87,8 @@ pub enum Action {
     SaveScene,
     /// Write the surface as it is.
     SaveMesh,
+    /// Begin to record frame by frame, or end it.
+    Record,
     /// Dark instead of light, or the other way round.
     SwapTheme,
 }
@@ -215,6 +217,8 @@ pub struct State {
     pub grip: Option<(Grip, f32)>,
     /// Particles the scene had when it was opened, for the slider of their number.
     pub particles_wanted: f32,
+    /// Pictures recorded, while that goes on.
+    pub recorded: Option<u32>,
     /// Whether the tap is on.
     pub pouring: bool,
 }
@@ -237,6 +241,7 @@ impl State {
             hand: None,
             grip: None,
             particles_wanted: splashdown::sample::count(&scene).max(1) as f32,
+            recorded: None,
             pouring: false,
             scene,
         }

@@ -46,6 +46,7 @@ fn buttons_do_what_they_say() {
         ("Open the tap", Action::Pour),
         ("Picture", Action::Screenshot),
         ("Scene", Action::SaveScene),
+        ("Film", Action::Record),
         ("Theme", Action::SwapTheme),
     ] {
         window.get_by_label(label).click();

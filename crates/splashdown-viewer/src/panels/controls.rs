@@ -15,7 +15,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         section(ui, "Play", |ui| play(ui, state, actions));
         section(ui, "Solver", |ui| solver(ui, state, actions));
         section(ui, "Look", |ui| look(ui, state, actions));
-        section(ui, "Keep", |ui| keep(ui, actions));
+        section(ui, "Keep", |ui| keep(ui, state, actions));
     });
 }
 
@@ -200,7 +200,7 @@ fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
 }
 
-fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn keep(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (text, hint, action) in [
             ("Picture", "Write the picture as PNG (T)", Action::Screenshot),
@@ -212,4 +212,16 @@ fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             }
         }
     });
+    if cfg!(target_arch = "wasm32") {
+        return;
+    }
+    let text = match state.recorded {
+        Some(frames) => format!("End the film ({frames} pictures)"),
+        None => "Film".to_owned(),
+    };
+    let hint = "A picture of every frame of the scene, and a film if ffmpeg is installed. The water moves frame by frame then, \
+                however long each takes";
+    if ui.button(text).on_hover_text(hint).clicked() {
+        actions.push(Action::Record);
+    }
 }

@@ -1,0 +1,152 @@
+//! The window as a person uses it, on an X server that nobody sees: it opens, shows water, obeys keys and the mouse.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const SIZE: [u32; 2] = [720, 480];
+const TOOLS: [(&str, &str); 3] = [("Xvfb", "-help"), ("xdotool", "version"), ("import", "-version")];
+
+/// Ends with the test, however that ends.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+struct Screen {
+    display: String,
+    _server: Running,
+}
+
+impl Screen {
+    fn open() -> Self {
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-screen", "0", &format!("{}x{}x24", SIZE[0], SIZE[1])]);
+        let mut server = Running(server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap());
+        let mut number = String::new();
+        BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        Self { display: format!(":{}", number.trim()), _server: server }
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("DISPLAY", &self.display).stderr(Stdio::null());
+        command
+    }
+
+    /// What xdotool answers; empty if there is nothing to answer.
+    fn tool(&self, arguments: &[&str]) -> String {
+        let output = self.command("xdotool").args(arguments).output().unwrap();
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+
+    /// Rows of RGB.
+    fn picture(&self) -> Vec<[u8; 3]> {
+        let output =
+            self.command("import").args(["-window", "root", "-depth", "8", "rgb:-"]).output().unwrap();
+        let pixels = output.stdout.as_chunks::<3>().0.to_vec();
+        assert_eq!(pixels.len(), (SIZE[0] * SIZE[1]) as usize);
+        pixels
+    }
+
+    /// Looks until it is as wanted.
+    fn until(&self, what: &str, wanted: impl Fn(&[[u8; 3]]) -> bool) -> Vec<[u8; 3]> {
+        let begun = Instant::now();
+        loop {
+            let picture = self.picture();
+            if wanted(&picture) {
+                return picture;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(60), "{what} was not to be seen");
+            std::thread::sleep(Duration::from_millis(200));
+        }
+    }
+}
+
+/// The left part, where the water is: without panels, whose figures change.
+fn water(picture: &[[u8; 3]]) -> impl Iterator<Item = [u8; 3]> {
+    let [width, height] = SIZE.map(|side| side as usize);
+    let inside = move |i: &usize| {
+        let (x, y) = (i % width, i / width);
+        (10..width / 2).contains(&x) && (height / 4..height - 60).contains(&y)
+    };
+    (0..width * height).filter(inside).map(|i| picture[i])
+}
+
+/// Part of the pixels that are the blue of water.
+fn blue(picture: &[[u8; 3]]) -> f64 {
+    let (mut blue, mut all) = (0, 0);
+    for [r, _, b] in water(picture) {
+        blue += u32::from(b > r.saturating_add(50));
+        all += 1;
+    }
+    f64::from(blue) / f64::from(all)
+}
+
+/// Part of the pixels that differ visibly.
+fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
+    let (mut differing, mut all) = (0, 0);
+    for (a, b) in water(a).zip(water(b)) {
+        differing += u32::from(a.iter().zip(b).any(|(a, b)| a.abs_diff(b) > 12));
+        all += 1;
+    }
+    f64::from(differing) / f64::from(all)
+}
+
+#[test]
+fn the_window_shows_water_and_obeys() {
+    let there = |(tool, argument): &(&str, &str)| {
+        Command::new(tool).arg(argument).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+    };
+    if let Some((tool, _)) = TOOLS.iter().find(|tool| !there(tool)) {
+        let _ =
+            writeln!(std::io::stderr(), "SKIPPED: the_window_shows_water_and_obeys: {tool} is not installed");
+        return;
+    }
+    let screen = Screen::open();
+    let empty = screen.picture();
+    assert_eq!(blue(&empty), 0.0);
+    let begun = Instant::now();
+    let folder = tempfile::tempdir().unwrap();
+    let mut program = screen.command(env!("CARGO_BIN_EXE_splashdown"));
+    program.args(["view", "dam-break-small", "--size", &format!("{}x{}", SIZE[0], SIZE[1])]);
+    let _program = Running(program.current_dir(&folder).stdout(Stdio::null()).spawn().unwrap());
+    let first = screen.until("water", |picture| blue(picture) > 0.03);
+    let opened = begun.elapsed();
+    assert!(opened < Duration::from_secs(30), "the first picture came after {opened:?}");
+
+    let window = screen.tool(&["search", "--name", "Splashdown"]);
+    screen.tool(&["windowfocus", window.lines().last().unwrap()]);
+    // It moves.
+    screen.until("a motion", |picture| differing(picture, &first) > 0.01);
+    // It stands still, and looks then as it looked before: the control of all that differs here.
+    screen.tool(&["key", "space"]);
+    std::thread::sleep(Duration::from_secs(2));
+    let paused = screen.picture();
+    std::thread::sleep(Duration::from_secs(1));
+    assert!(differing(&paused, &screen.picture()) < 0.001, "a picture that stands still moves");
+    // Another way to see it.
+    screen.tool(&["key", "1"]);
+    let particles = screen.until("the particles", |picture| differing(picture, &paused) > 0.02);
+    // Looking round.
+    // As slowly as a hand: a drag within one picture is a click.
+    for step in ["mousemove 120 200", "mousedown 1", "mousemove 150 210", "mousemove 180 220", "mouseup 1"] {
+        screen.tool(&step.split(' ').collect::<Vec<_>>());
+        std::thread::sleep(Duration::from_millis(400));
+    }
+    screen.until("another side", |picture| differing(picture, &particles) > 0.05);
+    // The scene as it is now is kept, and the command line takes it.
+    screen.tool(&["key", "ctrl+s"]);
+    let kept = folder.path().join("dam-break-small.toml");
+    let begun = Instant::now();
+    while !kept.exists() {
+        assert!(begun.elapsed() < Duration::from_secs(20), "no scene was kept");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let check = Command::new(env!("CARGO_BIN_EXE_splashdown")).arg("check").arg(&kept).output().unwrap();
+    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stderr));
+}

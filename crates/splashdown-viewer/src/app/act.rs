@@ -1,0 +1,96 @@
+//! Doing what panels want done.
+
+use egui::Context;
+use splashdown::Hand;
+use splashdown::scene::{Scene, presets};
+
+use super::Viewer;
+use crate::edit;
+use crate::engine::Command;
+use crate::state::Action;
+
+/// How quickly water takes the hand's velocity, in 1/s.
+const HAND_RATE: f32 = 14.0;
+/// Radius of the hand over the smallest edge of the box.
+const HAND_SIZE: f32 = 0.16;
+
+impl Viewer {
+    pub(super) fn act(&mut self, action: Action, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        match action {
+            Action::OpenPreset(name) => {
+                let Some((name, text)) = presets().iter().find(|(preset, _)| *preset == name) else { return };
+                match Scene::parse(text, name) {
+                    Ok(scene) => self.open(scene, (*text).to_owned()),
+                    Err(error) => self.state.tell(error.to_string(), true, now),
+                }
+            }
+            Action::Restart => self.restart(),
+            Action::Change => self.change(),
+            Action::Play(playing) => {
+                self.state.playing = playing;
+                self.engine.send(Command::Play(playing));
+            }
+            Action::Step => {
+                self.state.playing = false;
+                self.engine.send(Command::Advance(self.state.scene.frame_duration()));
+            }
+            Action::Reset => {
+                let source = self.state.scene.source.clone();
+                let name = source
+                    .as_ref()
+                    .map_or_else(|| self.state.scene.name.clone(), |path| path.display().to_string());
+                let text = self.text.clone();
+                match Scene::parse(&text, &name) {
+                    Ok(scene) => self.open(Scene { source, ..scene }, text),
+                    Err(error) => self.state.tell(error.to_string(), true, now),
+                }
+            }
+            Action::TimeScale => self.engine.send(Command::TimeScale(self.state.time_scale.into())),
+            Action::Stir { ray, velocity } => {
+                let scene = &self.state.scene;
+                let radius =
+                    (HAND_SIZE * scene.domain.size().min_element()).max(3.0 * scene.fluid.particle_spacing);
+                // Half the speed of sound would tear the water.
+                let velocity = velocity.clamp_length_max(3.0 * scene.domain.size().max_element());
+                let hand = Hand::new(ray.0, ray.1, velocity, radius, HAND_RATE);
+                self.engine.send(Command::Hand(Some(hand)));
+            }
+            Action::LetGo => {
+                self.engine.send(Command::Hand(None));
+                self.engine.send(Command::Grip(None));
+            }
+            Action::Grip(mut grip) => {
+                let domain = &self.state.scene.domain;
+                grip.target = grip.target.clamp(domain.min, domain.max);
+                self.engine.send(Command::Grip(Some(grip)));
+            }
+            Action::DropBall => {
+                edit::add_ball(&mut self.state.scene);
+                self.change();
+            }
+            Action::Pour => {
+                self.state.pouring = edit::turn_tap(&mut self.state.scene);
+                self.change();
+            }
+            Action::Screenshot => self.screenshot(now),
+            Action::SaveScene => self.save_scene(now),
+            Action::SaveMesh => {
+                self.seen.exporting = true;
+                self.engine.send(Command::Export);
+            }
+            Action::Record => self.record_or_end(now),
+            Action::SwapTheme => {
+                let theme = match ctx.theme() {
+                    egui::Theme::Dark => egui::Theme::Light,
+                    egui::Theme::Light => egui::Theme::Dark,
+                };
+                ctx.set_theme(theme);
+            }
+        }
+    }
+
+    pub(super) fn change(&mut self) {
+        self.engine.send(Command::Change(Box::new(self.state.scene.clone())));
+    }
+}

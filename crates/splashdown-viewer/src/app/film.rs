@@ -1,0 +1,66 @@
+//! A film, frame by frame: the engine goes on when a moment has been drawn.
+
+use std::sync::Arc;
+
+use egui::Context;
+
+use super::Viewer;
+use crate::engine::{Command, Snapshot};
+use crate::record::Recorder;
+
+/// A film in the making, and the last moment that it has.
+pub(super) struct Recording {
+    recorder: Recorder,
+    last: Option<Arc<Snapshot>>,
+}
+
+impl Viewer {
+    pub(super) fn record_or_end(&mut self, now: f64) {
+        if let Some(recording) = self.recording.take() {
+            self.state.recorded = None;
+            let kept = recording.recorder.finish();
+            self.tell_kept("the film", kept, now);
+            return;
+        }
+        let name = std::path::PathBuf::from(format!("{}-film", self.state.scene.name));
+        match Recorder::start(&name, self.size, self.state.scene.frame_rate) {
+            Ok((recorder, obstacle)) => {
+                if let Some(obstacle) = obstacle {
+                    self.state.tell(obstacle, true, now);
+                }
+                self.state.playing = false;
+                self.state.recorded = Some(0);
+                self.engine.send(Command::Play(false));
+                self.recording = Some(Recording { recorder, last: None });
+            }
+            Err(reason) => self.state.tell(format!("nothing can be recorded: {reason}"), true, now),
+        }
+    }
+
+    /// Adds the newest moment to the film, if it is another than the last, and asks for the next.
+    pub(super) fn record(&mut self, ctx: &Context) {
+        let Some(recording) = &mut self.recording else { return };
+        let Some(snapshot) = self.engine.snapshot().filter(|snapshot| !snapshot.playing) else { return };
+        if recording.last.as_ref().is_some_and(|last| Arc::ptr_eq(last, &snapshot)) {
+            return;
+        }
+        let size = recording.recorder.size();
+        let aspect = size[0] as f32 / size[1] as f32;
+        self.drawn = None;
+        let drawn = self.picture.draw(size, &snapshot, &self.state.look, self.state.orbit.camera(aspect));
+        let added = drawn.map_err(|error| error.to_string()).and_then(|()| {
+            let rgba = self.picture.read().ok_or("the device did not hand the picture out")?;
+            recording.recorder.add(rgba)
+        });
+        recording.last = Some(snapshot);
+        self.state.recorded = Some(recording.recorder.frames());
+        if let Err(reason) = added {
+            let now = ctx.input(|input| input.time);
+            (self.recording, self.state.recorded) = (None, None);
+            self.state.tell(format!("the recording has ended: {reason}"), true, now);
+            return;
+        }
+        self.engine.send(Command::Advance(self.state.scene.frame_duration()));
+        ctx.request_repaint();
+    }
+}

@@ -1,0 +1,134 @@
+//! Taking in what the engine tells and what is dropped onto the window, and asking for what is shown.
+
+use std::sync::Arc;
+
+use egui::Context;
+use glam::Vec3;
+#[cfg(not(target_arch = "wasm32"))]
+use splashdown::scene::Scene;
+
+use super::Viewer;
+use crate::engine::{Command, Message};
+use crate::{edit, keep, pick};
+
+impl Viewer {
+    /// Asks for what this way of seeing needs.
+    pub(super) fn ask_for_what_is_shown(&mut self) {
+        let surface = self.state.look.way.needs_surface();
+        if std::mem::replace(&mut self.seen.wants_surface, surface) != surface {
+            self.engine.send(Command::Surface(surface));
+        }
+        let timing = self.state.shown.timings;
+        if std::mem::replace(&mut self.seen.wants_timing, timing) != timing {
+            self.engine.send(Command::Timing(timing));
+        }
+        let times = self.picture.time_passes(timing);
+        self.state.figures.drawing = times.iter().map(|pass| (pass.label, pass.milliseconds)).collect();
+    }
+
+    /// Takes in what the engine tells.
+    pub(super) fn listen(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        for message in self.engine.take_messages() {
+            match message {
+                Message::Note(text) => self.state.tell(text, false, now),
+                Message::Failed(text) => {
+                    self.state.playing = false;
+                    self.state.preparing = None;
+                    self.back_to_what_runs();
+                    self.state.tell(text, true, now);
+                }
+                Message::Refused(text) => {
+                    self.back_to_what_runs();
+                    self.state.tell(text, true, now);
+                }
+                Message::Stopped => {
+                    self.state.playing = false;
+                    let text = "the simulation has ended by a fault of this program; open the window again";
+                    self.state.tell(text, true, now);
+                }
+                Message::Preparing(body, part) => self.state.preparing = (part < 1.0).then_some((body, part)),
+                Message::Exported { mesh, .. } => {
+                    if std::mem::take(&mut self.seen.exporting) {
+                        let name = format!("{}.ply", self.state.scene.name);
+                        let kept = keep::mesh(&name, &mesh);
+                        self.tell_kept("the mesh", kept, now);
+                    }
+                }
+            }
+        }
+        if let Err(error) = self.gpu.health("the window") {
+            self.state.tell(error.to_string(), true, now);
+        }
+        let Some(snapshot) = self.engine.snapshot() else { return };
+        let figures = &mut self.state.figures;
+        figures.frames_per_second = self.seen.frames_per_second;
+        figures.steps_per_second = snapshot.steps_per_second;
+        figures.speed = snapshot.speed;
+        figures.time = snapshot.stats.time;
+        figures.playing = snapshot.playing;
+        figures.dt = snapshot.stats.dt;
+        figures.particles = snapshot.stats.particles;
+        figures.density_error = snapshot.stats.density_error;
+        figures.triangles = snapshot.drawn.mesh().map(|mesh| mesh.stats.triangles);
+        figures.timings = Arc::clone(&snapshot.timings);
+        figures.timed_steps = snapshot.timed_steps;
+        figures.mean_height = snapshot.mean_height;
+        figures.memory = snapshot.opened.memory;
+        figures.device.clone_from(&snapshot.opened.device);
+    }
+
+    /// Forgets changes that were not accepted.
+    fn back_to_what_runs(&mut self) {
+        if let Some(snapshot) = self.engine.snapshot() {
+            self.state.scene = snapshot.opened.scene.clone();
+            self.state.pouring = edit::has_tap(&self.state.scene);
+        }
+    }
+
+    /// The hand takes what the ray meets first: a free body by the point, else the water.
+    pub(super) fn take_hold(&mut self, ray: (Vec3, Vec3)) {
+        let Some(snapshot) = self.engine.snapshot() else { return };
+        if let Some((grip, distance)) = pick::body(&snapshot.opened, &snapshot.bodies, ray) {
+            self.state.grip = Some((grip, distance));
+            self.engine.send(Command::Grip(Some(grip)));
+        }
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    pub(super) fn dropped_files(&mut self, ctx: &Context) {
+        if ctx.input(|input| !input.raw.dropped_files.is_empty()) {
+            let now = ctx.input(|input| input.time);
+            self.state.tell("a page takes no files yet; the desktop's `splashdown view` does", true, now);
+        }
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn dropped_files(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        let files = ctx.input(|input| input.raw.dropped_files.clone());
+        for file in files {
+            let path = file.path().to_path_buf();
+            let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+            if is_scene {
+                let opened = Scene::load(&path).map_err(|error| error.to_string());
+                let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
+                match opened.and_then(|scene| Ok((scene, text?))) {
+                    Ok((scene, text)) => self.open(scene, text),
+                    Err(error) => self.state.tell(error, true, now),
+                }
+                continue;
+            }
+            match splashdown_io::read_mesh(&path) {
+                Ok(mesh) => {
+                    let corners = mesh.vertices.iter().map(|&v| Vec3::from(v));
+                    let low = corners.clone().fold(Vec3::INFINITY, Vec3::min);
+                    let high = corners.fold(Vec3::NEG_INFINITY, Vec3::max);
+                    edit::add_mesh(&mut self.state.scene, path, low, high);
+                    self.change();
+                }
+                Err(error) => self.state.tell(error.to_string(), true, now),
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The window: asks the panels what is to be done and does it.
+
+mod act;
+#[cfg(not(target_arch = "wasm32"))]
+mod film;
+mod keeping;
+mod listen;
+
+use std::sync::Arc;
+
+use egui::{Context, TextureId, Ui};
+use egui_wgpu::RenderState;
+use glam::Vec3;
+use splashdown::scene::Scene;
+use splashdown_gpu::Gpu;
+
+use crate::ViewerError;
+use crate::camera::Orbit;
+use crate::engine::{Command, Engine, Simulate, Snapshot};
+use crate::look::Look;
+use crate::panels;
+use crate::picture::Picture;
+use crate::state::State;
+
+/// The interactive program.
+pub struct Viewer {
+    gpu: Arc<Gpu>,
+    engine: Engine,
+    picture: Picture,
+    texture: Option<TextureId>,
+    state: State,
+    /// What the scene file said, for saving.
+    text: String,
+    seen: Seen,
+    drawn: Option<Drawn>,
+    /// The picture's size in pixels at full resolution.
+    size: [u32; 2],
+    #[cfg(not(target_arch = "wasm32"))]
+    recording: Option<film::Recording>,
+}
+
+/// What the picture shows.
+struct Drawn {
+    snapshot: Arc<Snapshot>,
+    size: [u32; 2],
+    look: Look,
+    camera: Orbit,
+}
+
+impl Drawn {
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.snapshot, &other.snapshot)
+            && (self.size, self.look, self.camera) == (other.size, other.look, other.camera)
+    }
+}
+
+/// What has been sent to the engine, or come from it.
+#[derive(Default)]
+struct Seen {
+    wants_surface: bool,
+    wants_timing: bool,
+    frames_per_second: f32,
+    exporting: bool,
+}
+
+impl Viewer {
+    /// Opens a scene on the window's device. `text` is the scene's file.
+    ///
+    /// # Errors
+    /// [`ViewerError`] if the device cannot draw.
+    pub fn new(
+        ctx: &Context,
+        render_state: &RenderState,
+        scene: Scene,
+        text: String,
+        simulate: Option<Simulate>,
+    ) -> Result<Self, ViewerError> {
+        let gpu = Arc::new(Gpu::from_device(
+            render_state.device.clone(),
+            render_state.queue.clone(),
+            render_state.adapter.get_info(),
+        ));
+        let picture = Picture::new(Arc::clone(&gpu))?;
+        let repaint = ctx.clone();
+        let simulate = simulate.unwrap_or(match gpu.is_software() && !cfg!(target_arch = "wasm32") {
+            true => Simulate::OnCpu,
+            false => Simulate::WhereDrawn,
+        });
+        let engine = Engine::start(Arc::clone(&gpu), simulate, move || repaint.request_repaint());
+        let mut viewer = Self {
+            gpu,
+            engine,
+            picture,
+            texture: None,
+            state: State::new(scene),
+            text,
+            seen: Seen::default(),
+            drawn: None,
+            size: [1, 1],
+            #[cfg(not(target_arch = "wasm32"))]
+            recording: None,
+        };
+        viewer.restart();
+        Ok(viewer)
+    }
+
+    /// One picture of the window.
+    pub fn show(&mut self, ui: &mut Ui, render_state: &RenderState) {
+        let ctx = ui.ctx().clone();
+        self.dropped_files(&ctx);
+        self.listen(&ctx);
+        let (viewport, actions) = panels::show(ui, &mut self.state, self.texture);
+        for action in actions {
+            self.act(action, &ctx);
+        }
+        if let Some(at) = viewport.touched {
+            let size = glam::Vec2::new(viewport.rect.width(), viewport.rect.height());
+            self.take_hold(self.state.orbit.ray(at, size));
+        }
+        self.ask_for_what_is_shown();
+        // A software driver draws as many pixels as it can while the water moves, and all of them when it stands still.
+        self.size = viewport.size;
+        #[cfg(not(target_arch = "wasm32"))]
+        self.record(&ctx);
+        let coarse = self.gpu.is_software() && self.state.playing;
+        let size = viewport.size.map(|side| if coarse { side.div_ceil(2) } else { side });
+        self.draw(size, render_state, &ctx);
+        self.engine.picture_drawn();
+        #[cfg(target_arch = "wasm32")]
+        crate::page::set_figures(self.state.figures.to_json());
+        let passed = ctx.input(|input| input.stable_dt).max(1e-4);
+        self.seen.frames_per_second += 0.1 * (1.0 / passed - self.seen.frames_per_second);
+        if self.state.playing {
+            ctx.request_repaint();
+        }
+    }
+
+    /// What the window knows and shows.
+    pub fn state(&mut self) -> &mut State {
+        &mut self.state
+    }
+
+    /// The newest state of the fluid.
+    pub fn snapshot(&self) -> Option<Arc<Snapshot>> {
+        self.engine.snapshot()
+    }
+
+    fn restart(&mut self) {
+        self.engine.send(Command::Open(Box::new(self.state.scene.clone())));
+        self.engine.send(Command::TimeScale(self.state.time_scale.into()));
+        self.engine.send(Command::Play(self.state.playing));
+    }
+
+    fn open(&mut self, scene: Scene, text: String) {
+        self.state.open(scene);
+        self.text = text;
+        self.engine.send(Command::Hand(None));
+        self.restart();
+    }
+
+    fn draw(&mut self, size: [u32; 2], render_state: &RenderState, ctx: &Context) {
+        let Some(snapshot) = self.engine.snapshot() else { return };
+        let mut camera = self.state.orbit;
+        camera.target -= self.state.shaking.map_or(Vec3::ZERO, |shaking| shaking.offset);
+        // A picture of what was drawn last is there already.
+        let shown = Drawn { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.is(&shown)) {
+            return;
+        }
+        let aspect = size[0] as f32 / size[1] as f32;
+        let before = self.picture.view().cloned();
+        let drawn = self.picture.draw(size, &snapshot, &self.state.look, camera.camera(aspect));
+        if let Err(error) = drawn {
+            let now = ctx.input(|input| input.time);
+            self.state.tell(error.to_string(), true, now);
+            return;
+        }
+        self.drawn = Some(shown);
+        let Some(view) = self.picture.view() else { return };
+        if self.texture.is_some() && before.as_ref() == Some(view) {
+            return;
+        }
+        let mut renderer = render_state.renderer.write();
+        let (device, filter) = (&render_state.device, wgpu::FilterMode::Linear);
+        match self.texture {
+            Some(texture) => renderer.update_egui_texture_from_wgpu_texture(device, view, filter, texture),
+            None => self.texture = Some(renderer.register_native_texture(device, view, filter)),
+        }
+    }
+}
+
+impl eframe::App for Viewer {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        if let Some(render_state) = frame.wgpu_render_state().cloned() {
+            self.show(ui, &render_state);
+        }
+    }
+}
