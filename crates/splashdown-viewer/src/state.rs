@@ -219,6 +219,8 @@ pub struct State {
     pub particles_wanted: f32,
     /// Pictures recorded, while that goes on.
     pub recorded: Option<u32>,
+    /// Particles that the scene starts with, as it is now.
+    pub counted: u64,
     /// Whether the tap is on.
     pub pouring: bool,
 }
@@ -226,6 +228,7 @@ pub struct State {
 impl State {
     /// A scene as it was just opened.
     pub fn new(scene: Scene) -> Self {
+        let counted = splashdown::sample::count(&scene);
         Self {
             look: Look { colour_by: scene.output.colour_by, ..Look::default() },
             orbit: Orbit::of_scene(&scene),
@@ -240,7 +243,8 @@ impl State {
             shaking: None,
             hand: None,
             grip: None,
-            particles_wanted: splashdown::sample::count(&scene).max(1) as f32,
+            particles_wanted: counted as f32,
+            counted,
             recorded: None,
             pouring: false,
             scene,

@@ -166,3 +166,31 @@ fn bad_news_stay_and_notes_go() {
     window.run_steps(3);
     assert!(window.query_by_label("nothing is left").is_none());
 }
+
+#[test]
+fn a_scene_without_water_at_the_start_keeps_its_spacing() {
+    let text = presets().iter().find(|(name, _)| *name == "knot").unwrap().1;
+    let state = State::new(Scene::parse(text, "knot").unwrap());
+    let spacing = state.scene.fluid.particle_spacing;
+    let show = |ui: &mut egui::Ui, (state, all): &mut Both| all.extend(panels::show(ui, state, None).1);
+    let mut window =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).build_ui_state(show, (state, Vec::new()));
+    drag_count(&mut window);
+    assert_eq!(actions(&mut window), []);
+    assert_eq!(window.state().0.scene.fluid.particle_spacing, spacing);
+    // Control: one that starts with water does not.
+    let mut other = wide();
+    drag_count(&mut other);
+    assert!(actions(&mut other).contains(&Action::Restart));
+}
+
+/// Drags the slider of the number of particles.
+fn drag_count(window: &mut Harness<'_, Both>) {
+    let y = window.get_all_by_label("Fluid").last().unwrap().rect().center().y + 23.0;
+    window.drag_at(egui::pos2(1000.0, y));
+    for x in [1020.0, 1040.0, 1060.0] {
+        window.hover_at(egui::pos2(x, y));
+        window.run_steps(1);
+    }
+    window.drop_at(egui::pos2(1060.0, y));
+}

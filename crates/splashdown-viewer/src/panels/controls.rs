@@ -8,6 +8,9 @@ use super::gravity;
 use crate::look::Way;
 use crate::state::{Action, State};
 
+/// Scenes that start with fewer particles do not get others by number.
+const FEWEST: u64 = 20;
+
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ScrollArea::vertical().show(ui, |ui| {
         section(ui, "Fluid", |ui| fluid(ui, state, actions));
@@ -29,14 +32,19 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         .logarithmic(true)
         .max_decimals(0)
         .text("particles");
-    let wanted = ui.add(wanted).on_hover_text(
-        "About how many particles the scene starts with. More are finer and slower; the scene begins anew",
-    );
+    // Where all water comes from emitters, the number at the start says nothing of the size of particles.
+    let counted = state.counted;
+    let wanted = ui
+        .add_enabled(counted >= FEWEST, wanted)
+        .on_hover_text(
+            "About how many particles the scene starts with. More are finer and slower; the scene begins anew",
+        )
+        .on_disabled_hover_text("This scene begins without water: its emitters bring it");
     if wanted.drag_stopped() || (wanted.changed() && !wanted.dragged()) {
-        let now = splashdown::sample::count(&state.scene).max(1) as f32;
-        let factor = (now / state.particles_wanted).cbrt();
+        let factor = (counted as f32 / state.particles_wanted).cbrt();
         state.scene.fluid.particle_spacing *= factor;
         state.scene.surface.cell_size *= factor;
+        state.counted = splashdown::sample::count(&state.scene);
         actions.push(Action::Restart);
     }
     ui.weak(format!("{:.2} mm apart", 1000.0 * state.scene.fluid.particle_spacing));
