@@ -6,11 +6,14 @@ use splashdown_render::RenderError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewerError {
-    /// No display, or no driver.
+    /// No screen.
     #[error(
-        "no window could be opened: {reason}. A window needs a display (on a machine without one: `splashdown run`, which writes \
-         pictures) and a graphics driver ({hint})"
+        "no window could be opened: this session has no display (neither DISPLAY nor WAYLAND_DISPLAY is set). Start it on a \
+         desktop, or let `splashdown run` write pictures and a film"
     )]
+    NoDisplay,
+    /// No driver, or one that does not show windows.
+    #[error("no window could be opened: {reason}. A window needs a graphics driver: {hint}")]
     NoWindow {
         /// What the system says.
         reason: String,

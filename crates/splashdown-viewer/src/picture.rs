@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use splashdown::BodyState;
+use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_render::{
     Axis, Camera, Colouring, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
@@ -36,13 +36,13 @@ struct Target {
 
 /// What belongs to a scene.
 struct Stage {
-    number: u32,
+    /// What `bodies` was made from: other meshes are other bodies.
+    meshes: Arc<[BodyMesh]>,
     bodies: Vec<PlacedBody>,
 }
 
 /// The bodies as they were drawn last: most pictures show them where they were.
 struct Placed {
-    number: u32,
     states: Vec<BodyState>,
     uploaded: UploadedBodies,
 }
@@ -157,12 +157,13 @@ impl Picture {
 
     fn place(&mut self, snapshot: &Snapshot) -> Result<(), RenderError> {
         let opened = &snapshot.opened;
-        if self.stage.as_ref().is_none_or(|stage| stage.number != opened.number) {
+        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.meshes, &opened.bodies)) {
             let bodies = opened.bodies.iter().map(|body| {
                 let colour = body.colour.unwrap_or(PlacedBody::COLOUR);
                 PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
             });
-            self.stage = Some(Stage { number: opened.number, bodies: bodies.collect::<Result<_, _>>()? });
+            let bodies = bodies.collect::<Result<_, _>>()?;
+            self.stage = Some(Stage { meshes: Arc::clone(&opened.bodies), bodies });
             self.placed = None;
         }
         let Some(stage) = self.stage.as_ref().filter(|stage| stage.bodies.len() == snapshot.bodies.len())
@@ -171,12 +172,8 @@ impl Picture {
             return Ok(());
         };
         let still = |placed: &Placed| {
-            placed.number == stage.number
-                && placed
-                    .states
-                    .iter()
-                    .zip(&snapshot.bodies)
-                    .all(|(a, b)| a.position == b.position && a.orientation == b.orientation)
+            let mut both = placed.states.iter().zip(&snapshot.bodies);
+            both.all(|(a, b)| a.position == b.position && a.orientation == b.orientation)
         };
         if stage.bodies.is_empty() || self.placed.as_ref().is_some_and(still) {
             return Ok(());
@@ -185,7 +182,6 @@ impl Picture {
         let placed =
             bodies.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array()));
         self.placed = Some(Placed {
-            number: stage.number,
             states: snapshot.bodies.clone(),
             uploaded: UploadedBodies::new(&self.gpu.device, placed),
         });

@@ -26,8 +26,12 @@ pub struct ViewOptions {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// [`ViewerError::NoWindow`] without a display or a driver.
+/// [`ViewerError::NoDisplay`] and [`ViewerError::NoWindow`], without a display or a driver.
 pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
+    let unset = |name: &str| std::env::var_os(name).is_none_or(|value| value.is_empty());
+    if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
+        return Err(ViewerError::NoDisplay);
+    }
     let ViewOptions { scene, text, device, simulate, size } = options;
     let title = format!("Splashdown - {}", scene.name);
     let native = eframe::NativeOptions {

@@ -48,7 +48,7 @@ impl Viewer {
                     self.state.tell(text, true, now);
                 }
                 Message::Preparing(body, part) => self.state.preparing = (part < 1.0).then_some((body, part)),
-                Message::Exported { mesh, .. } => {
+                Message::Exported(mesh) => {
                     if std::mem::take(&mut self.seen.exporting) {
                         let name = format!("{}.ply", self.state.scene.name);
                         let kept = keep::mesh(&name, &mesh);

@@ -135,16 +135,6 @@ impl Viewer {
         }
     }
 
-    /// What the window knows and shows.
-    pub fn state(&mut self) -> &mut State {
-        &mut self.state
-    }
-
-    /// The newest state of the fluid.
-    pub fn snapshot(&self) -> Option<Arc<Snapshot>> {
-        self.engine.snapshot()
-    }
-
     fn restart(&mut self) {
         self.engine.send(Command::Open(Box::new(self.state.scene.clone())));
         self.engine.send(Command::TimeScale(self.state.time_scale.into()));

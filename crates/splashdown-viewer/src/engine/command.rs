@@ -30,8 +30,6 @@ pub enum Command {
     Open(Box<Scene>),
     /// Go on under this scene, with the fluid as it is.
     Change(Box<Scene>),
-    /// Back to the beginning of the scene as it was changed last.
-    Reset,
     /// Run, or stand still.
     Play(bool),
     /// Simulate this long, in s, and stand still.
@@ -46,7 +44,7 @@ pub enum Command {
     Surface(bool),
     /// Whether passes are timed.
     Timing(bool),
-    /// Hand out the particles and the surface's mesh as they are.
+    /// Hand out the surface's mesh as it is.
     Export,
     /// Stop for good.
     Quit,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use splashdown::scene::Scene;
 use splashdown::{BodyMesh, BodyState, Stats};
 use splashdown_gpu::Timings;
-use splashdown_io::{Mesh, Particles};
+use splashdown_io::Mesh;
 
 use super::Drawn;
 
@@ -14,13 +14,11 @@ pub struct Opened {
     /// The scene.
     pub scene: Scene,
     /// The meshes of its bodies.
-    pub bodies: Vec<BodyMesh>,
+    pub bodies: Arc<[BodyMesh]>,
     /// What simulates it.
     pub device: String,
     /// Bytes in its buffers.
     pub memory: u64,
-    /// Counts the scenes, and their changes.
-    pub number: u32,
 }
 
 /// The fluid at one moment.
@@ -57,13 +55,8 @@ pub enum Message {
     Refused(String),
     /// The engine has ended by a fault of its own.
     Stopped,
-    /// What [`Command::Export`](super::Command::Export) asked for.
-    Exported {
-        /// The particles in order of id.
-        particles: Arc<Particles>,
-        /// The surface.
-        mesh: Arc<Mesh>,
-    },
+    /// The surface, as [`Command::Export`](super::Command::Export) asked for it.
+    Exported(Arc<Mesh>),
     /// A body's distances are being computed: its name and how far, in [0, 1].
     Preparing(String, f32),
 }

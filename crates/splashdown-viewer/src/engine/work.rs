@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use splashdown::scene::Scene;
 use splashdown::surface::{Surface, SurfaceStats};
-use splashdown::{Device, Hand, Simulation, SimulationError};
+use splashdown::{BodyMesh, Device, Hand, Simulation, SimulationError};
 use splashdown_gpu::{Executor, Gpu, GpuExecutor, Timings};
 use web_time::Instant;
 
@@ -36,10 +36,7 @@ pub(super) struct Worker {
     copies: Copies,
     simulation: Option<Simulation>,
     surface: Option<Surface>,
-    /// The scene that runs, as it was changed last.
-    scene: Option<Scene>,
     opened: Option<Arc<Opened>>,
-    number: u32,
     playing: bool,
     wants_surface: bool,
     wants_timing: bool,
@@ -123,9 +120,7 @@ impl Worker {
             repaint,
             simulation: None,
             surface: None,
-            scene: None,
             opened: None,
-            number: 0,
             playing: false,
             wants_surface: false,
             wants_timing: false,
@@ -165,11 +160,6 @@ impl Worker {
     async fn obey(&mut self, command: Command) -> Result<(), SimulationError> {
         match command {
             Command::Open(scene) => return self.open(*scene).await,
-            Command::Reset => {
-                if let Some(scene) = self.scene.clone() {
-                    return self.open(scene).await;
-                }
-            }
             Command::Change(scene) => {
                 // What cannot be changed leaves the water as it is.
                 if let Err(error) = self.change(*scene).await {
@@ -237,7 +227,6 @@ impl Worker {
             lock(&messages).push(Message::Preparing(body.to_owned(), part));
         };
         let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
-        self.scene = Some(scene);
         self.begin(simulation).await
     }
 
@@ -245,15 +234,15 @@ impl Worker {
         let Some(simulation) = &mut self.simulation else { return self.open(scene).await };
         let surface_differs = simulation.scene().surface != scene.surface;
         if simulation.adopt(&scene)? {
-            self.scene = Some(scene);
             if surface_differs {
                 self.surface = None;
             }
-            self.publish_scene();
+            // The bodies are the same: the picture keeps what it has made of them.
+            let bodies = self.opened.as_ref().map(|opened| Arc::clone(&opened.bodies));
+            self.publish_scene(bodies);
             return self.show().await;
         }
         let next = simulation.carry_over_async(&scene).await?;
-        self.scene = Some(scene);
         self.begin(next).await
     }
 
@@ -268,19 +257,17 @@ impl Worker {
         self.grip = None;
         self.pace.forget();
         self.meter = Meter::new();
-        self.publish_scene();
+        self.publish_scene(None);
         self.show().await
     }
 
-    fn publish_scene(&mut self) {
+    fn publish_scene(&mut self, bodies: Option<Arc<[BodyMesh]>>) {
         let Some(simulation) = &self.simulation else { return };
-        self.number += 1;
         self.opened = Some(Arc::new(Opened {
             scene: simulation.scene().clone(),
-            bodies: simulation.body_meshes().to_vec(),
+            bodies: bodies.unwrap_or_else(|| simulation.body_meshes().into()),
             device: simulation.device_name(),
             memory: simulation.memory(),
-            number: self.number,
         }));
     }
 
@@ -351,8 +338,7 @@ impl Worker {
         let Some(surface) = &mut self.surface else { return Ok(()) };
         simulation.extract_async(surface).await?;
         let mesh = Arc::new(simulation.mesh_async(surface).await?);
-        let particles = Arc::new(simulation.particles_async().await?);
-        lock(&lock(&self.outbox).messages).push(Message::Exported { particles, mesh });
+        lock(&lock(&self.outbox).messages).push(Message::Exported(mesh));
         (self.repaint)();
         Ok(())
     }

@@ -17,7 +17,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
         section(ui, "Play", |ui| play(ui, state, actions));
         section(ui, "Solver", |ui| solver(ui, state, actions));
-        section(ui, "Look", |ui| look(ui, state, actions));
+        if state.look.way != Way::Fluid {
+            section(ui, "Look", |ui| look(ui, state, actions));
+        }
         section(ui, "Keep", |ui| keep(ui, state, actions));
     });
 }
