@@ -8,6 +8,7 @@
 //! | [`Particles`] | PLY ([`ply`]), VTU ([`vtu`]) with an index of the series ([`pvd`]); both also read by [`read_particles`], and VTK ([`vtk`]), BGEO ([`bgeo`]) and NPY ([`npy`]) | ParaView, Blender, Houdini, MeshLab |
 //! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), all also read by [`read_mesh`]; glTF ([`gltf`], read) | every 3-D program |
 //! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
+//! | named arrays and texts | ZIP of NPY ([`Archive`]) | `numpy.load` |
 //! | a growing table | CSV ([`CsvLog`]) | every spreadsheet, `pandas` |
 //!
 //! ```
@@ -69,6 +70,7 @@ compile_error!(
     "the binary writers hand memory to the file as it is, which is right on little-endian machines only"
 );
 
+pub mod archive;
 pub mod atomic;
 pub mod bgeo;
 mod columns;
@@ -90,6 +92,7 @@ pub mod vtk;
 pub mod vtu;
 pub mod writer;
 
+pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;
 pub use csv::CsvLog;
 pub use error::{IoError, WriteCause};

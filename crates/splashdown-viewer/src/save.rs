@@ -27,8 +27,8 @@ pub fn scene(text: &str, scene: &Scene, orbit: &Orbit) -> Result<String, String>
     // What was written is what is meant, or it is not written.
     let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
     read.camera = scene.camera;
-    let (source, warnings) = (scene.source.clone(), scene.warnings.clone());
-    if (Scene { source, warnings, ..read }) != *scene {
+    let (source, warnings, text) = (scene.source.clone(), scene.warnings.clone(), scene.text.clone());
+    if (Scene { source, warnings, text, ..read }) != *scene {
         return Err("this scene has been changed in ways that a scene file cannot say".to_owned());
     }
     Ok(written)

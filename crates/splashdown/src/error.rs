@@ -18,6 +18,9 @@ pub enum SimulationError {
     /// The surface.
     #[error(transparent)]
     Surface(#[from] crate::surface::SurfaceError),
+    /// A checkpoint.
+    #[error(transparent)]
+    Checkpoint(Box<crate::CheckpointError>),
     /// More than the device or the indices allow.
     #[error("{given} {what} are too many: at most {allowed} fit; {advice}")]
     TooMany {

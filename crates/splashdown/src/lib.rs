@@ -18,6 +18,7 @@
 pub mod bodies;
 pub mod boundary;
 pub mod cells;
+mod checkpoint;
 mod device;
 mod error;
 mod fields;
@@ -38,6 +39,7 @@ mod stats;
 pub mod surface;
 
 pub use bodies::{BodyMesh, BodyState};
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;

@@ -1,7 +1,7 @@
 //! What a simulation tells about itself.
 
 /// The state of a simulation at the end of a call of [`Simulation::advance`](crate::Simulation::advance).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stats {
     /// Simulated time in seconds.
     pub time: f64,

@@ -30,11 +30,15 @@ use splashdown_io::{Mesh, Particles};
 use crate::SimulationError;
 use crate::boundary::KernelPair;
 use crate::cells::Cells;
+use crate::checkpoint::{BodyKey, CheckpointError};
 use crate::fields::Fields;
 use crate::passes::Params;
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
 use rigid::Rigid;
+
+/// Five vectors and a quaternion.
+const MOTION_COLUMNS: usize = 19;
 
 /// A body's shape.
 #[derive(Clone, Debug)]
@@ -308,6 +312,73 @@ impl Bodies {
         if let Some(rigid) = &mut self.rigid {
             rigid.place(&bodies);
         }
+        executor.write(self.bodies, &bodies)
+    }
+
+    /// By what the bodies are known again.
+    pub(crate) fn keys(&self) -> Vec<BodyKey> {
+        self.meshes
+            .iter()
+            .map(|BodyMesh { name, mesh, .. }| BodyKey {
+                name: name.clone(),
+                vertices: mesh.vertices.len(),
+                triangles: mesh.triangles.len(),
+                volume: mesh.volume() as f32,
+            })
+            .collect()
+    }
+
+    /// Refuses bodies that have another shape than those of a checkpoint.
+    pub(crate) fn check_keys(&self, then: &[BodyKey]) -> Result<(), CheckpointError> {
+        let now = self.keys();
+        match now.iter().zip(then).find(|(now, then)| now != then) {
+            Some((now, then)) => Err(CheckpointError::BodyChanged {
+                body: now.name.clone(),
+                then: then.to_string(),
+                now: now.to_string(),
+            }),
+            None if now.len() != then.len() => {
+                let reason = format!("it has {} bodies, its scene {}", then.len(), now.len());
+                Err(CheckpointError::Malformed(reason))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Numbers per body in [`fetch_motion`](Self::fetch_motion).
+    pub(crate) fn motion_columns(&self) -> usize {
+        MOTION_COLUMNS
+    }
+
+    /// Position, orientation, velocity, angular velocity, force and torque of each body.
+    pub(crate) async fn fetch_motion(&self, executor: &mut Executor) -> Result<Vec<f32>, GpuError> {
+        let bodies = executor.fetch(self.bodies).await?;
+        let vectors = |b: &Body| [b.position, b.velocity, b.angular_velocity, b.force, b.torque];
+        let row =
+            |b: &Body| vectors(b).into_iter().flat_map(|v| v.to_array()).chain(b.orientation.to_array());
+        Ok(bodies.iter().flat_map(|b| row(b).collect::<Vec<f32>>()).collect())
+    }
+
+    /// The world in which the bodies collide.
+    pub(crate) fn collisions(&self) -> &Option<Rigid> {
+        &self.rigid
+    }
+
+    /// Puts back what [`fetch_motion`](Self::fetch_motion) and [`collisions`](Self::collisions) told.
+    pub(crate) async fn restore(
+        &mut self,
+        executor: &mut Executor,
+        motion: &[f32],
+        collisions: Option<Rigid>,
+    ) -> Result<(), GpuError> {
+        let mut bodies = executor.fetch(self.bodies).await?;
+        for (body, row) in bodies.iter_mut().zip(motion.chunks_exact(MOTION_COLUMNS)) {
+            let vector = |k: usize| Vec3::from_slice(&row[3 * k..]);
+            (body.position, body.velocity, body.angular_velocity) = (vector(0), vector(1), vector(2));
+            (body.force, body.torque) = (vector(3), vector(4));
+            body.orientation = Vec4::from_slice(&row[15..]);
+        }
+        self.rigid = collisions;
         executor.write(self.bodies, &bodies)
     }
 

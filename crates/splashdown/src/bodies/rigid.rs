@@ -15,6 +15,7 @@ use rapier3d::prelude::{
     ColliderBuilder, PhysicsWorld, Pose, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle, Rotation,
     SharedShape, Vector,
 };
+use serde::{Deserialize, Serialize};
 
 use super::load::LoadedBody;
 use super::types::Body;
@@ -28,12 +29,20 @@ const RESTITUTION: f32 = 0.2;
 const HOLLOW: f32 = 1.1;
 
 /// The bodies' twins in rapier's world.
-pub(super) struct Rigid {
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Rigid {
     world: PhysicsWorld,
     /// One per body, in their order.
     handles: Vec<RigidBodyHandle>,
     /// Where they were after the last batch.
-    before: Vec<(Vec3, Quat)>,
+    before: Vec<Place>,
+}
+
+/// A position in m and a rotation, a quaternion.
+type Place = ([f32; 3], [f32; 4]);
+
+fn place(state: &Body) -> Place {
+    (state.position.to_array(), state.rotation().to_array())
 }
 
 impl Rigid {
@@ -49,7 +58,7 @@ impl Rigid {
         let handles =
             loaded.iter().zip(states).map(|(body, state)| insert(&mut world, body, state)).collect();
         insert_box(&mut world, domain);
-        let before = states.iter().map(|state| (state.position, state.rotation())).collect();
+        let before = states.iter().map(place).collect();
         Some(Self { world, handles, before })
     }
 
@@ -60,6 +69,7 @@ impl Rigid {
         }
         let mut means = Vec::with_capacity(states.len());
         for ((state, handle), &(position, rotation)) in states.iter().zip(&self.handles).zip(&self.before) {
+            let (position, rotation) = (Vec3::from(position), Quat::from_array(rotation));
             let body = &mut self.world.bodies[*handle];
             let velocity = (state.position - position) / seconds;
             let turn = state.rotation() * rotation.conjugate();
@@ -92,14 +102,14 @@ impl Rigid {
                 let turn = here(body.angvel()) - spin;
                 state.angular_velocity += axis.map_or(turn, |axis| axis.dot(turn) * axis);
             }
-            self.before[b] = (state.position, state.rotation());
+            self.before[b] = place(state);
         }
         collided
     }
 
     /// Bodies have been put elsewhere: what comes next begins there.
     pub fn place(&mut self, states: &[Body]) {
-        self.before = states.iter().map(|state| (state.position, state.rotation())).collect();
+        self.before = states.iter().map(place).collect();
     }
 
     fn touches(&self, handle: RigidBodyHandle) -> bool {

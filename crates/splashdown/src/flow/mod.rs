@@ -189,6 +189,25 @@ impl Flow {
         self.nozzles.is_some()
     }
 
+    /// What the emitters remember from step to step, if there are any.
+    pub(crate) fn plans(&self) -> Option<Buffer<u32>> {
+        self.nozzles.as_ref().map(|nozzles| nozzles.plans)
+    }
+
+    /// The emitters of which it was told that they found no room.
+    pub(crate) fn told(&self) -> &[bool] {
+        self.nozzles.as_ref().map_or(&[], |nozzles| &nozzles.told)
+    }
+
+    /// Sets what has been told.
+    pub(crate) fn set_told(&mut self, told: &[bool]) {
+        if let Some(nozzles) = &mut self.nozzles {
+            for (mine, &theirs) in nozzles.told.iter_mut().zip(told) {
+                *mine = theirs;
+            }
+        }
+    }
+
     /// Appends the nozzles' drive and the sinks; needs the accelerations.
     pub fn record_before_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
         let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());

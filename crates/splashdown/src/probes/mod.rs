@@ -105,6 +105,11 @@ impl Probes {
         }))
     }
 
+    /// What the probes remember from step to step.
+    pub(crate) fn memory(&self) -> [Buffer<u32>; 2] {
+        [self.accounts, self.counts]
+    }
+
     /// Appends the readings; needs the step's densities and accelerations, and the positions after it.
     pub fn record(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
         let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());

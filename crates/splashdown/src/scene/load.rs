@@ -61,6 +61,16 @@ impl Scene {
         Self::from_bytes(text.as_bytes(), file_name, None)
     }
 
+    /// As [`load`](Self::load), of the text of a file that is not where it was, or not as it was: the files that it names are looked for
+    /// beside `path`.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse_beside(text: &str, path: &Path) -> Result<Self, SceneErrors> {
+        let scene = Self::from_bytes(text.as_bytes(), &path.display().to_string(), path.parent())?;
+        Ok(Self { source: Some(path.to_owned()), ..scene })
+    }
+
     fn from_bytes(bytes: &[u8], file: &str, folder: Option<&Path>) -> Result<Self, SceneErrors> {
         let refuse = |message: String| {
             SceneErrors::one(SceneProblem::of_file(

@@ -4,6 +4,7 @@
 //! (`keys.rs`); the fields are public, so code and tests can also build one by hand.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
@@ -46,6 +47,8 @@ pub struct Scene {
     pub warnings: Vec<SceneWarning>,
     /// The file it came from, if any.
     pub source: Option<PathBuf>,
+    /// What it was read from.
+    pub text: Arc<str>,
 }
 
 impl Scene {

@@ -67,6 +67,7 @@ impl Simulation {
         let mut twin = scene.clone();
         (twin.name, twin.warnings, twin.source) =
             (old.name.clone(), old.warnings.clone(), old.source.clone());
+        twin.text = old.text.clone();
         (twin.duration, twin.frame_rate, twin.gravity) = (old.duration, old.frame_rate, old.gravity);
         (twin.surface, twin.camera, twin.output) = (old.surface.clone(), old.camera, old.output.clone());
         twin.domain.shake = old.domain.shake;

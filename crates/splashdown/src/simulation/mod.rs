@@ -1,5 +1,6 @@
 //! A running simulation.
 
+mod checkpoint;
 mod frame;
 mod live;
 mod results;

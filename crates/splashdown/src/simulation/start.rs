@@ -95,19 +95,38 @@ impl Simulation {
 
     pub(super) async fn with_bodies(
         scene: &Scene,
-        mut executor: Executor,
+        executor: Executor,
         particles: &Particles,
         loaded: Vec<LoadedBody>,
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
         let largest = executor.largest_buffer();
         memory::check(n as u64, largest)?;
-        let solver = Solver::new(scene);
         let loaded_flow = LoadedFlow::new(scene)?;
         // The unborn have places of their own.
-        let (initial, n) =
-            (n as u32, loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as usize);
-        let params = solver::params(scene, n as u32);
+        let initial = n as u32;
+        let capacity = loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as u32;
+        let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
+        let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow)?;
+        simulation.initial = initial;
+        upload(&mut simulation.executor, &simulation.fields, particles, &simulation.params)?;
+        simulation.executor.write(simulation.fields.duration, &[0.0])?;
+        simulation.executor.run(&simulation.prime)?;
+        simulation.count().await?;
+        Ok(simulation)
+    }
+
+    /// Makes the buffers and records the step; the particles, `capacity` at most, are still to be put in.
+    pub(super) fn assemble(
+        scene: &Scene,
+        mut executor: Executor,
+        capacity: u32,
+        next_id: u32,
+        loaded: Vec<LoadedBody>,
+        loaded_flow: &LoadedFlow,
+    ) -> Result<Self, SimulationError> {
+        let solver = Solver::new(scene);
+        let params = solver::params(scene, capacity);
         let (min, max) = (scene.domain.min, scene.domain.max);
         let grid =
             Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
@@ -117,7 +136,7 @@ impl Simulation {
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
         let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
-        let cells = Cells::new(&mut executor, grid, n as u32, scene.solver.sort)?;
+        let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort)?;
         let bodies = if loaded.is_empty() {
             None
         } else {
@@ -126,10 +145,8 @@ impl Simulation {
         let flow = if loaded_flow.is_empty() {
             None
         } else {
-            let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
-            Some(Flow::new(&mut executor, &loaded_flow, params.particle_spacing, next_id)?)
+            Some(Flow::new(&mut executor, loaded_flow, params.particle_spacing, next_id)?)
         };
-        upload(&mut executor, &fields, particles, &params)?;
         let stable_dt = Derived::without_particles(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
@@ -137,7 +154,7 @@ impl Simulation {
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
         let mut simulation = Self {
             begin: solver::begin_frame(&fields),
-            prime: solver.prime(&cells, &fields, bodies.as_ref(), n as u32),
+            prime: solver.prime(&cells, &fields, bodies.as_ref(), capacity),
             executor,
             scene: scene.clone(),
             params,
@@ -154,13 +171,10 @@ impl Simulation {
             probes,
             stirrer: None,
             most_steps: MOST_STEPS,
-            initial,
+            initial: 0,
             told: Vec::new(),
         };
         simulation.record_batches();
-        simulation.executor.write(simulation.fields.duration, &[0.0])?;
-        simulation.executor.run(&simulation.prime)?;
-        simulation.count().await?;
         Ok(simulation)
     }
 

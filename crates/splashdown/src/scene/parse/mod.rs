@@ -55,7 +55,7 @@ pub(crate) fn parse(text: &str, file: &str, folder: Option<&Path>) -> Result<Sce
     };
     let (errors, warnings) = reader.finish();
     match scene {
-        Ok(scene) if errors.is_empty() => Ok(Scene { warnings, ..scene }),
+        Ok(scene) if errors.is_empty() => Ok(Scene { warnings, text: text.into(), ..scene }),
         _ => Err(SceneErrors { file: file.to_owned(), errors }),
     }
 }
@@ -136,6 +136,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         output: output?,
         warnings: Vec::new(),
         source: None,
+        text: "".into(),
     };
     let (fluid_section, solver_section) = (fluid_section?, solver_section?);
     warnings::check(&scene, root, &fluid_section, &solver_section);

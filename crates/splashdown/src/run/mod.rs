@@ -1,158 +1,21 @@
 //! A whole run as one stream of events, which command line, window and Python read.
 
+mod events;
+
+pub use events::{Event, Frame, Listener, Progress, RunOptions, Started, Summary, Told};
+
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use splashdown_gpu::{Gpu, Timings};
-use splashdown_io::{Mesh, Particles};
+use serde::{Deserialize, Serialize};
+use splashdown_gpu::{Gpu, block_on};
+use splashdown_io::Mesh;
 use web_time::Instant;
 
-use crate::probes::ProbeRows;
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::Surface;
-use crate::{BodyMesh, BodyState, Device, Simulation, SimulationError, Stats};
-
-/// What to compute beside the particles' motion.
-#[derive(Clone, Debug)]
-pub struct RunOptions {
-    /// Where to simulate.
-    pub device: Device,
-    /// Frames to compute; the scene's own number if `None`.
-    pub frames: Option<u32>,
-    /// Extract the surface in every frame.
-    pub surface: bool,
-    /// Measure the time of every pass.
-    pub timing: bool,
-    /// Who hears of what takes time before the first event.
-    pub listener: Option<Listener>,
-}
-
-/// What a [`Listener`] calls: with a body's name, and how far its distances are, in [0, 1].
-pub type Told = dyn Fn(&str, f32) + Send + Sync;
-
-/// Hears of the bodies whose distances are being computed before a run's first event.
-#[derive(Clone)]
-pub struct Listener(pub Arc<Told>);
-
-impl std::fmt::Debug for Listener {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Listener")
-    }
-}
-
-impl RunOptions {
-    /// The scene's own wishes on the best device.
-    pub fn new(scene: &Scene) -> Self {
-        Self {
-            device: Device::Auto,
-            frames: None,
-            surface: scene.surface.enabled,
-            timing: false,
-            listener: None,
-        }
-    }
-}
-
-/// One thing that happened.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum Event {
-    /// The first event.
-    Started(Started),
-    /// Now and then between two frames.
-    Progress(Progress),
-    /// A frame is complete. Frame 0 is the initial state.
-    Frame(Frame),
-    /// Something the user should know; the run goes on.
-    Warning(String),
-    /// Something the user may want to know.
-    Note(String),
-    /// The last event.
-    Finished(Summary),
-}
-
-/// What is about to run.
-#[derive(Clone, Debug)]
-pub struct Started {
-    /// The device's name.
-    pub device: String,
-    /// Number of particles.
-    pub particles: u32,
-    /// Number of frames, the initial one not counted.
-    pub frames: u32,
-    /// Bytes in the device's buffers.
-    pub memory: u64,
-    /// The first time step in seconds.
-    pub dt: f32,
-}
-
-/// Where the run is.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// The frame being computed.
-    pub frame: u32,
-    /// Number of frames.
-    pub frames: u32,
-    /// Simulated time in seconds.
-    pub time: f64,
-    /// Simulated time at the end in seconds.
-    pub duration: f64,
-    /// Steps since the start.
-    pub steps: u64,
-    /// The last time step in seconds.
-    pub dt: f32,
-    /// Wall time since the start.
-    pub wall: Duration,
-}
-
-/// A complete frame.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// Number, from 0.
-    pub index: u32,
-    /// Simulated time in seconds.
-    pub time: f64,
-    /// The simulation's own account.
-    pub stats: Stats,
-    /// The living particles in order of id.
-    pub particles: Arc<Particles>,
-    /// The fluid's surface, if asked for.
-    pub mesh: Option<Arc<Mesh>>,
-    /// The volume that the surface encloses in m^3.
-    pub volume: Option<f64>,
-    /// The bodies, in the order of [`Run::bodies`].
-    pub bodies: Arc<[BodyState]>,
-    /// What the scene's probes measured since the frame before, in the order of the scene.
-    pub probes: Arc<[ProbeRows]>,
-}
-
-/// The whole run in a few numbers.
-#[derive(Clone, Debug)]
-pub struct Summary {
-    /// The simulation's last account.
-    pub stats: Stats,
-    /// Frames computed, the initial one not counted.
-    pub frames: u32,
-    /// Wall time of everything, in seconds.
-    pub wall: f64,
-    /// Wall time spent in steps, in seconds.
-    pub step_wall: f64,
-    /// Wall time spent in the surface and in fetching frames, in seconds.
-    pub frame_wall: f64,
-    /// Particles times steps per second of `step_wall`.
-    pub particle_steps_per_second: f64,
-    /// Simulated seconds per second of `wall`.
-    pub simulated_per_wall: f64,
-    /// The largest density error of all frames.
-    pub density_error: f32,
-    /// Enclosed volume of the first and the last surface in m^3.
-    pub volume: Option<[f64; 2]>,
-    /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
-    pub particle_volume: f64,
-    /// Time per pass, if asked for.
-    pub timings: Timings,
-}
+use crate::{BodyMesh, BodyState, Checkpoint, Simulation, SimulationError, Stats};
 
 /// An excess of density that no sound has: something is told of it.
 const DENSE: f32 = 0.3;
@@ -164,7 +27,7 @@ const PROGRESS: Duration = Duration::from_millis(100);
 ///
 /// ```
 /// use splashdown::{Event, Run, RunOptions, scene::Scene};
-/// # let text = include_str!("../../../scenes/dam-break-small.toml");
+/// # let text = include_str!("../../../../scenes/dam-break-small.toml");
 /// let scene = Scene::parse(text, "dam-break-small.toml")?;
 /// let options = RunOptions { frames: Some(1), ..RunOptions::new(&scene) };
 /// for event in Run::new(&scene, options)? {
@@ -182,6 +45,11 @@ pub struct Run {
     frame_duration: f32,
     duration: f64,
     stage: Stage,
+    /// The frame that is there when the run starts: 0, or that of a checkpoint.
+    first: u32,
+    /// What is left of the next frame in seconds, if that is not the whole.
+    next_duration: Option<f32>,
+    scene_text: Arc<str>,
     started: Instant,
     told: Instant,
     clock: Clock,
@@ -196,6 +64,8 @@ pub struct Run {
     /// One per body: true if it moves by itself and has not been told lost.
     watched: Vec<bool>,
     stats_before: Stats,
+    /// Simulated time at the start in seconds.
+    began_at: f64,
 }
 
 /// Wall time by what it was spent on.
@@ -205,8 +75,23 @@ struct Clock {
     frames: Duration,
 }
 
+/// What a run remembers beside its simulation; part of a checkpoint.
+#[derive(Serialize, Deserialize)]
+struct Account {
+    frame: u32,
+    density_error: f32,
+    volume: Option<[f64; 2]>,
+    particle_volume: f64,
+    watched: Vec<bool>,
+}
+
+/// The name of the account in a checkpoint.
+const ACCOUNT: &str = "run.bin";
+
 enum Stage {
     Start,
+    /// The frame of this number is about to begin.
+    Begin(u32),
     /// The frame of this number is being computed.
     Steps(u32),
     /// The frame of this number has to be fetched.
@@ -227,7 +112,54 @@ impl Run {
                 listener(body, part);
             }
         };
-        let mut simulation = Simulation::prepare(scene, options.device.executor()?, &told)?;
+        let simulation = Simulation::prepare(scene, options.device.executor()?, &told)?;
+        Self::of(simulation, scene, options, started)
+    }
+
+    /// Goes on from a checkpoint, whose scene this is: frames that came before are not told again. A checkpoint that was not made at the end
+    /// of a frame goes on with what is left of the frame that it was made in.
+    ///
+    /// # Errors
+    /// As [`Simulation::resume`].
+    pub fn resume(
+        checkpoint: &Checkpoint,
+        scene: &Scene,
+        options: RunOptions,
+    ) -> Result<Self, SimulationError> {
+        let started = Instant::now();
+        let told = |body: &str, part: f32| {
+            if let Some(Listener(listener)) = &options.listener {
+                listener(body, part);
+            }
+        };
+        let executor = options.device.executor()?;
+        let simulation = block_on(Simulation::resume_async(checkpoint, executor, &told))?;
+        let time = simulation.stats().time;
+        let mut run = Self::of(simulation, scene, options, started)?;
+        let rate = f64::from(scene.frame_rate);
+        let frame = match checkpoint.get::<Option<Account>>(ACCOUNT) {
+            Ok(Some(account)) => {
+                let frame = account.frame;
+                run.restore(account);
+                frame
+            }
+            // From a front end without frames. A part in a million does not make one.
+            _ => {
+                let frame = (time * rate + 1e-6).floor();
+                run.next_duration = Some(((frame + 1.0) / rate - time) as f32);
+                frame as u32
+            }
+        };
+        run.first = frame;
+        Ok(run)
+    }
+
+    fn of(
+        mut simulation: Simulation,
+        scene: &Scene,
+        options: RunOptions,
+        started: Instant,
+    ) -> Result<Self, SimulationError> {
         let buried = simulation.buried_probes(&scene.probes)?;
         let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
         if options.timing {
@@ -244,6 +176,9 @@ impl Run {
             frame_duration,
             duration: f64::from(frames) * f64::from(frame_duration),
             stage: Stage::Start,
+            first: 0,
+            next_duration: None,
+            scene_text: Arc::clone(&scene.text),
             started,
             told: started,
             clock: Clock::default(),
@@ -256,6 +191,7 @@ impl Run {
             domain: scene.domain.clone(),
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             stats_before: simulation.stats(),
+            began_at: simulation.stats().time,
             simulation,
         })
     }
@@ -271,7 +207,10 @@ impl Run {
     }
 
     fn start(&mut self) -> Event {
-        self.stage = Stage::Fetch(0);
+        self.stage = match self.first {
+            0 if self.next_duration.is_none() => Stage::Fetch(0),
+            frame => self.after(frame),
+        };
         for (body, report) in self.simulation.body_meshes().iter().zip(self.simulation.body_reports()) {
             self.waiting.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
         }
@@ -284,6 +223,7 @@ impl Run {
         Event::Started(Started {
             device: self.simulation.device_name(),
             particles: self.simulation.stats().particles,
+            first_frame: self.first,
             frames: self.frames,
             memory: self.simulation.memory(),
             dt: self.simulation.dt(),
@@ -318,6 +258,40 @@ impl Run {
             dt: self.simulation.dt(),
             wall: self.started.elapsed(),
         })))
+    }
+
+    /// What comes after a frame.
+    fn after(&self, frame: u32) -> Stage {
+        if frame < self.frames { Stage::Begin(frame + 1) } else { Stage::Finish }
+    }
+
+    /// Everything that is needed to go on after the last [`Event::Frame`]; call it before asking for the next event.
+    ///
+    /// # Errors
+    /// As [`Simulation::checkpoint`].
+    pub fn checkpoint(&mut self) -> Result<Checkpoint, SimulationError> {
+        let mut checkpoint = self.simulation.checkpoint(&self.scene_text)?;
+        // Within a frame there is no account of one.
+        let account = match self.stage {
+            Stage::Begin(next) => Some(next - 1),
+            Stage::Finish | Stage::End => Some(self.frames),
+            Stage::Start | Stage::Steps(_) | Stage::Fetch(_) => None,
+        }
+        .map(|frame| Account {
+            frame,
+            density_error: self.density_error,
+            volume: self.volume,
+            particle_volume: self.particle_volume,
+            watched: self.watched.clone(),
+        });
+        checkpoint.set(ACCOUNT, &account);
+        Ok(checkpoint)
+    }
+
+    fn restore(&mut self, account: Account) {
+        let Account { density_error, volume, particle_volume, watched, .. } = account;
+        (self.density_error, self.volume, self.particle_volume) = (density_error, volume, particle_volume);
+        self.watched = watched;
     }
 
     /// Puts into words what was lost since the last frame.
@@ -375,12 +349,7 @@ impl Run {
             let first = self.volume.map_or(volume, |[first, _]| first);
             self.volume = Some([first, volume]);
         }
-        self.stage = if index < self.frames {
-            self.simulation.begin(self.frame_duration)?;
-            Stage::Steps(index + 1)
-        } else {
-            Stage::Finish
-        };
+        self.stage = self.after(index);
         self.clock.frames += begun.elapsed();
         // The sum of frames in single precision would read 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
@@ -434,7 +403,7 @@ impl Run {
             step_wall,
             frame_wall: self.clock.frames.as_secs_f64(),
             particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
-            simulated_per_wall: stats.time / wall,
+            simulated_per_wall: (stats.time - self.began_at) / wall,
             density_error: self.density_error,
             volume: self.volume,
             particle_volume: self.particle_volume,
@@ -453,6 +422,11 @@ impl Iterator for Run {
             }
             let outcome = match self.stage {
                 Stage::Start => Ok(Some(self.start())),
+                Stage::Begin(frame) => {
+                    let duration = self.next_duration.take().unwrap_or(self.frame_duration);
+                    self.stage = Stage::Steps(frame);
+                    self.simulation.begin(duration).map(|()| None)
+                }
                 Stage::Steps(frame) => self.steps(frame),
                 Stage::Fetch(frame) => self.fetch(frame).map(|frame| Some(Event::Frame(frame))),
                 Stage::Finish => Ok(Some(self.finish())),

@@ -1,0 +1,229 @@
+//! Named texts, bytes and arrays in one file: a ZIP archive whose arrays are NPY files, so that `numpy.load` opens it.
+//!
+//! *Why a ZIP:* every entry carries a checksum, the list of entries comes last, so a file that was cut short is known as
+//! such, and anyone can look inside. Entries are stored, not packed: positions hardly shrink, and packing them takes longer than
+//! writing them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Cursor, Read, Write};
+use std::path::Path;
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+use crate::atomic;
+use crate::error::IoError;
+
+/// What an array may be made of.
+pub trait NpyElement: bytemuck::AnyBitPattern + bytemuck::NoUninit {
+    /// Numpy's name of the type.
+    const DESCR: &'static str;
+}
+
+impl NpyElement for f32 {
+    const DESCR: &'static str = "'<f4'";
+}
+
+impl NpyElement for u32 {
+    const DESCR: &'static str = "'<u4'";
+}
+
+/// The content of an archive, by name.
+///
+/// ```
+/// # fn main() -> Result<(), String> {
+/// use splashdown_io::Archive;
+///
+/// let mut archive = Archive::default();
+/// archive.set_text("about.txt", "three points");
+/// archive.set_array("points", &[0.0_f32; 9], 3);
+/// let read = Archive::from_bytes(&archive.to_bytes()?)?;
+/// assert_eq!(read.text("about.txt")?, "three points");
+/// assert_eq!(read.array::<f32>("points")?.len(), 9);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Archive(BTreeMap<String, Vec<u8>>);
+
+impl Archive {
+    /// Puts a text in.
+    pub fn set_text(&mut self, name: &str, text: &str) {
+        self.set_bytes(name, text.as_bytes().to_vec());
+    }
+
+    /// Puts bytes in.
+    pub fn set_bytes(&mut self, name: &str, bytes: Vec<u8>) {
+        self.0.insert(name.to_owned(), bytes);
+    }
+
+    /// Puts an array of rows of `columns` numbers in, as `name.npy`.
+    pub fn set_array<T: NpyElement>(&mut self, name: &str, data: &[T], columns: usize) {
+        self.set_bytes(&format!("{name}.npy"), npy(data, columns));
+    }
+
+    /// The bytes of an entry.
+    ///
+    /// # Errors
+    /// A sentence, if there is none of that name.
+    pub fn bytes(&self, name: &str) -> Result<&[u8], String> {
+        self.0.get(name).map(Vec::as_slice).ok_or_else(|| format!("it has no entry `{name}`"))
+    }
+
+    /// The text of an entry.
+    ///
+    /// # Errors
+    /// A sentence, if there is none of that name or it is not text.
+    pub fn text(&self, name: &str) -> Result<&str, String> {
+        std::str::from_utf8(self.bytes(name)?)
+            .map_err(|error| format!("its entry `{name}` is not text: {error}"))
+    }
+
+    /// All numbers of an array, row by row.
+    ///
+    /// # Errors
+    /// A sentence, if there is none of that name, or one of another type.
+    pub fn array<T: NpyElement>(&self, name: &str) -> Result<Vec<T>, String> {
+        let name = format!("{name}.npy");
+        numbers(self.bytes(&name)?).map_err(|reason| format!("its entry `{name}`: {reason}"))
+    }
+
+    /// The whole file.
+    ///
+    /// # Errors
+    /// A sentence, where it is larger than the format allows.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
+        let mut bytes = Cursor::new(Vec::new());
+        self.fill(&mut bytes).map_err(|error| error.to_string())?;
+        Ok(bytes.into_inner())
+    }
+
+    fn fill(&self, out: &mut (impl Write + io::Seek)) -> io::Result<()> {
+        let mut zip = ZipWriter::new(out);
+        for (name, bytes) in &self.0 {
+            let options = SimpleFileOptions::default()
+                .compression_method(CompressionMethod::Stored)
+                .large_file(bytes.len() as u64 >= u64::from(u32::MAX));
+            zip.start_file(name.as_str(), options)?;
+            zip.write_all(bytes)?;
+        }
+        zip.finish()?;
+        Ok(())
+    }
+
+    /// Writes the file, complete or not at all; returns its size in bytes.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn write(&self, path: &Path) -> Result<u64, IoError> {
+        let bytes = self.to_bytes().map_err(|detail| IoError::write(path, &io::Error::other(detail)))?;
+        atomic::write(path, |out| out.write_all(&bytes))
+    }
+
+    /// Reads a file that [`write`](Self::write) made.
+    ///
+    /// # Errors
+    /// [`IoError::Read`]; [`IoError::Malformed`] where it is another format, damaged or cut short.
+    pub fn read(path: &Path) -> Result<Self, IoError> {
+        let bytes = fs::read(path).map_err(|error| IoError::read(path, &error))?;
+        Self::from_bytes(&bytes).map_err(|reason| IoError::malformed(path, "ZIP", reason))
+    }
+
+    /// From a whole file.
+    ///
+    /// # Errors
+    /// A sentence, if it is not an archive, is damaged or was cut short.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        if !bytes.starts_with(b"PK\x03\x04") {
+            return Err("it does not begin as an archive does".to_owned());
+        }
+        let mut zip = ZipArchive::new(Cursor::new(bytes))
+            .map_err(|error| format!("it was cut short or damaged ({error})"))?;
+        let mut entries = BTreeMap::new();
+        for index in 0..zip.len() {
+            let mut entry = zip.by_index(index).map_err(|error| format!("an entry is damaged ({error})"))?;
+            let name = entry.name().map_err(|error| format!("an entry has no name ({error})"))?.into_owned();
+            // An entry may claim any size; it is stored, and so no larger than the file.
+            let mut content = Vec::with_capacity((entry.size() as usize).min(bytes.len()));
+            entry
+                .read_to_end(&mut content)
+                .map_err(|error| format!("its entry `{name}` is damaged ({error})"))?;
+            entries.insert(name, content);
+        }
+        Ok(Self(entries))
+    }
+}
+
+/// An array of rows of `columns` numbers, as the content of a file.
+fn npy<T: NpyElement>(data: &[T], columns: usize) -> Vec<u8> {
+    let rows = data.len() / columns.max(1);
+    let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
+    let mut header = format!("{{'descr': {}, 'fortran_order': False, 'shape': {shape}, }}", T::DESCR);
+    // The data begin at a multiple of 64 bytes; the header ends with a line feed.
+    while !(10 + header.len() + 1).is_multiple_of(64) {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    // A header of two numbers is far shorter than 64 KiB.
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend_from_slice(bytemuck::cast_slice(data));
+    bytes
+}
+
+/// All numbers of such an array, whatever its shape.
+fn numbers<T: NpyElement>(bytes: &[u8]) -> Result<Vec<T>, String> {
+    let rest = bytes.strip_prefix(b"\x93NUMPY\x01\x00").ok_or("it is not an array")?;
+    let (length, rest) = rest.split_first_chunk().ok_or("it is not an array")?;
+    let length = usize::from(u16::from_le_bytes(*length));
+    let (header, data) = rest.split_at_checked(length).ok_or("it is not an array")?;
+    let header = String::from_utf8_lossy(header);
+    if !header.contains(T::DESCR) || data.len() % size_of::<T>() != 0 {
+        return Err(format!("it is {}, not of type {}", header.trim(), T::DESCR));
+    }
+    Ok(data.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Archive;
+
+    fn sample() -> Archive {
+        let mut archive = Archive::default();
+        archive.set_text("scene.toml", "[fluid]\n");
+        archive.set_array("positions", &[1.5_f32, f32::NAN, -0.0, f32::INFINITY, 1e-45, 7.0, 8.0, 9.0], 4);
+        archive.set_array("ids", &[7_u32, u32::MAX], 1);
+        archive.set_bytes("state.bin", vec![0, 255, 3]);
+        archive
+    }
+
+    #[test]
+    fn what_is_put_in_comes_out_bit_by_bit() -> Result<(), String> {
+        let read = Archive::from_bytes(&sample().to_bytes()?)?;
+        assert_eq!(read, sample());
+        let bits: Vec<u32> = read.array::<f32>("positions")?.iter().map(|x| x.to_bits()).collect();
+        assert_eq!(bits[2], (-0.0_f32).to_bits());
+        assert!(f32::from_bits(bits[1]).is_nan());
+        assert_eq!(read.array::<u32>("ids")?, [7, u32::MAX]);
+        assert!(read.array::<u32>("positions").is_err_and(|reason| reason.contains("'<f4'")));
+        assert!(read.array::<u32>("velocities").is_err_and(|reason| reason.contains("no entry")));
+        Ok(())
+    }
+
+    #[test]
+    fn a_file_cut_short_or_changed_is_refused_wherever_that_is() -> Result<(), String> {
+        let bytes = sample().to_bytes()?;
+        for length in 0..bytes.len() {
+            assert!(Archive::from_bytes(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
+        }
+        // A flipped bit in the data is found by the checksum.
+        let data = bytes.windows(4).position(|four| four == 1.5_f32.to_le_bytes()).ok_or("no data")?;
+        let mut changed = bytes.clone();
+        changed[data] ^= 1;
+        assert!(Archive::from_bytes(&changed).is_err_and(|reason| reason.contains("positions")));
+        assert!(Archive::from_bytes(b"ply\n").is_err_and(|reason| reason.contains("begin")));
+        Ok(())
+    }
+}

@@ -1,0 +1,271 @@
+//! Checkpoints: a simulation in a file, from which it goes on as if it had not stopped.
+//!
+//! *What is in it.* Everything that a step reads and no scene can tell: the resting arrays of the particles, the state on the
+//! device, the counters, the bodies with the world in which they collide, what emitters and probes remember, and the scene's
+//! text. What follows from the scene (grids, maps, constants) is made anew, and compared where a changed file could slip in.
+//! Going on from it gives the same bits as not stopping, on the CPU and on one adapter.
+//!
+//! *The file* is a ZIP of NPY arrays ([`Archive`]): `numpy.load` opens it. `positions` (N, 4) in m, the fourth zero for the
+//! living; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,); `scene.toml` the scene; `about.json` for people.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use splashdown_io::{Archive, IoError};
+
+use crate::Stats;
+use crate::scene::{Scene, SceneErrors};
+
+/// The number of the format that is written and read.
+const VERSION: u32 = 1;
+
+/// Why a checkpoint cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// Reading or writing the file.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// It is none, or damaged.
+    #[error("this is not a usable checkpoint: {0}")]
+    Malformed(String),
+    /// Another program version made it.
+    #[error(
+        "this checkpoint has format {given}, written by Splashdown {program}; this program reads format {VERSION}: go on with \
+         that version, or run the scene anew"
+    )]
+    Version {
+        /// Its format.
+        given: u32,
+        /// The version of the program that wrote it.
+        program: String,
+    },
+    /// Its scene cannot be read any more.
+    #[error("the scene in the checkpoint cannot be used: {0}")]
+    Scene(#[from] SceneErrors),
+    /// A file that the scene names has changed.
+    #[error(
+        "body {body:?} is not the one of the checkpoint: its mesh had {then}, now it has {now}. Put the old mesh back, or run the \
+         scene anew"
+    )]
+    BodyChanged {
+        /// The body's name.
+        body: String,
+        /// The mesh then.
+        then: String,
+        /// The mesh now.
+        now: String,
+    },
+}
+
+/// For people and scripts that look into the file.
+#[derive(Serialize, Deserialize)]
+struct About {
+    format: String,
+    version: u32,
+    program: String,
+    scene: String,
+    /// The scene's file.
+    source: Option<PathBuf>,
+    time: f64,
+    particles: u32,
+}
+
+/// What the host of a simulation knows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct HostState {
+    pub stats: Stats,
+    pub stable_dt: f32,
+    pub sound_speed: f32,
+    pub capacity: u32,
+    pub initial: u32,
+    pub removed: u32,
+    /// Emitters of which it was told that they found no room.
+    pub told: Vec<bool>,
+    pub bodies: Vec<BodyKey>,
+}
+
+/// By what a body is known again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct BodyKey {
+    pub name: String,
+    pub vertices: usize,
+    pub triangles: usize,
+    /// Of the repaired mesh in m^3.
+    pub volume: f32,
+}
+
+impl std::fmt::Display for BodyKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { vertices, triangles, volume, .. } = self;
+        write!(f, "{vertices} vertices, {triangles} triangles and {volume:.6e} m^3")
+    }
+}
+
+/// A simulation between two frames, in memory: [`Simulation::checkpoint`](crate::Simulation::checkpoint) makes it,
+/// [`Simulation::resume`](crate::Simulation::resume) goes on from it.
+///
+/// ```
+/// use splashdown::{Checkpoint, Device, Simulation, scene::Scene};
+/// # let text = include_str!("../../../scenes/dam-break-small.toml");
+/// let scene = Scene::parse(text, "dam-break-small.toml")?;
+/// let mut first = Simulation::new(&scene, &Device::Cpu)?;
+/// first.advance(0.001)?;
+/// let bytes = first.checkpoint(&scene.text)?.to_bytes()?; // or write(path)
+///
+/// let mut second = Simulation::resume(&Checkpoint::from_bytes(&bytes)?, Device::Cpu.executor()?)?;
+/// first.advance(0.001)?;
+/// second.advance(0.001)?;
+/// assert_eq!(first.particles()?, second.particles()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    pub(crate) archive: Archive,
+}
+
+impl Checkpoint {
+    /// The ending of a checkpoint's file name.
+    pub const ENDING: &'static str = "splashdown";
+
+    pub(crate) fn new(archive: Archive, scene: &Scene, text: &str, host: &HostState) -> Self {
+        let mut checkpoint = Self { archive };
+        let about = About {
+            format: "Splashdown checkpoint".to_owned(),
+            version: VERSION,
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: scene.name.clone(),
+            // As seen from any folder; where that cannot be known, as it is.
+            source: scene
+                .source
+                .as_ref()
+                .map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+            time: host.stats.time,
+            particles: host.stats.particles,
+        };
+        // Names and numbers always have a JSON form.
+        let about = serde_json::to_string_pretty(&about).unwrap_or_default();
+        checkpoint.archive.set_text("about.json", &about);
+        checkpoint.archive.set_text("scene.toml", text);
+        checkpoint.set("host.bin", host);
+        checkpoint
+    }
+
+    /// Writes it, complete or not at all; returns the file's size in bytes.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Io`].
+    pub fn write(&self, path: &Path) -> Result<u64, CheckpointError> {
+        Ok(self.archive.write(path)?)
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`CheckpointError`]: unreadable, none, cut short, damaged, or of another version.
+    pub fn read(path: &Path) -> Result<Self, CheckpointError> {
+        let bytes = std::fs::read(path).map_err(|error| {
+            CheckpointError::Malformed(format!("cannot read `{}`: {error}", path.display()))
+        })?;
+        Self::from_bytes(&bytes).map_err(|error| match error {
+            CheckpointError::Malformed(reason) => {
+                CheckpointError::Malformed(format!("`{}`: {reason}", path.display()))
+            }
+            other => other,
+        })
+    }
+
+    /// The whole file.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`] where it is larger than the format allows.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
+        self.archive.to_bytes().map_err(CheckpointError::Malformed)
+    }
+
+    /// From a whole file.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let checkpoint = Self { archive: Archive::from_bytes(bytes).map_err(CheckpointError::Malformed)? };
+        let About { format, version, program, .. } = checkpoint.about()?;
+        if format != "Splashdown checkpoint" {
+            return Err(CheckpointError::Malformed(format!("it calls itself {format:?}")));
+        }
+        if version != VERSION {
+            return Err(CheckpointError::Version { given: version, program });
+        }
+        Ok(checkpoint)
+    }
+
+    fn about(&self) -> Result<About, CheckpointError> {
+        let text = self.archive.text("about.json").map_err(CheckpointError::Malformed)?;
+        serde_json::from_str(text)
+            .map_err(|error| CheckpointError::Malformed(format!("its entry `about.json`: {error}")))
+    }
+
+    /// The scene that is simulated.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Scene`] where a file that it names is gone, say.
+    pub fn scene(&self) -> Result<Scene, CheckpointError> {
+        let text = self.archive.text("scene.toml").map_err(CheckpointError::Malformed)?;
+        let About { scene, source, .. } = self.about()?;
+        Ok(match source {
+            Some(path) => Scene::parse_beside(text, &path)?,
+            None => Scene::parse(text, &scene)?,
+        })
+    }
+
+    /// Simulated time in seconds.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`].
+    pub fn time(&self) -> Result<f64, CheckpointError> {
+        Ok(self.host()?.stats.time)
+    }
+
+    /// What a front end left with [`set_notes`](Self::set_notes), if it did.
+    pub fn notes(&self) -> Option<&str> {
+        self.archive.text("notes.json").ok()
+    }
+
+    /// Leaves a text of the front end's own in the file: what it was asked for, say.
+    pub fn set_notes(&mut self, text: &str) {
+        self.archive.set_text("notes.json", text);
+    }
+
+    pub(crate) fn host(&self) -> Result<HostState, CheckpointError> {
+        self.get("host.bin")
+    }
+
+    /// Puts a value in by its exact bits.
+    pub(crate) fn set(&mut self, name: &str, value: &impl Serialize) {
+        // Fails only for types whose length is not known before, of which there is none here.
+        if let Ok(bytes) = postcard::to_stdvec(value) {
+            self.archive.set_bytes(name, bytes);
+        }
+    }
+
+    pub(crate) fn get<T: DeserializeOwned>(&self, name: &str) -> Result<T, CheckpointError> {
+        let bytes = self.archive.bytes(name).map_err(CheckpointError::Malformed)?;
+        postcard::from_bytes(bytes)
+            .map_err(|error| CheckpointError::Malformed(format!("its entry `{name}`: {error}")))
+    }
+
+    /// An array of this many numbers.
+    pub(crate) fn numbers<T: splashdown_io::NpyElement>(
+        &self,
+        name: &str,
+        count: usize,
+    ) -> Result<Vec<T>, CheckpointError> {
+        let numbers = self.archive.array(name).map_err(CheckpointError::Malformed)?;
+        if numbers.len() != count {
+            let reason =
+                format!("its entry `{name}` has {} numbers; the scene in it needs {count}", numbers.len());
+            return Err(CheckpointError::Malformed(reason));
+        }
+        Ok(numbers)
+    }
+}

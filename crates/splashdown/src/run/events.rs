@@ -1,0 +1,154 @@
+//! What a run is asked for, and what it tells.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use splashdown_gpu::Timings;
+use splashdown_io::{Mesh, Particles};
+
+use crate::probes::ProbeRows;
+use crate::scene::Scene;
+use crate::{BodyState, Device, Stats};
+
+/// What to compute beside the particles' motion.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Where to simulate.
+    pub device: Device,
+    /// Frames to compute; the scene's own number if `None`.
+    pub frames: Option<u32>,
+    /// Extract the surface in every frame.
+    pub surface: bool,
+    /// Measure the time of every pass.
+    pub timing: bool,
+    /// Who hears of what takes time before the first event.
+    pub listener: Option<Listener>,
+}
+
+/// What a [`Listener`] calls: with a body's name, and how far its distances are, in [0, 1].
+pub type Told = dyn Fn(&str, f32) + Send + Sync;
+
+/// Hears of the bodies whose distances are being computed before a run's first event.
+#[derive(Clone)]
+pub struct Listener(pub Arc<Told>);
+
+impl std::fmt::Debug for Listener {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Listener")
+    }
+}
+
+impl RunOptions {
+    /// The scene's own wishes on the best device.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            device: Device::Auto,
+            frames: None,
+            surface: scene.surface.enabled,
+            timing: false,
+            listener: None,
+        }
+    }
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Event {
+    /// The first event.
+    Started(Started),
+    /// Now and then between two frames.
+    Progress(Progress),
+    /// A frame is complete. Frame 0 is the initial state.
+    Frame(Frame),
+    /// Something the user should know; the run goes on.
+    Warning(String),
+    /// Something the user may want to know.
+    Note(String),
+    /// The last event.
+    Finished(Summary),
+}
+
+/// What is about to run.
+#[derive(Clone, Debug)]
+pub struct Started {
+    /// The device's name.
+    pub device: String,
+    /// Number of particles.
+    pub particles: u32,
+    /// The frame that is there already: 0, the initial one, unless the run goes on from a checkpoint.
+    pub first_frame: u32,
+    /// Number of frames, the initial one not counted.
+    pub frames: u32,
+    /// Bytes in the device's buffers.
+    pub memory: u64,
+    /// The first time step in seconds.
+    pub dt: f32,
+}
+
+/// Where the run is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// The frame being computed.
+    pub frame: u32,
+    /// Number of frames.
+    pub frames: u32,
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// Simulated time at the end in seconds.
+    pub duration: f64,
+    /// Steps since the start.
+    pub steps: u64,
+    /// The last time step in seconds.
+    pub dt: f32,
+    /// Wall time since the start.
+    pub wall: Duration,
+}
+
+/// A complete frame.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Number, from 0.
+    pub index: u32,
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// The simulation's own account.
+    pub stats: Stats,
+    /// The living particles in order of id.
+    pub particles: Arc<Particles>,
+    /// The fluid's surface, if asked for.
+    pub mesh: Option<Arc<Mesh>>,
+    /// The volume that the surface encloses in m^3.
+    pub volume: Option<f64>,
+    /// The bodies, in the order of [`Run::bodies`].
+    pub bodies: Arc<[BodyState]>,
+    /// What the scene's probes measured since the frame before, in the order of the scene.
+    pub probes: Arc<[ProbeRows]>,
+}
+
+/// The whole run in a few numbers.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// The simulation's last account.
+    pub stats: Stats,
+    /// Frames computed, the initial one not counted.
+    pub frames: u32,
+    /// Wall time of everything, in seconds.
+    pub wall: f64,
+    /// Wall time spent in steps, in seconds.
+    pub step_wall: f64,
+    /// Wall time spent in the surface and in fetching frames, in seconds.
+    pub frame_wall: f64,
+    /// Particles times steps per second of `step_wall`.
+    pub particle_steps_per_second: f64,
+    /// Simulated seconds per second of `wall`.
+    pub simulated_per_wall: f64,
+    /// The largest density error of all frames.
+    pub density_error: f32,
+    /// Enclosed volume of the first and the last surface in m^3.
+    pub volume: Option<[f64; 2]>,
+    /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
+    pub particle_volume: f64,
+    /// Time per pass, if asked for.
+    pub timings: Timings,
+}

@@ -1,0 +1,196 @@
+//! Leaving a simulation and going on with it.
+
+use bytemuck::Pod;
+use splashdown_gpu::{Buffer, Executor, GpuElement, block_on};
+use splashdown_io::{Archive, NpyElement};
+
+use super::Simulation;
+use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
+use crate::flow::LoadedFlow;
+use crate::{SimulationError, memory, solver};
+
+impl Simulation {
+    /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the text of the scene
+    /// as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was [adopted](Self::adopt).
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn checkpoint(&mut self, scene_text: &str) -> Result<Checkpoint, SimulationError> {
+        block_on(self.checkpoint_async(scene_text))
+    }
+
+    /// [`checkpoint`](Self::checkpoint) where blocking is not possible, as on a web page.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub async fn checkpoint_async(&mut self, scene_text: &str) -> Result<Checkpoint, SimulationError> {
+        while self.continue_frame_async().await?.is_none() {}
+        let mut archive = Archive::default();
+        for (name, buffer, columns) in self.words() {
+            archive.set_array(name, &buffer.fetch(&mut self.executor).await?, columns);
+        }
+        let fields = self.fields;
+        let positions = self.executor.request(fields.positions, self.params.particle_count as usize)?;
+        let velocities = self.executor.request(fields.velocities, self.params.particle_count as usize)?;
+        let densities = self.executor.fetch(fields.densities).await?;
+        let ids = self.executor.fetch(fields.ids).await?;
+        archive.set_array("positions", floats(&positions.take().await?), 4);
+        archive.set_array("velocities", floats(&velocities.take().await?), 4);
+        archive.set_array("densities", floats(&densities), 2);
+        archive.set_array("ids", &ids, 1);
+        let mut host = HostState {
+            stats: self.stats,
+            stable_dt: self.stable_dt,
+            sound_speed: self.params.sound_speed,
+            capacity: self.params.particle_count,
+            initial: self.initial,
+            removed: self.removed,
+            told: Vec::new(),
+            bodies: Vec::new(),
+        };
+        if let Some(flow) = &self.flow {
+            host.told = flow.told().to_vec();
+        }
+        if let Some(bodies) = &self.bodies {
+            host.bodies = bodies.keys();
+            archive.set_array(
+                "bodies",
+                &bodies.fetch_motion(&mut self.executor).await?,
+                bodies.motion_columns(),
+            );
+        }
+        let mut checkpoint = Checkpoint::new(archive, &self.scene, scene_text, &host);
+        if let Some(bodies) = &self.bodies {
+            checkpoint.set("collisions.bin", bodies.collisions());
+        }
+        Ok(checkpoint)
+    }
+
+    /// Goes on from a checkpoint on any device. On the CPU, and on the adapter that it was made on, the same bits follow as if the
+    /// simulation had not stopped.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`SimulationError::Checkpoint`] if its scene cannot be used any more.
+    pub fn resume(checkpoint: &Checkpoint, executor: Executor) -> Result<Self, SimulationError> {
+        block_on(Self::resume_async(checkpoint, executor, &|_, _| {}))
+    }
+
+    /// [`resume`](Self::resume) where blocking is not possible, as on a web page; `told` as in [`prepare`](Self::prepare).
+    ///
+    /// # Errors
+    /// As [`resume`](Self::resume).
+    pub async fn resume_async(
+        checkpoint: &Checkpoint,
+        executor: Executor,
+        told: &(dyn Fn(&str, f32) + Sync),
+    ) -> Result<Self, SimulationError> {
+        let scene = checkpoint.scene()?;
+        let host = checkpoint.host()?;
+        let loaded = Self::load_bodies(&scene, told)?;
+        let loaded_flow = LoadedFlow::new(&scene).map_err(SimulationError::Body)?;
+        memory::check(u64::from(host.capacity), executor.largest_buffer())?;
+        let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow)?;
+        simulation.restore(checkpoint, host).await?;
+        Ok(simulation)
+    }
+
+    async fn restore(&mut self, checkpoint: &Checkpoint, host: HostState) -> Result<(), SimulationError> {
+        let n = host.capacity as usize;
+        let (fields, executor) = (self.fields, &mut self.executor);
+        upload(executor, fields.positions, &checkpoint.numbers::<f32>("positions", 4 * n)?)?;
+        upload(executor, fields.velocities, &checkpoint.numbers::<f32>("velocities", 4 * n)?)?;
+        upload(executor, fields.densities, &checkpoint.numbers::<f32>("densities", 2 * n)?)?;
+        upload(executor, fields.ids, &checkpoint.numbers::<u32>("ids", n)?)?;
+        for (name, buffer, _) in self.words() {
+            let words = checkpoint.numbers::<u32>(name, buffer.words())?;
+            buffer.write(&mut self.executor, &words)?;
+        }
+        self.params = solver::params(&self.scene, host.capacity);
+        self.params.sound_speed = host.sound_speed;
+        self.executor.write(self.fields.params, &[self.params])?;
+        if let Some(flow) = &mut self.flow {
+            flow.set_told(&host.told);
+        }
+        if let Some(bodies) = &mut self.bodies {
+            bodies.check_keys(&host.bodies)?;
+            let motion = checkpoint.numbers("bodies", bodies.keys().len() * bodies.motion_columns())?;
+            bodies.restore(&mut self.executor, &motion, checkpoint.get("collisions.bin")?).await?;
+        }
+        (self.stats, self.stable_dt) = (host.stats, host.stable_dt);
+        (self.initial, self.removed) = (host.initial, host.removed);
+        Ok(())
+    }
+
+    /// The small buffers whose content no scene can tell, with their names in the file and their columns.
+    fn words(&self) -> Vec<(&'static str, Words, usize)> {
+        let mut words = vec![
+            ("state", Words::State(self.fields.state), 1),
+            ("tally", Words::Plain(self.fields.tally), 1),
+        ];
+        if let Some(bodies) = &self.bodies {
+            words.push(("body_sums", Words::Plain(bodies.sums), 1));
+        }
+        if let Some(plans) = self.flow.as_ref().and_then(|flow| flow.plans()) {
+            words.push(("emitters", Words::Plain(plans), 1));
+        }
+        if let Some(probes) = &self.probes {
+            let [accounts, counts] = probes.memory();
+            words.push(("probe_accounts", Words::Plain(accounts), 1));
+            words.push(("probe_counts", Words::Plain(counts), 1));
+        }
+        words
+    }
+}
+
+/// A buffer as 32-bit words.
+#[derive(Clone, Copy)]
+enum Words {
+    Plain(Buffer<u32>),
+    State(Buffer<crate::passes::StepState>),
+}
+
+impl Words {
+    fn words(self) -> usize {
+        match self {
+            Self::Plain(buffer) => buffer.len() as usize,
+            Self::State(_) => size_of::<crate::passes::StepState>() / 4,
+        }
+    }
+
+    async fn fetch(self, executor: &mut Executor) -> Result<Vec<u32>, SimulationError> {
+        Ok(match self {
+            Self::Plain(buffer) => executor.fetch(buffer).await?,
+            Self::State(buffer) => bytemuck::cast_slice(&executor.fetch(buffer).await?).to_vec(),
+        })
+    }
+
+    fn write(self, executor: &mut Executor, words: &[u32]) -> Result<(), SimulationError> {
+        match self {
+            Self::Plain(buffer) => upload(executor, buffer, words),
+            Self::State(buffer) => upload(executor, buffer, words),
+        }
+    }
+}
+
+fn floats<T: Pod>(data: &[T]) -> &[f32] {
+    bytemuck::cast_slice(data)
+}
+
+/// Writes numbers into a buffer whose elements are made of them.
+fn upload<T: GpuElement, N: NpyElement>(
+    executor: &mut Executor,
+    buffer: Buffer<T>,
+    numbers: &[N],
+) -> Result<(), SimulationError> {
+    let elements: Vec<T> = bytemuck::cast_slice::<N, u8>(numbers)
+        .chunks_exact(size_of::<T>())
+        .map(bytemuck::pod_read_unaligned)
+        .collect();
+    Ok(executor.write(buffer, &elements)?)
+}
+
+impl From<CheckpointError> for SimulationError {
+    fn from(error: CheckpointError) -> Self {
+        Self::Checkpoint(Box::new(error))
+    }
+}
