@@ -1,9 +1,9 @@
-// The page as a person uses it, in a real Chromium: node page.mjs ADDRESS CHROMIUM PICTURE
+// The page as a person uses it, in a real Chromium: node page.mjs ADDRESS CHROMIUM PICTURE CHECKPOINT
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { chromium } from "playwright-core";
 
-const [address, executablePath, picture] = process.argv.slice(2);
+const [address, executablePath, picture, checkpoint] = process.argv.slice(2);
 // Software Vulkan beneath WebGPU, and a canvas that shows something.
 const args = ["--headless=new", "--no-sandbox", "--enable-unsafe-webgpu", "--enable-features=Vulkan",
   "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--disable-background-networking",
@@ -90,6 +90,20 @@ async function runs() {
   const ply = fs.readFileSync(file);
   closed(ply);
 
+  // A checkpoint is downloaded, kept for the desktop to go on with, and dropped onto the page again.
+  const saved = page.waitForEvent("download", { timeout: 60_000 });
+  await page.keyboard.press("k");
+  await (await saved).saveAs(checkpoint);
+  await page.keyboard.press(".");
+  await until("a step", 30, async () => (await figures(page)).time > paused.time);
+  const bytes = fs.readFileSync(checkpoint).toString("base64");
+  await page.evaluate((bytes) => {
+    const data = new DataTransfer();
+    data.items.add(new File([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], "small.splashdown"));
+    document.getElementById("canvas").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true }));
+  }, bytes);
+  await until("the time of the checkpoint", 30, async () => (await figures(page)).time === paused.time);
+
   // The surface is drawn, and the picture of it kept for whoever looks.
   await page.keyboard.press("3");
   await until("a surface", 60, async () => (await figures(page)).triangles > 100);
@@ -140,6 +154,30 @@ async function compilesEveryPass() {
   return sound.passes;
 }
 
+// A browser takes the device away: the program starts again where the water was some seconds ago.
+async function survivesALostDevice() {
+  const catchDevice = (page) => page.addInitScript(() => {
+    const request = GPUAdapter.prototype.requestDevice;
+    GPUAdapter.prototype.requestDevice = async function (...given) {
+      return (window.lastDevice = await request.apply(this, given));
+    };
+  });
+  const { page } = await open("#toml=" + encodeURIComponent(scene), catchDevice);
+  const before = await until("a rescue to be due", 90, async () => {
+    const now = await figures(page).catch(() => undefined);
+    return now?.time > 0.1 && performance.now() > 12_000 ? now : undefined;
+  });
+  await page.evaluate(() => window.lastDevice.destroy());
+  await until("the loss", 30, () => page.evaluate(() => document.body.innerText.includes("device was lost")));
+  const after = await until("another start", 60, async () => {
+    const now = await figures(page).catch(() => undefined);
+    return now && !now.lost && now.time > 0 ? now : undefined;
+  });
+  assert.equal(after.particles, before.particles);
+  await until("water that moves again", 60, async () => (await figures(page)).time > after.time);
+  await page.close();
+}
+
 async function saysWhatIsMissing() {
   const hide = (page) => page.addInitScript(() => Object.defineProperty(navigator, "gpu", { value: undefined }));
   const { page } = await open("", hide);
@@ -155,6 +193,8 @@ try {
   await runs();
   console.log("ok: runs, is dragged and paused, hands out a closed mesh");
   console.log(`ok: ${await compilesEveryPass()} passes compile`);
+  await survivesALostDevice();
+  console.log("ok: survives a lost device");
   await saysWhatIsMissing();
   console.log(`ok: says what is missing (${((Date.now() - begun) / 1000).toFixed(0)} s in all)`);
 } finally {

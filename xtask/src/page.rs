@@ -1,6 +1,6 @@
 //! The web page in a real browser.
 
-use std::thread;
+use std::{fs, thread};
 
 use anyhow::{Result, ensure};
 
@@ -38,8 +38,16 @@ pub fn test() -> Result<Outcome> {
     thread::Builder::new().name("server".to_owned()).spawn(move || server.serve())?;
     let picture = process::target().join("page.png");
     let mut test = command("node");
-    test.args(["web/test/page.mjs", &address, &which(browser)?]).arg(&picture);
+    let folder = process::target().join("page-test");
+    fs::create_dir_all(&folder)?;
+    let checkpoint = folder.join("small.splashdown");
+    test.args(["web/test/page.mjs", &address, &which(browser)?]).arg(&picture).arg(&checkpoint);
     process::run(&mut test)?;
+    // What the page handed out, the command line goes on with.
+    let mut run = command("cargo");
+    run.args(["run", "--quiet", "--package", "splashdown-cli", "--", "run", "--resume"]).arg(&checkpoint);
+    run.args(["--frames", "20", "--no-pictures", "--quiet", "--out"]).arg(folder.join("out"));
+    process::run(&mut run)?;
     say(format!("The page as it was seen is in {}.", picture.display()));
     Ok(Outcome::Passed)
 }

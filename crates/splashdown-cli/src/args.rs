@@ -42,7 +42,7 @@ pub enum Command {
 /// Options of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArguments {
-    /// Scene file (TOML), or the name of one that comes with the program
+    /// Scene file (TOML), the name of one that comes with the program, or a checkpoint to go on from
     #[arg(value_name = "SCENE", default_value = "dam-break")]
     pub scene: PathBuf,
     #[command(flatten)]
@@ -69,6 +69,8 @@ Examples:
   splashdown run scenes/dam-break.toml
   splashdown run dam-break --device cpu --frames 20 --no-pictures
   splashdown run my.toml --out out/test --formats vtu,obj --pictures surface
+  splashdown run my.toml --checkpoint-every 10
+  splashdown run --resume out/my
   splashdown run my.toml --json | jq 'select(.event == \"frame\") | .density_error'
 
 What is written below the output folder:
@@ -76,8 +78,11 @@ What is written below the output folder:
   mesh/surface_0000.ply, .obj            the closed surface of the fluid
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
+  checkpoints/checkpoint_0010.splashdown from which the run can go on: after Ctrl-C, and with
+                                         --checkpoint-every; numpy.load opens them
   run.json                               the summary
 Every file is complete or absent. Frames of an earlier run in the same folder are removed.
+A run that goes on writes what was asked of it before, unless told otherwise.
 
 With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt,
 particles, density_error, max_speed, volume, triangles and files; what is not known at that
@@ -89,8 +94,14 @@ A frame's line comes when its files are complete.";
 #[command(after_help = RUN_EXAMPLES)]
 pub struct RunArguments {
     /// Scene file (TOML), or the name of one that comes with the program
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    #[arg(value_name = "SCENE", required_unless_present = "resume")]
+    pub scene: Option<PathBuf>,
+    /// Go on with a run that was stopped: its output folder, or a checkpoint file
+    #[arg(long, value_name = "DIR|FILE", conflicts_with = "scene")]
+    pub resume: Option<PathBuf>,
+    /// Write a checkpoint every N frames, from which the run can go on; the last two are kept
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub checkpoint_every: Option<u32>,
     /// Folder for the results [default: out/ and the scene's name]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::process::ExitCode;
 
-use splashdown::SimulationError;
 use splashdown::scene::SceneErrors;
 use splashdown::surface::SurfaceError;
+use splashdown::{CheckpointError, SimulationError};
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;
@@ -23,7 +23,7 @@ pub enum Exit {
     Scene = 3,
     /// The device is missing, too small, or was lost.
     Device = 4,
-    /// A file or folder could not be written.
+    /// A file or folder could not be written, or a checkpoint not be used.
     Files = 5,
     /// Ctrl-C; the frames that are there are complete.
     Interrupted = 130,
@@ -38,7 +38,8 @@ Exit codes:
     3  the scene file is missing or wrong
     4  the device is missing, too small, or was lost; or pictures were demanded and nothing
        can draw them
-    5  a file or folder could not be written (frames already written are complete)
+    5  a file or folder could not be written (frames already written are complete), or a
+       checkpoint cannot be used
   130  stopped by Ctrl-C (frames already written are complete)";
 
 /// Why the program ends early.
@@ -76,12 +77,19 @@ impl From<SceneErrors> for Failure {
     }
 }
 
+impl From<CheckpointError> for Failure {
+    fn from(error: CheckpointError) -> Self {
+        Self::new(Exit::Files, error.to_string())
+    }
+}
+
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
         let exit = match &error {
             SimulationError::Gpu(_)
             | SimulationError::Surface(SurfaceError::Gpu(_))
             | SimulationError::TooMany { .. } => Exit::Device,
+            SimulationError::Checkpoint(_) => Exit::Files,
             SimulationError::Sample(_) | SimulationError::Body(_) => Exit::Scene,
             _ => Exit::Failed,
         };

@@ -80,6 +80,17 @@ impl Files {
         Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker })
     }
 
+    /// Frames that are there already, up to this one, as far as ParaView's index names them.
+    pub fn resume(&mut self, last: u32, frame_rate: f32) {
+        for frame in 0..=last {
+            let path = self.tracker.layout.particles(frame, Format::Vtu.name());
+            if path.exists() {
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                self.tracker.series.push((f64::from(frame) / f64::from(frame_rate), name));
+            }
+        }
+    }
+
     /// The writer, for whoever draws pictures.
     pub fn writer(&self) -> Arc<FrameWriter> {
         Arc::clone(&self.writer)

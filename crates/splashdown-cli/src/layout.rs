@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use splashdown::Checkpoint;
 use splashdown::scene::{Choice, Format, PictureKind, Scene};
 use splashdown_io::{IoError, prepare_folder};
 
@@ -21,6 +22,9 @@ const FOLDERS: [(&str, &[&str], &[&str]); 3] = [
     ("pictures", &["surface", "particles"], &["png"]),
 ];
 
+/// How checkpoints are named.
+const CHECKPOINT: &str = "checkpoint";
+
 /// The folder of the probes' files, which are named by the scene.
 const PROBES: &str = "probes";
 /// How these files begin.
@@ -31,6 +35,9 @@ impl Layout {
     pub fn new(root: PathBuf, frames: u32) -> Self {
         Self { root, digits: frames.to_string().len().max(4) }
     }
+
+    /// The folder of the checkpoints.
+    pub const CHECKPOINTS: &str = "checkpoints";
 
     /// The output folder.
     pub fn root(&self) -> &Path {
@@ -78,6 +85,59 @@ impl Layout {
         self.root.join("run.json")
     }
 
+    /// The checkpoint after a frame.
+    pub fn checkpoint(&self, frame: u32) -> PathBuf {
+        self.numbered(Self::CHECKPOINTS, CHECKPOINT, frame, Checkpoint::ENDING)
+    }
+
+    /// All checkpoints, the oldest first.
+    pub fn checkpoints(&self) -> Vec<PathBuf> {
+        let folder = self.root.join(Self::CHECKPOINTS);
+        let mut files: Vec<(u32, PathBuf)> = fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|entry| {
+                let name = entry.file_name();
+                let number = frame_number(&name.to_string_lossy(), &[CHECKPOINT], &[Checkpoint::ENDING])?;
+                Some((number, entry.path()))
+            })
+            .collect();
+        files.sort();
+        files.into_iter().map(|(_, path)| path).collect()
+    }
+
+    /// Makes the folder of the checkpoints.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn make_checkpoints(&self) -> Result<(), IoError> {
+        prepare_folder(&self.root.join(Self::CHECKPOINTS))
+    }
+
+    /// Removes all checkpoints but the newest.
+    pub fn keep_checkpoints(&self, kept: usize) {
+        let files = self.checkpoints();
+        for old in &files[..files.len().saturating_sub(kept)] {
+            // One that stays is in nobody's way.
+            let _ = fs::remove_file(old);
+        }
+    }
+
+    /// Removes frames and checkpoints of a run that goes on after this frame, and ends elsewhere than before perhaps.
+    pub fn remove_after(&self, frame: u32) {
+        let checkpoints = (Self::CHECKPOINTS, &[CHECKPOINT][..], &[Checkpoint::ENDING][..]);
+        for (folder, stems, endings) in FOLDERS.into_iter().chain([checkpoints]) {
+            for entry in fs::read_dir(self.root.join(folder)).into_iter().flatten().flatten() {
+                let number = frame_number(&entry.file_name().to_string_lossy(), stems, endings);
+                if number.is_some_and(|number| number > frame) {
+                    // What cannot be removed cannot be overwritten either, and that is then reported with its name.
+                    let _ = fs::remove_file(entry.path());
+                }
+            }
+        }
+    }
+
     fn numbered(&self, folder: &str, stem: &str, frame: u32, ending: &str) -> PathBuf {
         self.root.join(folder).join(format!("{stem}_{frame:0digits$}.{ending}", digits = self.digits))
     }
@@ -112,7 +172,7 @@ impl Layout {
         for (folder, stems, endings) in FOLDERS {
             let folder = self.root.join(folder);
             for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
-                if is_frame(&entry.file_name().to_string_lossy(), stems, endings) {
+                if frame_number(&entry.file_name().to_string_lossy(), stems, endings).is_some() {
                     remove(&entry.path());
                 }
             }
@@ -126,6 +186,10 @@ impl Layout {
             }
         }
         let _ = fs::remove_dir(&probes);
+        for checkpoint in self.checkpoints() {
+            remove(&checkpoint);
+        }
+        let _ = fs::remove_dir(self.root.join(Self::CHECKPOINTS));
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
@@ -167,18 +231,19 @@ fn is_log(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "csv") && read.is_ok() && begin == PROBES_BEGIN
 }
 
-/// True for `stem_0123.ending` with at least four digits.
-fn is_frame(name: &str, stems: &[&str], endings: &[&str]) -> bool {
+/// The number in `stem_0123.ending`, which has at least four digits.
+fn frame_number(name: &str, stems: &[&str], endings: &[&str]) -> Option<u32> {
     let number = |(stem, ending): (&str, &str)| {
         let digits = name.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(ending)?.strip_suffix('.')?;
-        (digits.len() >= 4 && digits.bytes().all(|digit| digit.is_ascii_digit())).then_some(())
+        let all = digits.len() >= 4 && digits.bytes().all(|digit| digit.is_ascii_digit());
+        digits.parse().ok().filter(|_| all)
     };
-    stems.iter().any(|&stem| endings.iter().any(|&ending| number((stem, ending)).is_some()))
+    stems.iter().find_map(|&stem| endings.iter().find_map(|&ending| number((stem, ending))))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Folders, Layout, is_frame};
+    use super::{Folders, Layout, frame_number};
     use splashdown::scene::PictureKind;
     use std::fs;
 
@@ -203,8 +268,10 @@ mod tests {
             "particles_0000ply",
             "particles_.ply",
         ];
-        assert!(yes.iter().all(|name| is_frame(name, &["particles"], &["ply", "vtu"])));
-        assert!(!no.iter().any(|name| is_frame(name, &["particles"], &["ply", "vtu"])));
+        assert!(
+            yes.map(|name| frame_number(name, &["particles"], &["ply", "vtu"])) == [Some(0), Some(12_345)]
+        );
+        assert!(!no.iter().any(|name| frame_number(name, &["particles"], &["ply", "vtu"]).is_some()));
     }
 
     #[test]

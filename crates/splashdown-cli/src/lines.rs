@@ -75,8 +75,9 @@ impl Line {
             particles: Some(started.particles),
             frames: Some(started.frames),
             dt: Some(started.dt),
-            time: Some(0.0),
-            steps: Some(0),
+            frame: Some(started.first_frame),
+            time: Some(started.time),
+            steps: Some(started.steps),
             device: Some(started.device.clone()),
             memory: Some(started.memory),
             ..Self::default()

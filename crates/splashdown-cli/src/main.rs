@@ -4,6 +4,7 @@
 //! files, errors into one message and one exit code.
 
 mod args;
+mod checkpoints;
 mod commands;
 mod console;
 mod exit;
@@ -21,6 +22,7 @@ mod scene_file;
 mod speed;
 mod summary;
 mod teller;
+mod wishes;
 
 use std::process::ExitCode;
 

@@ -8,7 +8,7 @@ use std::thread::{self, JoinHandle};
 use splashdown::scene::{PictureKind, Scene};
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::{DeviceRequest, Gpu};
-use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture};
+use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture, picture};
 use splashdown_render::{
     Colouring, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
     SurfaceStyle, UploadedBodies, UploadedParticles, UploadedSurface,
@@ -75,6 +75,32 @@ pub fn start_films(scene: &Scene, kinds: &[PictureKind], layout: &Layout) -> (Ve
         }
     }
     (films, obstacles)
+}
+
+/// Begins films with the pictures of frames 0 to `last` that are there already; how many are missing comes back.
+///
+/// # Errors
+/// The writer's first failure.
+pub fn resume_films(
+    films: &[Arc<Film>],
+    kinds: &[PictureKind],
+    layout: &Layout,
+    last: u32,
+    writer: &FrameWriter,
+) -> Result<u32, IoError> {
+    let mut missing = 0;
+    for frame in 0..=last {
+        for (film, &kind) in films.iter().zip(kinds) {
+            let size = [film.options().width, film.options().height];
+            match picture::read_png(&layout.picture(kind, frame)) {
+                Ok(picture) if [picture.width, picture.height] == size => {
+                    writer.submit(vec![Job::Film(Arc::clone(film), Arc::new(picture))])?;
+                }
+                _ => missing += 1,
+            }
+        }
+    }
+    Ok(missing)
 }
 
 impl Pictures {

@@ -24,6 +24,26 @@ impl ProbeFiles {
         Ok(Self { logs: scene.probes.iter().map(create).collect::<Result<_, _>>()? })
     }
 
+    /// Goes on with files that held this many bytes each.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn resume(scene: &Scene, layout: &Layout, bytes: &[u64]) -> Result<Self, IoError> {
+        let resume = |(index, probe): (usize, &Probe)| {
+            let path = layout.probe(&probe.name);
+            match bytes.get(index) {
+                Some(&bytes) => CsvLog::resume(&path, probes::columns(probe), bytes),
+                None => CsvLog::create(&path, probes::columns(probe)),
+            }
+        };
+        Ok(Self { logs: scene.probes.iter().enumerate().map(resume).collect::<Result<_, _>>()? })
+    }
+
+    /// Bytes in each file.
+    pub fn bytes(&self) -> Vec<u64> {
+        self.logs.iter().map(CsvLog::bytes).collect()
+    }
+
     /// Appends what was measured up to a frame.
     ///
     /// # Errors

@@ -26,6 +26,7 @@ pub struct Teller {
     last_progress: Option<Duration>,
     last: Option<CompleteFrame>,
     summary: Option<Summary>,
+    can_go_on: bool,
 }
 
 impl Teller {
@@ -39,7 +40,18 @@ impl Teller {
             last_progress: None,
             last: None,
             summary: None,
+            can_go_on: false,
         }
+    }
+
+    /// The run goes on after this many frames that are complete.
+    pub fn resumed(&mut self, frames: usize) {
+        self.report.complete_frames = frames;
+    }
+
+    /// The index of the last frame whose files are complete.
+    pub fn last_complete(&self) -> Option<u32> {
+        self.last.as_ref().map(|frame| frame.account.index)
     }
 
     /// A remark, unless quiet.
@@ -100,6 +112,11 @@ impl Teller {
         self.summary = Some(summary);
     }
 
+    /// Whether there is a checkpoint to go on from.
+    pub fn can_go_on(&mut self, can: bool) {
+        self.can_go_on = can;
+    }
+
     /// What is being waited for.
     pub fn waiting(&self, what: &str) {
         self.bar.waiting(what);
@@ -156,12 +173,15 @@ impl Teller {
     }
 
     fn what_is_left(&self, layout: &Layout) -> String {
-        match self.report.complete_frames {
+        let left = match self.report.complete_frames {
             0 => "No frame was completed.".to_owned(),
             count => {
-                let index = self.last.as_ref().map_or(0, |frame| frame.account.index);
-                format!("{count} frames (0 to {index}) are complete in {}.", layout.root().display())
+                format!("{count} frames (0 to {}) are complete in {}.", count - 1, layout.root().display())
             }
+        };
+        match self.can_go_on {
+            true => format!("{left}\nGo on with: splashdown run --resume {}", layout.root().display()),
+            false => left,
         }
     }
 

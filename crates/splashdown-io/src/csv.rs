@@ -6,7 +6,7 @@
 //! saw no water, is an empty field, as spreadsheets and `pandas` read it.
 
 use std::fs::File;
-use std::io::Write as _;
+use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::error::IoError;
@@ -41,6 +41,32 @@ impl CsvLog {
         }
         log.append()?;
         Ok(log)
+    }
+
+    /// Goes on with a file that held `bytes` bytes at a moment to return to: what came later is cut off. A file that is gone or
+    /// shorter begins anew.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn resume(path: &Path, columns: &[&str], bytes: u64) -> Result<Self, IoError> {
+        let there = std::fs::metadata(path).is_ok_and(|data| data.len() >= bytes && bytes > 0);
+        if !there {
+            return Self::create(path, columns);
+        }
+        let open = || {
+            let mut file = File::options().write(true).open(path)?;
+            file.set_len(bytes)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(|error| IoError::write(path, &error))?;
+        Ok(Self { path: path.to_owned(), file, columns: columns.len(), length: bytes, line: Vec::new() })
+    }
+
+    /// Bytes of the header and all whole rows.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.length
     }
 
     /// Appends one row, a number for each column. If it cannot be written whole, nothing of it stays, and a later row
@@ -91,7 +117,7 @@ impl CsvLog {
             Err(error) => {
                 // Half a row would be read as a wrong number. Failing at this too changes nothing about the report.
                 let _ = self.file.set_len(self.length);
-                let _ = std::io::Seek::seek(&mut self.file, std::io::SeekFrom::Start(self.length));
+                let _ = self.file.seek(SeekFrom::Start(self.length));
                 return Err(IoError::write(&self.path, &error));
             }
         }

@@ -35,6 +35,18 @@ impl Picture {
     }
 }
 
+/// Reads a PNG back, whatever its colours.
+///
+/// # Errors
+/// [`IoError::Read`]; [`IoError::Malformed`] where it is no PNG or damaged.
+pub fn read_png(path: &Path) -> Result<Picture, IoError> {
+    let bytes = std::fs::read(path).map_err(|error| IoError::read(path, &error))?;
+    let image = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png)
+        .map_err(|error| IoError::malformed(path, "PNG", error.to_string()))?
+        .into_rgba8();
+    Ok(Picture { width: image.width(), height: image.height(), rgba: image.into_raw() })
+}
+
 /// Writes a picture to `path` as PNG, complete or not at all; returns the file's size in bytes.
 ///
 /// The fast compression is used: a frame should not wait for its picture, and the film is made from raw pixels.

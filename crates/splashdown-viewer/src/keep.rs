@@ -32,6 +32,14 @@ pub fn text(name: &str, text: &str) -> Result<String, String> {
     file(name, "text/plain", text.as_bytes())
 }
 
+/// Keeps bytes; says where.
+///
+/// # Errors
+/// A sentence with the file's name.
+pub fn bytes(name: &str, bytes: &[u8]) -> Result<String, String> {
+    file(name, "application/octet-stream", bytes)
+}
+
 #[cfg(not(target_arch = "wasm32"))]
 fn file(name: &str, _: &str, bytes: &[u8]) -> Result<String, String> {
     use std::path::{Path, PathBuf};
@@ -60,7 +68,8 @@ fn file(name: &str, kind: &str, bytes: &[u8]) -> Result<String, String> {
         link.set_href(&url);
         link.set_download(name);
         link.click();
-        web_sys::Url::revoke_object_url(&url)
+        // The browser fetches it after this; it is freed with the page.
+        Ok(())
     };
     download().map_err(|error| format!("{error:?}"))?;
     Ok(format!("your downloads, as {name}"))

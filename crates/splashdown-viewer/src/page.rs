@@ -1,9 +1,11 @@
 //! The web page: the same program on a canvas.
 
 use std::cell::RefCell;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use splashdown::Checkpoint;
 use splashdown::scene::{Scene, presets};
 use splashdown_gpu::{DeviceRequest, Gpu, PassDesc, refused_passes};
 use wasm_bindgen::JsValue;
@@ -13,9 +15,58 @@ use crate::Viewer;
 thread_local! {
     /// What [`figures`] tells, written anew with every picture.
     static FIGURES: RefCell<String> = const { RefCell::new(String::new()) };
+    /// What draws on the canvas.
+    static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
+    /// The fluid that was saved when the device was lost.
+    static RESCUE: RefCell<Option<Checkpoint>> = const { RefCell::new(None) };
+    /// Files that the browser has read since they were dropped.
+    static ARRIVED: RefCell<Vec<Arrived>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Starts the program on a canvas. `scene` is the name of a scene that comes with the program, or the text of a scene file.
+/// A file's name, and its content or why there is none.
+type Arrived = (PathBuf, Result<Vec<u8>, String>);
+
+/// A file has been read.
+pub(crate) fn arrived(path: PathBuf, read: Result<Vec<u8>, String>) {
+    ARRIVED.with_borrow_mut(|files| files.push((path, read)));
+}
+
+/// The files that have been read since the last call.
+pub(crate) fn take_arrived() -> Vec<Arrived> {
+    ARRIVED.take()
+}
+
+/// Keeps the fluid for the next start.
+pub(crate) fn set_rescue(checkpoint: Checkpoint) {
+    RESCUE.set(Some(checkpoint));
+}
+
+/// Shows another address without opening it: what is after the page's path. It comes back whole.
+pub(crate) fn set_address(rest: &str) -> String {
+    let Some(window) = web_sys::window() else { return String::new() };
+    let path = window.location().pathname().unwrap_or_default();
+    // A page without a history (in a frame without rights) keeps the address that it has.
+    let _ = window.history().and_then(|history| {
+        history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("{path}{rest}")))
+    });
+    window.location().href().unwrap_or_default()
+}
+
+/// Puts a scene's text into the address, and the address into the clipboard.
+pub(crate) fn share(text: &str) -> String {
+    let address = set_address(&format!("#toml={}", String::from(js_sys::encode_uri_component(text))));
+    if let Some(window) = web_sys::window() {
+        // A browser that does not allow it still shows the address.
+        let copied = window.navigator().clipboard().write_text(&address);
+        wasm_bindgen_futures::spawn_local(async move {
+            let _ = wasm_bindgen_futures::JsFuture::from(copied).await;
+        });
+    }
+    address
+}
+
+/// Starts the program on a canvas, again if need be: after the device was lost it goes on with the fluid as it was some seconds
+/// before. `scene` is the name of a scene that comes with the program, or the text of a scene file.
 ///
 /// # Errors
 /// What is wrong with the scene, or why there is no device, as words.
@@ -39,10 +90,20 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the page came without a device")?;
-        let viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, None)?;
+        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, None)?;
+        if let Some(checkpoint) = RESCUE.take() {
+            viewer.resume(checkpoint)?;
+        }
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
-    eframe::WebRunner::new().start(canvas, options, Box::new(create)).await
+    // One that lost its device is done for.
+    if let Some(old) = RUNNER.take() {
+        old.destroy();
+    }
+    FIGURES.take();
+    let runner = eframe::WebRunner::new();
+    RUNNER.set(Some(runner.clone()));
+    runner.start(canvas, options, Box::new(create)).await
 }
 
 fn open(scene: &str) -> Result<(Scene, String), String> {

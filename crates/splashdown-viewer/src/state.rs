@@ -1,5 +1,6 @@
 //! What the window knows and shows; no device, so that panels are tested without one.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
@@ -87,6 +88,14 @@ pub enum Action {
     SaveScene,
     /// Write the surface as it is.
     SaveMesh,
+    /// Keep the fluid as it is, to go on with it later.
+    SaveCheckpoint,
+    /// Open a file.
+    OpenFile(PathBuf),
+    /// Look for checkpoints: `State::files` shall hold them.
+    ShowFiles,
+    /// Make a link that holds the scene as it is now.
+    Share,
     /// Begin to record frame by frame, or end it.
     Record,
     /// Dark instead of light, or the other way round.
@@ -137,6 +146,8 @@ pub struct Figures {
     pub timings: Arc<Timings>,
     /// Steps that `timings` are of.
     pub timed_steps: u64,
+    /// Whether the device is gone.
+    pub lost: bool,
     /// Time per pass of drawing, in ms.
     pub drawing: Vec<(&'static str, f32)>,
 }
@@ -148,13 +159,14 @@ impl Figures {
             if self.mean_height.is_finite() { self.mean_height.to_string() } else { "null".into() };
         format!(
             "{{\"time\":{},\"playing\":{},\"particles\":{},\"mean_height\":{mean_height},\"triangles\":{},\"frames_per_second\":{},\
-             \"steps_per_second\":{}}}",
+             \"steps_per_second\":{},\"lost\":{}}}",
             self.time,
             self.playing,
             self.particles,
             self.triangles.unwrap_or(0),
             self.frames_per_second,
-            self.steps_per_second
+            self.steps_per_second,
+            self.lost
         )
     }
 }
@@ -223,6 +235,8 @@ pub struct State {
     pub counted: u64,
     /// Whether the tap is on.
     pub pouring: bool,
+    /// Checkpoints that the gallery offers.
+    pub files: Vec<PathBuf>,
 }
 
 impl State {
@@ -247,6 +261,7 @@ impl State {
             counted,
             recorded: None,
             pouring: false,
+            files: Vec::new(),
             scene,
         }
     }

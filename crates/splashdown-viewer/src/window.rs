@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
 
@@ -15,6 +16,8 @@ pub struct ViewOptions {
     pub scene: Scene,
     /// Its file's text.
     pub text: String,
+    /// What to go on from; `scene` is then its scene.
+    pub checkpoint: Option<Checkpoint>,
     /// The device that draws.
     pub device: DeviceRequest,
     /// Which device simulates; `None`: the one that draws, if that is real hardware.
@@ -32,7 +35,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
         return Err(ViewerError::NoDisplay);
     }
-    let ViewOptions { scene, text, device, simulate, size } = options;
+    let ViewOptions { scene, text, checkpoint, device, simulate, size } = options;
     let title = format!("Splashdown - {}", scene.name);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -45,7 +48,10 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the window came without a device")?;
-        let viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, simulate)?;
+        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, simulate)?;
+        if let Some(checkpoint) = checkpoint {
+            viewer.resume(checkpoint)?;
+        }
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
     eframe::run_native("splashdown", native, Box::new(create)).map_err(|error| ViewerError::NoWindow {

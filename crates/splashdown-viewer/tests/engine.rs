@@ -7,7 +7,7 @@ use glam::Vec3;
 use splashdown::scene::Scene;
 use splashdown_gpu::{Gpu, testing};
 use splashdown_render::Camera;
-use splashdown_viewer::engine::{Command, Engine, Message, Simulate, Snapshot};
+use splashdown_viewer::engine::{Command, Engine, Message, Purpose, Simulate, Snapshot};
 use splashdown_viewer::look::{Look, Way};
 use splashdown_viewer::picture::Picture;
 
@@ -139,4 +139,25 @@ fn every_way_shows_the_water() {
         // Control: the same way twice.
         assert_eq!(differing(a, &picture(&gpu, &engine, Way::ALL[i])), 0);
     }
+}
+
+#[test]
+fn a_checkpoint_brings_the_water_back() {
+    let Some(gpu) = testing::gpu_or_skip("a_checkpoint_brings_the_water_back") else { return };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    engine.send(Command::Advance(0.05));
+    let (then, _) = until(&mut engine, |now| now.stats.time > 0.04);
+    engine.send(Command::Checkpoint(SCENE.to_owned(), Purpose::Keep));
+    engine.send(Command::Advance(0.05));
+    let (later, told) = until(&mut engine, |now| now.stats.time > 0.09);
+    let checkpoint = told.into_iter().find_map(|message| match message {
+        Message::Checkpoint(checkpoint, Purpose::Keep) => Some(checkpoint),
+        _ => None,
+    });
+    engine.send(Command::Resume(checkpoint.unwrap()));
+    let (back, _) = until(&mut engine, |now| now.stats.time < 0.06);
+    assert_eq!(back.stats, then.stats);
+    engine.send(Command::Advance(0.05));
+    let (again, _) = until(&mut engine, |now| now.stats.time > 0.09);
+    assert_eq!(again.stats, later.stats);
 }

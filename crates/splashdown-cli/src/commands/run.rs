@@ -9,6 +9,7 @@ use splashdown::{Event, Run, RunOptions};
 use splashdown_io::Film;
 
 use crate::args::RunArguments;
+use crate::checkpoints::{self, Checkpoints};
 use crate::console::{self, Verbosity};
 use crate::exit::{Exit, Failure};
 use crate::files::Files;
@@ -19,6 +20,7 @@ use crate::pictures::{self, Pictures};
 use crate::probes::ProbeFiles;
 use crate::report::Report;
 use crate::teller::Teller;
+use crate::wishes::Wishes;
 use crate::{human, memory, scene_file};
 
 /// Runs a scene to its end, or as far as it goes.
@@ -43,6 +45,9 @@ struct Session {
     run: Run,
     files: Files,
     probes: ProbeFiles,
+    checkpoints: Checkpoints,
+    /// The last frame that the simulation has completed.
+    frame: Option<u32>,
     pictures: Option<Pictures>,
     /// Drawing has failed, and that was told.
     no_more_pictures: bool,
@@ -55,39 +60,72 @@ struct Session {
 
 impl Session {
     fn start(arguments: &RunArguments) -> Result<Self, Failure> {
-        let scene = scene_as_wanted(arguments)?;
+        let found = arguments.resume.as_deref().map(checkpoints::find).transpose()?;
+        let mut wishes = Wishes::of(arguments)?;
+        let mut scene = match (&arguments.scene, &found) {
+            (_, Some(found)) => {
+                wishes = wishes.or_of(&found.checkpoint);
+                found.checkpoint.scene()?
+            }
+            (Some(scene), None) => scene_file::load(scene)?,
+            // The parser asks for one of the two.
+            (None, None) => return Err(Failure::new(Exit::Usage, "name a scene, or --resume a run")),
+        };
+        wishes.change(&mut scene);
         let mut options = RunOptions::new(&scene);
-        options.device = arguments.device.device.clone();
-        options.frames = arguments.frames;
+        options.device = wishes.device();
+        options.frames = wishes.frames;
         options.timing = arguments.timing;
-        let kinds = pictures_wanted(&scene, options.surface, arguments)?;
+        let kinds = wishes.pictures(&scene)?;
         memory::check(&scene, &options.device)?;
 
-        let root = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
+        // Going on where the run was, the frames up to the checkpoint stay; anywhere else they are missing.
+        let old_root = found.as_ref().and_then(|found| found.root.clone());
+        let root = arguments.out.clone().or_else(|| old_root.clone());
+        let root = root.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
+        let in_place = old_root.is_some_and(|old| old == root);
         let layout = Layout::new(root, options.frames.unwrap_or_else(|| scene.frame_count()));
         let report = Report::begin(&scene);
-        let teller = Teller::new(arguments.json, arguments.verbosity.level(), report);
+        let mut teller = Teller::new(arguments.json, arguments.verbosity.level(), report);
         for warning in &scene.warnings {
             teller.warn(&warning.to_string());
         }
-        let wanted = Folders::of(&scene, options.surface, !kinds.is_empty());
+        for reason in found.iter().flat_map(|found| &found.passed_over) {
+            teller.warn(&format!("a checkpoint was passed over: {reason}"));
+        }
+        let wanted = Folders::of(&scene, scene.surface.enabled, !kinds.is_empty());
         layout.make(wanted)?;
+        if wishes.checkpoint_every.is_some() {
+            layout.make_checkpoints()?;
+        }
 
-        let timing = options.timing;
         options.listener = Some(teller.listener());
-        let run = Run::new(&scene, options)?;
+        let run = match &found {
+            Some(found) => Run::resume(&found.checkpoint, &scene, options)?,
+            None => Run::new(&scene, options)?,
+        };
+        let begins = if in_place { Some(run.first_frame()) } else { None };
+        if let Some(frame) = begins {
+            teller.resumed(frame as usize + 1);
+        }
+        let mut files = Files::start(layout.clone(), scene.output.formats.clone())?;
+        if let Some(frame) = begins {
+            files.resume(frame, scene.frame_rate);
+        }
         let mut session = Self {
             run,
-            files: Files::start(layout.clone(), scene.output.formats.clone())?,
+            files,
             probes: ProbeFiles::default(),
+            checkpoints: Checkpoints::new(layout.clone(), wishes.clone()),
+            frame: None,
             pictures: None,
             no_more_pictures: false,
             pictures_demanded: arguments.pictures.is_some(),
-            timing,
+            timing: arguments.timing,
             layout,
             teller,
         };
-        match session.start_pictures(&scene, kinds, arguments.no_film) {
+        match session.start_pictures(&scene, kinds, wishes.no_film, begins) {
             Err(failure) if session.pictures_demanded => return Err(failure),
             Err(failure) => {
                 session.teller.warn(&format!("no pictures: {failure}. Simulation and files go on"))
@@ -95,13 +133,22 @@ impl Session {
             Ok(()) => {}
         }
         // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than room for its own.
-        session.replace_earlier(&scene, wanted)?;
-        session.probes = ProbeFiles::create(&scene, &session.layout)?;
+        match begins {
+            Some(frame) => {
+                checkpoints::remove_partial(session.layout.root());
+                session.layout.remove_after(frame);
+                session.probes = ProbeFiles::resume(&scene, &session.layout, &wishes.probe_bytes)?;
+            }
+            None => {
+                session.replace_earlier(&scene, wanted, wishes.checkpoint_every.is_some())?;
+                session.probes = ProbeFiles::create(&scene, &session.layout)?;
+            }
+        }
         Ok(session)
     }
 
     /// Removes what an earlier run left, and leaves the first word of this one.
-    fn replace_earlier(&self, scene: &Scene, wanted: Folders) -> Result<(), Failure> {
+    fn replace_earlier(&self, scene: &Scene, wanted: Folders, checkpoints: bool) -> Result<(), Failure> {
         let files = self.layout.remove_earlier();
         if files > 0 {
             let what = human::counted(files as u64, "file");
@@ -109,6 +156,9 @@ impl Session {
                 .note(&format!("Removed {what} of an earlier run in {}.", self.layout.root().display()));
         }
         self.layout.make(wanted)?;
+        if checkpoints {
+            self.layout.make_checkpoints()?;
+        }
         Report::begin(scene).write(&self.layout)?;
         Ok(())
     }
@@ -118,6 +168,7 @@ impl Session {
         scene: &Scene,
         kinds: Vec<PictureKind>,
         no_film: bool,
+        begins: Option<u32>,
     ) -> Result<(), Failure> {
         if kinds.is_empty() {
             return Ok(());
@@ -129,6 +180,14 @@ impl Session {
             films = started;
             for obstacle in obstacles {
                 self.teller.warn(&obstacle);
+            }
+        }
+        if let (Some(last), false) = (begins, films.is_empty()) {
+            self.teller.waiting("putting the earlier pictures into the film");
+            let missing = pictures::resume_films(&films, &kinds, &self.layout, last, &self.files.writer())?;
+            if missing > 0 {
+                self.teller
+                    .warn(&format!("the film lacks {missing} of the earlier pictures: they are not there"));
             }
         }
         self.pictures = Some(Pictures::start(
@@ -156,7 +215,13 @@ impl Session {
                 break;
             }
             match interrupt.wish() {
-                Wish::StopAfterFrame if frame_ended && !finished => break,
+                Wish::StopAfterFrame if frame_ended && !finished => {
+                    if let Some(frame) = self.frame {
+                        let taken = self.checkpoints.take(&mut self.run, frame, self.probes.bytes());
+                        failure = taken.err();
+                    }
+                    break;
+                }
                 Wish::StopNow if !finished => break,
                 _ => {}
             }
@@ -171,7 +236,11 @@ impl Session {
             Event::Frame(frame) => {
                 let pictures = self.pictures.as_ref().filter(|_| !self.no_more_pictures);
                 let names = pictures.map(|pictures| pictures.names(frame.index)).unwrap_or_default();
+                self.frame = Some(frame.index);
                 self.probes.write(&frame)?;
+                if self.checkpoints.due(frame.index) {
+                    self.checkpoints.take(&mut self.run, frame.index, self.probes.bytes())?;
+                }
                 self.files.submit(&frame, names)?;
                 if let Some(pictures) = pictures {
                     pictures.submit(&frame);
@@ -195,6 +264,9 @@ impl Session {
             self.teller.warn(&format!("no more pictures: {failure}"));
         }
         self.teller.complete(self.files.completed(self.no_more_pictures)?);
+        if let Some(complete) = self.teller.last_complete() {
+            self.checkpoints.write(complete, &self.files.writer())?;
+        }
         Ok(())
     }
 
@@ -204,12 +276,14 @@ impl Session {
             run,
             files,
             probes,
+            checkpoints,
             pictures,
             mut no_more_pictures,
             pictures_demanded,
             timing,
             layout,
             mut teller,
+            ..
         } = self;
         drop(run);
         teller.waiting("finishing pictures and files");
@@ -229,55 +303,15 @@ impl Session {
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());
         }
+        match checkpoints.finish(teller.last_complete()) {
+            Ok(checkpoint) => teller.can_go_on(checkpoint.is_some()),
+            Err(error) => {
+                failure.get_or_insert(error);
+            }
+        }
         let films = finish_films(&films, &teller);
         teller.close(&layout, &ended.files, &films, failure, timing)
     }
-}
-
-/// The scene with the command line's wishes in place of its own.
-fn scene_as_wanted(arguments: &RunArguments) -> Result<Scene, Failure> {
-    let mut scene = scene_file::load(&arguments.scene)?;
-    scene.surface.enabled &= !arguments.no_surface;
-    if let Some(formats) = &arguments.formats {
-        if formats.contains(&None) && formats.iter().any(Option::is_some) {
-            let message = "--formats: `none` stands alone; leave it out to write the others";
-            return Err(Failure::new(Exit::Usage, message));
-        }
-        scene.output.formats = once_each(formats.iter().flatten().copied());
-    }
-    if let Some(pictures) = &arguments.pictures {
-        scene.output.pictures = once_each(pictures.iter().copied());
-    }
-    Ok(scene)
-}
-
-/// A file that is asked for twice is written once: two writers of one name would race.
-fn once_each<T: PartialEq>(list: impl Iterator<Item = T>) -> Vec<T> {
-    list.fold(Vec::new(), |mut found, item| {
-        if !found.contains(&item) {
-            found.push(item);
-        }
-        found
-    })
-}
-
-/// The pictures to draw; those of the surface need one.
-fn pictures_wanted(
-    scene: &Scene,
-    surface: bool,
-    arguments: &RunArguments,
-) -> Result<Vec<PictureKind>, Failure> {
-    let mut kinds = if arguments.no_pictures { Vec::new() } else { scene.output.pictures.clone() };
-    if surface || !kinds.contains(&PictureKind::Surface) {
-        return Ok(kinds);
-    }
-    if arguments.pictures.is_some() {
-        let message = "pictures of the surface need a surface: leave out --no-surface (or surface.enabled = false in the \
-                       scene), or draw --pictures particles";
-        return Err(Failure::new(Exit::Usage, message));
-    }
-    kinds.retain(|&kind| kind != PictureKind::Surface);
-    Ok(kinds)
 }
 
 /// Ends the films; one that failed costs a warning, the pictures are what matters.

@@ -1,20 +1,29 @@
 //! `splashdown view`: the window.
 
-use splashdown::Device;
+use splashdown::{Checkpoint, Device};
 use splashdown_gpu::DeviceRequest;
 use splashdown_viewer::ViewOptions;
 use splashdown_viewer::engine::Simulate;
 
 use crate::args::ViewArguments;
 use crate::exit::Failure;
-use crate::scene_file;
+use crate::{checkpoints, scene_file};
 
 /// Opens the window; returns when it is closed.
 ///
 /// # Errors
 /// The scene's problems; no display or no driver.
 pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
-    let (scene, text) = scene_file::load_with_text(&arguments.scene)?;
+    let is_checkpoint = arguments.scene.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
+    let checkpoint = if is_checkpoint { Some(checkpoints::find(&arguments.scene)?.checkpoint) } else { None };
+    let (scene, text) = match &checkpoint {
+        Some(checkpoint) => {
+            let scene = checkpoint.scene()?;
+            let text = scene.text.to_string();
+            (scene, text)
+        }
+        None => scene_file::load_with_text(&arguments.scene)?,
+    };
     // The CPU cannot show anything: something has to draw.
     let (device, simulate) = match &arguments.device.device {
         Device::Auto => (DeviceRequest::Auto, None),
@@ -22,5 +31,12 @@ pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
         Device::Gpu => (DeviceRequest::Hardware, Some(Simulate::WhereDrawn)),
         Device::Named(name) => (DeviceRequest::Named(name.clone()), Some(Simulate::WhereDrawn)),
     };
-    Ok(splashdown_viewer::view(ViewOptions { scene, text, device, simulate, size: arguments.size })?)
+    Ok(splashdown_viewer::view(ViewOptions {
+        scene,
+        text,
+        checkpoint,
+        device,
+        simulate,
+        size: arguments.size,
+    })?)
 }

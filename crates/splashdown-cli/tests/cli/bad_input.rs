@@ -176,10 +176,10 @@ fn a_reader_that_leaves_early_does_not_stop_the_run() -> Outcome {
 
 #[cfg(target_os = "linux")]
 mod linux {
+    use crate::place::TinyDisk;
     use crate::place::{Outcome, Place, assert_refused, names, stderr, stdout};
     use splashdown_io::ply;
     use std::io::{BufRead, BufReader};
-    use std::path::PathBuf;
     use std::process::{Command, Stdio};
 
     #[test]
@@ -228,28 +228,10 @@ mod linux {
         Ok(())
     }
 
-    /// A file system of a few pages; gone when dropped.
-    struct TinyDisk(PathBuf);
-
-    impl TinyDisk {
-        fn mount(folder: PathBuf) -> std::io::Result<Option<Self>> {
-            std::fs::create_dir(&folder)?;
-            let mount =
-                Command::new("mount").args(["-t", "tmpfs", "-o", "size=128k", "tmpfs"]).arg(&folder).output();
-            Ok(mount.is_ok_and(|output| output.status.success()).then_some(Self(folder)))
-        }
-    }
-
-    impl Drop for TinyDisk {
-        fn drop(&mut self) {
-            let _ = Command::new("umount").arg("--lazy").arg(&self.0).output();
-        }
-    }
-
     #[test]
     fn a_full_disk_is_told_and_complete_frames_stay() -> Outcome {
         let place = Place::new()?;
-        let Some(disk) = TinyDisk::mount(place.path("disk"))? else {
+        let Some(disk) = TinyDisk::mount(place.path("disk"), 128)? else {
             eprintln!("SKIPPED: no small file system can be mounted here to fill up");
             return Ok(());
         };

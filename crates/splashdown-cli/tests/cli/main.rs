@@ -1,6 +1,8 @@
 //! The command line as a user sees it.
 
 mod bad_input;
+#[cfg(target_os = "linux")]
+mod checkpoints;
 mod place;
 mod runs;
 mod words;

@@ -127,3 +127,27 @@ pub fn can_draw() -> bool {
     }
     found
 }
+
+/// A small file system; gone when dropped.
+#[cfg(target_os = "linux")]
+pub struct TinyDisk(pub PathBuf);
+
+#[cfg(target_os = "linux")]
+impl TinyDisk {
+    /// Of this many KiB; `None` where none can be mounted.
+    pub fn mount(folder: PathBuf, size: u32) -> std::io::Result<Option<Self>> {
+        std::fs::create_dir(&folder)?;
+        let mount = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={size}k"), "tmpfs"])
+            .arg(&folder)
+            .output();
+        Ok(mount.is_ok_and(|output| output.status.success()).then_some(Self(folder)))
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for TinyDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("--lazy").arg(&self.0).output();
+    }
+}

@@ -6,7 +6,7 @@ use splashdown::scene::{Scene, presets};
 
 use super::Viewer;
 use crate::edit;
-use crate::engine::Command;
+use crate::engine::{Command, Purpose};
 use crate::state::Action;
 
 /// How quickly water takes the hand's velocity, in 1/s.
@@ -21,7 +21,11 @@ impl Viewer {
             Action::OpenPreset(name) => {
                 let Some((name, text)) = presets().iter().find(|(preset, _)| *preset == name) else { return };
                 match Scene::parse(text, name) {
-                    Ok(scene) => self.open(scene, (*text).to_owned()),
+                    Ok(scene) => {
+                        self.open(scene, (*text).to_owned());
+                        #[cfg(target_arch = "wasm32")]
+                        crate::page::set_address(&format!("?scene={name}"));
+                    }
                     Err(error) => self.state.tell(error.to_string(), true, now),
                 }
             }
@@ -79,6 +83,13 @@ impl Viewer {
                 self.seen.exporting = true;
                 self.engine.send(Command::Export);
             }
+            Action::SaveCheckpoint => self.checkpoint(Purpose::Keep, now),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::OpenFile(path) => self.open_file(&path, now),
+            #[cfg(target_arch = "wasm32")]
+            Action::OpenFile(_) => {}
+            Action::ShowFiles => self.state.files = super::files::checkpoints_at_hand(),
+            Action::Share => self.share(now),
             Action::Record => self.record_or_end(now),
             Action::SwapTheme => {
                 let theme = match ctx.theme() {

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::Viewer;
+use crate::engine::{Command, Purpose};
 #[cfg(target_arch = "wasm32")]
 use crate::pixels;
 use crate::{keep, save};
@@ -50,6 +51,58 @@ impl Viewer {
         let kept = save::scene(&self.text, &self.state.scene, &self.state.orbit)
             .and_then(|text| keep::text(&name, &text));
         self.tell_kept("the scene", kept, now);
+    }
+
+    /// Asks the engine for a checkpoint.
+    pub(super) fn checkpoint(&mut self, purpose: Purpose, now: f64) {
+        match save::scene(&self.text, &self.state.scene, &self.state.orbit) {
+            Ok(text) => self.engine.send(Command::Checkpoint(text, purpose)),
+            Err(reason) if purpose == Purpose::Keep => self.tell_kept("the checkpoint", Err(reason), now),
+            // Nobody has asked for it.
+            Err(_) => {}
+        }
+    }
+
+    /// The device is gone: on a desktop the fluid goes into a file, and a page starts itself again with it.
+    pub(super) fn save_what_can_be_saved(&mut self, now: f64) {
+        let Some(checkpoint) = self.rescue.take() else { return };
+        #[cfg(target_arch = "wasm32")]
+        {
+            let _ = now;
+            crate::page::set_rescue(*checkpoint);
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let name = format!("{}.{}", self.state.scene.name, splashdown::Checkpoint::ENDING);
+            let kept = checkpoint.to_bytes().map_err(|error| error.to_string());
+            let kept = kept.and_then(|bytes| keep::bytes(&name, &bytes));
+            self.tell_kept("the fluid as it was some seconds ago, for `splashdown view`,", kept, now);
+        }
+    }
+
+    /// Puts the scene as it is now into the page's address, and the address into the clipboard.
+    pub(super) fn share(&mut self, now: f64) {
+        let text = save::scene(&self.text, &self.state.scene, &self.state.orbit);
+        #[cfg(target_arch = "wasm32")]
+        match text {
+            Ok(text) => {
+                let address = crate::page::share(&text);
+                self.state.tell(
+                    format!(
+                        "the link is in the address line and in the clipboard ({} letters)",
+                        address.len()
+                    ),
+                    false,
+                    now,
+                );
+            }
+            Err(reason) => self.tell_kept("the link", Err(reason), now),
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            drop(text);
+            self.state.tell("a window has no address: keep the scene as a file", true, now);
+        }
     }
 
     pub(super) fn tell_kept(&mut self, what: &str, kept: Result<String, String>, now: f64) {

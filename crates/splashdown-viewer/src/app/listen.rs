@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use egui::Context;
 use glam::Vec3;
-#[cfg(not(target_arch = "wasm32"))]
-use splashdown::scene::Scene;
+use splashdown::Checkpoint;
+use splashdown_gpu::GpuError;
 
 use super::Viewer;
-use crate::engine::{Command, Message};
+use crate::engine::{Command, Message, Purpose};
 use crate::{edit, keep, pick};
 
 impl Viewer {
@@ -47,6 +47,13 @@ impl Viewer {
                     let text = "the simulation has ended by a fault of this program; open the window again";
                     self.state.tell(text, true, now);
                 }
+                Message::Checkpoint(checkpoint, Purpose::Keep) => {
+                    let name = format!("{}.{}", self.state.scene.name, Checkpoint::ENDING);
+                    let kept = checkpoint.to_bytes().map_err(|error| error.to_string());
+                    let kept = kept.and_then(|bytes| keep::bytes(&name, &bytes));
+                    self.tell_kept("the checkpoint", kept, now);
+                }
+                Message::Checkpoint(checkpoint, Purpose::Rescue) => self.rescue = Some(checkpoint),
                 Message::Preparing(body, part) => self.state.preparing = (part < 1.0).then_some((body, part)),
                 Message::Exported(mesh) => {
                     if std::mem::take(&mut self.seen.exporting) {
@@ -59,6 +66,11 @@ impl Viewer {
         }
         if let Err(error) = self.gpu.health("the window") {
             self.state.tell(error.to_string(), true, now);
+            if matches!(error, GpuError::DeviceLost { .. })
+                && !std::mem::replace(&mut self.state.figures.lost, true)
+            {
+                self.save_what_can_be_saved(now);
+            }
         }
         let Some(snapshot) = self.engine.snapshot() else { return };
         let figures = &mut self.state.figures;
@@ -92,43 +104,6 @@ impl Viewer {
         if let Some((grip, distance)) = pick::body(&snapshot.opened, &snapshot.bodies, ray) {
             self.state.grip = Some((grip, distance));
             self.engine.send(Command::Grip(Some(grip)));
-        }
-    }
-
-    #[cfg(target_arch = "wasm32")]
-    pub(super) fn dropped_files(&mut self, ctx: &Context) {
-        if ctx.input(|input| !input.raw.dropped_files.is_empty()) {
-            let now = ctx.input(|input| input.time);
-            self.state.tell("a page takes no files yet; the desktop's `splashdown view` does", true, now);
-        }
-    }
-
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn dropped_files(&mut self, ctx: &Context) {
-        let now = ctx.input(|input| input.time);
-        let files = ctx.input(|input| input.raw.dropped_files.clone());
-        for file in files {
-            let path = file.path().to_path_buf();
-            let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-            if is_scene {
-                let opened = Scene::load(&path).map_err(|error| error.to_string());
-                let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
-                match opened.and_then(|scene| Ok((scene, text?))) {
-                    Ok((scene, text)) => self.open(scene, text),
-                    Err(error) => self.state.tell(error, true, now),
-                }
-                continue;
-            }
-            match splashdown_io::read_mesh(&path) {
-                Ok(mesh) => {
-                    let corners = mesh.vertices.iter().map(|&v| Vec3::from(v));
-                    let low = corners.clone().fold(Vec3::INFINITY, Vec3::min);
-                    let high = corners.fold(Vec3::NEG_INFINITY, Vec3::max);
-                    edit::add_mesh(&mut self.state.scene, path, low, high);
-                    self.change();
-                }
-                Err(error) => self.state.tell(error.to_string(), true, now),
-            }
         }
     }
 }

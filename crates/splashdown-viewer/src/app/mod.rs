@@ -1,6 +1,7 @@
 //! The window: asks the panels what is to be done and does it.
 
 mod act;
+mod files;
 #[cfg(not(target_arch = "wasm32"))]
 mod film;
 mod keeping;
@@ -11,16 +12,20 @@ use std::sync::Arc;
 use egui::{Context, TextureId, Ui};
 use egui_wgpu::RenderState;
 use glam::Vec3;
+use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::Gpu;
 
 use crate::ViewerError;
 use crate::camera::Orbit;
-use crate::engine::{Command, Engine, Simulate, Snapshot};
+use crate::engine::{Command, Engine, Purpose, Simulate, Snapshot};
 use crate::look::Look;
 use crate::panels;
 use crate::picture::Picture;
 use crate::state::State;
+
+/// Seconds between two rescues.
+const RESCUE: f64 = 10.0;
 
 /// The interactive program.
 pub struct Viewer {
@@ -33,6 +38,8 @@ pub struct Viewer {
     text: String,
     seen: Seen,
     drawn: Option<Drawn>,
+    /// The fluid some seconds ago, should the device be lost.
+    rescue: Option<Box<Checkpoint>>,
     /// The picture's size in pixels at full resolution.
     size: [u32; 2],
     #[cfg(not(target_arch = "wasm32"))]
@@ -61,6 +68,8 @@ struct Seen {
     wants_timing: bool,
     frames_per_second: f32,
     exporting: bool,
+    /// When the engine was last asked for a rescue, in s of the window's clock.
+    rescue_asked: f64,
 }
 
 impl Viewer {
@@ -96,6 +105,7 @@ impl Viewer {
             text,
             seen: Seen::default(),
             drawn: None,
+            rescue: None,
             size: [1, 1],
             #[cfg(not(target_arch = "wasm32"))]
             recording: None,
@@ -118,6 +128,7 @@ impl Viewer {
             self.take_hold(self.state.orbit.ray(at, size));
         }
         self.ask_for_what_is_shown();
+        self.ask_for_a_rescue(&ctx);
         // A software driver draws as many pixels as it can while the water moves, and all of them when it stands still.
         self.size = viewport.size;
         #[cfg(not(target_arch = "wasm32"))]
@@ -132,6 +143,16 @@ impl Viewer {
         self.seen.frames_per_second += 0.1 * (1.0 / passed - self.seen.frames_per_second);
         if self.state.playing {
             ctx.request_repaint();
+        }
+    }
+
+    /// Something to go on from, now and then: devices are lost by drivers that are updated, machines that sleep, and browsers that want
+    /// the memory.
+    fn ask_for_a_rescue(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        if self.state.playing && now - self.seen.rescue_asked > RESCUE {
+            self.seen.rescue_asked = now;
+            self.checkpoint(Purpose::Rescue, now);
         }
     }
 

@@ -1,8 +1,8 @@
 //! What the window asks for.
 
 use glam::Vec3;
-use splashdown::Hand;
 use splashdown::scene::Scene;
+use splashdown::{Checkpoint, Hand};
 
 /// Which device simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +22,15 @@ pub struct Grip {
     pub anchor: Vec3,
     /// Where that point shall be, in m.
     pub target: Vec3,
+}
+
+/// What a checkpoint is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// The user wants it as a file.
+    Keep,
+    /// It is there in case the device is lost.
+    Rescue,
 }
 
 /// What the window asks for.
@@ -46,6 +55,10 @@ pub enum Command {
     Timing(bool),
     /// Hand out the surface's mesh as it is.
     Export,
+    /// Hand out a checkpoint with this text as its scene.
+    Checkpoint(String, Purpose),
+    /// Go on from a checkpoint.
+    Resume(Box<Checkpoint>),
     /// Stop for good.
     Quit,
 }

@@ -71,8 +71,8 @@ fn is_void(command: &Command, next: &Command) -> bool {
     use Command as C;
     matches!(
         (command, next),
-        (C::Change(_), C::Change(_) | C::Open(_))
-            | (C::Open(_), C::Open(_))
+        (C::Change(_), C::Change(_) | C::Open(_) | C::Resume(_))
+            | (C::Open(_) | C::Resume(_), C::Open(_) | C::Resume(_))
             | (C::Hand(_), C::Hand(_))
             | (C::Grip(_), C::Grip(_))
             | (C::TimeScale(_), C::TimeScale(_))

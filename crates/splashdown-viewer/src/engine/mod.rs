@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex};
 
 use splashdown_gpu::Gpu;
 
-pub use command::{Command, Grip, Simulate};
+pub use command::{Command, Grip, Purpose, Simulate};
 pub use drawn::{Drawn, DrawnMesh};
 pub use snapshot::{Message, Opened, Snapshot};
 

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use splashdown::scene::Scene;
-use splashdown::{BodyMesh, BodyState, Stats};
+use splashdown::{BodyMesh, BodyState, Checkpoint, Stats};
 use splashdown_gpu::Timings;
 use splashdown_io::Mesh;
 
-use super::Drawn;
+use super::{Drawn, Purpose};
 
 /// A scene that is being simulated.
 pub struct Opened {
@@ -57,6 +57,8 @@ pub enum Message {
     Stopped,
     /// The surface, as [`Command::Export`](super::Command::Export) asked for it.
     Exported(Arc<Mesh>),
+    /// What [`Command::Checkpoint`](super::Command::Checkpoint) asked for.
+    Checkpoint(Box<Checkpoint>, Purpose),
     /// A body's distances are being computed: its name and how far, in [0, 1].
     Preparing(String, f32),
 }

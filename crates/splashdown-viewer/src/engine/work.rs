@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use splashdown::scene::Scene;
 use splashdown::surface::{Surface, SurfaceStats};
-use splashdown::{BodyMesh, Device, Hand, Simulation, SimulationError};
+use splashdown::{BodyMesh, Checkpoint, Device, Hand, Simulation, SimulationError};
 use splashdown_gpu::{Executor, Gpu, GpuExecutor, Timings};
 use web_time::Instant;
 
 use super::drawn::Copies;
 use super::inbox::Inbox;
 use super::pace::Pace;
-use super::{Command, Grip, Message, Opened, Outbox, Simulate, Snapshot, lock};
+use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, Snapshot, lock};
 
 /// How long a step takes is looked at this often.
 const MEASURE: Duration = Duration::from_millis(500);
@@ -202,6 +202,8 @@ impl Worker {
                 }
             }
             Command::Export => return self.export().await,
+            Command::Checkpoint(text, purpose) => return self.checkpoint(&text, purpose).await,
+            Command::Resume(checkpoint) => return self.resume(&checkpoint).await,
             Command::Quit => {}
         }
         Ok(())
@@ -215,7 +217,19 @@ impl Worker {
     }
 
     async fn open(&mut self, scene: Scene) -> Result<(), SimulationError> {
-        // Its memory may be needed.
+        let (executor, told) = self.make_room()?;
+        let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
+        self.begin(simulation).await
+    }
+
+    async fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), SimulationError> {
+        let (executor, told) = self.make_room()?;
+        let simulation = Simulation::resume_async(checkpoint, executor, &told).await?;
+        self.begin(simulation).await
+    }
+
+    /// Lets go of what runs, whose memory may be needed: what comes next, and what hears of it.
+    fn make_room(&mut self) -> Result<(Executor, impl Fn(&str, f32) + Sync + use<>), SimulationError> {
         let executor = match self.simulation.take() {
             Some(mut old) => old.executor().successor(),
             None => self.executor()?,
@@ -226,8 +240,15 @@ impl Worker {
         let told = move |body: &str, part: f32| {
             lock(&messages).push(Message::Preparing(body.to_owned(), part));
         };
-        let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
-        self.begin(simulation).await
+        Ok((executor, told))
+    }
+
+    async fn checkpoint(&mut self, text: &str, purpose: Purpose) -> Result<(), SimulationError> {
+        let Some(simulation) = &mut self.simulation else { return Ok(()) };
+        let checkpoint = Box::new(simulation.checkpoint_async(text).await?);
+        lock(&lock(&self.outbox).messages).push(Message::Checkpoint(checkpoint, purpose));
+        (self.repaint)();
+        Ok(())
     }
 
     async fn change(&mut self, scene: Scene) -> Result<(), SimulationError> {

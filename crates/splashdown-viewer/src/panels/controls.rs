@@ -215,11 +215,22 @@ fn keep(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
         for (text, hint, action) in [
             ("Picture", "Write the picture as PNG (T)", Action::Screenshot),
             ("Scene", "Write the scene as it is set now, for the command line (Ctrl + S)", Action::SaveScene),
+            (
+                "Checkpoint",
+                "Keep the fluid as it is, to go on with it here or by the command line (K); drop the file here to go on",
+                Action::SaveCheckpoint,
+            ),
             ("Mesh", "Write the surface as a closed mesh, PLY (M)", Action::SaveMesh),
         ] {
             if ui.button(text).on_hover_text(hint).clicked() {
                 actions.push(action);
             }
+        }
+        // Only a page has an address.
+        if cfg!(target_arch = "wasm32")
+            && ui.button("Link").on_hover_text("A link that opens the scene as it is set now").clicked()
+        {
+            actions.push(Action::Share);
         }
     });
     if cfg!(target_arch = "wasm32") {

@@ -9,7 +9,7 @@ use crate::thumbnails;
 const GAP: f32 = 12.0;
 
 pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
-    let mut chosen = None;
+    let (mut chosen, mut file) = (None, None);
     Window::new("Scenes").open(&mut state.shown.gallery).default_width(640.0).show(ctx, |ui| {
         ScrollArea::vertical().max_height(440.0).show(ui, |ui| {
             let columns =
@@ -26,7 +26,22 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
                 }
             });
         });
+        if !state.files.is_empty() {
+            ui.separator();
+            ui.label("Go on from a checkpoint:");
+            ui.horizontal_wrapped(|ui| {
+                for path in &state.files {
+                    if ui.button(path.display().to_string().trim_start_matches("./")).clicked() {
+                        file = Some(path.clone());
+                    }
+                }
+            });
+        }
     });
+    if let Some(path) = file {
+        actions.push(Action::OpenFile(path));
+        state.shown.gallery = false;
+    }
     if let Some(name) = chosen {
         actions.push(Action::OpenPreset(name));
         state.shown.gallery = false;

@@ -7,7 +7,7 @@ use crate::look::Way;
 use crate::state::{Action, State};
 
 /// What is written in the help, line by line.
-const LINES: [(&str, &str); 19] = [
+const LINES: [(&str, &str); 20] = [
     ("drag", "look round (with the tool Look)"),
     ("right or middle drag", "slide"),
     ("wheel, pinch", "come nearer, go away"),
@@ -25,6 +25,7 @@ const LINES: [(&str, &str); 19] = [
     ("C", "hide the controls, show them"),
     ("T", "write a picture"),
     ("M", "write the surface as a mesh"),
+    ("K", "keep a checkpoint to go on from"),
     ("Ctrl + S", "write the scene as it is now"),
     ("H", "this help"),
 ];
@@ -57,6 +58,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         (Key::P, Action::Pour),
         (Key::T, Action::Screenshot),
         (Key::M, Action::SaveMesh),
+        (Key::K, Action::SaveCheckpoint),
     ] {
         if pressed(key) {
             actions.push(action);
@@ -70,6 +72,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     }
     if pressed(Key::G) {
         state.shown.gallery = !state.shown.gallery;
+        actions.push(Action::ShowFiles);
     }
     if pressed(Key::C) {
         state.shown.bare = !state.shown.bare;

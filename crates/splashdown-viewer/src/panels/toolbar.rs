@@ -10,6 +10,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         let title = state.scene.name.clone();
         if ui.button(RichText::new(title).strong()).on_hover_text("Choose a scene (G)").clicked() {
             state.shown.gallery = !state.shown.gallery;
+            actions.push(Action::ShowFiles);
         }
         ui.separator();
         let (sign, hint) = if state.playing { ("Pause", "Pause (Space)") } else { ("Play", "Play (Space)") };

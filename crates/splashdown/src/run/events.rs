@@ -80,6 +80,10 @@ pub struct Started {
     pub first_frame: u32,
     /// Number of frames, the initial one not counted.
     pub frames: u32,
+    /// Simulated time in seconds.
+    pub time: f64,
+    /// Steps so far.
+    pub steps: u64,
     /// Bytes in the device's buffers.
     pub memory: u64,
     /// The first time step in seconds.

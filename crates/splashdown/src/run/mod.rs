@@ -201,6 +201,11 @@ impl Run {
         self.simulation.gpu()
     }
 
+    /// The frame that is there when the run starts: 0, or that of the checkpoint from which it goes on.
+    pub fn first_frame(&self) -> u32 {
+        self.first
+    }
+
     /// The bodies' meshes, in the order of the scene.
     pub fn bodies(&self) -> &[BodyMesh] {
         self.simulation.body_meshes()
@@ -224,6 +229,8 @@ impl Run {
             device: self.simulation.device_name(),
             particles: self.simulation.stats().particles,
             first_frame: self.first,
+            time: self.simulation.stats().time,
+            steps: self.simulation.stats().steps,
             frames: self.frames,
             memory: self.simulation.memory(),
             dt: self.simulation.dt(),

@@ -1,0 +1,178 @@
+//! Stopping a run in every way there is, and going on with it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::place::{Outcome, Place, SMALL, TinyDisk, assert_refused, stderr, stdout};
+
+/// The small scene with a probe and a free body: two more things that remember.
+const MORE: &str = "
+[[probe]]
+name = \"gauge\"
+quantity = \"pressure\"
+position = [0, 0.05, 0.15]
+
+[[body]]
+name = \"ball\"
+mesh = \"sphere\"
+scale = 0.1
+position = [0.6, 0.2, 0.15]
+motion = \"dynamic\"
+density = 500
+";
+
+/// Everything that a run wrote but for its report, which holds wall times, and its checkpoints, by name.
+fn results(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
+    let mut found = BTreeMap::new();
+    for folder in ["particles", "mesh", "probes"] {
+        for entry in fs::read_dir(root.join(folder))? {
+            let path = entry?.path();
+            let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
+            found.insert(name, fs::read(&path)?);
+        }
+    }
+    Ok(found)
+}
+
+fn assert_same(root: &Path, straight: &Path) -> Outcome {
+    let (mine, theirs) = (results(root)?, results(straight)?);
+    assert_eq!(mine.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
+    for (name, bytes) in &mine {
+        assert!(*bytes == theirs[name], "{name} differs from that of the run that was not stopped");
+    }
+    Ok(())
+}
+
+fn start(place: &Place, arguments: &[&str]) -> std::io::Result<Child> {
+    Command::new(assert_cmd::cargo::cargo_bin!("splashdown"))
+        .current_dir(place.path("."))
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+}
+
+/// Waits until this file is there.
+fn await_file(path: &Path) {
+    let begun = Instant::now();
+    while !path.exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "{} did not appear", path.display());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_goes_on_with_the_same_bits() -> Outcome {
+    let place = Place::new()?;
+    place.write("more.toml", format!("{SMALL}{MORE}"))?;
+    let run =
+        ["run", "more.toml", "--device", "cpu", "--no-pictures", "--formats", "ply,vtu", "--frames", "40"];
+    let output = place.splashdown(&[&run[..], &["--out", "straight"]].concat()).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+
+    // Killed three times, at whatever it was doing then.
+    let mut child = start(&place, &[&run[..], &["--out", "out", "--checkpoint-every", "1"]].concat())?;
+    for frame in [5, 12, 20] {
+        await_file(&place.path(&format!("out/checkpoints/checkpoint_{frame:04}.splashdown")));
+        child.kill()?;
+        child.wait()?;
+        child = start(&place, &["run", "--resume", "out"])?;
+    }
+    assert!(child.wait()?.success());
+    assert_same(&place.path("out"), &place.path("straight"))?;
+
+    // Of the checkpoints the last two stay, and nothing half-written does.
+    let mut kept: Vec<_> = fs::read_dir(place.path("out/checkpoints"))?
+        .map(|entry| entry.map(|entry| entry.file_name().to_string_lossy().into_owned()))
+        .collect::<Result<_, _>>()?;
+    kept.sort();
+    assert_eq!(kept, ["checkpoint_0039.splashdown", "checkpoint_0040.splashdown"]);
+
+    // A run that is done can be made longer.
+    let output = place.splashdown(&["run", "--resume", "out", "--frames", "41"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(place.path("out/particles/particles_0041.ply").exists());
+    // The control: what comes after is not the same.
+    assert!(assert_same_names(&place)?, "a frame more is a file more");
+    Ok(())
+}
+
+/// True if the longer run has more files than the straight one.
+fn assert_same_names(place: &Place) -> Result<bool, std::io::Error> {
+    Ok(results(&place.path("out"))?.len() > results(&place.path("straight"))?.len())
+}
+
+#[test]
+fn ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on() -> Outcome {
+    let place = Place::new()?;
+    let child = Command::new(assert_cmd::cargo::cargo_bin!("splashdown"))
+        .current_dir(place.path("."))
+        .args(["run", "small.toml", "--device", "cpu", "--no-pictures", "--frames", "9999", "--out", "out"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()?;
+    await_file(&place.path("out/particles/particles_0003.ply"));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status()?;
+    let output = child.wait_with_output()?;
+    assert_eq!(output.status.code(), Some(130));
+    assert!(stdout(&output).contains("splashdown run --resume out"), "{}", stdout(&output));
+    let frames = fs::read_dir(place.path("out/particles"))?.count();
+    let last = frames.to_string();
+    let output = place.splashdown(&["run", "--resume", "out", "--frames", &last]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(fs::read_dir(place.path("out/particles"))?.count(), frames + 1);
+    Ok(())
+}
+
+#[test]
+fn a_run_that_a_full_disk_stopped_goes_on_when_there_is_room() -> Outcome {
+    let place = Place::new()?;
+    let Some(disk) = TinyDisk::mount(place.path("disk"), 256)? else {
+        eprintln!("SKIPPED: no small file system can be mounted here to fill up");
+        return Ok(());
+    };
+    let run = ["run", "small.toml", "--device", "cpu", "--no-pictures", "--no-surface", "--frames", "40"];
+    let output = place.splashdown(&[&run[..], &["--out", "straight"]].concat()).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let output =
+        place.splashdown(&[&run[..], &["--out", "disk/out", "--checkpoint-every", "2"]].concat()).output()?;
+    assert_refused(&output, 5, &["disk is full", "--resume disk/out"]);
+    let enlarge = ["-o", "remount,size=4m"];
+    assert!(Command::new("mount").args(enlarge).arg(&disk.0).status()?.success());
+    let output = place.splashdown(&["run", "--resume", "disk/out"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for frame in [0, 7, 40] {
+        let name = format!("particles/particles_{frame:04}.ply");
+        let read = |root: &str| fs::read(place.path(root).join(&name));
+        assert!(read("disk/out")? == read("straight")?, "{name}");
+    }
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_gone_on_from_is_told() -> Outcome {
+    let place = Place::new()?;
+    let resume = |what: &str| place.splashdown(&["run", "--resume", what]).output();
+    assert_refused(&resume("nowhere")?, 5, &["nowhere"]);
+    fs::create_dir(place.path("empty"))?;
+    assert_refused(&resume("empty")?, 5, &["empty", "--checkpoint-every"]);
+    assert_refused(&resume("small.toml")?, 5, &["small.toml", "not a usable checkpoint"]);
+    let both = place.splashdown(&["run", "small.toml", "--resume", "out"]).output()?;
+    assert_refused(&both, 2, &["cannot be used with"]);
+    assert_refused(&place.splashdown(&["run"]).output()?, 2, &["SCENE"]);
+
+    // A checkpoint that was cut short is passed over for the one before it; alone it is refused.
+    let output = place.run_small(&["--frames", "4", "--checkpoint-every", "2"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let newest = place.path("out/checkpoints/checkpoint_0004.splashdown");
+    let bytes = fs::read(&newest)?;
+    fs::write(&newest, &bytes[..bytes.len() / 2])?;
+    assert_refused(&resume("out/checkpoints/checkpoint_0004.splashdown")?, 5, &["cut short"]);
+    let output = resume("out")?;
+    assert!(output.status.success() && stderr(&output).contains("passed over"), "{}", stderr(&output));
+    assert!(fs::read(&newest)? == bytes, "the checkpoint that was made anew");
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! Files that come to the window: scenes, checkpoints and meshes, dropped or chosen.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+use glam::Vec3;
+use splashdown::Checkpoint;
+use splashdown::scene::Scene;
+
+use super::Viewer;
+use crate::edit;
+use crate::engine::Command;
+
+impl Viewer {
+    /// Opens what was dropped.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn dropped_files(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            self.open_file(file.path(), now);
+        }
+    }
+
+    /// Opens what was dropped: the browser hands it out later.
+    #[cfg(target_arch = "wasm32")]
+    pub(super) fn dropped_files(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            let ctx = ctx.clone();
+            wasm_bindgen_futures::spawn_local(async move {
+                let read = file.bytes_async().await;
+                crate::page::arrived(file.path().to_owned(), read);
+                ctx.request_repaint();
+            });
+        }
+        for (path, read) in crate::page::take_arrived() {
+            match read {
+                Ok(bytes) => self.open_bytes(&path, &bytes, now),
+                Err(reason) => self.state.tell(format!("{}: {reason}", path.display()), true, now),
+            }
+        }
+    }
+
+    /// Opens a file by the ending of its name.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn open_file(&mut self, path: &Path, now: f64) {
+        match ending(path).as_str() {
+            "toml" | Checkpoint::ENDING => match std::fs::read(path) {
+                Ok(bytes) => self.open_bytes(path, &bytes, now),
+                Err(error) => self.state.tell(format!("{}: {error}", path.display()), true, now),
+            },
+            _ => match splashdown_io::read_mesh(path) {
+                Ok(mesh) => {
+                    let corners = mesh.vertices.iter().map(|&v| Vec3::from(v));
+                    let low = corners.clone().fold(Vec3::INFINITY, Vec3::min);
+                    let high = corners.fold(Vec3::NEG_INFINITY, Vec3::max);
+                    edit::add_mesh(&mut self.state.scene, path.to_owned(), low, high);
+                    self.change();
+                }
+                Err(error) => self.state.tell(error.to_string(), true, now),
+            },
+        }
+    }
+
+    fn open_bytes(&mut self, path: &Path, bytes: &[u8], now: f64) {
+        let opened = match ending(path).as_str() {
+            "toml" => open_scene(path, bytes).map(|scene| {
+                let text = scene.text.to_string();
+                self.open(scene, text);
+            }),
+            Checkpoint::ENDING => {
+                let checkpoint = Checkpoint::from_bytes(bytes).map_err(|error| error.to_string());
+                checkpoint.and_then(|checkpoint| self.resume(checkpoint))
+            }
+            _ => Err(format!(
+                "a page takes scenes (.toml) and checkpoints (.{}); the desktop's `splashdown view` also takes meshes",
+                Checkpoint::ENDING
+            )),
+        };
+        if let Err(reason) = opened {
+            self.state.tell(format!("{}: {reason}", path.display()), true, now);
+        }
+    }
+
+    /// Goes on from a checkpoint, at its time.
+    pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), String> {
+        let scene = checkpoint.scene().map_err(|error| error.to_string())?;
+        self.text = scene.text.to_string();
+        self.state.open(scene);
+        self.engine.send(Command::Hand(None));
+        self.engine.send(Command::Resume(Box::new(checkpoint)));
+        self.engine.send(Command::TimeScale(self.state.time_scale.into()));
+        self.engine.send(Command::Play(self.state.playing));
+        Ok(())
+    }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// A page knows the names of files, not their places.
+fn open_scene(path: &Path, bytes: &[u8]) -> Result<Scene, String> {
+    let text = std::str::from_utf8(bytes).map_err(|error| format!("it is not text: {error}"))?;
+    let scene = match cfg!(target_arch = "wasm32") {
+        true => Scene::parse(text, &path.display().to_string()),
+        false => Scene::parse_beside(text, path),
+    };
+    scene.map_err(|error| error.to_string())
+}
+
+/// Checkpoints in this folder and in those of runs below it, the newest first.
+pub(super) fn checkpoints_at_hand() -> Vec<PathBuf> {
+    let in_folder = |folder: PathBuf| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).filter(|path| ending(path) == Checkpoint::ENDING)
+    };
+    let runs = std::fs::read_dir("out").into_iter().flatten().flatten().map(|entry| entry.path());
+    let folders = std::iter::once(PathBuf::from(".")).chain(runs.map(|run| run.join("checkpoints")));
+    let mut files: Vec<PathBuf> = folders.flat_map(in_folder).collect();
+    files.sort_by_key(|path| std::cmp::Reverse(path.metadata().and_then(|data| data.modified()).ok()));
+    files.truncate(8);
+    files
+}
