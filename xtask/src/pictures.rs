@@ -1,6 +1,7 @@
 //! The pictures of the README, made by the program itself.
 
 use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
@@ -34,14 +35,19 @@ const PICTURES: [(&str, &[Shown]); 11] = [
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 
+/// Scenes that are shown in the window's gallery alone, with the frame of their surface that is.
+const THUMBNAILS: [(&str, u32); 3] = [("dam-break-small", 18), ("double-dam-break", 16), ("drum", 36)];
+
 /// The word `pictures`; names of scenes, or none for all.
 pub fn run(arguments: &[String]) -> Result<()> {
     let wanted = |scene: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == scene);
-    let known = |argument: &&String| PICTURES.iter().any(|(scene, _)| scene == argument);
+    let scenes =
+        || PICTURES.iter().map(|(scene, _)| *scene).chain(THUMBNAILS.iter().map(|(scene, _)| *scene));
+    let known = |argument: &&String| scenes().any(|scene| scene == argument.as_str());
     ensure!(
         arguments.iter().all(|argument| known(&argument)),
         "pictures takes names of scenes: {}",
-        PICTURES.map(|(scene, _)| scene).join(", ")
+        scenes().collect::<Vec<_>>().join(", ")
     );
     setup::ensure_requirements()?;
     let binary = process::build_release()?;
@@ -60,18 +66,26 @@ pub fn run(arguments: &[String]) -> Result<()> {
             fs::copy(&from, &to).with_context(|| format!("cannot copy {}", from.display()))?;
             say(format!("docs/pictures/{name}.png"));
             if name == scene {
-                thumbnail(name)?;
+                thumbnail(&to, name)?;
             }
         }
+    }
+    for (scene, frame) in THUMBNAILS.iter().filter(|(scene, _)| wanted(scene)) {
+        let out = format!("out/pictures/{scene}");
+        let mut command = process::command(&binary);
+        command.args(["run", scene, "--out", &out, "--frames", &frame.to_string(), "--formats", "none"]);
+        process::run(command.args(["--no-film", "--pictures", "surface"]))?;
+        let picture = process::root().join(&out).join(format!("pictures/surface_{frame:04}.png"));
+        thumbnail(&picture, scene)?;
     }
     Ok(())
 }
 
 /// A small picture for the gallery of the window, with few colours: all of them travel with the program.
-fn thumbnail(name: &str) -> Result<()> {
-    let from = format!("docs/pictures/{name}.png");
+fn thumbnail(from: &Path, name: &str) -> Result<()> {
     let to = format!("crates/splashdown-viewer/thumbnails/{name}.png");
     let filter = "scale=192:108:flags=lanczos,split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse";
     let mut ffmpeg = process::command("ffmpeg");
-    process::run(ffmpeg.args(["-y", "-loglevel", "error", "-i", &from, "-filter_complex", filter, &to]))
+    ffmpeg.args(["-y", "-loglevel", "error", "-i"]).arg(from);
+    process::run(ffmpeg.args(["-filter_complex", filter, &to]))
 }

@@ -119,6 +119,31 @@ fn what_cannot_be_changed_leaves_the_water_as_it_is() {
     until(&mut engine, |now| now.stats.time < time);
 }
 
+/// Pixels that are clearly another colour.
+fn differing(a: &[u8], b: &[u8]) -> usize {
+    a.chunks_exact(4)
+        .zip(b.chunks_exact(4))
+        .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24))
+        .count()
+}
+
+/// One is copied and drawn by its size, the other where it was made and by the arguments on the device.
+#[test]
+fn both_devices_show_the_same_surface() {
+    let Some(gpu) = testing::gpu_or_skip("both_devices_show_the_same_surface") else { return };
+    let pictures = [Simulate::OnCpu, Simulate::WhereDrawn].map(|simulate| {
+        let mut engine = start(&gpu, simulate);
+        engine.send(Command::Surface(true));
+        until(&mut engine, |now| now.drawn.mesh().is_some());
+        picture(&gpu, &engine, Way::Surface)
+    });
+    assert!(differing(&pictures[0], &pictures[1]) < 20, "{}", differing(&pictures[0], &pictures[1]));
+    // Control: without a surface the picture is another.
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    until(&mut engine, |_| true);
+    assert!(differing(&pictures[0], &picture(&gpu, &engine, Way::Surface)) > 200);
+}
+
 #[test]
 fn every_way_shows_the_water() {
     let Some(gpu) = testing::gpu_or_skip("every_way_shows_the_water") else { return };
@@ -126,12 +151,6 @@ fn every_way_shows_the_water() {
     engine.send(Command::Surface(true));
     until(&mut engine, |now| now.drawn.mesh().is_some());
     let pictures: Vec<_> = Way::ALL.into_iter().map(|way| picture(&gpu, &engine, way)).collect();
-    let differing = |a: &[u8], b: &[u8]| {
-        a.chunks_exact(4)
-            .zip(b.chunks_exact(4))
-            .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24))
-            .count()
-    };
     for (i, a) in pictures.iter().enumerate() {
         for (j, b) in pictures.iter().enumerate().skip(i + 1) {
             assert!(differing(a, b) > 100, "{:?} and {:?} look alike", Way::ALL[i], Way::ALL[j]);

@@ -1,4 +1,5 @@
-//! Buffers that are drawn, apart from those that are simulated: the window may draw one moment while the next is computed.
+//! Buffers that are drawn. Particles are copies: the window may draw one moment while the next is computed. The surface is drawn where it
+//! was made, as many triangles as the device has counted.
 
 use std::sync::Arc;
 
@@ -17,11 +18,13 @@ pub struct Drawn {
     mesh: Option<DrawnMesh>,
 }
 
-/// A copy of the surface.
+/// The surface: that of the simulation itself, where it is on the device that draws, else a copy.
 pub struct DrawnMesh {
     vertices: wgpu::Buffer,
     normals: wgpu::Buffer,
     indices: wgpu::Buffer,
+    /// What the device wrote of how much there is to draw; a copy is as large as it was when it was made.
+    arguments: Option<wgpu::Buffer>,
     /// Its size.
     pub stats: SurfaceStats,
 }
@@ -50,7 +53,10 @@ impl DrawnMesh {
             vertices: &self.vertices,
             normals: &self.normals,
             indices: &self.indices,
-            draw: Draw::Direct { index_count: 3 * self.stats.triangles },
+            draw: match &self.arguments {
+                Some(buffer) => Draw::Indirect(buffer, 0),
+                None => Draw::Direct { index_count: 3 * self.stats.triangles },
+            },
         }
     }
 }
@@ -97,12 +103,18 @@ impl Copies {
             densities: copy.take(fields.densities, n, d, Use::STORAGE),
             count,
             mesh: surface.map(|(surface, stats)| {
+                if let Some(own) = shared(copy.executor, surface, stats) {
+                    return own;
+                }
                 let (vertices, triangles) = (stats.vertices as usize, 3 * stats.triangles as usize);
                 let (v, n, i) = match mesh.take() {
-                    Some(old) => (Some(old.vertices), Some(old.normals), Some(old.indices)),
-                    None => (None, None, None),
+                    Some(old) if old.arguments.is_none() => {
+                        (Some(old.vertices), Some(old.normals), Some(old.indices))
+                    }
+                    _ => (None, None, None),
                 };
                 DrawnMesh {
+                    arguments: None,
                     vertices: copy.take(surface.vertices(), vertices, v, Use::VERTEX | Use::STORAGE),
                     normals: copy.take(surface.normals(), vertices, n, Use::VERTEX),
                     indices: copy.take(surface.indices(), triangles, i, Use::INDEX | Use::STORAGE),
@@ -122,6 +134,19 @@ impl Copies {
         let free = self.pool.iter().position(|drawn| Arc::strong_count(drawn) == 1)?;
         Arc::into_inner(self.pool.swap_remove(free))
     }
+}
+
+/// The simulation's own surface, if the device that draws has it. It changes as a whole, by one submission: what is drawn is always
+/// one surface, be it a newer one than that of the snapshot.
+fn shared(executor: &Executor, surface: &Surface, stats: SurfaceStats) -> Option<DrawnMesh> {
+    let buffer = |id| executor.wgpu_buffer(id).cloned();
+    Some(DrawnMesh {
+        vertices: buffer(surface.vertices().id())?,
+        normals: buffer(surface.normals().id())?,
+        indices: buffer(surface.indices().id())?,
+        arguments: Some(buffer(surface.draw_args().id())?),
+        stats,
+    })
 }
 
 struct Copy<'a> {
