@@ -163,9 +163,11 @@ async function survivesALostDevice() {
     };
   });
   const { page } = await open("#toml=" + encodeURIComponent(scene), catchDevice);
-  const before = await until("a rescue to be due", 90, async () => {
+  let begun;
+  const before = await until("a rescue to be taken", 90, async () => {
     const now = await figures(page).catch(() => undefined);
-    return now?.time > 0.1 && performance.now() > 12_000 ? now : undefined;
+    if (now) begun ??= Date.now();
+    return now?.time > 0.1 && Date.now() - begun > 15_000 ? now : undefined;
   });
   await page.evaluate(() => window.lastDevice.destroy());
   await until("the loss", 30, () => page.evaluate(() => document.body.innerText.includes("device was lost")));
@@ -173,6 +175,7 @@ async function survivesALostDevice() {
     const now = await figures(page).catch(() => undefined);
     return now && !now.lost && now.time > 0 ? now : undefined;
   });
+  assert(after.time > 0.3 * before.time, `from ${before.time} s back to ${after.time} s`);
   assert.equal(after.particles, before.particles);
   await until("water that moves again", 60, async () => (await figures(page)).time > after.time);
   await page.close();

@@ -199,7 +199,8 @@ impl Gpu {
         }));
         let report = Arc::clone(&trouble);
         device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
+            // On a page it is the browser that destroys; elsewhere it is the end of this program.
+            if reason != wgpu::DeviceLostReason::Destroyed || cfg!(target_arch = "wasm32") {
                 note(&report, Trouble::Lost(format!("{reason:?}: {message}")));
             }
         });

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use egui::Context;
+#[cfg(not(target_arch = "wasm32"))]
 use glam::Vec3;
 use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 
 use super::Viewer;
+#[cfg(not(target_arch = "wasm32"))]
 use crate::edit;
 use crate::engine::Command;
 
