@@ -258,6 +258,9 @@ pub struct BenchArguments {
     /// Solver to measure: wcsph or mueller2003
     #[arg(short = 'm', long, default_value = "wcsph", value_parser = choice::<splashdown::scene::Method>())]
     pub solver: splashdown::scene::Method,
+    /// Measure from 8K particles to as many as fit, doubling: how does the cost grow?
+    #[arg(long, conflicts_with = "particles")]
+    pub compare: bool,
     /// Do not split the time by pass (measuring each pass costs a little on a GPU)
     #[arg(long)]
     pub no_passes: bool,

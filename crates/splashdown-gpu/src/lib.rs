@@ -33,6 +33,7 @@ mod device;
 mod element;
 mod error;
 mod exec;
+pub mod floors;
 mod host;
 mod pass;
 mod record;
@@ -58,7 +59,7 @@ pub use wgsl::WgslModule;
 
 /// Every pass of this crate, for the gate and the tests.
 pub fn passes() -> Vec<&'static PassDesc> {
-    [&scan::PASSES[..], &reduce::PASSES, &compact::PASSES, &sort::PASSES].concat()
+    [&scan::PASSES[..], &reduce::PASSES, &compact::PASSES, &sort::PASSES, &floors::PASSES].concat()
 }
 
 #[doc(hidden)]
