@@ -14,10 +14,13 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use splashdown_io::{Archive, IoError};
 
 use crate::Stats;
+use crate::foam::{Diffuse, FoamState, KeptFoam};
 use crate::scene::{Scene, SceneErrors};
 
 /// The number of the format that is written and read.
 const VERSION: u32 = 1;
+/// Words of a diffuse particle.
+const FOAM_COLUMNS: usize = size_of::<Diffuse>() / 4;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -238,6 +241,27 @@ impl Checkpoint {
 
     pub(crate) fn host(&self) -> Result<HostState, CheckpointError> {
         self.get("host.bin")
+    }
+
+    /// Puts foam in beside the simulation that made it.
+    pub fn set_foam(&mut self, kept: &KeptFoam) {
+        self.archive.set_array("foam_state", bytemuck::cast_slice::<_, u32>(&[kept.state]), 1);
+        self.archive.set_array("foam", bytemuck::cast_slice::<_, u32>(&kept.pool), FOAM_COLUMNS);
+    }
+
+    /// The foam in it, if there is some.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`].
+    pub fn foam(&self) -> Result<Option<KeptFoam>, CheckpointError> {
+        let Ok(state) = self.numbers::<u32>("foam_state", size_of::<FoamState>() / 4) else {
+            return Ok(None);
+        };
+        let state: FoamState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&state));
+        let words = self.numbers::<u32>("foam", FOAM_COLUMNS * state.count as usize)?;
+        let rows = words.chunks_exact(FOAM_COLUMNS);
+        let pool = rows.map(|row| bytemuck::pod_read_unaligned(bytemuck::cast_slice(row))).collect();
+        Ok(Some(KeptFoam { state, pool }))
     }
 
     /// Puts a value in by its exact bits.

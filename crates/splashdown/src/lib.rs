@@ -23,6 +23,7 @@ mod device;
 mod error;
 mod fields;
 pub mod flow;
+pub mod foam;
 pub mod hand;
 pub mod kernel;
 mod memory;
@@ -43,6 +44,7 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;
+pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam};
 pub use hand::Hand;
 pub use memory::{largest_particle_count, memory_forecast, memory_forecast_of};
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
@@ -51,8 +53,16 @@ pub use stats::Stats;
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
-    [passes::passes(), bodies::passes(), flow::passes(), hand::passes(), probes::passes(), surface::passes()]
-        .concat()
+    [
+        passes::passes(),
+        bodies::passes(),
+        flow::passes(),
+        foam::passes(),
+        hand::passes(),
+        probes::passes(),
+        surface::passes(),
+    ]
+    .concat()
 }
 
 /// The examples of the README.

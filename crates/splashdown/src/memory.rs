@@ -5,7 +5,7 @@ use crate::flow::LoadedFlow;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
 use crate::surface::{self, SurfaceParams};
-use crate::{SimulationError, bodies};
+use crate::{SimulationError, bodies, foam};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
@@ -34,7 +34,7 @@ pub(crate) fn check(particles: u64, largest_buffer: u64) -> Result<(), Simulatio
     Ok(())
 }
 
-/// Bytes in the buffers of a scene's simulation and, where the scene asks for it, of its surface. Particles inside bodies, which a
+/// Bytes in the buffers of a scene's simulation and, where the scene asks for them, of its surface and its foam. Particles inside bodies, which a
 /// simulation leaves out, are counted: to know them takes loading the bodies ([`memory_forecast_of`]).
 ///
 /// A splash with more surface than most makes the surface's buffers grow beyond this.
@@ -67,7 +67,8 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
     } else {
         0
     };
-    motion.saturating_add(u64::from(grid.cell_count) * PER_CELL).saturating_add(surface)
+    let foam = if scene.foam.enabled { foam::forecast(&scene.foam, particles) } else { 0 };
+    motion.saturating_add(u64::from(grid.cell_count) * PER_CELL).saturating_add(surface).saturating_add(foam)
 }
 
 /// What a cell of the grid must span, in metres: one grid serves the motion and the surface.

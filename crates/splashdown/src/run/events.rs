@@ -8,7 +8,7 @@ use splashdown_io::{Mesh, Particles};
 
 use crate::probes::ProbeRows;
 use crate::scene::Scene;
-use crate::{BodyState, Device, Stats};
+use crate::{BodyState, Device, DiffuseParticles, Stats};
 
 /// What to compute beside the particles' motion.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct RunOptions {
     pub frames: Option<u32>,
     /// Extract the surface in every frame.
     pub surface: bool,
+    /// Compute foam, spray and bubbles.
+    pub foam: bool,
     /// Measure the time of every pass.
     pub timing: bool,
     /// Who hears of what takes time before the first event.
@@ -45,6 +47,7 @@ impl RunOptions {
             device: Device::Auto,
             frames: None,
             surface: scene.surface.enabled,
+            foam: scene.foam.enabled,
             timing: false,
             listener: None,
         }
@@ -124,6 +127,8 @@ pub struct Frame {
     pub mesh: Option<Arc<Mesh>>,
     /// The volume that the surface encloses in m^3.
     pub volume: Option<f64>,
+    /// Foam, spray and bubbles, if asked for.
+    pub foam: Option<Arc<DiffuseParticles>>,
     /// The bodies, in the order of [`Run::bodies`].
     pub bodies: Arc<[BodyState]>,
     /// What the scene's probes measured since the frame before, in the order of the scene.

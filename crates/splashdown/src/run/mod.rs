@@ -15,7 +15,7 @@ use web_time::Instant;
 
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::Surface;
-use crate::{BodyMesh, BodyState, Checkpoint, Simulation, SimulationError, Stats};
+use crate::{BodyMesh, BodyState, Checkpoint, Foam, Simulation, SimulationError, Stats};
 
 /// An excess of density that no sound has: something is told of it.
 const DENSE: f32 = 0.3;
@@ -40,6 +40,7 @@ const PROGRESS: Duration = Duration::from_millis(100);
 pub struct Run {
     simulation: Simulation,
     surface: Option<Surface>,
+    foam: Option<Foam>,
     frames: u32,
     frame_rate: f32,
     frame_duration: f32,
@@ -136,6 +137,9 @@ impl Run {
         let simulation = block_on(Simulation::resume_async(checkpoint, executor, &told))?;
         let time = simulation.stats().time;
         let mut run = Self::of(simulation, scene, options, started)?;
+        if let (Some(foam), Some(kept)) = (&run.foam, checkpoint.foam()?) {
+            run.simulation.restore_foam(foam, &kept)?;
+        }
         let rate = f64::from(scene.frame_rate);
         let frame = match checkpoint.get::<Option<Account>>(ACCOUNT) {
             Ok(Some(account)) => {
@@ -162,6 +166,7 @@ impl Run {
     ) -> Result<Self, SimulationError> {
         let buried = simulation.buried_probes(&scene.probes)?;
         let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
+        let foam = if options.foam { Some(simulation.foam(&scene.foam)?) } else { None };
         if options.timing {
             simulation.enable_timing();
         }
@@ -171,6 +176,7 @@ impl Run {
             f64::from(simulation.stats().particles) * f64::from(scene.fluid.particle_spacing).powi(3);
         Ok(Self {
             surface,
+            foam,
             frames,
             frame_rate: scene.frame_rate,
             frame_duration,
@@ -246,10 +252,11 @@ impl Run {
             self.density_error = self.density_error.max(stats.density_error);
             self.particle_steps += f64::from(stats.particles) * f64::from(stats.steps_in_frame);
             self.warn(&stats);
-            let told = self.simulation.take_warnings().into_iter();
-            self.waiting.extend(told.map(|text| Event::Warning(format!("at {:.4} s: {text}", stats.time))));
             self.stage = Stage::Fetch(frame);
             return Ok(None);
+        }
+        if let Some(foam) = &self.foam {
+            self.simulation.advance_foam(foam)?;
         }
         if self.told.elapsed() < PROGRESS {
             return Ok(None);
@@ -278,6 +285,9 @@ impl Run {
     /// As [`Simulation::checkpoint`].
     pub fn checkpoint(&mut self) -> Result<Checkpoint, SimulationError> {
         let mut checkpoint = self.simulation.checkpoint(&self.scene_text)?;
+        if let Some(foam) = &self.foam {
+            checkpoint.set_foam(&block_on(self.simulation.keep_foam_async(foam))?);
+        }
         // Within a frame there is no account of one.
         let account = match self.stage {
             Stage::Begin(next) => Some(next - 1),
@@ -350,6 +360,13 @@ impl Run {
             }
             None => None,
         };
+        let foam = match &mut self.foam {
+            Some(foam) => {
+                self.simulation.advance_foam(foam)?;
+                Some(Arc::new(self.simulation.diffuse(foam)?))
+            }
+            None => None,
+        };
         let particles = Arc::new(self.simulation.particles()?);
         let volume = mesh.as_ref().map(Mesh::volume);
         if let Some(volume) = volume {
@@ -360,6 +377,8 @@ impl Run {
         self.clock.frames += begun.elapsed();
         // The sum of frames in single precision would read 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
+        let told = self.simulation.take_warnings().into_iter();
+        self.waiting.extend(told.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
         let inside_bodies = self.simulation.inside_bodies(&particles)?;
         let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
         if inside_bodies > 0 {
@@ -376,6 +395,7 @@ impl Run {
             particles,
             mesh: mesh.map(Arc::new),
             volume,
+            foam,
             bodies,
             probes: self.simulation.take_probe_rows().into(),
         })

@@ -114,6 +114,12 @@ pub(crate) static ROOT: Table = Table {
             .also(&["probes", "gauge", "gauges", "sensor", "measure"]),
         key("solver", Kind::Table(&SOLVER), "How the fluid is computed."),
         key("surface", Kind::Table(&SURFACE), "How the fluid's surface is extracted."),
+        key("foam", Kind::Table(&FOAM), "Whether a splash makes foam, spray and bubbles.").also(&[
+            "spray",
+            "bubbles",
+            "diffuse",
+            "whitewater",
+        ]),
         key(
             "camera",
             Kind::Table(&CAMERA),
@@ -509,6 +515,65 @@ static SURFACE: Table = Table {
             "Support radius of the field over the particle spacing.",
         )
         .default("2.0"),
+    ],
+};
+
+static FOAM: Table = Table {
+    about: "Whether a splash makes foam, spray and bubbles, and how much (Ihmsen et al. 2012). For looks; the water does not feel them.",
+    keys: &[
+        key("enabled", Kind::Boolean, "Whether it does.").default("false"),
+        key(
+            "trapped_air",
+            a_number(0.0, 1e5, "1/s"),
+            "Particles of foam per second from each particle of water that traps as much air as it can: where water meets water.",
+        )
+        .default("200.0")
+        .also(&["k_ta", "air"]),
+        key(
+            "wave_crest",
+            a_number(0.0, 1e5, "1/s"),
+            "Particles of foam per second from each particle of a breaking wave's crest.",
+        )
+        .default("1000.0")
+        .also(&["k_wc", "crest"]),
+        key(
+            "trapped_air_limits",
+            Kind::Numbers(2, range(0.0, 10.0, "")),
+            "Speed at which water meets water, over the scene's reference speed: none below the first, all above the second.",
+        )
+        .default("[0.05, 0.25]"),
+        key(
+            "wave_crest_limits",
+            Kind::Numbers(2, range(0.0, 10.0, "")),
+            "Curvature of crests: none below the first, all above the second.",
+        )
+        .default("[0.1, 0.5]"),
+        key(
+            "speed_limits",
+            Kind::Numbers(2, range(0.0, 10.0, "")),
+            "Speed of the water over the scene's reference speed: no foam below the first, all above the second.",
+        )
+        .default("[0.2, 0.7]")
+        .also(&["energy_limits"]),
+        key(
+            "lifetime",
+            Kind::Numbers(2, range(0.0, 3600.0, "s")),
+            "Shortest and longest time until foam on the surface has dissolved.",
+        )
+        .default("[2.0, 5.0]"),
+        key("buoyancy", a_number(0.0, 100.0, ""), "Lift of bubbles in multiples of gravity.").default("2.0"),
+        key(
+            "drag",
+            a_number(1.0, 1e5, "1/s"),
+            "How quickly bubbles take the water's velocity; they rise at buoyancy times gravity over it.",
+        )
+        .default("80.0"),
+        key(
+            "max_particles",
+            Kind::Integer(range(1.0, 1e9, "")),
+            "Most particles of foam, spray and bubbles. Default: four per particle of water, four million at most.",
+        )
+        .also(&["limit", "max", "count"]),
     ],
 };
 

@@ -65,7 +65,7 @@ pub use things::{
     SinkRegion, UpAxis,
 };
 pub use types::{
-    Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, Format, KernelKind, Material,
-    Method, NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort, SurfaceSettings,
-    SurfaceTension,
+    Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format,
+    KernelKind, Material, Method, NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort,
+    SurfaceSettings, SurfaceTension,
 };

@@ -39,6 +39,8 @@ pub struct Scene {
     pub solver: Solver,
     /// How its surface is extracted.
     pub surface: SurfaceSettings,
+    /// Whether and how it foams.
+    pub foam: FoamSettings,
     /// From where it is seen.
     pub camera: Camera,
     /// What is written.
@@ -381,6 +383,48 @@ impl SurfaceSettings {
             iso_level: 0.6,
             smoothing_iterations: 5,
             support_ratio: 2.0,
+        }
+    }
+}
+
+/// Whether and how a splash makes foam, spray and bubbles (Ihmsen et al. 2012).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoamSettings {
+    /// Whether it does at all.
+    pub enabled: bool,
+    /// Diffuse particles per second from a particle of the fluid that traps as much air as it can, in 1/s.
+    pub trapped_air: f32,
+    /// The same from a wave's crest, in 1/s.
+    pub wave_crest: f32,
+    /// From where to where trapped air counts, over the scene's reference speed.
+    pub trapped_air_limits: [f32; 2],
+    /// From where to where a crest's curvature counts.
+    pub wave_crest_limits: [f32; 2],
+    /// From where to where the fluid's speed counts, over the scene's reference speed.
+    pub speed_limits: [f32; 2],
+    /// Shortest and longest life of foam in s.
+    pub lifetime: [f32; 2],
+    /// Buoyancy of bubbles in multiples of gravity.
+    pub buoyancy: f32,
+    /// How quickly bubbles take the water's velocity, in 1/s.
+    pub drag: f32,
+    /// Most diffuse particles; `None`: four per particle of the fluid, four million at most.
+    pub max_particles: Option<u32>,
+}
+
+impl Default for FoamSettings {
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            trapped_air: 200.0,
+            wave_crest: 1000.0,
+            trapped_air_limits: [0.05, 0.25],
+            wave_crest_limits: [0.1, 0.5],
+            speed_limits: [0.2, 0.7],
+            lifetime: [2.0, 5.0],
+            buoyancy: 2.0,
+            drag: 80.0,
+            max_particles: None,
         }
     }
 }

@@ -57,7 +57,7 @@ impl Simulation {
     }
 
     /// Goes on under another scene that differs in numbers alone: gravity, the fluid's material, the solver's coefficients, and
-    /// what is not about motion (camera, output, surface). False, and nothing changed, if it differs in more; then
+    /// what is not about motion (camera, output, surface, foam). False, and nothing changed, if it differs in more; then
     /// [`carry_over`](Self::carry_over) does it.
     ///
     /// # Errors
@@ -70,6 +70,7 @@ impl Simulation {
         twin.text = old.text.clone();
         (twin.duration, twin.frame_rate, twin.gravity) = (old.duration, old.frame_rate, old.gravity);
         (twin.surface, twin.camera, twin.output) = (old.surface.clone(), old.camera, old.output.clone());
+        twin.foam = old.foam;
         twin.domain.shake = old.domain.shake;
         twin.fluid.material.name.clone_from(&old.fluid.material.name);
         // The density at rest counts in the masses of particles, which stay.

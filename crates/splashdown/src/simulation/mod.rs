@@ -1,6 +1,7 @@
 //! A running simulation.
 
 mod checkpoint;
+mod foam;
 mod frame;
 mod live;
 mod results;

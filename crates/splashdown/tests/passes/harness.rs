@@ -5,6 +5,7 @@ use splashdown::Hand;
 use splashdown::bodies::Body;
 use splashdown::cells::Grid;
 use splashdown::flow::{Drain, Nozzle};
+use splashdown::foam::{Diffuse, FoamParams, FoamState};
 use splashdown::passes::{Params, StepState};
 use splashdown::probes::ProbePoint;
 use splashdown_gpu::{
@@ -27,6 +28,9 @@ pub enum Data {
     Probes(Vec<ProbePoint>),
     Bodies(Vec<Body>),
     Hand(Hand),
+    Foam(FoamParams),
+    FoamState(FoamState),
+    Diffuse(Vec<Diffuse>),
 }
 
 impl Data {
@@ -39,6 +43,9 @@ impl Data {
             Self::Vec4(v) => bytemuck::cast_slice(v),
             Self::UVec2(v) => bytemuck::cast_slice(v),
             Self::Hand(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Foam(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::FoamState(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Diffuse(v) => bytemuck::cast_slice(v),
             Self::Nozzles(v) => bytemuck::cast_slice(v),
             Self::Drains(v) => bytemuck::cast_slice(v),
             Self::Probes(v) => bytemuck::cast_slice(v),
@@ -69,6 +76,9 @@ impl Data {
             Self::Vec4(v) => bytemuck::cast_slice_mut(v),
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
             Self::Hand(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Foam(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::FoamState(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Diffuse(v) => bytemuck::cast_slice_mut(v),
             Self::Nozzles(v) => bytemuck::cast_slice_mut(v),
             Self::Drains(v) => bytemuck::cast_slice_mut(v),
             Self::Probes(v) => bytemuck::cast_slice_mut(v),
@@ -166,8 +176,17 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         Data::Probes(v) => array(executor, name, v, Data::Probes),
         Data::Bodies(v) => array(executor, name, v, Data::Bodies),
         Data::Hand(v) => array(executor, name, &[*v], |v| Data::Hand(v[0])),
+        Data::FoamState(v) => array(executor, name, &[*v], |v| Data::FoamState(v[0])),
+        Data::Diffuse(v) => array(executor, name, v, Data::Diffuse),
         Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
         Data::Params(v) => {
+            assert!(uniform, "{name} is no uniform");
+            (
+                executor.create_uniform(name, v).unwrap().id(),
+                Box::new(|_| unreachable!("uniforms are not written")),
+            )
+        }
+        Data::Foam(v) => {
             assert!(uniform, "{name} is no uniform");
             (
                 executor.create_uniform(name, v).unwrap().id(),

@@ -6,6 +6,7 @@
 
 mod cases;
 mod flow_cases;
+mod foam_cases;
 mod hand_cases;
 mod harness;
 mod neighbour_cases;
@@ -27,6 +28,7 @@ fn all_cases() -> Vec<Case> {
         cases::cases(),
         neighbour_cases::cases(),
         flow_cases::cases(),
+        foam_cases::cases(),
         probe_cases::cases(),
         hand_cases::cases(),
     ];

@@ -91,6 +91,12 @@ snapshot!(
     )
 );
 snapshot!(film_without_pictures, format!("{CUBE}[output]\npictures = []\nfilm = true\n"));
+snapshot!(
+    foam_the_wrong_way_round,
+    format!(
+        "{CUBE}[foam]\nenabled = true\ntrapped_air_limits = [0.3, 0.1]\nwave_crest_limits = [0.2, 0.2]\nspeed_limits = [1, 0]\nlifetime = [5, 2]\n"
+    )
+);
 snapshot!(coarse_surface, format!("{CUBE}[surface]\ncell_size = 0.5\n"));
 snapshot!(coarse_surface_warning, format!("{CUBE}[surface]\ncell_size = 0.08\n"));
 snapshot!(unusable_name, changed("\"cube\"", "\"../cube\""));

@@ -110,6 +110,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
     let surface =
         root.section("surface").and_then(|section| view::read_surface(&section, fluid.as_ref().ok()));
+    let foam = root.section("foam").and_then(|section| view::read_foam(&section));
     let output =
         root.section("output").and_then(|section| view::read_output(&section, surface.as_ref().ok()));
     let camera = root.section("camera").and_then(|section| {
@@ -132,6 +133,7 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         probes,
         solver: solver?,
         surface: surface?,
+        foam: foam?,
         camera: camera?,
         output: output?,
         warnings: Vec::new(),

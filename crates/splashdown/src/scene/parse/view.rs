@@ -1,4 +1,4 @@
-//! The sections `[surface]`, `[camera]` and `[output]`.
+//! The sections `[surface]`, `[foam]`, `[camera]` and `[output]`.
 
 use glam::Vec3;
 
@@ -6,7 +6,9 @@ use super::Part;
 use crate::scene::framing;
 use crate::scene::reader::{Reported, Section};
 use crate::scene::spec::rounded;
-use crate::scene::types::{Camera, Domain, Fluid, Format, Output, PictureKind, SurfaceSettings};
+use crate::scene::types::{
+    Camera, Domain, Fluid, FoamSettings, Format, Output, PictureKind, SurfaceSettings,
+};
 
 pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part<SurfaceSettings> {
     let enabled = section.boolean("enabled");
@@ -52,6 +54,61 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
         );
     }
     Ok(surface)
+}
+
+pub(super) fn read_foam(section: &Section<'_>) -> Part<FoamSettings> {
+    let enabled = section.boolean("enabled");
+    let trapped_air = section.number("trapped_air");
+    let wave_crest = section.number("wave_crest");
+    let trapped_air_limits = section.numbers("trapped_air_limits");
+    let wave_crest_limits = section.numbers("wave_crest_limits");
+    let speed_limits = section.numbers("speed_limits");
+    let lifetime = section.numbers("lifetime");
+    let buoyancy = section.number("buoyancy");
+    let drag = section.number("drag");
+    let max_particles = section.integer("max_particles");
+    let standard = FoamSettings::default();
+    let foam = FoamSettings {
+        enabled: enabled?.unwrap_or(standard.enabled),
+        trapped_air: trapped_air?.unwrap_or(standard.trapped_air),
+        wave_crest: wave_crest?.unwrap_or(standard.wave_crest),
+        trapped_air_limits: trapped_air_limits?.unwrap_or(standard.trapped_air_limits),
+        wave_crest_limits: wave_crest_limits?.unwrap_or(standard.wave_crest_limits),
+        speed_limits: speed_limits?.unwrap_or(standard.speed_limits),
+        lifetime: lifetime?.unwrap_or(standard.lifetime),
+        buoyancy: buoyancy?.unwrap_or(standard.buoyancy),
+        drag: drag?.unwrap_or(standard.drag),
+        max_particles: max_particles?,
+    };
+    let rising = [
+        ("trapped_air_limits", foam.trapped_air_limits),
+        ("wave_crest_limits", foam.wave_crest_limits),
+        ("speed_limits", foam.speed_limits),
+    ];
+    let mut sound = Ok(foam);
+    for (name, [least, most]) in rising {
+        if most <= least {
+            let message = format!("the second of foam.{name} is not above the first: {most} <= {least}");
+            sound = Err(section.complain(
+                name,
+                message,
+                &format!("above {least}"),
+                "nothing counts below the first, all above the second",
+            ));
+        }
+    }
+    let [shortest, longest] = foam.lifetime;
+    if longest < shortest {
+        let message =
+            format!("the longest life of foam is shorter than the shortest: {longest} s < {shortest} s");
+        sound = Err(section.complain(
+            "lifetime",
+            message,
+            &format!("{shortest} s and more"),
+            "give the shortest first",
+        ));
+    }
+    sound
 }
 
 pub(super) fn read_camera(

@@ -1,0 +1,45 @@
+//! Moves the diffuse particles there are and says what they are (Ihmsen et al. 2012, section 3.2): by the number of their neighbours in the fluid, spray,
+//! foam or bubbles.
+//!
+//! * Spray flies: x += dt v + dt^2 g / 2, v += dt g.
+//! * Foam has the velocity of the fluid round it, sum_j v_j W / sum_j W.
+//! * A bubble is drawn to that velocity at the rate `drag` and rises by `buoyancy` times gravity; its v is exact over the time step.
+//!
+//! Foam and bubbles move by the mean of their velocities before and after. The fluid is that at the time step's end, and a particle first goes to where its own velocity takes it
+//! and then looks round, so that steps of several spacings do no harm. The paper's drag is a part per step; a rate does not depend on the step.
+//!
+//! Near a closed side the support is cut off: neighbours are divided by the part of its ball that is inside, a product over the sides.
+//! What is or was foam, and spray that lies on a side, loses lifetime; closed sides hold particles, open ones let them out.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{Diffuse, FOAM, FoamParams, FoamState, SURROUNDINGS};
+use crate::cells::{GRID, Grid};
+use crate::kernel;
+use crate::passes::{PARAMS, Params, ROWS, STATE};
+
+/// See the module.
+pub static ADVECT: PassDesc = PassDesc {
+    label: "foam.advect",
+    wgsl: include_str!("advect.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS],
+    entry: "advect",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        uniform::<FoamParams>("foam"),
+        read::<FoamState>("foam_state"),
+        read::<u32>("cell_start"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<Diffuse>("pool"),
+        write::<Diffuse>("moved"),
+        write::<u32>("alive"),
+    ],
+    cpu: cpu::advect,
+};

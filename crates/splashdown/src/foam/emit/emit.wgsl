@@ -1,0 +1,57 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/foam
+#import sph/foam_surroundings
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<uniform> foam: FoamParams;
+@group(0) @binding(3) var<storage, read> foam_state: FoamState;
+@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(5) var<storage, read> starts: array<u32>;
+@group(0) @binding(6) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> sorted_ids: array<u32>;
+@group(0) @binding(9) var<storage, read_write> pool: array<Diffuse>;
+
+const SPREAD: f32 = 0.1;
+
+@compute @workgroup_size(64)
+fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (foam_state.is_due == 0u || foam_state.born == 0u || i >= living()) {
+        return;
+    }
+    let first = starts[i];
+    let last = starts[i + 1u];
+    if (first == last) {
+        return;
+    }
+    let v = sorted_velocities[i].xyz;
+    let speed = length(v);
+    let along = v / max(speed, 1e-20);
+    // Any direction across; the y axis is one if the motion is not along it.
+    let e1 = normalize(cross(along, select(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), abs(along.y) > 0.9)));
+    let e2 = cross(along, e1);
+    let radius = 0.5 * params.particle_spacing;
+    let seed = seed_of(sorted_ids[i], foam_state.step);
+    for (var m = first; m < last; m++) {
+        let place = place_of(m, foam_state.share);
+        if (place_of(m + 1u, foam_state.share) == place) {
+            continue;
+        }
+        let s = seed + 4u * (m - first);
+        let r = sqrt(unit(s + 1u));
+        let angle = 6.2831853 * unit(s + 2u);
+        let across = r * (cos(angle) * e1 + sin(angle) * e2);
+        var x = sorted_positions[i].xyz + radius * across + (unit(s + 3u) - 0.5) * foam_state.dt * v;
+        x = clamp(x, params.domain_min, params.domain_max);
+        let lifetime = foam.lifetime_least + foam.lifetime_range * unit(s + 4u);
+        let kind = kind_of(surroundings(x).neighbours, false);
+        let number = foam_state.next_id - foam_state.born + place;
+        pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, number << 2u | kind);
+    }
+}

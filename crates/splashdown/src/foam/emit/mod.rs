@@ -1,0 +1,37 @@
+//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the fluid's particle that is as wide as the particle and as
+//! long as its way in this time step, with its velocity and a little more away from the cylinder's axis.
+//!
+//! The paper's cylinder lies before the particle; here its middle is the particle's place.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{Diffuse, FOAM, FoamParams, FoamState, SURROUNDINGS};
+use crate::cells::{GRID, Grid};
+use crate::kernel;
+use crate::passes::{PARAMS, Params, ROWS, STATE};
+
+/// See the module.
+pub static EMIT: PassDesc = PassDesc {
+    label: "foam.emit",
+    wgsl: include_str!("emit.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS],
+    entry: "emit_foam",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        uniform::<FoamParams>("foam"),
+        read::<FoamState>("foam_state"),
+        read::<u32>("cell_start"),
+        read::<u32>("starts"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<u32>("sorted_ids"),
+        write::<Diffuse>("pool"),
+    ],
+    cpu: cpu::emit,
+};

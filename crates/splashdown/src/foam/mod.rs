@@ -1,0 +1,317 @@
+//! Foam, spray and bubbles: what a splash makes beside water (Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles
+//! for particle-based fluids", The Visual Computer 28).
+//!
+//! *How it works.* Diffuse particles are made where the fluid traps air or breaks (`normals`, `potentials`, `count`, `emit`), go where air or water
+//! take them (`advect`), and dissolve. They feel the fluid and it does not feel them, so they are computed after it and not in its steps:
+//! [`Simulation::advance_foam`](crate::Simulation::advance_foam) brings them up to the simulation's time every few milliseconds or once per frame, at the cost of two visits of
+//! the neighbours. A simulation without them pays nothing.
+//!
+//! *The same bits every time.* Nothing depends on the order of invocations: the living are compacted in their order, the newborn are counted and
+//! placed by a scan behind them, and chance is a hash of a particle's id and the update's number.
+//!
+//! *Scales.* The paper's potentials grow with the number of neighbours, and its limits are joules and sums of m/s of a scene of several metres. Here
+//! potentials do not depend on the resolution, and their limits are parts of the scene's [reference
+//! speed](crate::scene::Derived::reference_speed): a dam break in a glass and one in a valley that are alike foam alike.
+//!
+//! *Why not* in the step: 16 steps are one to the foam. *Why not* a ring of particles, the oldest overwritten: foam would vanish where it has always been,
+//! while spray of a moment ago stayed. When there is no room fewer are born, evenly everywhere, and it is told.
+
+mod advect;
+mod begin;
+mod count;
+mod emit;
+mod normals;
+mod plan;
+mod potentials;
+mod settle;
+mod surroundings;
+mod types;
+
+pub use types::{Diffuse, DiffuseKind, FoamParams, FoamState};
+
+use glam::Vec4;
+use splashdown_gpu::bytemuck::Zeroable;
+use splashdown_gpu::compact::Compact;
+use splashdown_gpu::scan::Scan;
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+
+use crate::SimulationError;
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::passes::Params;
+use crate::scene::FoamSettings;
+
+/// The WGSL side of [`FoamParams`], [`FoamState`] and [`Diffuse`].
+pub(crate) const FOAM: WgslModule = WgslModule { name: "sph/foam", source: include_str!("foam.wgsl") };
+/// What is round a point.
+const SURROUNDINGS: WgslModule =
+    WgslModule { name: "sph/foam_surroundings", source: include_str!("surroundings.wgsl") };
+
+/// Diffuse particles per particle of the fluid, unless the scene says how many.
+const PER_PARTICLE: u64 = 4;
+/// Most diffuse particles, unless the scene says how many.
+const STANDARD_MOST: u64 = 1 << 22;
+/// Bytes of a diffuse particle in the largest buffer.
+const LARGEST_PER_DIFFUSE: u64 = size_of::<Diffuse>() as u64;
+/// Shortest time between two updates within a frame, in seconds: less than the eye sees, and many steps of the fluid.
+const INTERVAL: f32 = 0.004;
+/// Neighbours in the middle of the fluid in Ihmsen's setting, to which his limits of 6 and 20 belong: a ball of two spacings.
+const IHMSEN_NEIGHBOURS: f32 = 33.5;
+
+/// The passes of this module.
+pub fn passes() -> Vec<&'static PassDesc> {
+    vec![
+        &begin::BEGIN,
+        &normals::NORMALS,
+        &potentials::POTENTIALS,
+        &count::COUNT,
+        &advect::ADVECT,
+        &plan::PLAN,
+        &settle::SETTLE,
+        &emit::EMIT,
+    ]
+}
+
+impl FoamParams {
+    /// From a scene's settings, for a fluid with these constants and reference speed (m/s).
+    pub fn new(settings: &FoamSettings, params: &Params, reference_speed: f32, capacity: u32) -> Self {
+        let range = |[least, most]: [f32; 2], unit: f32| (least * unit, 1.0 / ((most - least) * unit));
+        let (trapped_air_least, trapped_air_scale) = range(settings.trapped_air_limits, reference_speed);
+        let (wave_crest_least, wave_crest_scale) = range(settings.wave_crest_limits, 1.0);
+        let [slow, fast] = settings.speed_limits.map(|part| part * part);
+        let (energy_least, energy_scale) = range([slow, fast], 0.5 * reference_speed * reference_speed);
+        // In the middle of the fluid.
+        let ratio = params.support_radius / params.particle_spacing;
+        let full = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);
+        Self {
+            capacity,
+            interval: INTERVAL,
+            trapped_air: settings.trapped_air,
+            wave_crest: settings.wave_crest,
+            trapped_air_least,
+            trapped_air_scale,
+            wave_crest_least,
+            wave_crest_scale,
+            energy_least,
+            energy_scale,
+            lifetime_least: settings.lifetime[0],
+            lifetime_range: settings.lifetime[1] - settings.lifetime[0],
+            buoyancy: settings.buoyancy,
+            drag: settings.drag,
+            spray_below: 6.0 / IHMSEN_NEIGHBOURS * full,
+            bubble_above: 20.0 / IHMSEN_NEIGHBOURS * full,
+            bubble_again_above: 24.0 / IHMSEN_NEIGHBOURS * full,
+        }
+    }
+}
+
+/// How many diffuse particles a scene gets room for.
+pub(crate) fn capacity(
+    settings: &FoamSettings,
+    particles: u64,
+    largest: u64,
+) -> Result<u32, SimulationError> {
+    let allowed = (largest / LARGEST_PER_DIFFUSE).min(1 << 30);
+    match settings.max_particles {
+        Some(given) if u64::from(given) > allowed => Err(SimulationError::TooMany {
+            what: "particles of foam",
+            given: given.into(),
+            allowed,
+            advice: "lower foam.max_particles, or use a device with larger buffers (`splashdown doctor`)"
+                .into(),
+        }),
+        Some(given) => Ok(given.max(1)),
+        None => Ok((PER_PARTICLE * particles).clamp(1, STANDARD_MOST).min(allowed) as u32),
+    }
+}
+
+/// Bytes in the buffers of a scene's foam.
+pub(crate) fn forecast(settings: &FoamSettings, particles: u64) -> u64 {
+    let most = capacity(settings, particles, u64::MAX).map_or(0, u64::from);
+    // Twice the foam, whether it lives, where it goes, the list of the living; normals, potentials, counts, starts.
+    most * (2 * LARGEST_PER_DIFFUSE + 3 * 4) + particles.saturating_mul(2 * 16 + 2 * 4)
+}
+
+/// The foam of a simulation, on its device.
+#[derive(Debug)]
+pub struct Foam {
+    params: Buffer<FoamParams>,
+    capacity: u32,
+    state: Buffer<FoamState>,
+    pool: Buffer<Diffuse>,
+    potentials: Buffer<Vec4>,
+    recording: Recording,
+    has_told: bool,
+}
+
+impl Foam {
+    /// Makes the buffers, and the list of passes. `particles`: most there can be in the fluid.
+    pub(crate) fn new(
+        executor: &mut Executor,
+        constants: &FoamParams,
+        fields: &Fields,
+        cells: &Cells,
+        particles: u32,
+    ) -> Result<Self, GpuError> {
+        let (n, capacity) = (particles as usize, constants.capacity);
+        let most = capacity as usize;
+        let params = executor.create_uniform("foam params", constants)?;
+        let state = executor.create_from("foam state", &[FoamState::zeroed()])?;
+        let pool = executor.create("foam", most)?;
+        let moved = executor.create::<Diffuse>("foam moved", most)?;
+        let alive = executor.create::<u32>("foam alive", most)?;
+        let indices = executor.create::<u32>("foam indices", most)?;
+        let counted = executor.create::<u32>("foam counted", 4)?;
+        let groups = executor.create::<u32>("foam groups", 3)?;
+        let normals = executor.create::<Vec4>("foam normals", n)?;
+        let potentials = executor.create::<Vec4>("foam potentials", n)?;
+        let counts = executor.create::<u32>("foam counts", n)?;
+        let starts = executor.create::<u32>("foam starts", n + 1)?;
+        let compact = Compact::new(executor, capacity, 64)?;
+        let scan = Scan::new(executor, particles)?;
+
+        let all = Extent::Items(particles);
+        let (constants, grid, foam, now) =
+            (fields.params.id(), cells.grid_uniform.id(), params.id(), state.id());
+        let cell_start = cells.cell_start.id();
+        let (positions, velocities, ids) =
+            (fields.sorted_positions.id(), fields.sorted_velocities.id(), fields.sorted_ids.id());
+        let mut r = Recording::new("foam");
+        r.dispatch(&begin::BEGIN, Extent::Groups(1), &[foam, fields.state.id(), now, groups.id()]);
+        r.dispatch(&normals::NORMALS, all, &[constants, grid, now, cell_start, positions, normals.id()]);
+        r.dispatch(
+            &potentials::POTENTIALS,
+            all,
+            &[constants, grid, foam, now, cell_start, positions, velocities, normals.id(), potentials.id()],
+        );
+        r.clear(counts);
+        r.dispatch(&count::COUNT, all, &[grid, foam, now, cell_start, ids, potentials.id(), counts.id()]);
+        scan.record(&mut r, counts, starts);
+        r.clear(alive);
+        let some = Extent::Indirect { buffer: groups.id(), word: 0 };
+        r.dispatch(
+            &advect::ADVECT,
+            some,
+            &[
+                constants,
+                grid,
+                foam,
+                now,
+                cell_start,
+                positions,
+                velocities,
+                pool.id(),
+                moved.id(),
+                alive.id(),
+            ],
+        );
+        compact.record(&mut r, alive, indices, counted);
+        r.dispatch(&plan::PLAN, Extent::Groups(1), &[constants, foam, starts.id(), counted.id(), now]);
+        r.dispatch(&settle::SETTLE, some, &[now, indices.id(), moved.id(), pool.id()]);
+        r.dispatch(
+            &emit::EMIT,
+            all,
+            &[constants, grid, foam, now, cell_start, starts.id(), positions, velocities, ids, pool.id()],
+        );
+        Ok(Self { params, capacity, state, pool, potentials, recording: r, has_told: false })
+    }
+
+    /// What brings the foam up to the simulation's time, where an update is due.
+    pub(crate) fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// Takes all of it out, and begins anew at the simulation's next time.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn clear(&self, executor: &mut Executor) -> Result<(), GpuError> {
+        executor.write(self.state, &[FoamState::zeroed()])
+    }
+
+    /// Most diffuse particles.
+    pub fn capacity(&self) -> u32 {
+        self.capacity
+    }
+
+    /// The particles; the first [`FoamState::count`] are valid.
+    pub fn pool(&self) -> Buffer<Diffuse> {
+        self.pool
+    }
+
+    /// How many there are, and more.
+    pub fn state(&self) -> Buffer<FoamState> {
+        self.state
+    }
+
+    /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last update, in the order of the sort.
+    pub fn potentials(&self) -> Buffer<Vec4> {
+        self.potentials
+    }
+
+    /// The constants; a uniform.
+    pub fn params(&self) -> Buffer<FoamParams> {
+        self.params
+    }
+
+    /// A sentence when some found no room for the first time.
+    pub(crate) fn tell(&mut self, state: &FoamState) -> Option<String> {
+        (state.refused > 0 && !std::mem::replace(&mut self.has_told, true)).then(|| {
+            format!(
+                "there is room for {} particles of foam, spray and bubbles, and more were to be made; from now on fewer are made. \
+                 Raise foam.max_particles, or lower foam.trapped_air and foam.wave_crest",
+                self.capacity
+            )
+        })
+    }
+}
+
+/// Foam that was put aside: [`Simulation::keep_foam_async`](crate::Simulation::keep_foam_async).
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptFoam {
+    pub(crate) state: FoamState,
+    pub(crate) pool: Vec<Diffuse>,
+}
+
+/// What a simulation's foam is at one time, on the host; in order of age, the oldest first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DiffuseParticles {
+    /// Numbers in order of birth.
+    pub ids: Vec<u32>,
+    /// Places in m.
+    pub positions: Vec<[f32; 3]>,
+    /// Velocities in m/s.
+    pub velocities: Vec<[f32; 3]>,
+    /// What they are.
+    pub kinds: Vec<DiffuseKind>,
+    /// How long they still live as foam, in s.
+    pub lifetimes: Vec<f32>,
+}
+
+impl DiffuseParticles {
+    /// From a pool's content.
+    pub fn new(pool: &[Diffuse]) -> Self {
+        Self {
+            ids: pool.iter().map(Diffuse::id).collect(),
+            positions: pool.iter().map(|p| p.position.to_array()).collect(),
+            velocities: pool.iter().map(|p| p.velocity.to_array()).collect(),
+            kinds: pool.iter().map(Diffuse::kind).collect(),
+            lifetimes: pool.iter().map(|p| p.lifetime).collect(),
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// True if there is none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// How many there are of a kind.
+    pub fn count(&self, kind: DiffuseKind) -> usize {
+        self.kinds.iter().filter(|&&other| other == kind).count()
+    }
+}

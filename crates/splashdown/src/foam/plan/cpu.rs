@@ -1,0 +1,36 @@
+use splashdown_gpu::compact::Compact;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::foam::types::place_of;
+use crate::foam::{FoamParams, FoamState};
+use crate::passes::Params;
+
+pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, foam, starts, counted, foam_state] = slots else { unreachable!() };
+    let now = &mut foam_state.write::<FoamState>()[0];
+    if now.is_due == 0 {
+        now.born = 0;
+        return;
+    }
+    let wanted = starts.read::<u32>()[params.get::<Params>().particle_count as usize];
+    let kept = counted.read::<u32>()[Compact::COUNT_WORD as usize];
+    let room = foam.get::<FoamParams>().capacity - kept;
+    let mut share = 4096;
+    if wanted > room {
+        // Rounded down, so that no more are born than there is room for.
+        let (mut some, mut all) = (room, wanted);
+        while some >= 1 << 20 {
+            some >>= 1;
+            all = all.div_ceil(2);
+        }
+        share = some * 4096 / all;
+    }
+    let born = place_of(wanted, share);
+    now.kept = kept;
+    now.wanted = wanted;
+    now.share = share;
+    now.born = born;
+    now.count = kept + born;
+    now.refused = now.refused.saturating_add(wanted - born);
+    now.next_id = now.next_id.wrapping_add(born);
+}

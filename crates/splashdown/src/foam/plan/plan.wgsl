@@ -1,0 +1,38 @@
+#import sph/params
+#import sph/foam
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> foam: FoamParams;
+@group(0) @binding(2) var<storage, read> starts: array<u32>;
+@group(0) @binding(3) var<storage, read> counted: array<u32>;
+@group(0) @binding(4) var<storage, read_write> foam_state: FoamState;
+
+@compute @workgroup_size(1)
+fn plan_foam() {
+    if (foam_state.is_due == 0u) {
+        foam_state.born = 0u;
+        return;
+    }
+    let wanted = starts[params.particle_count];
+    let kept = counted[3];
+    let room = foam.capacity - kept;
+    var share = 4096u;
+    if (wanted > room) {
+        // Rounded down, so that no more are born than there is room for.
+        var some = room;
+        var all = wanted;
+        while (some >= 1048576u) {
+            some = some >> 1u;
+            all = (all + 1u) >> 1u;
+        }
+        share = some * 4096u / all;
+    }
+    let born = place_of(wanted, share);
+    foam_state.kept = kept;
+    foam_state.wanted = wanted;
+    foam_state.share = share;
+    foam_state.born = born;
+    foam_state.count = kept + born;
+    foam_state.refused += wanted - born;
+    foam_state.next_id += born;
+}

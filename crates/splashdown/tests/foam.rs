@@ -1,0 +1,237 @@
+//! Foam, spray and bubbles as wholes: what makes them, how they move, that they are the same every time.
+
+use splashdown::foam::Diffuse;
+use splashdown::scene::Scene;
+use splashdown::{
+    Device, DiffuseKind, DiffuseParticles, Event, Foam, FoamState, Run, RunOptions, Simulation,
+};
+use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, testing};
+
+const HEAD: &str = "
+[scene]
+name = \"foam\"
+duration = 1.0
+";
+/// A column that falls against the other end.
+const COLUMN: &str = "
+[domain]
+min = [0, 0, 0]
+max = [0.8, 0.8, 0.2]
+[fluid]
+particle_spacing = 0.02
+[[fluid.block]]
+shape = \"box\"
+position = [0, 0, 0]
+size = [0.24, 0.4, 0.2]
+";
+/// Water that fills a small tank to a half.
+const CALM: &str = "
+[domain]
+min = [0, 0, 0]
+max = [0.2, 0.6, 0.2]
+[fluid]
+particle_spacing = 0.02
+[[fluid.block]]
+shape = \"box\"
+position = [0, 0, 0]
+size = [0.2, 0.3, 0.2]
+";
+
+fn scene(fluid: &str) -> Scene {
+    Scene::parse(&format!("{HEAD}{fluid}"), "foam.toml").unwrap()
+}
+
+fn start(scene: &Scene, executor: Executor) -> (Simulation, Foam) {
+    let mut simulation = Simulation::with_executor(scene, executor).unwrap();
+    let foam = simulation.foam(&scene.foam).unwrap();
+    (simulation, foam)
+}
+
+fn cpu(scene: &Scene) -> (Simulation, Foam) {
+    start(scene, CpuExecutor::new().into())
+}
+
+/// Frames of 1/50 s, looked at after every batch of steps.
+fn advance(simulation: &mut Simulation, foam: &Foam, frames: u32) {
+    for _ in 0..frames {
+        simulation.begin(0.02).unwrap();
+        while simulation.continue_frame().unwrap().is_none() {
+            simulation.advance_foam(foam).unwrap();
+        }
+        simulation.advance_foam(foam).unwrap();
+    }
+}
+
+fn state(simulation: &mut Simulation, foam: &Foam) -> FoamState {
+    let buffer = foam.state();
+    simulation.executor().read(buffer).unwrap()[0]
+}
+
+/// Puts one particle there, in place of all.
+fn put(simulation: &mut Simulation, foam: &Foam, x: [f32; 3], v: [f32; 3], kind: DiffuseKind) {
+    let particle = Diffuse { position: x.into(), lifetime: 1.0, velocity: v.into(), tag: kind as u32 };
+    let now = FoamState { count: 1, ..state(simulation, foam) };
+    let (pool, buffer) = (foam.pool(), foam.state());
+    simulation.executor().write(pool, &[particle]).unwrap();
+    simulation.executor().write(buffer, &[now]).unwrap();
+}
+
+#[test]
+fn a_falling_column_foams_and_calm_water_does_not() {
+    let calm = scene(CALM);
+    let (mut simulation, mut foam) = cpu(&calm);
+    advance(&mut simulation, &foam, 30);
+    assert!(simulation.diffuse(&mut foam).unwrap().is_empty());
+
+    let column = scene(COLUMN);
+    let (mut simulation, mut foam) = cpu(&column);
+    advance(&mut simulation, &foam, 30);
+    let diffuse = simulation.diffuse(&mut foam).unwrap();
+    let kinds = [DiffuseKind::Spray, DiffuseKind::Foam, DiffuseKind::Bubble].map(|kind| diffuse.count(kind));
+    assert!(kinds.iter().all(|&n| n > 20), "{kinds:?}");
+    // Near the water, or thrown by it; all of it inside of the tank.
+    for x in &diffuse.positions {
+        assert!((0.0..=0.8).contains(&x[0]) && (0.0..=0.8).contains(&x[1]) && (0.0..=0.2).contains(&x[2]));
+    }
+    assert!(diffuse.lifetimes.iter().all(|&left| left > 0.0 && left <= 5.0));
+    let mut ids = diffuse.ids.clone();
+    ids.dedup();
+    assert_eq!(ids.len(), diffuse.len());
+    assert!(ids.is_sorted(), "the oldest first");
+}
+
+#[test]
+fn it_has_the_same_bits_every_time() {
+    // Coarse: a software driver takes milliseconds for each step.
+    let mut scene = scene(COLUMN);
+    scene.fluid.particle_spacing = 0.04;
+    let run = |executor: Executor, pause: bool| -> DiffuseParticles {
+        let (mut simulation, mut foam) = start(&scene, executor);
+        if pause {
+            // A control: another beginning, another chance.
+            advance(&mut simulation, &foam, 1);
+        }
+        advance(&mut simulation, &foam, 14);
+        simulation.diffuse(&mut foam).unwrap()
+    };
+    let first = run(CpuExecutor::new().into(), false);
+    assert!(first.len() > 20, "{}", first.len());
+    assert_eq!(run(CpuExecutor::new().into(), false), first);
+    assert_ne!(run(CpuExecutor::new().into(), true), first);
+    if let Some(gpu) = testing::gpu_or_skip("it_has_the_same_bits_every_time") {
+        let first = run(GpuExecutor::new(gpu.clone()).into(), false);
+        assert!(first.len() > 20, "{}", first.len());
+        assert_eq!(run(GpuExecutor::new(gpu).into(), false), first);
+    }
+}
+
+#[test]
+fn the_water_does_not_feel_it() {
+    let scene = scene(COLUMN);
+    let (mut simulation, foam) = cpu(&scene);
+    advance(&mut simulation, &foam, 10);
+    let mut alone = Simulation::with_executor(&scene, CpuExecutor::new().into()).unwrap();
+    for _ in 0..10 {
+        alone.advance(0.02).unwrap();
+    }
+    assert_eq!(simulation.particles().unwrap(), alone.particles().unwrap());
+}
+
+#[test]
+fn a_resumed_run_foams_on_with_the_same_bits() {
+    let mut scene = scene(COLUMN);
+    scene.surface.enabled = false;
+    scene.foam.enabled = true;
+    let options =
+        |frames| RunOptions { device: Device::Cpu, frames: Some(frames), ..RunOptions::new(&scene) };
+    let last = |run: &mut Run| {
+        let frames = run.filter_map(|event| match event.unwrap() {
+            Event::Frame(frame) => Some(frame),
+            _ => None,
+        });
+        frames.last().unwrap().foam.unwrap()
+    };
+    let mut first = Run::new(&scene, options(15)).unwrap();
+    let at_15 = last(&mut first);
+    let checkpoint = first.checkpoint().unwrap();
+    let whole = last(&mut Run::new(&scene, options(17)).unwrap());
+    let resumed = last(&mut Run::resume(&checkpoint, &scene, options(17)).unwrap());
+    assert!(whole.len() > 100, "{}", whole.len());
+    assert_eq!(resumed, whole);
+    assert_ne!(at_15, whole);
+}
+
+#[test]
+fn spray_flies_along_a_parabola() {
+    let scene = scene(CALM);
+    let (mut simulation, mut foam) = cpu(&scene);
+    put(&mut simulation, &foam, [0.02, 0.45, 0.1], [0.7, 1.0, 0.0], DiffuseKind::Spray);
+    for frame in 1..=10 {
+        simulation.advance(0.02).unwrap();
+        simulation.advance_foam(&foam).unwrap();
+        let t = 0.02 * frame as f32;
+        let diffuse = simulation.diffuse(&mut foam).unwrap();
+        assert_eq!(diffuse.kinds, [DiffuseKind::Spray]);
+        let [x, y, z] = diffuse.positions[0];
+        let expected = [0.02 + 0.7 * t, 0.45 + t - 0.5 * 9.81 * t * t, 0.1];
+        // Rounding of the clock, 1e-7 s at some m/s.
+        let off = (x - expected[0]).abs().max((y - expected[1]).abs()).max((z - expected[2]).abs());
+        assert!(off < 1e-5, "{off} m at {t} s");
+        // A control: a step of Euler's way would be off by g dt t / 2.
+        assert!(off < 0.1 * 0.5 * 9.81 * 0.02 * t);
+    }
+}
+
+#[test]
+fn bubbles_rise_and_become_foam() {
+    let scene = scene(CALM);
+    let (mut simulation, mut foam) = cpu(&scene);
+    put(&mut simulation, &foam, [0.1, 0.06, 0.1], [0.0; 3], DiffuseKind::Bubble);
+    let mut heights = vec![0.06];
+    for _ in 0..60 {
+        simulation.advance(0.02).unwrap();
+        simulation.advance_foam(&foam).unwrap();
+        let diffuse = simulation.diffuse(&mut foam).unwrap();
+        heights.push(diffuse.positions[0][1]);
+        if diffuse.kinds[0] != DiffuseKind::Bubble {
+            break;
+        }
+    }
+    // buoyancy g / drag = 0.245 m/s in water that nearly rests; by then it rises evenly.
+    let speed = (heights[15] - heights[5]) / 0.2;
+    assert!((speed - 0.245).abs() < 0.04, "{speed} m/s: {heights:?}");
+    let diffuse = simulation.diffuse(&mut foam).unwrap();
+    assert_eq!(diffuse.kinds, [DiffuseKind::Foam], "{heights:?}");
+    let top = heights[heights.len() - 1];
+    assert!((0.26..0.33).contains(&top), "the surface is at 0.3 m: {top}");
+    // It stays there, and dissolves after its second.
+    let mut lived = 0;
+    while !simulation.diffuse(&mut foam).unwrap().is_empty() {
+        simulation.advance(0.1).unwrap();
+        simulation.advance_foam(&foam).unwrap();
+        lived += 1;
+        assert!(lived < 20, "foam does not dissolve");
+    }
+    assert!((8..=12).contains(&lived), "{lived} tenths of a second");
+}
+
+#[test]
+fn a_full_pool_thins_evenly_and_says_so() {
+    let mut scene = scene(COLUMN);
+    let (mut simulation, mut foam) = cpu(&scene);
+    advance(&mut simulation, &foam, 30);
+    let free = simulation.diffuse(&mut foam).unwrap();
+    assert_eq!(simulation.take_warnings(), Vec::<String>::new());
+
+    scene.foam.max_particles = Some(200);
+    let (mut simulation, mut foam) = cpu(&scene);
+    advance(&mut simulation, &foam, 30);
+    let few = simulation.diffuse(&mut foam).unwrap();
+    assert!(few.len() <= 200 && few.len() > 150, "{}", few.len());
+    let state = state(&mut simulation, &foam);
+    assert!(state.refused > 100 && free.len() > 600, "{state:?}, {}", free.len());
+    let told = simulation.take_warnings();
+    assert!(told.len() == 1 && told[0].contains("room for 200"), "{told:?}");
+    simulation.diffuse(&mut foam).unwrap();
+    assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "it is told once");
+}
