@@ -20,6 +20,16 @@ pub struct ParticleBuffers<'a> {
     pub count: u32,
 }
 
+/// Foam, spray and bubbles on the GPU.
+#[derive(Clone, Copy, Debug)]
+pub struct FoamBuffers<'a> {
+    /// 32 bytes per particle: its position in metres (three `f32`), how long it still lives in seconds (`f32`), its velocity in m/s (three
+    /// `f32`), and any number times four plus its kind (`u32`): 0 spray, 1 foam, 2 a bubble. Needs [`BufferUsages::STORAGE`].
+    pub particles: &'a Buffer,
+    /// How many particles to draw.
+    pub count: u32,
+}
+
 /// A closed triangle mesh on the GPU, counterclockwise seen from outside.
 ///
 /// A mesh with holes is drawn too, but its thickness, and with that its tint and shadow, means nothing.
@@ -69,6 +79,12 @@ impl ParticleBuffers<'_> {
         check_buffer("positions", self.positions, BufferUsages::STORAGE, 16 * count)?;
         check_buffer("velocities", self.velocities, BufferUsages::STORAGE, 16 * count)?;
         check_buffer("densities", self.densities, BufferUsages::STORAGE, 8 * count)
+    }
+}
+
+impl FoamBuffers<'_> {
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        check_buffer("foam", self.particles, BufferUsages::STORAGE, 32 * u64::from(self.count))
     }
 }
 
@@ -174,6 +190,52 @@ impl UploadedParticles {
             densities: &self.densities,
             count: self.count,
         }
+    }
+}
+
+/// Foam, spray and bubbles uploaded from the host.
+#[derive(Debug)]
+pub struct UploadedFoam {
+    particles: Buffer,
+    count: u32,
+}
+
+impl UploadedFoam {
+    /// Copies host slices to the GPU: places in metres, how long each still lives in seconds (an empty slice: for long), numbers by which particles differ a
+    /// little in size (an empty slice: their places in the list), kinds (0 spray, 1 foam, 2 bubble).
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] if a slice differs in length from `positions`, where it may not be empty or is not.
+    pub fn new(
+        device: &Device,
+        positions: &[[f32; 3]],
+        lifetimes: &[f32],
+        ids: &[u32],
+        kinds: &[u32],
+    ) -> Result<UploadedFoam, RenderError> {
+        let needed = positions.len();
+        check_length("lifetimes", lifetimes.len(), needed)?;
+        check_length("ids", ids.len(), needed)?;
+        if kinds.len() != needed {
+            return Err(RenderError::Length { what: "kinds", given: kinds.len(), needed });
+        }
+        let rows: Vec<[u32; 8]> = (0..needed)
+            .map(|i| {
+                let [x, y, z] = positions[i].map(f32::to_bits);
+                let lifetime = lifetimes.get(i).copied().unwrap_or(f32::MAX).to_bits();
+                let id = ids.get(i).copied().unwrap_or(i as u32);
+                [x, y, z, lifetime, 0, 0, 0, id << 2 | (kinds[i] & 3)]
+            })
+            .collect();
+        Ok(UploadedFoam {
+            particles: upload(device, "foam", &rows, BufferUsages::STORAGE),
+            count: needed as u32,
+        })
+    }
+
+    /// The buffers, to be drawn.
+    pub fn buffers(&self) -> FoamBuffers<'_> {
+        FoamBuffers { particles: &self.particles, count: self.count }
     }
 }
 

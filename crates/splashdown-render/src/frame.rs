@@ -2,8 +2,8 @@
 
 use crate::globals::{EdgeGlobals, Globals};
 use crate::{
-    BodyBuffers, Camera, ColourMap, Domain, DrawnLiquidParticles, DrawnSlice, Liquid, ParticleBuffers,
-    RenderError, SurfaceBuffers,
+    BodyBuffers, Camera, ColourMap, Domain, DrawnFoam, DrawnLiquidParticles, DrawnSlice, Liquid,
+    ParticleBuffers, RenderError, SurfaceBuffers,
 };
 use glam::{Vec2, Vec3};
 
@@ -26,6 +26,8 @@ pub struct Frame<'a> {
     pub liquid_particles: Option<DrawnLiquidParticles<'a>>,
     /// A plane through the fluid.
     pub slice: Option<DrawnSlice<'a>>,
+    /// Foam, spray and bubbles.
+    pub foam: Option<DrawnFoam<'a>>,
     /// Solids.
     pub bodies: Option<BodyBuffers<'a>>,
     /// A line of text in the lower left corner.
@@ -104,6 +106,7 @@ impl<'a> Frame<'a> {
             surface: None,
             liquid_particles: None,
             slice: None,
+            foam: None,
             bodies: None,
             caption: None,
         }
@@ -158,6 +161,9 @@ impl<'a> Frame<'a> {
         }
         if let Some(slice) = &self.slice {
             slice.fill(&mut globals)?;
+        }
+        if let Some(foam) = &self.foam {
+            foam.fill(&mut globals)?;
         }
         if let Some(bodies) = &self.bodies {
             bodies.check()?;

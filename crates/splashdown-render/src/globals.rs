@@ -56,7 +56,7 @@ pub(crate) struct Globals {
     pub slice_low: f32,
     pub slice_scale: f32,
     pub splat_margin: f32,
-    pub pad: f32,
+    pub foam_radius: f32,
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -92,7 +92,7 @@ mod tests {
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius amount_radius amount slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin pad edges);
+            slice_full slice_low slice_scale splat_margin foam_radius edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

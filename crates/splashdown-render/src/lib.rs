@@ -36,7 +36,7 @@
 //!
 //! The fluid can be seen as spheres coloured by a quantity ([`DrawnParticles`]), as liquid from a mesh, with or without its
 //! lines ([`DrawnSurface`]), as liquid straight from the particles ([`DrawnLiquidParticles`]), and as a plane of colours
-//! ([`DrawnSlice`]). `examples/ways.rs` draws all of them side by side and compares their times.
+//! ([`DrawnSlice`]); foam, spray and bubbles go with all of them ([`DrawnFoam`]). `examples/ways.rs` draws all of them side by side and compares their times.
 //!
 //! Each thing drawn is a folder with its Rust and its WGSL, which opens with how it works and why not otherwise. Only
 //! what WebGPU guarantees is asked for: at most 3 storage buffers per stage, 16-bit floats to blend into, 4 samples.
@@ -51,6 +51,7 @@ mod device;
 mod domain;
 mod edges;
 mod error;
+mod foam;
 mod frame;
 mod globals;
 mod liquid;
@@ -69,13 +70,17 @@ mod surface;
 mod targets;
 mod timer;
 
-pub use buffers::{BodyBuffers, Draw, ParticleBuffers, SurfaceBuffers, UploadedParticles, UploadedSurface};
+pub use buffers::{
+    BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers, UploadedFoam, UploadedParticles,
+    UploadedSurface,
+};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 #[cfg(not(target_arch = "wasm32"))]
 pub use device::open_device;
 pub use domain::Domain;
 pub use error::RenderError;
+pub use foam::DrawnFoam;
 pub use frame::{Colouring, DrawnParticles, DrawnSurface, Frame, Quantity, SurfaceStyle};
 pub use liquid::Liquid;
 pub use offscreen::{Offscreen, Ticket};

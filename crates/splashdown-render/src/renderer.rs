@@ -4,6 +4,7 @@ use crate::background::Background;
 use crate::bodies::Bodies;
 use crate::colour_map::ColourTextures;
 use crate::edges::Edges;
+use crate::foam::{Foam, Part};
 use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
@@ -26,8 +27,8 @@ use wgpu::{
 ///
 /// 1. the fluid's shadow on the floor (256 x 256, blurred);
 /// 2. the sums of a slice;
-/// 3. background, hidden edges, solids, particles, slice; with a liquid also a copy to look through, the liquid's thickness, then its
-///    surface, from a mesh or from smoothed distances; its lines; near edges; several samples per pixel, resolved into the target;
+/// 3. background, hidden edges, solids, particles, slice; with a liquid also bubbles and a copy to look through, the liquid's thickness, then its
+///    surface, from a mesh or from smoothed distances; its lines; foam and spray; near edges; several samples per pixel, resolved into the target;
 /// 4. colour bar and caption, pixel on pixel.
 #[derive(Debug)]
 pub struct Renderer {
@@ -42,6 +43,7 @@ pub struct Renderer {
     bodies: Bodies,
     particles: Particles,
     slice: Slice,
+    foam: Foam,
     surface: Surface,
     screen_space: ScreenSpace,
     overlay: Overlay,
@@ -74,6 +76,7 @@ impl Renderer {
             bodies: Bodies::new(device, layouts, format, sample_count),
             particles: Particles::new(device, layouts, format, sample_count, colours.clone()),
             slice: Slice::new(device, layouts, format, sample_count, colours),
+            foam: Foam::new(device, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
             screen_space: ScreenSpace::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
@@ -150,6 +153,9 @@ impl Renderer {
             .map(|drawn| self.slice.gather(&self.device, &mut recorder, targets, &globals, &drawn));
         let chunks =
             frame.particles.map(|drawn| self.particles.bind(&self.device, &drawn)).unwrap_or_default();
+        let foam = frame.foam.map(|drawn| self.foam.bind(&self.device, &drawn)).unwrap_or_default();
+        let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
+        let has_liquid = surface.is_some() || frame.liquid_particles.is_some();
         let scene = |pass: &mut RenderPass<'_>| {
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
@@ -164,9 +170,11 @@ impl Renderer {
             if let Some(group) = &slice {
                 self.slice.record(pass, group);
             }
+            if has_liquid {
+                self.foam.record(pass, &foam, Part::UnderWater);
+            }
         };
-        let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
-        if surface.is_some() || frame.liquid_particles.is_some() {
+        if has_liquid {
             scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Keep));
             // Further than anything, in 16 bits.
             let nothing = Color { r: 60_000.0, ..Color::TRANSPARENT };
@@ -211,6 +219,8 @@ impl Renderer {
             if let Some(drawn) = &frame.surface {
                 self.surface.record_lines(&self.device, &mut pass, drawn);
             }
+            let part = if has_liquid { Part::OverWater } else { Part::All };
+            self.foam.record(&mut pass, &foam, part);
             self.edges.record(&mut pass, behind..12);
         }
         self.overlay.record(&mut recorder, target);

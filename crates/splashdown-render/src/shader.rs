@@ -32,7 +32,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 19] = [
+    const ALL: [Shader; 20] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -52,6 +52,7 @@ mod tests {
         crate::shadow::FROM_PARTICLES,
         crate::shadow::BLUR,
         crate::overlay::SHADER,
+        crate::foam::SHADER,
     ];
 
     /// What is wrong with a shader, by naga, under the capabilities of a browser.

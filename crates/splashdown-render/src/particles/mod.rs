@@ -114,9 +114,18 @@ impl Particles {
 
 /// First particle and number of particles of each piece that one storage binding of this device can hold.
 pub(crate) fn chunks(device: &Device, count: u32) -> impl Iterator<Item = (u32, u32)> + use<> {
+    chunks_of(device, count, 16)
+}
+
+/// The same for particles of so many bytes.
+pub(crate) fn chunks_of(
+    device: &Device,
+    count: u32,
+    stride: u64,
+) -> impl Iterator<Item = (u32, u32)> + use<> {
     let limits = device.limits();
     // Six vertices for each particle must also stay countable.
-    let fitting = (limits.max_storage_buffer_binding_size / 16).min(u64::from(u32::MAX / 6)) as u32;
+    let fitting = (limits.max_storage_buffer_binding_size / stride).min(u64::from(u32::MAX / 6)) as u32;
     let most = (fitting / GRAIN * GRAIN).max(GRAIN);
     (0..count).step_by(most as usize).map(move |start| (start, most.min(count - start)))
 }

@@ -49,7 +49,7 @@ struct Globals {
     slice_low: f32,
     slice_scale: f32,       // 1 / (high - low)
     splat_margin: f32,      // pixels by which the distances' picture is wider on each side
-    pad: f32,
+    foam_radius: f32,       // half the spacing of the particles that foam
     edges: array<Edge, 12>,
 }
 
