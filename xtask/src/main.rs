@@ -7,6 +7,7 @@ mod layers;
 mod page;
 mod pictures;
 mod process;
+mod python;
 mod serve;
 mod setup;
 mod suite;

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 
 use crate::layers::{Outcome, Report, filtered, succeeds};
 use crate::process::{cargo, command, say};
-use crate::{page, setup};
+use crate::{page, python, setup};
 
 /// Systems that are checked without being there.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -21,6 +21,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     report.layer("requirements", |_| {
         setup::ensure_requirements()?;
         setup::ensure_screen();
+        python::ensure();
         Ok(Outcome::Passed)
     });
     report.layer("format", |_| succeeds(&mut cargo(["fmt", "--all", "--", "--check"])));

@@ -33,6 +33,10 @@ pub enum Command {
     Doctor(DoctorArguments),
     /// List, show or copy the scenes that come with the program
     Scenes(ScenesArguments),
+    /// Make meshes of anybody's particles
+    Surface(SurfaceArguments),
+    /// Draw what probes have measured
+    Plot(PlotArguments),
     /// Measure the time of a step, by pass and by number of particles
     Bench(BenchArguments),
     /// Print completions for a shell
@@ -74,8 +78,11 @@ Examples:
   splashdown run my.toml --json | jq 'select(.event == \"frame\") | .density_error'
 
 What is written below the output folder:
-  particles/particles_0000.ply, .vtu     one file per frame; particles.pvd is ParaView's index
-  mesh/surface_0000.ply, .obj            the closed surface of the fluid
+  particles/particles_0000.ply, ...      one file per frame; particles.pvd is ParaView's index
+                                         of .vtu files
+  mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
+                                         velocities in PLY, VTK and GLB
+  particles.usda, surface.usda           all frames in one file, with --formats usd
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
   checkpoints/checkpoint_0010.splashdown from which the run can go on: after Ctrl-C, and with
@@ -235,6 +242,112 @@ pub enum ScenesAction {
     Schema,
     /// Print a table of all keys of a scene file, in Markdown
     Reference,
+}
+
+const SURFACE_EXAMPLES: &str = "\
+Examples:
+  splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
+  splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
+  splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
+
+Particles are read from PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; meshes are written as PLY, OBJ,
+STL, VTK or GLB. Where particles have velocities, so have the vertices (PLY, VTK, GLB). The meshes of
+several files have the numbers of their files, at the place of the star or before the ending.
+
+Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
+particle radius is half of the particle spacing.";
+
+/// Options of `surface`.
+#[derive(Debug, Args)]
+#[command(after_help = SURFACE_EXAMPLES)]
+pub struct SurfaceArguments {
+    /// Files of particles, patterns with * and ?, or a folder with one series of files
+    #[arg(value_name = "PARTICLES", required = true)]
+    pub particles: Vec<PathBuf>,
+    /// File for the mesh; for several a folder, or a name whose * becomes the number
+    #[arg(short, long, value_name = "MESH")]
+    pub out: PathBuf,
+    /// Distance of the particles in the fluid's bulk
+    #[arg(short = 's', long, value_name = "S", value_parser = length)]
+    pub particle_spacing: Option<f32>,
+    /// Use a spacing that does not fit the particles all the same
+    #[arg(long)]
+    pub force: bool,
+    /// Edge of a marching-cubes cell [default: half a spacing]
+    #[arg(short, long, value_name = "C", value_parser = length)]
+    pub cell_size: Option<f32>,
+    /// Distance from which on a particle is not felt [default: two spacings]
+    #[arg(long, value_name = "R", value_parser = length)]
+    pub support_radius: Option<f32>,
+    /// The field's value at the surface; it is about 1 in the bulk and 0 outside
+    #[arg(long, value_name = "LEVEL", default_value_t = 0.6)]
+    pub iso_level: f32,
+    /// Rounds of smoothing; 15 to 25 remove the particles' bumps and keep the volume
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub smoothing: u32,
+    /// Leave out separate pieces smaller than this many particles in the bulk; lone particles count 1 to 2
+    #[arg(long, value_name = "N", default_value_t = 0.0, value_parser = particles_of_a_blob)]
+    pub min_blob: f64,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Print one JSON object per mesh to stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// A length above zero.
+fn length(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|length| (1e-12..=1e12).contains(length))
+        .ok_or_else(|| "a length is a number above 0, such as 0.02".to_owned())
+}
+
+/// A number of particles, which need not be whole.
+fn particles_of_a_blob(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|size: &f64| (0.0..=1e12).contains(size))
+        .ok_or_else(|| "the smallest blob is a number of particles, 0 or more".to_owned())
+}
+
+const PLOT_EXAMPLES: &str = "\
+Examples:
+  splashdown plot out/dam-break/probes/*.csv -o probes.svg
+  splashdown plot left.csv right.csv -o heights.png --title 'Height of the water' --size 1200x500
+
+A table has a line of names, the first of which is that of the time, and rows of numbers. Columns of
+one unit share a panel. Tables can be drawn while the run that writes them goes on.";
+
+/// Options of `plot`.
+#[derive(Debug, Args)]
+#[command(after_help = PLOT_EXAMPLES)]
+pub struct PlotArguments {
+    /// Tables as probes write them (CSV)
+    #[arg(value_name = "TABLE", required = true)]
+    pub tables: Vec<PathBuf>,
+    /// Picture to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Words above the plot
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// Width and height in pixels [default: 900, and 260 for each unit]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<(u32, u32)>,
+}
+
+/// Two whole numbers with an x between them.
+fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    let side = |side: &str| side.parse().ok().filter(|side| (100..=16_384).contains(side));
+    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+        Some((Some(width), Some(height))) => Ok((width, height)),
+        _ => Err("a size is two whole numbers between 100 and 16384 with an x between them, such as 900x600"
+            .to_owned()),
+    }
 }
 
 const BENCH_EXAMPLES: &str = "\

@@ -19,7 +19,7 @@ pub enum Exit {
     Failed = 1,
     /// The command line was not understood.
     Usage = 2,
-    /// The scene file is missing or wrong.
+    /// The scene file, or particles or a table that were given, are missing or wrong.
     Scene = 3,
     /// The device is missing, too small, or was lost.
     Device = 4,
@@ -35,7 +35,7 @@ Exit codes:
     0  done
     1  the simulation failed on its way (frames already written are complete)
     2  the command line was not understood
-    3  the scene file is missing or wrong
+    3  the scene file, or another file that was given, is missing or wrong
     4  the device is missing, too small, or was lost; or pictures were demanded and nothing
        can draw them
     5  a file or folder could not be written (frames already written are complete), or a
@@ -100,6 +100,12 @@ impl From<SimulationError> for Failure {
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
         Self::new(Exit::Device, error.to_string())
+    }
+}
+
+impl From<SurfaceError> for Failure {
+    fn from(error: SurfaceError) -> Self {
+        SimulationError::from(error).into()
     }
 }
 

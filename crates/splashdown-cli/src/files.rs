@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use splashdown::Frame;
-use splashdown::scene::{Choice, Format};
+use splashdown::scene::{Choice, Format, PictureKind, Scene};
+use splashdown_io::usd::{MeshSeries, PointSeries};
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile, pvd};
 
 use crate::layout::Layout;
@@ -50,6 +51,9 @@ impl FrameAccount {
 pub struct Files {
     writer: Arc<FrameWriter>,
     tracker: Tracker,
+    /// The animated files, where they are wanted.
+    points: Option<Arc<PointSeries>>,
+    surface: Option<Arc<MeshSeries>>,
 }
 
 /// Which frames wait for which files.
@@ -64,11 +68,28 @@ struct Tracker {
 }
 
 impl Files {
-    /// Starts the writer.
+    /// Starts the writer. Animated files of a run that goes on after a frame hold what comes then, and are named by the
+    /// first of their frames.
     ///
     /// # Errors
-    /// [`IoError::WriterStopped`].
-    pub fn start(layout: Layout, formats: Vec<Format>) -> Result<Self, IoError> {
+    /// [`IoError::WriterStopped`]; [`IoError::Write`] if an animated file cannot be begun.
+    pub fn start(
+        layout: Layout,
+        scene: &Scene,
+        surface: bool,
+        resumed_after: Option<u32>,
+    ) -> Result<Self, IoError> {
+        let formats = scene.output.formats.clone();
+        let animated = formats.contains(&Format::Usd);
+        let rate = f64::from(scene.frame_rate);
+        let first = resumed_after.map(|frame| frame + 1);
+        let begin_points = || {
+            let path = layout.animated(PictureKind::Particles, first);
+            PointSeries::start(&path, rate, scene.fluid.particle_spacing)
+        };
+        let begin_surface = || MeshSeries::start(&layout.animated(PictureKind::Surface, first), rate);
+        let points = animated.then(begin_points).transpose()?.map(Arc::new);
+        let surface = (animated && surface).then(begin_surface).transpose()?.map(Arc::new);
         let tracker = Tracker {
             layout,
             formats,
@@ -77,7 +98,7 @@ impl Files {
             seen: 0,
             series: Vec::new(),
         };
-        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker })
+        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, points, surface })
     }
 
     /// Frames that are there already, up to this one, as far as ParaView's index names them.
@@ -104,16 +125,22 @@ impl Files {
         let mut jobs = Vec::new();
         let mut files = Vec::new();
         for format in &self.tracker.formats {
-            if matches!(format, Format::Ply | Format::Vtu) {
+            if format.has_particles() && format.is_numbered() {
                 let path = self.tracker.layout.particles(frame.index, format.name());
                 files.push(path.clone());
                 jobs.push(Job::Particles(path, Arc::clone(&frame.particles)));
             }
-            if let (Format::Ply | Format::Obj, Some(mesh)) = (format, &frame.mesh) {
+            if let (true, true, Some(mesh)) = (format.has_surface(), format.is_numbered(), &frame.mesh) {
                 let path = self.tracker.layout.mesh(frame.index, format.name());
                 files.push(path.clone());
                 jobs.push(Job::Mesh(path, Arc::clone(mesh)));
             }
+        }
+        if let Some(points) = &self.points {
+            jobs.push(Job::UsdPoints(Arc::clone(points), frame.index, Arc::clone(&frame.particles)));
+        }
+        if let (Some(surface), Some(mesh)) = (&self.surface, &frame.mesh) {
+            jobs.push(Job::UsdMesh(Arc::clone(surface), frame.index, Arc::clone(mesh)));
         }
         if !jobs.is_empty() {
             self.writer.submit(jobs)?;
@@ -135,8 +162,8 @@ impl Files {
 
     /// Waits until everything is written. Whoever else holds the writer must have let it go.
     pub fn finish(self, no_pictures: bool) -> Finished {
-        let Self { writer, mut tracker } = self;
-        let (files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
+        let Self { writer, mut tracker, points, surface } = self;
+        let (mut files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
             Some(Ok(files)) => (files, None),
             Some(Err(failure)) => (failure.written, Some(failure.error)),
             None => (Vec::new(), Some(IoError::WriterStopped { reason: "it is still in use".to_owned() })),
@@ -145,6 +172,16 @@ impl Files {
             failure.get_or_insert(error);
             Vec::new()
         });
+        // Whatever ended the run, what has been written so far becomes a whole file.
+        for animated in [points.map(|points| points.finish()), surface.map(|surface| surface.finish())] {
+            match animated {
+                Some(Ok(Some((path, bytes)))) => files.push(WrittenFile { path, bytes }),
+                Some(Err(error)) => {
+                    failure.get_or_insert(error);
+                }
+                Some(Ok(None)) | None => {}
+            }
+        }
         Finished { frames, files, failure }
     }
 }

@@ -17,10 +17,13 @@ pub struct Layout {
 
 /// Folders below the root, with the stems and endings of the numbered files that a run writes there.
 const FOLDERS: [(&str, &[&str], &[&str]); 3] = [
-    ("particles", &["particles"], &["ply", "vtu"]),
-    ("mesh", &["surface"], &["ply", "obj"]),
+    ("particles", &["particles"], &["ply", "vtu", "vtk", "bgeo", "npz"]),
+    ("mesh", &["surface"], &["ply", "obj", "vtk", "stl", "glb"]),
     ("pictures", &["surface", "particles"], &["png"]),
 ];
+
+/// Animated files of runs that went on after a stop.
+const ANIMATED: (&str, &[&str], &[&str]) = ("", &["surface", "particles"], &["usda"]);
 
 /// How checkpoints are named.
 const CHECKPOINT: &str = "checkpoint";
@@ -68,6 +71,14 @@ impl Layout {
     /// The film of the pictures of a kind.
     pub fn film(&self, kind: PictureKind) -> PathBuf {
         self.root.join(format!("{}.mp4", kind.name()))
+    }
+
+    /// The animated file of the surface or the particles, from this frame on or of all.
+    pub fn animated(&self, kind: PictureKind, first: Option<u32>) -> PathBuf {
+        match first {
+            Some(frame) => self.numbered("", kind.name(), frame, "usda"),
+            None => self.root.join(format!("{}.usda", kind.name())),
+        }
     }
 
     /// ParaView's index of the particles, and how it names the particles of a frame.
@@ -127,7 +138,7 @@ impl Layout {
     /// Removes frames and checkpoints of a run that goes on after this frame, and ends elsewhere than before perhaps.
     pub fn remove_after(&self, frame: u32) {
         let checkpoints = (Self::CHECKPOINTS, &[CHECKPOINT][..], &[Checkpoint::ENDING][..]);
-        for (folder, stems, endings) in FOLDERS.into_iter().chain([checkpoints]) {
+        for (folder, stems, endings) in FOLDERS.into_iter().chain([checkpoints, ANIMATED]) {
             for entry in fs::read_dir(self.root.join(folder)).into_iter().flatten().flatten() {
                 let number = frame_number(&entry.file_name().to_string_lossy(), stems, endings);
                 if number.is_some_and(|number| number > frame) {
@@ -169,7 +180,7 @@ impl Layout {
         // What cannot be removed cannot be overwritten either, and that is then reported with its name.
         let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
         remove(&self.index());
-        for (folder, stems, endings) in FOLDERS {
+        for (folder, stems, endings) in FOLDERS.into_iter().chain([ANIMATED]) {
             let folder = self.root.join(folder);
             for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
                 if frame_number(&entry.file_name().to_string_lossy(), stems, endings).is_some() {
@@ -193,6 +204,7 @@ impl Layout {
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
+            remove(&self.animated(*kind, None));
         }
         files
     }
@@ -214,10 +226,12 @@ pub struct Folders {
 impl Folders {
     /// Those that the scene's formats need.
     pub fn of(scene: &Scene, surface: bool, pictures: bool) -> Self {
-        let any = |wanted: [Format; 2]| scene.output.formats.iter().any(|format| wanted.contains(format));
+        let any = |wanted: fn(Format) -> bool| {
+            scene.output.formats.iter().any(|&format| format.is_numbered() && wanted(format))
+        };
         Self {
-            particles: any([Format::Ply, Format::Vtu]),
-            mesh: surface && any([Format::Ply, Format::Obj]),
+            particles: any(Format::has_particles),
+            mesh: surface && any(Format::has_surface),
             pictures,
             probes: !scene.probes.is_empty(),
         }

@@ -15,10 +15,12 @@ mod layout;
 mod lines;
 mod memory;
 mod pictures;
+mod plot;
 mod probes;
 mod progress;
 mod report;
 mod scene_file;
+mod sequence;
 mod speed;
 mod summary;
 mod teller;
@@ -79,6 +81,8 @@ fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
         Command::Check(arguments) => commands::check::run(arguments)?,
         Command::Doctor(arguments) => commands::doctor::run(arguments),
         Command::Scenes(arguments) => commands::scenes::run(arguments)?,
+        Command::Surface(arguments) => commands::surface::run(arguments)?,
+        Command::Plot(arguments) => commands::plot::run(arguments)?,
         Command::Bench(arguments) => commands::bench::run(arguments)?,
         Command::Completions(arguments) => commands::completions::run(arguments),
     }

@@ -26,14 +26,21 @@ const BUFFER: usize = 1 << 18;
 /// # Errors
 /// [`IoError::Write`] names the file, the cause and what to do.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<u64, IoError> {
+    write_file(path, |file| fill(file))
+}
+
+/// As [`write`], for those that must go back in the file.
+pub(crate) fn write_file(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<u64, IoError> {
     let temporary = Temporary::beside(path);
     let attempt = || -> io::Result<u64> {
-        let file = File::options().write(true).create_new(true).open(temporary.path())?;
-        let mut counted = Counted { inner: BufWriter::with_capacity(BUFFER, file), bytes: 0 };
-        fill(&mut counted)?;
-        let bytes = counted.bytes;
+        let mut buffer = BufWriter::with_capacity(BUFFER, temporary.create()?);
+        fill(&mut buffer)?;
         // Unwrapping the buffer by hand reports the error that dropping it would swallow.
-        counted.inner.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let file = buffer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let bytes = file.metadata()?.len();
         temporary.rename_to(path)?;
         Ok(bytes)
     };
@@ -50,7 +57,7 @@ pub fn prepare_folder(folder: &Path) -> Result<(), IoError> {
     let attempt = || -> io::Result<()> {
         fs::create_dir_all(folder)?;
         let probe = Temporary::beside(&folder.join("probe"));
-        let mut file = File::options().write(true).create_new(true).open(probe.path())?;
+        let mut file = probe.create()?;
         // An empty file can often be made on a full disk; only data shows that there is room.
         file.write_all(&[0; 4096])?;
         file.sync_all()
@@ -75,6 +82,11 @@ impl Temporary {
         &self.0
     }
 
+    /// Makes the file, to be written and read again.
+    pub(crate) fn create(&self) -> io::Result<File> {
+        File::options().read(true).write(true).create_new(true).open(&self.0)
+    }
+
     pub(crate) fn rename_to(&self, path: &Path) -> io::Result<()> {
         fs::rename(&self.0, path)
     }
@@ -84,29 +96,5 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         // After a rename there is nothing to remove, and a second failure would only hide the first.
         let _ = fs::remove_file(&self.0);
-    }
-}
-
-/// Counts what passes through.
-struct Counted<W> {
-    inner: W,
-    bytes: u64,
-}
-
-impl<W: Write> Write for Counted<W> {
-    fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        let written = self.inner.write(data)?;
-        self.bytes += written as u64;
-        Ok(written)
-    }
-
-    fn write_all(&mut self, data: &[u8]) -> io::Result<()> {
-        self.inner.write_all(data)?;
-        self.bytes += data.len() as u64;
-        Ok(())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.inner.flush()
     }
 }

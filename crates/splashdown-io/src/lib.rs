@@ -5,8 +5,9 @@
 //!
 //! | data | formats | opens in |
 //! |---|---|---|
-//! | [`Particles`] | PLY ([`ply`]), VTU ([`vtu`]) with an index of the series ([`pvd`]); both also read by [`read_particles`], and VTK ([`vtk`]), BGEO ([`bgeo`]) and NPY ([`npy`]) | ParaView, Blender, Houdini, MeshLab |
-//! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), all also read by [`read_mesh`]; glTF ([`gltf`], read) | every 3-D program |
+//! | [`Particles`] | PLY ([`ply`]), VTK ([`vtk`]), VTU ([`vtu`]) with an index of the series ([`pvd`]), BGEO ([`bgeo`]), NPZ ([`npz`]); all also read by [`read_particles`], and NPY ([`npy`]) and XYZ ([`xyz`]) | ParaView, Blender, Houdini, MeshLab, numpy |
+//! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), glTF ([`gltf`]), all also read by [`read_mesh`]; VTK ([`vtk`]) | every 3-D program |
+//! | a whole run of either | USD ([`usd`]) | Blender, Houdini, Maya |
 //! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
 //! | named arrays and texts | ZIP of NPY ([`Archive`]) | `numpy.load` |
 //! | a growing table | CSV ([`CsvLog`]) | every spreadsheet, `pandas` |
@@ -17,8 +18,8 @@
 //!
 //! let tetrahedron = Mesh {
 //!     vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-//!     normals: vec![],
 //!     triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+//!     ..Mesh::default()
 //! };
 //! assert!(tetrahedron.topology()?.is_watertight());
 //! assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-12);
@@ -80,6 +81,7 @@ pub mod film;
 pub mod gltf;
 pub mod mesh;
 pub mod npy;
+pub mod npz;
 pub mod obj;
 pub mod particles;
 pub mod picture;
@@ -88,9 +90,11 @@ pub mod pvd;
 pub mod read;
 pub mod stl;
 pub mod topology;
+pub mod usd;
 pub mod vtk;
 pub mod vtu;
 pub mod writer;
+pub mod xyz;
 
 pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;

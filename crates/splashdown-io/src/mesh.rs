@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::error::IoError;
 use crate::particles::{check_count, extension};
 use crate::topology::{MAX_TRIANGLES, Topology};
-use crate::{obj, ply, stl};
+use crate::{gltf, obj, ply, stl, vtk};
 
 /// A triangle mesh with shared vertices. Seen from outside, the corners of a triangle run counter-clockwise.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -14,12 +14,14 @@ pub struct Mesh {
     pub vertices: Vec<[f32; 3]>,
     /// Unit normals, one per vertex, pointing outwards; empty where there are none.
     pub normals: Vec<[f32; 3]>,
+    /// Velocities of the vertices in m/s, by which programs blur motion; empty where there are none.
+    pub velocities: Vec<[f32; 3]>,
     /// Three vertex numbers (from 0) per triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// File name endings that [`write()`] understands.
-pub const FORMATS: &[&str] = &[".ply", ".obj", ".stl"];
+pub const FORMATS: &[&str] = &[".ply", ".obj", ".stl", ".vtk", ".glb"];
 
 impl Mesh {
     /// Number of triangles.
@@ -34,7 +36,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Tells whether normals are absent or one per vertex, whether every index is in range, and whether a file can
+    /// Tells whether normals and velocities are absent or one per vertex, whether every index is in range, and whether a file can
     /// count it all.
     ///
     /// # Errors
@@ -42,9 +44,11 @@ impl Mesh {
     pub fn check(&self) -> Result<(), IoError> {
         check_count("vertices", self.vertices.len())?;
         check_count("triangles", self.triangles.len())?;
-        let (given, expected) = (self.normals.len(), self.vertices.len());
-        if given != 0 && given != expected {
-            return Err(IoError::Length { attribute: "normals", given, expected, owner: "vertices" });
+        let expected = self.vertices.len();
+        for (attribute, given) in [("normals", self.normals.len()), ("velocities", self.velocities.len())] {
+            if given != 0 && given != expected {
+                return Err(IoError::Length { attribute, given, expected, owner: "vertices" });
+            }
         }
         for (triangle, corners) in self.triangles.iter().enumerate() {
             for &index in corners {
@@ -123,6 +127,8 @@ pub fn write(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
         Some("ply") => ply::write_mesh(path, mesh),
         Some("obj") => obj::write_mesh(path, mesh),
         Some("stl") => stl::write_mesh(path, mesh),
+        Some("vtk") => vtk::write_mesh(path, mesh),
+        Some("glb") => gltf::write_mesh(path, mesh),
         _ => Err(IoError::UnknownFormat { path: path.to_owned(), allowed: FORMATS }),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::IoError;
-use crate::{ply, vtu};
+use crate::{bgeo, npz, ply, vtk, vtu};
 
 /// A set of particles, one array per attribute, in the order of the solver's choosing (ids tell them apart).
 ///
@@ -25,7 +25,7 @@ pub struct Particles {
 }
 
 /// File name endings that [`write()`] understands.
-pub const FORMATS: &[&str] = &[".ply", ".vtu"];
+pub const FORMATS: &[&str] = &[".ply", ".vtk", ".vtu", ".bgeo", ".npz"];
 
 impl Particles {
     /// Number of particles.
@@ -74,7 +74,10 @@ pub(crate) fn check_count(what: &'static str, given: usize) -> Result<(), IoErro
 pub fn write(path: &Path, particles: &Particles) -> Result<u64, IoError> {
     match extension(path).as_deref() {
         Some("ply") => ply::write_particles(path, particles),
+        Some("vtk") => vtk::write_particles(path, particles),
         Some("vtu") => vtu::write_particles(path, particles),
+        Some("bgeo") => bgeo::write_particles(path, particles),
+        Some("npz") => npz::write_particles(path, particles),
         _ => Err(IoError::UnknownFormat { path: path.to_owned(), allowed: FORMATS }),
     }
 }
@@ -117,6 +120,9 @@ mod tests {
     #[test]
     fn an_unknown_ending_lists_the_known_ones() {
         let message = write(Path::new("frame.xyz"), &three()).unwrap_err().to_string();
-        assert!(message.contains("frame.xyz") && message.contains(".ply, .vtu"), "{message}");
+        assert!(
+            message.contains("frame.xyz") && message.contains(".ply, .vtk, .vtu, .bgeo, .npz"),
+            "{message}"
+        );
     }
 }

@@ -8,13 +8,13 @@ use std::path::Path;
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::particles::{Particles, extension};
-use crate::{bgeo, gltf, npy, obj, ply, stl, vtk, vtu};
+use crate::{bgeo, gltf, npy, npz, obj, ply, stl, vtk, vtu, xyz};
 
 /// File name endings that [`read_mesh`] understands.
 pub const MESH_FORMATS_READ: &[&str] = &[".obj", ".stl", ".ply", ".gltf", ".glb"];
 
 /// File name endings that [`read_particles`] understands.
-pub const PARTICLE_FORMATS_READ: &[&str] = &[".ply", ".npy", ".vtk", ".vtu", ".vtp", ".bgeo"];
+pub const PARTICLE_FORMATS_READ: &[&str] = &[".ply", ".npy", ".npz", ".vtk", ".vtu", ".vtp", ".bgeo", ".xyz"];
 
 /// The most particles, or triangles or vertices of one mesh, that are read: some gigabytes. A small file can name a large mesh many
 /// times (glTF), and must not take all memory.
@@ -46,7 +46,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     };
     regular(path)?;
     let mut mesh = read(path)?;
-    mesh.normals = Vec::new();
+    (mesh.normals, mesh.velocities) = (Vec::new(), Vec::new());
     usable(&mesh).map_err(|reason| IoError::malformed(path, format, reason))?;
     for (what, given) in [("vertices", mesh.vertices.len()), ("triangles", mesh.len())] {
         if given > MOST {
@@ -60,7 +60,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
 /// Reads particles in the format that the name's ending tells ([`PARTICLE_FORMATS_READ`]; `.bgeo.gz` too).
 ///
 /// There is at least one particle, and positions and velocities are finite; velocities, densities, pressures and ids
-/// are there if the file has them (a NPY file has positions only).
+/// are there if the file has them (NPY and XYZ files have positions only).
 ///
 /// # Errors
 /// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] where the file cannot be read;
@@ -80,6 +80,8 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
         Some("vtk") => ("VTK", vtk::read_particles),
         Some("vtu" | "vtp") => ("VTU", vtu::read_particles),
         Some("bgeo") => ("BGEO", bgeo::read_particles),
+        Some("npz") => ("NPZ", npz::read_particles),
+        Some("xyz") => ("XYZ", xyz::read_particles),
         _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: PARTICLE_FORMATS_READ }),
     };
     regular(path)?;

@@ -16,8 +16,9 @@ use crate::film::Film;
 use crate::mesh::{self, Mesh};
 use crate::particles::{self, Particles};
 use crate::picture::{self, Picture};
+use crate::usd::{MeshSeries, PointSeries};
 
-/// One file to write, or one picture to add to a film. Data is shared, so several formats cost no copy.
+/// One file to write, or one frame to add to a film or series. Data is shared, so several formats cost no copy.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Job {
@@ -32,6 +33,17 @@ pub enum Job {
     /// The next picture of a film. A film that fails does not stop the writer: it keeps its failure for
     /// [`Film::finish`], because the pictures are what matters and the film can be made from them later.
     Film(Arc<Film>, Arc<Picture>),
+    /// A frame's number and mesh for an animated surface, which [`MeshSeries::finish`] makes a file of.
+    UsdMesh(Arc<MeshSeries>, u32, Arc<Mesh>),
+    /// A frame's number and particles for animated particles, which [`PointSeries::finish`] makes a file of.
+    UsdPoints(Arc<PointSeries>, u32, Arc<Particles>),
+}
+
+impl Job {
+    /// Whether the job leaves a file of its own.
+    fn is_file(&self) -> bool {
+        !matches!(self, Self::Film(..) | Self::UsdMesh(..) | Self::UsdPoints(..))
+    }
 }
 
 /// A file that is complete on disk.
@@ -99,7 +111,7 @@ impl FrameWriter {
     pub fn submit(&self, frame: Vec<Job>) -> Result<(), IoError> {
         let error = {
             let mut progress = lock(&self.progress);
-            progress.handed += frame.iter().filter(|job| !matches!(job, Job::Film(..))).count();
+            progress.handed += frame.iter().filter(|job| job.is_file()).count();
             progress.error.clone()
         };
         match (error, &self.queue) {
@@ -167,7 +179,7 @@ fn write_frames(frames: &Receiver<Vec<Job>>, progress: &Mutex<Progress>) {
     }
 }
 
-/// Writes one file; a picture for a film yields none.
+/// Writes one file; a frame of a film or series yields none.
 fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
     let file = |path: &Path, bytes| Some(WrittenFile { path: path.to_owned(), bytes });
     Ok(match job {
@@ -177,6 +189,14 @@ fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
         Job::Bytes(path, bytes) => file(path, atomic::write(path, |out| out.write_all(bytes))?),
         Job::Film(film, picture) => {
             film.push(picture);
+            None
+        }
+        Job::UsdMesh(series, frame, mesh) => {
+            series.push(*frame, mesh)?;
+            None
+        }
+        Job::UsdPoints(series, frame, particles) => {
+            series.push(*frame, particles)?;
             None
         }
     })

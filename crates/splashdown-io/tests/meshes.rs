@@ -54,8 +54,8 @@ fn by_stl_io(path: &Path) -> Mesh {
     let read = stl_io::read_stl(&mut fs::File::open(path).unwrap()).unwrap();
     Mesh {
         vertices: read.vertices.iter().map(|v| v.0).collect(),
-        normals: Vec::new(),
         triangles: read.faces.iter().map(|f| f.vertices.map(|index| index as u32)).collect(),
+        ..Mesh::default()
     }
 }
 
@@ -132,8 +132,8 @@ fn obj_is_read_as_the_independent_crate_does() {
         let by_tobj = models.iter().fold(Mesh::default(), |all, model| {
             let one = Mesh {
                 vertices: model.mesh.positions.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
-                normals: Vec::new(),
                 triangles: model.mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+                ..Mesh::default()
             };
             common::joined(all, &one)
         });

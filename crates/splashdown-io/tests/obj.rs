@@ -53,6 +53,7 @@ proptest! {
             vertices: vertices.iter().map(|v| v.0).collect(),
             normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
             triangles,
+            ..Mesh::default()
         };
         prop_assert_eq!(corners(&written(&mesh)), expected(&mesh));
     }

@@ -3,7 +3,7 @@
 mod common;
 
 use std::fs;
-use std::io::Write as _;
+use std::io::{Cursor, Write as _};
 use std::path::PathBuf;
 
 use base64::Engine as _;
@@ -13,6 +13,8 @@ use flate2::write::{GzEncoder, ZlibEncoder};
 use proptest::prelude::*;
 use splashdown_io::{IoError, PARTICLE_FORMATS_READ, Particles, particles, read_particles};
 use tempfile::TempDir;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 fn file(name: &str, contents: &[u8]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -297,7 +299,7 @@ fn the_shared_particles_are_read_by_their_ending() {
 
 #[test]
 fn what_is_no_particle_file_is_told() {
-    let message = read_particles("points.xyz".as_ref()).unwrap_err().to_string();
+    let message = read_particles("points.abc".as_ref()).unwrap_err().to_string();
     assert!(PARTICLE_FORMATS_READ.iter().all(|ending| message.contains(ending)), "{message}");
     assert!(matches!(read_particles("points.xyz.gz".as_ref()), Err(IoError::UnknownFormat { .. })));
     assert!(matches!(read_particles("absent.bgeo".as_ref()), Err(IoError::Read { .. })));
@@ -372,6 +374,53 @@ fn broken_particle_files_say_what_is_wrong() {
     refused("given.bgeo", &gzip(&bytes)[..200], "promises 20 points");
 }
 
+/// As `numpy.savez_compressed` packs it.
+fn packed_npz(given: &Particles) -> Vec<u8> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    let n = given.len();
+    let positions: Vec<u8> =
+        given.positions.iter().flatten().flat_map(|&v| f64::from(v).to_le_bytes()).collect();
+    let ids: Vec<u8> = given.ids.iter().flat_map(|&id| i64::from(id).to_le_bytes()).collect();
+    let noise = vec![0; 2 * 5];
+    for (name, kind, shape, data) in [
+        ("pos", "<f8", format!("({n}, 3)"), positions),
+        ("ID", "<i8", format!("({n},)"), ids),
+        ("colour", "|u1", "(2, 5)".to_owned(), noise),
+    ] {
+        let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}\n");
+        archive.start_file(format!("{name}.npy"), options).unwrap();
+        archive.write_all(b"\x93NUMPY\x01\x00").unwrap();
+        archive.write_all(&(header.len() as u16).to_le_bytes()).unwrap();
+        archive.write_all(header.as_bytes()).unwrap();
+        archive.write_all(&data).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+#[test]
+fn numpys_archives_are_read() {
+    let given = plain(2500);
+    let bytes = packed_npz(&given);
+    let wanted =
+        Particles { ids: given.ids.clone(), positions: given.positions.clone(), ..Particles::default() };
+    assert_eq!(read("packed.npz", &bytes).unwrap(), wanted);
+    refused("none.npz", &packed_npz(&Particles::default()), "no particles");
+    let mut bytes = bytes;
+    while let Some(at) = bytes.windows(7).position(|name| name == b"pos.npy") {
+        bytes[at..at + 3].copy_from_slice(b"sop");
+    }
+    refused("other.npz", &bytes, "none of its arrays (");
+}
+
+#[test]
+fn points_of_raw_floats_are_read() {
+    let given = plain(30);
+    let raw: Vec<u8> = given.positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    assert_eq!(read("raw.xyz", &raw).unwrap().positions, given.positions);
+    refused("raw.xyz", &raw[1..], "no whole number of points");
+}
+
 /// One small file of each format and kind.
 fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     let given = plain(12);
@@ -387,6 +436,11 @@ fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         written("own.ply"),
         written("own.vtu"),
+        written("own.vtk"),
+        written("own.bgeo"),
+        written("own.npz"),
+        ("packed.npz", packed_npz(&given)),
+        ("text.xyz", b"# x y z\n1 2 3\n4 5 6\n".into()),
         ("whole.npy", npy),
         ("inline.vtu", vtu(&given, "", with_length::<4>, false).into()),
         ("packed.vtu", vtu(&given, ZLIB, packed, true).into()),
@@ -409,8 +463,12 @@ fn a_file_cut_at_any_byte_is_never_a_panic_and_never_half_a_particle() {
             cut.set_len(length as u64).unwrap();
             match read_particles(&path) {
                 // What is missing then are attributes that come later, or what follows the points.
+                // A list of points without their number is whole wherever a line ends.
                 Ok(particles) => {
                     assert!(particles.check().is_ok());
+                    if name.ends_with("xyz") {
+                        continue;
+                    }
                     assert_eq!(particles.len(), complete.len(), "{name} at {length}");
                 }
                 Err(error) => assert!(error.to_string().contains(name), "{error}"),
@@ -424,10 +482,11 @@ proptest! {
 
     #[test]
     fn a_file_with_changed_bytes_is_never_a_panic(
-        which in 0_usize..10,
+        which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
-        let (name, mut bytes) = whole_files().swap_remove(which);
+        let mut files = whole_files();
+        let (name, mut bytes) = files.swap_remove(which.index(files.len()));
         for (at, to) in changes {
             let at = at.index(bytes.len());
             bytes[at] = to;

@@ -53,12 +53,13 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn some_mesh()(vertices in prop::collection::vec((vector(), vector()), 1..60), normals in any::<bool>())
+    fn some_mesh()(vertices in prop::collection::vec((vector(), vector(), vector()), 1..60), [normals, velocities] in any::<[bool; 2]>())
         (triangles in prop::collection::vec(prop::array::uniform3(0..vertices.len() as u32), 0..120),
-         vertices in Just(vertices), normals in Just(normals)) -> Mesh {
+         vertices in Just(vertices), [normals, velocities] in Just([normals, velocities])) -> Mesh {
         Mesh {
             vertices: vertices.iter().map(|v| v.0).collect(),
             normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
+            velocities: vertices.iter().filter(|_| velocities).map(|v| v.2).collect(),
             triangles,
         }
     }

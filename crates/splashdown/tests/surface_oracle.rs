@@ -20,8 +20,8 @@ fn oracle(points: &[[f32; 3]], params: &SurfaceParams) -> Mesh {
     let mesh = splashsurf_lib::reconstruct_surface::<i64, f32>(&points, &theirs).unwrap().mesh;
     Mesh {
         vertices: mesh.vertices.iter().map(|&v| v.into()).collect(),
-        normals: Vec::new(),
         triangles: mesh.triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
+        ..Mesh::default()
     }
 }
 

@@ -99,6 +99,7 @@ impl Session {
             layout.make_checkpoints()?;
         }
 
+        let surface = options.surface;
         options.listener = Some(teller.listener());
         let run = match &found {
             Some(found) => Run::resume(&found.checkpoint, &scene, options)?,
@@ -108,7 +109,10 @@ impl Session {
         if let Some(frame) = begins {
             teller.resumed(frame as usize + 1);
         }
-        let mut files = Files::start(layout.clone(), scene.output.formats.clone())?;
+        if begins.is_some() {
+            checkpoints::remove_partial(layout.root());
+        }
+        let mut files = Files::start(layout.clone(), &scene, surface, begins)?;
         if let Some(frame) = begins {
             files.resume(frame, scene.frame_rate);
         }
@@ -135,7 +139,6 @@ impl Session {
         // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than room for its own.
         match begins {
             Some(frame) => {
-                checkpoints::remove_partial(session.layout.root());
                 session.layout.remove_after(frame);
                 session.probes = ProbeFiles::resume(&scene, &session.layout, &wishes.probe_bytes)?;
             }

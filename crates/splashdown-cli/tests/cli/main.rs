@@ -4,5 +4,7 @@ mod bad_input;
 #[cfg(target_os = "linux")]
 mod checkpoints;
 mod place;
+mod plot;
 mod runs;
+mod surface;
 mod words;

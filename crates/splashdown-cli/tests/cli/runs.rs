@@ -248,3 +248,39 @@ fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
     assert!(stdout(&output).contains("probes/gauge.csv"), "{}", stdout(&output));
     Ok(())
 }
+
+#[test]
+fn every_format_holds_the_same_frames() -> Outcome {
+    let place = Place::new()?;
+    let formats = "ply,vtu,obj,vtk,bgeo,npz,stl,glb,usd";
+    let output = place.run_small(&["--formats", formats]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for frame in 0..=2 {
+        let file = |name: &str| place.path(&format!("out/{name}").replace('#', &format!("000{frame}")));
+        let particles = ply::read_particles(&file("particles/particles_#.ply"))?;
+        for ending in ["vtu", "vtk", "bgeo", "npz"] {
+            let other = splashdown_io::read_particles(&file(&format!("particles/particles_#.{ending}")))?;
+            assert_eq!(other, particles, "{ending}");
+        }
+        let mesh = ply::read_mesh(&file("mesh/surface_#.ply"))?;
+        for ending in ["obj", "stl", "glb"] {
+            let other = splashdown_io::read_mesh(&file(&format!("mesh/surface_#.{ending}")))?;
+            assert_eq!(other.len(), mesh.len(), "{ending}");
+            assert!((other.volume() / mesh.volume() - 1.0).abs() < 1e-5, "{ending}");
+        }
+        assert!(fs::metadata(file("mesh/surface_#.vtk"))?.len() > 1000);
+        // The water falls, and the vertices with it.
+        let mean = |values: &[[f32; 3]]| values.iter().map(|v| v[1]).sum::<f32>() / values.len() as f32;
+        let (water, skin) = (mean(&particles.velocities), mean(&mesh.velocities));
+        assert!((water - skin).abs() < 0.1 + 0.3 * water.abs(), "frame {frame}: {water} and {skin} m/s");
+        assert_eq!(frame > 0, skin < -0.01, "frame {frame}: {skin} m/s");
+    }
+    for name in ["surface.usda", "particles.usda"] {
+        let text = fs::read_to_string(place.path(&format!("out/{name}")))?;
+        assert!(text.starts_with("#usda 1.0") && text.contains("endTimeCode = 2"), "{name}");
+        assert_eq!(text.matches("            2: [").count(), 6, "attributes of {name}");
+    }
+    let hidden = fs::read_dir(place.path("out"))?.flatten();
+    assert!(hidden.into_iter().all(|entry| !entry.file_name().to_string_lossy().starts_with('.')));
+    Ok(())
+}

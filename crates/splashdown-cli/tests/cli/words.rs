@@ -11,6 +11,8 @@ fn the_help_reads_as_it_was_approved() -> Outcome {
         ("help_check", &["check", "--help"]),
         ("help_scenes", &["scenes", "--help"]),
         ("help_bench", &["bench", "--help"]),
+        ("help_plot", &["plot", "--help"]),
+        ("help_surface", &["surface", "--help"]),
     ] {
         let output = splashdown(arguments).output()?;
         assert!(output.status.success());
@@ -25,7 +27,7 @@ fn wrong_words_end_with_two_and_a_hint() -> Outcome {
     for arguments in [
         &["rnu"][..],
         &["run"],
-        &["run", "x.toml", "--formats", "stl"],
+        &["run", "x.toml", "--formats", "abc"],
         &["run", "x.toml", "--frames", "0"],
         &["run", "x.toml", "--no-pictures", "--pictures", "surface"],
         &["bench", "--particles", "many"],
@@ -34,7 +36,7 @@ fn wrong_words_end_with_two_and_a_hint() -> Outcome {
         let output = splashdown(arguments).output()?;
         crate::place::assert_refused(&output, 2, &[]);
     }
-    let formats = splashdown(&["run", "x.toml", "--formats", "stl"]).output()?;
+    let formats = splashdown(&["run", "x.toml", "--formats", "abc"]).output()?;
     assert!(stderr(&formats).contains("ply") && stderr(&formats).contains("vtu"), "{}", stderr(&formats));
     Ok(())
 }

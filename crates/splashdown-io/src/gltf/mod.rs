@@ -1,5 +1,5 @@
 //! glTF 2.0, the format of web and game tools: JSON with buffers beside it or inside (`.gltf`), or one binary file
-//! (`.glb`).
+//! (`.glb`): a reader of both and a writer of the second.
 //!
 //! All meshes of the default scene become one, each placed by its nodes. Materials, pictures, skins and animations
 //! are passed over; geometry that is packed by an extension (Draco, meshopt, quantised) is refused by name.
@@ -11,6 +11,9 @@
 mod buffers;
 mod document;
 mod transform;
+mod write;
+
+pub use write::{write_mesh, write_mesh_to};
 
 use std::path::Path;
 

@@ -8,7 +8,7 @@
 //! than the file holds.
 //!
 //! Columns written: `x y z vx vy vz density pressure` (float), `id` (uint) for particles, those that are present;
-//! `x y z nx ny nz` (float) and `vertex_indices` (list uchar int) for meshes. Blender, MeshLab, ParaView and Houdini
+//! `x y z nx ny nz vx vy vz` (float) and `vertex_indices` (list uchar int) for meshes. Blender, MeshLab, ParaView and Houdini
 //! open these.
 
 mod read;

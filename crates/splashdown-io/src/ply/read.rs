@@ -37,7 +37,7 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
 
 /// Reads a mesh from the `vertex` and `face` elements of a PLY file.
 ///
-/// Normals are taken where `nx ny nz` are present. Polygons are cut into fans of triangles.
+/// Normals are taken where `nx ny nz` are present, velocities where `vx vy vz` are. Polygons are cut into fans of triangles.
 ///
 /// # Errors
 /// [`IoError::Read`] or [`IoError::Malformed`]; also a face with fewer than three corners or one that names a vertex
@@ -50,6 +50,9 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let mut mesh = Mesh { vertices: vertices.iter().map(|v| v.position).collect(), ..Mesh::default() };
     if has.normal == [true; 3] {
         mesh.normals = vertices.iter().map(|v| v.normal).collect();
+    }
+    if has.velocity == [true; 3] {
+        mesh.velocities = vertices.iter().map(|v| v.velocity).collect();
     }
     for (number, face) in faces.iter().enumerate() {
         let [first, rest @ ..] = face.corners.as_slice() else {

@@ -60,6 +60,9 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     if !mesh.normals.is_empty() {
         columns.push((bytes(&mesh.normals), 12, "float nx ny nz"));
     }
+    if !mesh.velocities.is_empty() {
+        columns.push((bytes(&mesh.velocities), 12, "float vx vy vz"));
+    }
 
     begin(out)?;
     element(out, "vertex", mesh.vertices.len(), &columns)?;

@@ -14,7 +14,7 @@ pub fn cube(corner: [f32; 3], size: f32) -> Mesh {
         .collect();
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh { vertices, normals: Vec::new(), triangles }
+    Mesh { vertices, triangles, ..Mesh::default() }
 }
 
 /// A surface of revolution on a `rings` x `sides` grid that closes in both directions: a torus around y.

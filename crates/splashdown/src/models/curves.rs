@@ -80,6 +80,7 @@ pub(super) fn sphere() -> Mesh {
         vertices: normals.iter().map(|n| (0.1 * n).to_array()).collect(),
         normals: normals.iter().map(Vec3::to_array).collect(),
         triangles,
+        ..Mesh::default()
     }
 }
 

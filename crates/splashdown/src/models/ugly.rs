@@ -54,8 +54,8 @@ pub fn ugly(mesh: &Mesh, seed: u32) -> Mesh {
     }
     Mesh {
         vertices: soup.iter().flatten().map(Vec3::to_array).collect(),
-        normals: Vec::new(),
         triangles: (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        ..Mesh::default()
     }
 }
 

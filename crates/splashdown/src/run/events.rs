@@ -21,6 +21,8 @@ pub struct RunOptions {
     pub surface: bool,
     /// Compute foam, spray and bubbles.
     pub foam: bool,
+    /// Give the surface's vertices the velocities of the particles around them, by which other programs blur motion.
+    pub vertex_velocities: bool,
     /// Measure the time of every pass.
     pub timing: bool,
     /// Who hears of what takes time before the first event.
@@ -48,6 +50,7 @@ impl RunOptions {
             frames: None,
             surface: scene.surface.enabled,
             foam: scene.foam.enabled,
+            vertex_velocities: scene.output.formats.iter().any(|format| format.has_vertex_velocities()),
             timing: false,
             listener: None,
         }

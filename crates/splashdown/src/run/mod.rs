@@ -14,7 +14,7 @@ use splashdown_io::Mesh;
 use web_time::Instant;
 
 use crate::scene::{Domain, Motion, Scene};
-use crate::surface::Surface;
+use crate::surface::{Surface, vertex_velocities};
 use crate::{BodyMesh, BodyState, Checkpoint, Foam, Simulation, SimulationError, Stats};
 
 /// An excess of density that no sound has: something is told of it.
@@ -41,6 +41,7 @@ pub struct Run {
     simulation: Simulation,
     surface: Option<Surface>,
     foam: Option<Foam>,
+    vertex_velocities: bool,
     frames: u32,
     frame_rate: f32,
     frame_duration: f32,
@@ -177,6 +178,7 @@ impl Run {
         Ok(Self {
             surface,
             foam,
+            vertex_velocities: options.vertex_velocities,
             frames,
             frame_rate: scene.frame_rate,
             frame_duration,
@@ -353,7 +355,7 @@ impl Run {
 
     fn fetch(&mut self, index: u32) -> Result<Frame, SimulationError> {
         let begun = Instant::now();
-        let mesh = match &mut self.surface {
+        let mut mesh = match &mut self.surface {
             Some(surface) => {
                 self.simulation.extract(surface)?;
                 Some(self.simulation.mesh(surface)?)
@@ -368,6 +370,10 @@ impl Run {
             None => None,
         };
         let particles = Arc::new(self.simulation.particles()?);
+        if let (Some(mesh), Some(surface), true) = (&mut mesh, &self.surface, self.vertex_velocities) {
+            let (positions, velocities) = (&particles.positions, &particles.velocities);
+            mesh.velocities = vertex_velocities(&mesh.vertices, positions, velocities, surface.params())?;
+        }
         let volume = mesh.as_ref().map(Mesh::volume);
         if let Some(volume) = volume {
             let first = self.volume.map_or(volume, |[first, _]| first);

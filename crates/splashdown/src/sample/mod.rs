@@ -22,7 +22,7 @@ use crate::scene::{DensityMode, Domain, Fluid, Scene, place};
 use crate::{Simulation, SimulationError};
 pub(crate) use filler::{Filler, Reach, Taken, file_title, mesh_title, reaches};
 pub(crate) use lattice::Sampler;
-pub(crate) use spacing::typical_spacing;
+pub use spacing::typical_spacing;
 
 /// Most particles of a scene: 2^26.
 pub const MAX_PARTICLES: u64 = 1 << 26;

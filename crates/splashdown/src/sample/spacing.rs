@@ -12,7 +12,7 @@ const NEIGHBOUR: usize = 3;
 
 /// The spacing of a lattice with neighbours as far as these particles have theirs, in m: the median distance of the third neighbour over
 /// some particles. `None` for fewer than four.
-pub(crate) fn typical_spacing(positions: &[[f32; 3]]) -> Option<f32> {
+pub fn typical_spacing(positions: &[[f32; 3]]) -> Option<f32> {
     let n = positions.len();
     if n <= NEIGHBOUR {
         return None;

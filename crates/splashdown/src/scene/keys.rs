@@ -230,7 +230,7 @@ static FLUID_FILE: Table = Table {
     keys: &[
         key(
             "file",
-            Kind::Text("a file (.ply, .npy, .vtk, .vtu, .vtp, .bgeo) beside the scene file"),
+            Kind::Text("a file (.ply, .npy, .npz, .vtk, .vtu, .vtp, .bgeo, .xyz) beside the scene file"),
             "The particles.",
         )
         .required()

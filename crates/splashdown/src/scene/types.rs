@@ -272,6 +272,18 @@ choices! {
         Vtu = "vtu",
         /// Wavefront OBJ: the mesh.
         Obj = "obj",
+        /// Legacy VTK: particles and, if extracted, the mesh.
+        Vtk = "vtk",
+        /// Houdini's geometry: particles.
+        Bgeo = "bgeo",
+        /// An archive of arrays for numpy: particles.
+        Npz = "npz",
+        /// Binary STL, for printers: the mesh.
+        Stl = "stl",
+        /// Binary glTF, for the web and games: the mesh.
+        Glb = "glb",
+        /// Animated USD, one file of all frames: particles and, if extracted, the mesh.
+        Usd = "usd",
     }
     /// What a picture shows.
     PictureKind {
@@ -288,6 +300,28 @@ choices! {
         Density = "density",
         /// Pressure in Pa.
         Pressure = "pressure",
+    }
+}
+
+impl Format {
+    /// Whether files of this format hold particles.
+    pub fn has_particles(self) -> bool {
+        matches!(self, Self::Ply | Self::Vtu | Self::Vtk | Self::Bgeo | Self::Npz | Self::Usd)
+    }
+
+    /// Whether files of this format hold the surface.
+    pub fn has_surface(self) -> bool {
+        matches!(self, Self::Ply | Self::Obj | Self::Vtk | Self::Stl | Self::Glb | Self::Usd)
+    }
+
+    /// Whether each frame has a file of its own; else all are in one.
+    pub fn is_numbered(self) -> bool {
+        self != Self::Usd
+    }
+
+    /// Whether its surfaces can have velocities.
+    pub fn has_vertex_velocities(self) -> bool {
+        matches!(self, Self::Ply | Self::Vtk | Self::Glb | Self::Usd)
     }
 }
 

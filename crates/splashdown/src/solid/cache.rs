@@ -93,8 +93,8 @@ pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
     }
     let mesh = Mesh {
         vertices: bytemuck::pod_collect_to_vec(vertices),
-        normals: Vec::new(),
         triangles: bytemuck::pod_collect_to_vec(triangles),
+        ..Mesh::default()
     };
     let field = DistanceField {
         min: Vec3::from(header.min),

@@ -429,7 +429,7 @@ impl Surface {
         let normals = executor.fetch_first(self.b.normals, status.vertices as usize).await?;
         let indices = executor.fetch_first(self.b.indices, 3 * status.triangles as usize).await?;
         let triangles = indices.as_chunks::<3>().0.to_vec();
-        Ok(Mesh { vertices: xyz(vertices), normals: xyz(normals), triangles })
+        Ok(Mesh { vertices: xyz(vertices), normals: xyz(normals), triangles, ..Mesh::default() })
     }
 
     async fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {

@@ -36,6 +36,7 @@
 //! Dual contouring places vertices at creases, which water does not have, and can give edges with four
 //! triangles.
 
+mod blobs;
 mod blocks;
 mod error;
 mod field;
@@ -51,13 +52,16 @@ mod spline;
 pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
+mod velocities;
 mod volume;
 
+pub use blobs::drop_blobs;
 pub use error::SurfaceError;
 pub(crate) use mesh::forecast;
 pub use mesh::{Surface, SurfaceInput, SurfaceStats};
 pub use params::{Status, SurfaceParams};
 pub use reconstruct::reconstruct;
+pub use velocities::vertex_velocities;
 
 use splashdown_gpu::PassDesc;
 

@@ -65,7 +65,7 @@ pub(super) fn upload(
 
 /// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that
 /// there are not many more cells than particles.
-fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, SurfaceError> {
+pub(super) fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, SurfaceError> {
     let low = positions.iter().fold(Vec3::MAX, |low, &p| low.min(p));
     let high = positions.iter().fold(Vec3::MIN, |high, &p| high.max(p));
     let most = 64 * positions.len() as u32 + 4096;
@@ -88,6 +88,12 @@ fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, Surface
 
 /// A counting sort; particles of one cell keep their order.
 fn sort_by_cell(grid: &Grid, positions: &[Vec3]) -> (Vec<Vec4>, Vec<u32>) {
+    let (order, start) = sort_order(grid, positions);
+    (order.iter().map(|&particle| positions[particle as usize].extend(0.0)).collect(), start)
+}
+
+/// The particles' numbers in the order of their cells, and where each cell begins.
+pub(super) fn sort_order(grid: &Grid, positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
     let cells: Vec<u32> = positions.iter().map(|&p| grid.cell_of(p)).collect();
     let mut start = vec![0_u32; grid.cell_count as usize + 1];
     for &cell in &cells {
@@ -97,11 +103,11 @@ fn sort_by_cell(grid: &Grid, positions: &[Vec3]) -> (Vec<Vec4>, Vec<u32>) {
         start[cell] += start[cell - 1];
     }
     let mut next = start.clone();
-    let mut sorted = vec![Vec4::ZERO; positions.len()];
-    for (p, &cell) in positions.iter().zip(&cells) {
+    let mut order = vec![0; positions.len()];
+    for (particle, &cell) in cells.iter().enumerate() {
         let place = &mut next[cell as usize];
-        sorted[*place as usize] = p.extend(0.0);
+        order[*place as usize] = particle as u32;
         *place += 1;
     }
-    (sorted, start)
+    (order, start)
 }

@@ -1,6 +1,7 @@
 //! A chart as SVG: dots are measured, lines are simulated.
 
 use plotters::prelude::*;
+use plotters::style::register_font;
 
 use super::figures::Series;
 
@@ -18,6 +19,8 @@ pub fn draw(title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str,
         let margin = 0.03 * (high - low).max(1e-9);
         low - margin..high + margin
     };
+    // plotters knows no font of its own.
+    assert!(register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();

@@ -40,8 +40,8 @@ fn joined(a: &Mesh, b: &Mesh) -> Mesh {
     let moved = b.triangles.iter().map(|t| t.map(|v| v + offset));
     Mesh {
         vertices: [a.vertices.as_slice(), &b.vertices].concat(),
-        normals: Vec::new(),
         triangles: a.triangles.iter().copied().chain(moved).collect(),
+        ..Mesh::default()
     }
 }
 
@@ -91,8 +91,8 @@ fn both_sides_of_a_narrow_slot_are_felt_in_its_middle() {
 fn a_sheet_on_the_nodes_is_as_solid_as_its_thickness() {
     let sheet = Mesh {
         vertices: vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]],
-        normals: Vec::new(),
         triangles: vec![[0, 2, 1], [0, 3, 2]],
+        ..Mesh::default()
     };
     assert!(compare_with_layers(&sheet, &[[-CELL, CELL]]) >= LAYER);
 }
@@ -136,7 +136,7 @@ proptest! {
     ) {
         let count = places.len() as u32;
         let triangles = corners.iter().map(|t| t.map(|v| v % count)).collect();
-        let mesh = Mesh { vertices: places, normals: Vec::new(), triangles };
+        let mesh = Mesh { vertices: places, triangles, ..Mesh::default() };
         let settings = SolidSettings { cell_size: 0.125, support_radius: 0.25, shell, ..settings() };
         match Solid::build(&mesh, &settings, &|_| {}) {
             Ok(solid) => {

@@ -174,10 +174,11 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
             "enable the surface, or leave that picture out",
         ));
     }
-    if !with_surface && output.formats.contains(&Format::Obj) {
-        let message =
-            "output.formats asks for \"obj\", which holds the surface, but surface.enabled is false"
-                .to_owned();
+    let surface_only = |format: &&Format| format.has_surface() && !format.has_particles();
+    if !with_surface && let Some(format) = output.formats.iter().find(surface_only) {
+        let message = format!(
+            "output.formats asks for \"{format}\", which holds the surface, but surface.enabled is false"
+        );
         sound = Err(section.complain(
             "formats",
             message,

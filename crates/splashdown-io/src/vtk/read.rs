@@ -1,8 +1,4 @@
-//! Legacy VTK files (`.vtk`), text or binary, as SPlisHSPlasH, `meshio` and ParaView write them: a reader for points.
-//!
-//! *Why own code:* `vtkio` 0.6 rests on a parser of 2017 (`nom` 3), has not moved since March 2025 and reads whole files
-//! into its own model of every kind of grid. Points and their arrays are the need. Format: VTK User's Guide, "Simple
-//! Legacy Formats", and what VTK 9 writes beyond it (`METADATA`, cells as `OFFSETS` and `CONNECTIVITY`).
+//! The reader, of text and binary files, as SPlisHSPlasH, `meshio` and ParaView write them.
 
 use std::path::Path;
 

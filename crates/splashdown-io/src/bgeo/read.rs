@@ -1,8 +1,4 @@
-//! BGEO, Houdini's classic binary geometry (version 5), in which SPlisHSPlasH and `splashsurf` keep particles: a reader.
-//!
-//! Big-endian: counts, descriptions of the attributes, then one row for each point: x y z w and the attributes. Files
-//! may be packed by gzip as a whole, which SPlisHSPlasH does without saying so in the name. *Why own code:* no crate
-//! reads it but `splashsurf_lib`, which brings a whole surface reconstruction along; the tests hold a file of its writer.
+//! The reader.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -116,7 +112,9 @@ fn attribute(
             word(file, what)?;
         }
         if let Some(column) = Column::named(&name, components) {
-            wanted.push(Wanted { column, at, components, number: kind });
+            // The format has signed integers only; ids of its upper half are told by their bits.
+            let number = if (column, kind) == (Column::Id, Number::I32) { Number::U32 } else { kind };
+            wanted.push(Wanted { column, at, components, number });
         }
     } else {
         for _ in 0..word(file, what)? {

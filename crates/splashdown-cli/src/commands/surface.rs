@@ -1,0 +1,228 @@
+//! `splashdown surface`: anybody's particles in, closed meshes out.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde::Serialize;
+use splashdown::sample::typical_spacing;
+use splashdown::surface::{SurfaceParams, drop_blobs, reconstruct, vertex_velocities};
+use splashdown_gpu::Executor;
+use splashdown_io::{
+    IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_particles,
+};
+
+use crate::args::SurfaceArguments;
+use crate::exit::{Exit, Failure};
+use crate::sequence::{self, Step};
+use crate::{console, human};
+
+/// How far a spacing may be from what the particles look like before it is taken for a mistake: a radius for a
+/// diameter, or another unit.
+const FITTING: f32 = 1.8;
+
+/// One mesh, as `--json` prints it.
+#[derive(Debug, Serialize)]
+struct Line<'a> {
+    input: &'a Path,
+    output: &'a Path,
+    particles: usize,
+    vertices: usize,
+    triangles: usize,
+    pieces: usize,
+    dropped_blobs: usize,
+    /// In the unit of the files, cubed.
+    volume: f64,
+    closed: bool,
+    manifold: bool,
+    oriented: bool,
+    velocities: bool,
+    seconds: f64,
+}
+
+/// Makes the meshes.
+pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
+    let inputs = sequence::expand(&arguments.particles, PARTICLE_FORMATS_READ)?;
+    let steps = sequence::steps(inputs, &arguments.out)?;
+    for Step { output, .. } in &steps {
+        mesh_format(output)?;
+    }
+    let spacing = spacing(arguments, &steps)?;
+    let params = SurfaceParams {
+        support_radius: arguments.support_radius.unwrap_or(2.0 * spacing),
+        cell_size: arguments.cell_size.unwrap_or(0.5 * spacing),
+        iso_level: arguments.iso_level,
+        smoothing_iterations: arguments.smoothing,
+        ..SurfaceParams::new(spacing)
+    };
+    params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
+    if let Some(folder) = steps[0].output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        prepare_folder(folder)?;
+    }
+    let mut executor = arguments.device.device.executor()?;
+    let (mut open, mut last) = (Vec::new(), None);
+    for (number, step) in steps.iter().enumerate() {
+        let topology = one(step, &params, arguments, &mut executor, [number + 1, steps.len()])?;
+        if !topology.is_watertight() {
+            open.push(format!("`{}` is {topology}", step.output.display()));
+        }
+        last = Some(topology);
+    }
+    conclude(arguments, &steps, last, &open)
+}
+
+/// Reads one file and writes its mesh; returns how the mesh hangs together.
+fn one(
+    step: &Step,
+    params: &SurfaceParams,
+    arguments: &SurfaceArguments,
+    executor: &mut Executor,
+    [number, all]: [usize; 2],
+) -> Result<Topology, Failure> {
+    let begun = Instant::now();
+    let Step { input, output } = step;
+    let particles = read(input)?;
+    let (mut surface, _) = reconstruct(&particles.positions, params, executor)?;
+    let dropped_blobs = if arguments.min_blob > 0.0 {
+        drop_blobs(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
+    } else {
+        0
+    };
+    if !particles.velocities.is_empty() && holds_velocities(output) {
+        let Particles { positions, velocities, .. } = &particles;
+        surface.velocities = vertex_velocities(&surface.vertices, positions, velocities, params)?;
+    }
+    let topology = surface.topology()?;
+    mesh::write(output, &surface)?;
+    let line = Line {
+        input,
+        output,
+        particles: particles.len(),
+        vertices: surface.vertices.len(),
+        triangles: surface.len(),
+        pieces: topology.components,
+        dropped_blobs,
+        volume: surface.volume(),
+        closed: topology.is_closed(),
+        manifold: topology.is_manifold(),
+        oriented: topology.is_oriented(),
+        velocities: !surface.velocities.is_empty(),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    if arguments.json {
+        console::print_json(&line);
+    }
+    if !arguments.quiet {
+        console::note(format!("[{number}/{all}] {}", told(&line, &surface)));
+    }
+    Ok(topology)
+}
+
+/// One line for people.
+fn told(line: &Line<'_>, surface: &Mesh) -> String {
+    let (particles, triangles) =
+        (human::counted(line.particles as u64, "particle"), human::count(surface.len() as u64));
+    let blobs = match line.dropped_blobs {
+        0 => String::new(),
+        count => format!(", {} left out", human::counted(count as u64, "blob")),
+    };
+    let velocities = if line.velocities { ", with velocities" } else { "" };
+    format!(
+        "{}: {particles} -> {}: {triangles} triangles{velocities}, volume {}{blobs} ({})",
+        line.input.display(),
+        line.output.display(),
+        human::three_digits(line.volume),
+        human::duration(line.seconds),
+    )
+}
+
+/// The last word: what the meshes are, or which of them are not what they should be.
+fn conclude(
+    arguments: &SurfaceArguments,
+    steps: &[Step],
+    last: Option<Topology>,
+    open: &[String],
+) -> Result<(), Failure> {
+    if !open.is_empty() {
+        let message = format!("{} of {} meshes have faults: {}", open.len(), steps.len(), open.join("; "));
+        return Err(Failure::new(Exit::Failed, message));
+    }
+    if !arguments.quiet && !arguments.json {
+        match (steps, last) {
+            ([step], Some(topology)) => console::print(format!("{}: {topology}", step.output.display())),
+            _ => console::print(format!(
+                "{} meshes, {} to {}: all are watertight (closed, manifold, oriented)",
+                steps.len(),
+                steps[0].output.display(),
+                steps[steps.len() - 1].output.display()
+            )),
+        }
+    }
+    Ok(())
+}
+
+/// What cannot be read is the fault of what was given, not of the place for the results.
+fn read(path: &Path) -> Result<Particles, Failure> {
+    read_particles(path).map_err(|error| Failure::new(Exit::Scene, error.to_string()))
+}
+
+/// The spacing that was given, if the first file's particles are about so far from each other.
+fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure> {
+    let first = &steps[0].input;
+    let given = arguments.particle_spacing;
+    if let (Some(given), true) = (given, arguments.force) {
+        return Ok(given);
+    }
+    let particles = read(first)?;
+    let found = typical_spacing(&particles.positions).filter(|&found| found > 0.0);
+    let name = first.display();
+    match (given, found) {
+        (Some(given), None) => Ok(given),
+        (Some(given), Some(found)) if (found / FITTING..=found * FITTING).contains(&given) => Ok(given),
+        (Some(given), Some(found)) => {
+            let hint = if (given * 2.0 / found - 1.0).abs() < 0.15 { " (is it their radius?)" } else { "" };
+            let digits = human::three_digits(f64::from(found));
+            Err(Failure::new(
+                Exit::Usage,
+                format!(
+                    "a particle spacing of {given} does not fit the particles of `{name}`{hint}: they are about {digits} from \
+                     each other. Give --particle-spacing {digits}, or --force to use {given} all the same"
+                ),
+            ))
+        }
+        (None, Some(found)) => {
+            let digits = human::three_digits(f64::from(found));
+            Err(Failure::new(
+                Exit::Usage,
+                format!(
+                    "--particle-spacing is missing: the distance at which the particles of `{name}` were made. They are about \
+                     {digits} from each other"
+                ),
+            ))
+        }
+        (None, None) => Err(Failure::new(
+            Exit::Usage,
+            format!("--particle-spacing is missing, and `{name}` has too few particles to guess it from"),
+        )),
+    }
+}
+
+/// Tells before anything is computed that a mesh cannot be written.
+fn mesh_format(path: &Path) -> Result<(), Failure> {
+    let ending = ending(path);
+    if mesh::FORMATS.iter().any(|format| *format == ending) {
+        return Ok(());
+    }
+    let error = IoError::UnknownFormat { path: path.to_owned(), allowed: mesh::FORMATS };
+    Err(Failure::new(Exit::Usage, error.to_string()))
+}
+
+fn holds_velocities(path: &Path) -> bool {
+    matches!(ending(path).as_str(), ".ply" | ".vtk" | ".glb")
+}
+
+/// The name's ending with its dot, in small letters.
+fn ending(path: &Path) -> String {
+    path.extension()
+        .map(|ending| format!(".{}", ending.to_string_lossy().to_ascii_lowercase()))
+        .unwrap_or_default()
+}

@@ -1,0 +1,99 @@
+//! XYZ, the plainest list of points: a reader.
+//!
+//! Three things go by that ending: text with a point per line (and perhaps other columns behind it), the chemists' text,
+//! which has a count, a line of words, and an element's name before every point, and raw little-endian float32, three
+//! for each point, which `splashsurf` reads. A file that holds a byte no text has is of the last kind.
+
+use std::path::Path;
+
+use crate::error::IoError;
+use crate::particles::Particles;
+use crate::read::content;
+
+/// Reads positions, in m; other columns are passed over, as are empty lines and lines that begin with `#` or `//`.
+///
+/// # Errors
+/// [`IoError::Read`]; [`IoError::Malformed`], which names the line.
+pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    let bytes = content(path)?;
+    let is_text = |&byte: &u8| byte >= b' ' || matches!(byte, b'\t' | b'\n' | b'\r');
+    let positions = if bytes.iter().all(is_text) && std::str::from_utf8(&bytes).is_ok() {
+        text(&String::from_utf8_lossy(&bytes))
+    } else if bytes.len().is_multiple_of(12) {
+        Ok(bytes.chunks_exact(12).map(bytemuck::pod_read_unaligned).collect())
+    } else {
+        Err(format!(
+            "it is not text, and its {} bytes are no whole number of points of three float32 (12 bytes each)",
+            bytes.len()
+        ))
+    };
+    let positions = positions.map_err(|reason| IoError::malformed(path, "XYZ", reason))?;
+    Ok(Particles { positions, ..Particles::default() })
+}
+
+fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
+    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().peekable();
+    let mut positions = Vec::new();
+    let mut count = None;
+    // A first line of one whole number is the chemists' count, and any words may follow it.
+    if let Some(given) = lines.peek().and_then(|(_, line)| line.trim().parse::<usize>().ok()) {
+        count = Some(given);
+        (lines.next(), lines.next());
+    }
+    for (number, line) in lines {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') || line.starts_with("//") {
+            continue;
+        }
+        let mut words = line.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty());
+        let has_name = line.starts_with(|c: char| c.is_ascii_alphabetic()) && !is_number(line);
+        if has_name {
+            words.next();
+        }
+        let mut next = || words.next().and_then(|word| word.parse::<f32>().ok());
+        match [next(), next(), next()] {
+            [Some(x), Some(y), Some(z)] => positions.push([x, y, z]),
+            _ => {
+                let shown: String = line.chars().take(40).collect();
+                return Err(format!("line {} holds no three numbers: `{shown}`", number + 1));
+            }
+        }
+    }
+    match count {
+        Some(count) if count != positions.len() => {
+            Err(format!("its first line promises {count} points, {} follow", positions.len()))
+        }
+        _ => Ok(positions),
+    }
+}
+
+/// True where the first word is a number that begins with a letter (`nan`, `inf`).
+fn is_number(line: &str) -> bool {
+    line.split([' ', '\t', ',', ';']).next().is_some_and(|word| word.parse::<f32>().is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text;
+
+    #[test]
+    fn lists_and_the_chemists_form_are_read() {
+        let points = [[1.0, -2.5, 3e-3], [4.0, 5.0, 6.0]];
+        for given in [
+            "1 -2.5 3e-3\n4 5 6\n",
+            "# x y z\n\n1,-2.5,3e-3\r\n4;5;6",
+            "2\nwater at 0 s\nH 1 -2.5 3e-3\nO2 4 5 6\n",
+            "\u{feff}1\t-2.5\t3e-3\t1000\n4 5 6 1000",
+        ] {
+            assert_eq!(text(given).unwrap(), points, "{given}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_point_is_told_with_its_line() {
+        assert!(text("1 2 3\n4 five 6").unwrap_err().contains("line 2"));
+        assert!(text("1 2").unwrap_err().contains("line 1"));
+        assert!(text("3\nwater\nH 1 2 3").unwrap_err().contains("promises 3"));
+        assert!(text("nan 2 3").unwrap()[0][0].is_nan());
+    }
+}

@@ -1,0 +1,137 @@
+//! Meshes.
+
+use std::path::PathBuf;
+
+use splashdown_io::{Mesh, mesh, read_mesh};
+
+use crate::common;
+use crate::python::{Found, Sums, close, read, same};
+
+fn given() -> Mesh {
+    let mut mesh = common::torus(0.4, 0.15, 24, 12);
+    mesh.velocities = mesh.vertices.iter().map(|&[x, y, z]| [2.0 * z, 0.1 + x * y, -2.0 * x]).collect();
+    mesh
+}
+
+/// The same with one vertex and one velocity moved, and a triangle turned over.
+fn changed(given: &Mesh) -> Mesh {
+    let mut changed = given.clone();
+    changed.vertices[20][0] += 1e-3;
+    changed.velocities[20][2] += 0.1;
+    changed.triangles[3].swap(0, 1);
+    changed
+}
+
+/// What a reader finds in a mesh of this format, and in one that was changed.
+fn found(test: &str, reader: &str, ending: &str) -> Option<[Found; 2]> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
+    mesh::write(&path("right"), &given()).unwrap();
+    mesh::write(&path("wrong"), &changed(&given())).unwrap();
+    read(test, reader, &[&path("right"), &path("wrong")])?.try_into().ok()
+}
+
+fn check(found: &[Found; 2], arrays: &[(&str, Sums)]) {
+    for (name, wanted) in arrays {
+        same(&found[0], name, wanted);
+        assert!(*name == "normals" || !wanted.agrees(&found[1][*name], 1e-9), "the control of {name}");
+    }
+}
+
+#[test]
+fn vtk_and_meshio_open_legacy_vtk() {
+    let mesh = given();
+    let vectors = [
+        ("positions", Sums::vectors(&mesh.vertices)),
+        ("normals", Sums::vectors(&mesh.normals)),
+        ("velocity", Sums::vectors(&mesh.velocities)),
+    ];
+    if let Some(found) = found("vtk_opens_legacy_vtk", "vtk", "vtk") {
+        check(&found, &vectors);
+        check(&found, &[("cells", Sums::corners(&mesh.triangles, true))]);
+    }
+    if let Some(found) = found("meshio_opens_legacy_vtk", "meshio", "vtk") {
+        check(&found, &vectors[..1]);
+        check(&found, &vectors[2..]);
+        check(&found, &[("cells", Sums::corners(&mesh.triangles, false))]);
+    }
+}
+
+#[test]
+fn vtk_opens_ply() {
+    let mesh = given();
+    let Some(found) = found("vtk_opens_ply", "vtk-ply", "ply") else { return };
+    check(
+        &found,
+        &[
+            ("positions", Sums::vectors(&mesh.vertices)),
+            ("normals", Sums::vectors(&mesh.normals)),
+            ("cells", Sums::corners(&mesh.triangles, true)),
+        ],
+    );
+}
+
+#[test]
+fn trimesh_opens_glb_with_velocities() {
+    let mesh = given();
+    let Some(found) = found("trimesh_opens_glb_with_velocities", "trimesh", "glb") else { return };
+    check(
+        &found,
+        &[
+            ("positions", Sums::vectors(&mesh.vertices)),
+            ("_VELOCITY", Sums::vectors(&mesh.velocities)),
+            ("cells", Sums::corners(&mesh.triangles, false)),
+            ("volume", Sums::numbers(&[mesh.volume()])),
+        ],
+    );
+    let volume = Sums::numbers(&[1.0_f64]);
+    same(&found[0], "is volume", &volume);
+    assert!(!volume.agrees(&found[1]["is volume"], 0.5), "the control");
+}
+
+#[test]
+fn trimesh_opens_obj_ply_and_stl() {
+    let mesh = given();
+    for ending in ["obj", "ply", "stl"] {
+        let test = format!("trimesh_opens_obj_ply_and_stl ({ending})");
+        let Some(found) = found(&test, "trimesh", ending) else { return };
+        // Text is read in double precision, so its last digits are others.
+        close(&found[0], "volume", &Sums::numbers(&[mesh.volume()]), 1e-6);
+        if ending != "stl" {
+            close(&found[0], "positions", &Sums::vectors(&mesh.vertices), 1e-6);
+            assert!(!Sums::vectors(&mesh.vertices).agrees(&found[1]["positions"], 1e-6), "the control");
+        }
+    }
+}
+
+/// Turns y up into z up, as Blender does when it opens a file that says that y is up.
+fn turned(values: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    values.iter().map(|&[x, y, z]| [x, -z, y]).collect()
+}
+
+#[test]
+fn blender_opens_glb_and_ply() {
+    let mesh = given();
+    // Blender's readers weld nothing; the object of a PLY file is not turned.
+    for (ending, positions) in [("glb", turned(&mesh.vertices)), ("ply", mesh.vertices.clone())] {
+        let test = format!("blender_opens_glb_and_ply ({ending})");
+        let Some(found) = found(&test, "blender", ending) else { return };
+        let frame = |name: &str| format!("{name}@1");
+        close(&found[0], &frame("positions"), &Sums::vectors(&positions), 1e-6);
+        close(&found[0], &frame("triangles"), &Sums::numbers(&[mesh.len() as f64]), 0.0);
+        assert!(!Sums::vectors(&positions).agrees(&found[1][&frame("positions")], 1e-6), "the control");
+    }
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["ply", "obj", "glb"] {
+        let path = folder.path().join(format!("mesh.{ending}"));
+        mesh::write(&path, &given()).unwrap();
+        let read = read_mesh(&path).unwrap();
+        assert_eq!((read.vertices, read.triangles), (given().vertices, given().triangles), "{ending}");
+        mesh::write(&path, &Mesh::default()).unwrap();
+        assert!(read_mesh(&path).is_err(), "{ending}: a mesh without triangles is none");
+    }
+}

@@ -1,0 +1,83 @@
+//! Particles.
+
+use std::path::PathBuf;
+
+use splashdown_io::{Particles, particles, read_particles};
+
+use crate::common;
+use crate::python::{Sums, read, same};
+
+/// Particles whose ids BGEO's signed integers hold as they are.
+fn given() -> Particles {
+    let ids = (0..300).map(|n| (n * 7919) % 1009).collect();
+    Particles { ids, ..common::particles(300) }
+}
+
+/// The same with one velocity turned round.
+fn changed(given: &Particles) -> Particles {
+    let mut changed = given.clone();
+    changed.velocities[17][1] *= -1.0;
+    changed.positions[17][1] += 1e-3;
+    changed
+}
+
+/// Writes both and compares each with what `reader` finds; the second must differ from the first.
+fn opens(test: &str, reader: &str, ending: &str, names: [&str; 4]) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
+    let (right, wrong) = (given(), changed(&given()));
+    particles::write(&path("right"), &right).unwrap();
+    particles::write(&path("wrong"), &wrong).unwrap();
+    assert_eq!(read_particles(&path("right")).unwrap(), right);
+    let Some(found) = read(test, reader, &[&path("right"), &path("wrong")]) else { return };
+    let [velocity, density, pressure, id] = names;
+    same(&found[0], "positions", &Sums::vectors(&right.positions));
+    if !velocity.is_empty() {
+        same(&found[0], velocity, &Sums::vectors(&right.velocities));
+        assert!(!Sums::vectors(&right.velocities).agrees(&found[1][velocity], 1e-9), "the control");
+    }
+    for (name, sums) in [
+        (density, Sums::numbers(&right.densities)),
+        (pressure, Sums::numbers(&right.pressures)),
+        (id, Sums::numbers(&right.ids)),
+    ] {
+        if !name.is_empty() {
+            same(&found[0], name, &sums);
+        }
+    }
+    assert!(!Sums::vectors(&right.positions).agrees(&found[1]["positions"], 1e-9), "the control");
+}
+
+const NAMES: [&str; 4] = ["velocity", "density", "pressure", "id"];
+
+#[test]
+fn vtk_opens_legacy_vtk() {
+    opens("vtk_opens_legacy_vtk", "vtk", "vtk", NAMES);
+}
+
+#[test]
+fn vtk_opens_vtu() {
+    opens("vtk_opens_vtu", "vtu", "vtu", NAMES);
+}
+
+#[test]
+fn meshio_opens_legacy_vtk_and_vtu() {
+    opens("meshio_opens_legacy_vtk", "meshio", "vtk", NAMES);
+    opens("meshio_opens_vtu", "meshio", "vtu", NAMES);
+}
+
+#[test]
+fn meshio_opens_ply() {
+    // Its reader gives one property at a time.
+    opens("meshio_opens_ply", "meshio", "ply", ["", "density", "pressure", "id"]);
+}
+
+#[test]
+fn numpy_opens_npz() {
+    opens("numpy_opens_npz", "numpy", "npz", ["velocities", "densities", "pressures", "ids"]);
+}
+
+#[test]
+fn splashsurf_opens_bgeo() {
+    opens("splashsurf_opens_bgeo", "splashsurf", "bgeo", [""; 4]);
+}

@@ -1,0 +1,49 @@
+//! The Python packages with which tests open files: an environment of their own in the target folder, so that nothing of the
+//! user's is touched.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+use crate::process::{self, command, root, say, target};
+
+/// The lists of packages, the needed one first; each is one test of `splashdown-io`'s `foreign` less if it is missing.
+const LISTS: [&str; 2] = ["requirements.txt", "blender.txt"];
+
+/// Makes the environment and installs what is not there yet. Where that is not possible the tests are skipped, and say so.
+pub fn ensure() {
+    let folder = target().join("python");
+    for list in LISTS {
+        let path = root().join("crates/splashdown-io/tests/foreign").join(list);
+        if let Err(error) = install(&folder, &path) {
+            say(format!(
+                "WARNING: Python packages of {list} are missing: {error:#}. Tests that open files with them will be skipped."
+            ));
+        }
+    }
+}
+
+fn install(folder: &Path, list: &Path) -> Result<()> {
+    let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
+    // What was installed last is noted beside it, so that a second call costs nothing.
+    let note = folder.join(list.file_name().unwrap_or_default());
+    if fs::read_to_string(&note).is_ok_and(|installed| installed == wanted) {
+        return Ok(());
+    }
+    let python = interpreter(folder);
+    if !python.exists() {
+        let system = if process::exists("python3", "--version") { "python3" } else { "python" };
+        process::run(command(system).args(["-m", "venv"]).arg(folder))?;
+    }
+    say(format!("Installing Python packages of {} into {} ...", list.display(), folder.display()));
+    let mut pip = command(&python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"]);
+    process::run(pip.arg(list))?;
+    Ok(fs::write(&note, wanted)?)
+}
+
+/// The environment's own interpreter.
+fn interpreter(folder: &Path) -> PathBuf {
+    folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
+}
