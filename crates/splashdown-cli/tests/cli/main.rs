@@ -6,5 +6,6 @@ mod checkpoints;
 mod place;
 mod plot;
 mod runs;
+mod splashsurf;
 mod surface;
 mod words;

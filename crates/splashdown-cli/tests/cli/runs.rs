@@ -230,7 +230,8 @@ fn the_benchmark_measures_steps_and_passes() -> Outcome {
 fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
     let place = Place::new()?;
     let scene = fs::read_to_string(place.path("small.toml"))?;
-    let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n";
+    let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n\
+                 [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n";
     fs::write(place.path("small.toml"), format!("{scene}\n{probe}"))?;
     // What an earlier run measured, and what is somebody else's.
     fs::create_dir_all(place.path("out/probes"))?;
@@ -244,6 +245,21 @@ fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
     assert_eq!(lines.next(), Some("time (s),pressure (Pa)"));
     let times: Vec<f64> = lines.filter_map(|line| line.split(',').next()?.parse().ok()).collect();
     assert!(times.len() >= 18 && times.windows(2).all(|pair| pair[0] < pair[1]), "{text}");
+    let text = fs::read_to_string(place.path("out/probes/all.csv"))?;
+    let mut lines = text.lines();
+    assert!(lines.next().is_some_and(|names| names.starts_with("time (s),volume (m^3),kinetic energy (J)")));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').filter_map(|word| word.parse().ok()).collect()).collect();
+    // 27 l of water whose middle is 15 cm up; what it loses of the one energy it has in the other, less what is rubbed.
+    assert_eq!(rows.len(), 3, "{text}");
+    for row in &rows {
+        let [_, volume, kinetic, potential, _, momentum, _] = row[..] else { panic!("{text}") };
+        assert!((volume / 0.027 - 1.0).abs() < 1e-6, "{text}");
+        let lost = rows[0][3] - potential;
+        assert!(kinetic <= 1.1 * lost + 1e-9 && momentum <= 1e-9, "{text}");
+    }
+    assert!((rows[0][3] / (27.0 * 9.81 * 0.15) - 1.0).abs() < 0.01, "{text}");
+    assert!(rows[2][2] > 1e-4 && rows[2][5] < -1e-2, "{text}");
     assert!(!place.path("out/probes/old.csv").exists() && place.path("out/probes/notes.csv").exists());
     assert!(stdout(&output).contains("probes/gauge.csv"), "{}", stdout(&output));
     Ok(())

@@ -5,10 +5,12 @@
 //! spacing^3 of fluid, as everywhere; its mass is less than that of so much fluid by what the kernel's sum over a lattice is off.
 
 mod crossings;
+mod fluid;
 mod gather;
 mod log;
 mod types;
 
+pub(crate) use fluid::FluidProbes;
 pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
 
 use glam::Vec3;
@@ -46,6 +48,7 @@ pub fn columns(probe: &Probe) -> &'static [&'static str] {
             "torque z (N m)",
         ],
         Quantity::Flow { .. } => &["time (s)", "flow (m^3/s)"],
+        Quantity::Fluid { .. } => fluid::COLUMNS,
     }
 }
 
@@ -181,7 +184,12 @@ impl Probes {
 
 /// What the device needs of a probe, but for its place in the rows.
 fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
-    let interval = probe.interval.unwrap_or(0.1 * scene.frame_duration());
+    let standard = match probe.quantity {
+        // The host reads it: never due on the device.
+        Quantity::Fluid { .. } => f32::MAX,
+        _ => 0.1 * scene.frame_duration(),
+    };
+    let interval = probe.interval.unwrap_or(standard);
     let mut point = ProbePoint { interval, ..bytemuck::Zeroable::zeroed() };
     match &probe.quantity {
         Quantity::Pressure(position) => {
@@ -207,6 +215,7 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
             point.across = normal.cross(*along);
             [point.half_along, point.half_across] = size.map(|edge| 0.5 * edge);
         }
+        Quantity::Fluid { .. } => point.kind = ProbePoint::FLUID,
     }
     point
 }

@@ -11,7 +11,8 @@ gpu_struct! {
     pub struct ProbePoint {
         /// Where, in m: a point, the foot of a column, the middle of a rectangle.
         position: Vec3,
-        /// [`ProbePoint::PRESSURE`], [`ProbePoint::HEIGHT`], [`ProbePoint::FORCE`] or [`ProbePoint::FLOW`].
+        /// [`ProbePoint::PRESSURE`], [`ProbePoint::HEIGHT`], [`ProbePoint::FORCE`], [`ProbePoint::FLOW`] or
+        /// [`ProbePoint::FLUID`].
         kind: u32,
         /// Unit vector: the normal of a rectangle, the direction of a column.
         normal: Vec3,
@@ -45,6 +46,8 @@ impl ProbePoint {
     pub const FORCE: u32 = 2;
     /// Volume through a rectangle.
     pub const FLOW: u32 = 3;
+    /// Sums over the fluid, which the host makes.
+    pub const FLUID: u32 = 4;
 }
 
 /// A probe's words in the buffer of accounts: what has been summed since its last row.

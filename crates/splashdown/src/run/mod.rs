@@ -13,6 +13,7 @@ use splashdown_gpu::{Gpu, block_on};
 use splashdown_io::Mesh;
 use web_time::Instant;
 
+use crate::probes::FluidProbes;
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::{Surface, vertex_velocities};
 use crate::{BodyMesh, BodyState, Checkpoint, Foam, Simulation, SimulationError, Stats};
@@ -42,6 +43,7 @@ pub struct Run {
     surface: Option<Surface>,
     foam: Option<Foam>,
     vertex_velocities: bool,
+    fluid_probes: FluidProbes,
     frames: u32,
     frame_rate: f32,
     frame_duration: f32,
@@ -179,6 +181,7 @@ impl Run {
             surface,
             foam,
             vertex_velocities: options.vertex_velocities,
+            fluid_probes: FluidProbes::of(scene),
             frames,
             frame_rate: scene.frame_rate,
             frame_duration,
@@ -392,6 +395,8 @@ impl Run {
             let text = format!("at {time:.4} s: {inside_bodies} particle{plural} inside a body");
             self.waiting.push_back(Event::Warning(text));
         }
+        let mut probes = self.simulation.take_probe_rows();
+        self.fluid_probes.read(&mut probes, time, &particles);
         let bodies: Arc<[BodyState]> = self.simulation.body_states()?.into();
         self.tell_lost(&bodies, time);
         Ok(Frame {
@@ -403,7 +408,7 @@ impl Run {
             volume,
             foam,
             bodies,
-            probes: self.simulation.take_probe_rows().into(),
+            probes: probes.into(),
         })
     }
 

@@ -67,6 +67,9 @@ choices! {
         Force = "force",
         /// Volume in m^3/s through a rectangle: needs `position`, `normal` and `size`.
         Flow = "flow",
+        /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all the fluid, or of what is between `min` and `max`,
+        /// at the end of every frame.
+        Fluid = "fluid",
     }
     /// The word for a body's motion.
     MotionWord {
@@ -401,6 +404,8 @@ static PROBE: Table = Table {
         .also(&["direction"]),
         key("along", a_vector(FAR, ""), "A rectangle's first edge, of any length. Default: horizontal."),
         key("size", Kind::Numbers(2, range(1e-5, FAR, "m")), "Edge lengths of a rectangle."),
+        key("min", a_vector(FAR, "m"), "Lower corner of a box of fluid. Default: all the fluid.").also(&["lower"]),
+        key("max", a_vector(FAR, "m"), "Upper corner of a box of fluid. Default: all the fluid.").also(&["upper"]),
         key("interval", a_number(1e-6, 3600.0, "s"), "Time between two rows. Default: a tenth of a frame."),
     ],
 };

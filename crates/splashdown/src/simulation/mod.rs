@@ -96,6 +96,7 @@ impl Simulation {
     }
 
     /// What the scene's probes have measured in whole frames since the last call: rows of each, in the scene's order.
+    /// Those of the whole fluid come from a [`Run`](crate::Run), which has the particles on the host.
     pub fn take_probe_rows(&mut self) -> Vec<ProbeRows> {
         self.rows.iter_mut().map(std::mem::take).collect()
     }

@@ -11,7 +11,9 @@ fn probes_are_read() {
         "{CUBE}\n{BODY}[[probe]]\nname = \"p1\"\nquantity = \"pressure\"\nposition = [0.1, 0, 0.2]\ninterval = 0.001\n\
          [[probe]]\nname = \"h1\"\nquantity = \"height\"\nposition = [0.5, 0, 0.5]\n\
          [[probe]]\nname = \"f1\"\nquantity = \"force\"\nbody = \"wheel\"\n\
-         [[probe]]\nname = \"q1\"\nquantity = \"flow\"\nposition = [0.5, 0.5, 0.5]\nnormal = [0, 0, 2]\nsize = [0.2, 0.1]\n"
+         [[probe]]\nname = \"q1\"\nquantity = \"flow\"\nposition = [0.5, 0.5, 0.5]\nnormal = [0, 0, 2]\nsize = [0.2, 0.1]\n\
+         [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n\
+         [[probe]]\nname = \"low\"\nquantity = \"fluid\"\nmin = [0, 0, 0]\nmax = [1, 0.5, 1]\n"
     );
     let scene = parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
     let quantities: Vec<_> = scene.probes.iter().map(|probe| probe.quantity.clone()).collect();
@@ -22,6 +24,8 @@ fn probes_are_read() {
     let Quantity::Flow { normal, along, size, .. } = quantities[3] else { panic!("{quantities:?}") };
     assert_eq!((normal, size), (Vec3::Z, [0.2, 0.1]));
     assert!(along.dot(normal).abs() < 1e-6 && along.y.abs() < 1e-6, "{along}");
+    assert_eq!(quantities[4], Quantity::Fluid { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY });
+    assert_eq!(quantities[5], Quantity::Fluid { min: Vec3::ZERO, max: Vec3::new(1.0, 0.5, 1.0) });
 }
 
 #[test]
@@ -40,6 +44,8 @@ fn mistakes_in_probes_are_named() {
             ),
             "is not across the normal",
         ),
+        (probe("quantity = \"fluid\"\ninterval = 0.1"), "interval has no meaning for fluid"),
+        (probe("quantity = \"fluid\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]"), "max is not above min"),
         (
             probe("quantity = \"height\"\nposition = [0, 0, 0]\ninterval = 1e-6"),
             "more than 10000 rows in a frame",

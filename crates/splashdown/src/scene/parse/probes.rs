@@ -45,6 +45,7 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
     let normal = section.numbers::<3>("normal");
     let along = section.numbers::<3>("along");
     let size = section.numbers::<2>("size");
+    let (min, max) = (section.numbers::<3>("min"), section.numbers::<3>("max"));
     let interval = section.number("interval");
     let quantity = needed(quantity)?;
     let word = match quantity {
@@ -52,13 +53,16 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
         QuantityWord::Height => "height",
         QuantityWord::Force => "force",
         QuantityWord::Flow => "flow",
+        QuantityWord::Fluid => "fluid",
     };
     let fitting: &[&str] = match quantity {
-        QuantityWord::Pressure | QuantityWord::Height => &["position"],
-        QuantityWord::Force => &["body"],
-        QuantityWord::Flow => &["position", "normal", "along", "size"],
+        QuantityWord::Pressure | QuantityWord::Height => &["position", "interval"],
+        QuantityWord::Force => &["body", "interval"],
+        QuantityWord::Flow => &["position", "normal", "along", "size", "interval"],
+        // It has a row for each frame.
+        QuantityWord::Fluid => &["min", "max"],
     };
-    for key in ["position", "body", "normal", "along", "size"] {
+    for key in ["position", "body", "normal", "along", "size", "min", "max", "interval"] {
         if section.has(key) && !fitting.contains(&key) {
             let message = format!("{} has no meaning for {word}", section.key_path(key));
             return Err(section.complain(key, message, &fitting.join(", "), "leave it out"));
@@ -99,6 +103,15 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
             };
             let size = size?.ok_or_else(|| missing("size"))?;
             Quantity::Flow { center, normal, along, size }
+        }
+        QuantityWord::Fluid => {
+            let (min, max) =
+                (min?.map_or(Vec3::NEG_INFINITY, Vec3::from), max?.map_or(Vec3::INFINITY, Vec3::from));
+            if max.cmple(min).any() {
+                let message = format!("{} is not above min", section.key_path("max"));
+                return Err(section.complain("max", message, "larger than min along every axis", ""));
+            }
+            Quantity::Fluid { min, max }
         }
     };
     Ok(Probe { name: needed(name)?, quantity, interval: interval? })

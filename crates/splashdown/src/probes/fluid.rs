@@ -1,0 +1,94 @@
+//! What is measured of all the fluid, or of what is in a box: volume, energies, momentum.
+//!
+//! These are sums over particles that the host has at the end of every frame anyway, in double precision, and read once a frame:
+//! nobody needs the energy of a step, and a sum over all particles in every step would cost the device more than all gauges together.
+
+use glam::DVec3;
+use splashdown_io::Particles;
+
+use super::ProbeRows;
+use crate::scene::{Quantity, Scene};
+
+/// Columns of such a probe.
+pub(super) const COLUMNS: &[&str] = &[
+    "time (s)",
+    "volume (m^3)",
+    "kinetic energy (J)",
+    "potential energy (J)",
+    "momentum x (N s)",
+    "momentum y (N s)",
+    "momentum z (N s)",
+];
+
+/// A scene's probes of this kind.
+#[derive(Clone, Debug)]
+pub(crate) struct FluidProbes {
+    /// Number among the scene's probes, and the box's corners in m.
+    boxes: Vec<(usize, [DVec3; 2])>,
+    /// Volume of a particle in m^3, and its mass in kg.
+    volume: f64,
+    mass: f64,
+    gravity: DVec3,
+}
+
+impl FluidProbes {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let boxes = scene.probes.iter().enumerate().filter_map(|(number, probe)| match probe.quantity {
+            Quantity::Fluid { min, max } => Some((number, [min.as_dvec3(), max.as_dvec3()])),
+            _ => None,
+        });
+        let volume = f64::from(scene.fluid.particle_spacing).powi(3);
+        Self {
+            boxes: boxes.collect(),
+            volume,
+            mass: f64::from(scene.fluid.material.rest_density) * volume,
+            gravity: scene.gravity.as_dvec3(),
+        }
+    }
+
+    /// Gives each of the probes its row of this moment.
+    pub(crate) fn read(&self, rows: &mut [ProbeRows], time: f64, particles: &Particles) {
+        for &(number, corners) in &self.boxes {
+            if let Some(rows) = rows.get_mut(number) {
+                rows.push(self.row(corners, time, particles));
+            }
+        }
+    }
+
+    fn row(&self, [min, max]: [DVec3; 2], time: f64, particles: &Particles) -> Vec<f64> {
+        let (mut count, mut squares, mut depth, mut velocities) = (0.0, 0.0, 0.0, DVec3::ZERO);
+        for (&x, &v) in particles.positions.iter().zip(&particles.velocities) {
+            let (x, v) = (DVec3::from(x.map(f64::from)), DVec3::from(v.map(f64::from)));
+            if x.cmpge(min).all() && x.cmple(max).all() {
+                count += 1.0;
+                squares += v.length_squared();
+                depth += self.gravity.dot(x);
+                velocities += v;
+            }
+        }
+        let momentum = self.mass * velocities;
+        let energies = [0.5 * self.mass * squares, -self.mass * depth];
+        vec![time, count * self.volume, energies[0], energies[1], momentum.x, momentum.y, momentum.z]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_the_particles_in_the_box() {
+        let probes =
+            FluidProbes { boxes: Vec::new(), volume: 0.001, mass: 2.0, gravity: DVec3::new(0.0, -10.0, 0.0) };
+        let particles = Particles {
+            positions: vec![[0.0, 1.0, 0.0], [0.5, 3.0, 0.0], [9.0, 5.0, 0.0]],
+            velocities: vec![[1.0, 0.0, 0.0], [0.0, -2.0, 3.0], [100.0; 3]],
+            ..Particles::default()
+        };
+        let all = [DVec3::NEG_INFINITY, DVec3::INFINITY];
+        let row = probes.row([DVec3::ZERO, DVec3::ONE * 4.0], 0.5, &particles);
+        assert_eq!(row, [0.5, 0.002, 14.0, 80.0, 2.0, -4.0, 6.0]);
+        assert_eq!(row.len(), COLUMNS.len());
+        assert_eq!(probes.row(all, 0.5, &particles)[3], 180.0);
+    }
+}
