@@ -135,11 +135,10 @@ fn draw_panel<DB: DrawingBackend>(
         let mut runs: Vec<&[(f64, f64)]> = curve.points.split(is_gap).filter(|run| !run.is_empty()).collect();
         runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
         for (number, run) in runs.iter().enumerate() {
-            if let [point] = run {
-                chart.draw_series([Circle::new(*point, 2, colour.filled())])?;
-                continue;
-            }
-            let series = chart.draw_series(LineSeries::new(run.iter().copied(), style))?;
+            let series = match run {
+                [point] => chart.draw_series([Circle::new(*point, 2, colour.filled())])?,
+                _ => chart.draw_series(LineSeries::new(run.iter().copied(), style))?,
+            };
             if number == 0 {
                 series.label(curve.name.as_str()).legend(sample);
             }

@@ -14,7 +14,8 @@ use super::reconstruct::{grid_over, sort_order};
 /// supports away, or none. Particles whose positions or velocities are not finite are left out. `positions` and `velocities` are those of the
 /// particles, one for one; the sum goes over particles in their order, so the same input gives the same bits on any number of threads.
 ///
-/// 57,000 vertices among 64,000 particles take 30 ms on two cores, which is why there is no such pass on the device.
+/// 57,000 vertices among 64,000 particles take half as long as their surface on the CPU does (`examples/surface_times.rs`), once a frame, which is
+/// why there is no such pass on the device.
 ///
 /// # Errors
 /// [`SurfaceError`] if a parameter makes no sense or the particles are too far apart.
