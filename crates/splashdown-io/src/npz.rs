@@ -66,8 +66,8 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|error| malformed(error.to_string()))?;
     let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
     let stem = |name: &str| name.strip_suffix(".npy").unwrap_or(name).to_ascii_lowercase();
-    let find = |wanted: &&str| names.iter().find(|name| stem(name) == **wanted);
-    let Some(first) = POSITIONS.iter().find_map(|name| find(&name)) else {
+    let find = |wanted: &&str| names.iter().find(|name| stem(name) == *wanted);
+    let Some(first) = POSITIONS.iter().find_map(find) else {
         let given = names.iter().map(|name| stem(name)).take(20).collect::<Vec<_>>().join(", ");
         return Err(malformed(format!(
             "none of its arrays ({given:.200}) is named {}",

@@ -38,7 +38,8 @@ fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
     // A first line of one whole number is the chemists' count, and any words may follow it.
     if let Some(given) = lines.peek().and_then(|(_, line)| line.trim().parse::<usize>().ok()) {
         count = Some(given);
-        (lines.next(), lines.next());
+        lines.next();
+        lines.next();
     }
     for (number, line) in lines {
         let line = line.trim();

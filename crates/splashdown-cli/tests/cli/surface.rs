@@ -9,6 +9,9 @@ use crate::place::{Outcome, Place, assert_refused, stderr, stdout};
 
 const SPACING: f32 = 0.02;
 
+/// Particles, mesh, options, exit code, words of the message.
+type Case<'a> = (&'a str, &'a str, &'a [&'a str], i32, &'a [&'a str]);
+
 /// A block of 12 x 12 x 12 particles at a place, all of which move with one velocity.
 fn block(at: [f32; 3]) -> Particles {
     let places = (0..12 * 12 * 12).map(|i| [i % 12, i / 12 % 12, i / 144].map(|c| SPACING * c as f32));
@@ -89,7 +92,7 @@ fn what_is_wrong_is_said_before_anything_is_made() -> Outcome {
     fs::write(place.path("two.xyz"), "0 0 0\n0 0 1\n")?;
     fs::write(place.path("notes.txt"), "words")?;
     let spacing = ["--particle-spacing", "0.02"];
-    let cases: [(&str, &str, &[&str], i32, &[&str]); 11] = [
+    let cases: [Case<'_>; 11] = [
         ("absent.ply", "m.ply", &spacing, 3, &["absent.ply"]),
         ("notes.txt", "m.ply", &spacing, 3, &["notes.txt", ".bgeo", ".xyz"]),
         ("empty.xyz", "m.ply", &spacing, 3, &["no particles"]),

@@ -100,7 +100,7 @@ fn pixars_library_opens_animated_particles() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("particles.usda");
     let series = PointSeries::start(&path, RATE, 0.05).unwrap();
-    let mut frames = vec![common::particles(50), common::particles(40)];
+    let mut frames = [common::particles(50), common::particles(40)];
     // What is no number must not make the file unreadable.
     frames[1].pressures[3] = f32::NAN;
     frames[1].velocities[3][0] = f32::NEG_INFINITY;
