@@ -58,7 +58,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     if out.position.w > 2.0 * nearer {
         out.position.z *= out.position.w / (out.position.w - nearer);
     }
-    if (KINDS >> kind & 1u) == 0u {
+    if ((KINDS >> kind) & 1u) == 0u {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     }
     out.across = corner.across;
