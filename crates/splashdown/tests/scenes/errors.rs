@@ -181,7 +181,10 @@ fn a_file_remembers_where_it_came_from() {
         .expect("writing into a temporary folder");
     let scene = Scene::load(&path).expect("a byte order mark and Windows line ends do no harm");
     assert_eq!(scene.source.as_deref(), Some(path.as_path()));
-    assert_eq!(Scene { source: None, ..scene }, parse(CUBE).expect("the cube is legal"));
+    // The text is kept as it stands in the file.
+    assert!(scene.text.contains("\r\n"));
+    let plain = parse(CUBE).expect("the cube is legal");
+    assert_eq!(Scene { source: None, text: plain.text.clone(), ..scene }, plain);
 }
 
 #[test]
