@@ -52,6 +52,6 @@ fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgro
         let lifetime = foam.lifetime_least + foam.lifetime_range * unit(s + 4u);
         let kind = kind_of(surroundings(x).neighbours, false);
         let number = foam_state.next_id - foam_state.born + place;
-        pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, number << 2u | kind);
+        pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, (number << 2u) | kind);
     }
 }
