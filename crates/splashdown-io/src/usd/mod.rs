@@ -4,7 +4,7 @@
 //! particles. Velocities are the attribute `velocities`, by which these programs blur motion.
 //!
 //! *How it works.* In such a file all frames of one attribute stand before the next attribute, so nothing can be appended
-//! to it. Each attribute has a hidden file of its own beside the final one ([`spool`]), to which a frame is appended, and
+//! to it. Each attribute has a hidden file of its own beside the final one (`spool`), to which a frame is appended, and
 //! [`MeshSeries::finish`] puts them together. A run that is killed leaves no USD file, one that ends by itself or by
 //! Ctrl-C leaves a whole one.
 //!

@@ -132,7 +132,7 @@ pub struct Frame {
     pub volume: Option<f64>,
     /// Foam, spray and bubbles, if asked for.
     pub foam: Option<Arc<DiffuseParticles>>,
-    /// The bodies, in the order of [`Run::bodies`].
+    /// The bodies, in the order of [`Run::bodies`](crate::Run::bodies).
     pub bodies: Arc<[BodyState]>,
     /// What the scene's probes measured since the frame before, in the order of the scene.
     pub probes: Arc<[ProbeRows]>,
