@@ -30,10 +30,10 @@ fn surroundings(x: vec3<f32>) -> Surroundings {
     }
     var part = 1.0;
     for (var axis = 0u; axis < 3u; axis++) {
-        if ((params.closed >> (2u * axis) & 1u) == 1u) {
+        if (((params.closed >> (2u * axis)) & 1u) == 1u) {
             part *= part_inside((x[axis] - params.domain_min[axis]) * scale);
         }
-        if ((params.closed >> (2u * axis + 1u) & 1u) == 1u) {
+        if (((params.closed >> (2u * axis + 1u)) & 1u) == 1u) {
             part *= part_inside((params.domain_max[axis] - x[axis]) * scale);
         }
     }

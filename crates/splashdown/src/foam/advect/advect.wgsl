@@ -59,12 +59,12 @@ fn advect(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
         let low = params.domain_min[axis];
         let high = params.domain_max[axis];
         if (x[axis] <= low) {
-            is_in = is_in && (params.closed >> (2u * axis) & 1u) == 1u;
+            is_in = is_in && ((params.closed >> (2u * axis)) & 1u) == 1u;
             touches = true;
             x[axis] = low;
             u[axis] = max(u[axis], 0.0);
         } else if (x[axis] >= high) {
-            is_in = is_in && (params.closed >> (2u * axis + 1u) & 1u) == 1u;
+            is_in = is_in && ((params.closed >> (2u * axis + 1u)) & 1u) == 1u;
             touches = true;
             x[axis] = high;
             u[axis] = min(u[axis], 0.0);

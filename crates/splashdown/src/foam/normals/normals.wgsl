@@ -38,8 +38,8 @@ fn foam_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_work
     let share = params.particle_spacing * scale;
     var n = share * share * share * scale * sum;
     for (var axis = 0u; axis < 3u; axis++) {
-        let low = (params.closed >> (2u * axis) & 1u) == 1u && x[axis] - params.domain_min[axis] < params.support_radius;
-        let high = (params.closed >> (2u * axis + 1u) & 1u) == 1u && params.domain_max[axis] - x[axis] < params.support_radius;
+        let low = ((params.closed >> (2u * axis)) & 1u) == 1u && x[axis] - params.domain_min[axis] < params.support_radius;
+        let high = ((params.closed >> (2u * axis + 1u)) & 1u) == 1u && params.domain_max[axis] - x[axis] < params.support_radius;
         if ((low && n[axis] < 0.0) || (high && n[axis] > 0.0)) {
             n[axis] = 0.0;
         }
