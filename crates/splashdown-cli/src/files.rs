@@ -5,8 +5,8 @@ use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use splashdown::Frame;
 use splashdown::scene::{Choice, Format, PictureKind, Scene};
+use splashdown::{DiffuseKind, Frame};
 use splashdown_io::usd::{MeshSeries, PointSeries};
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile, pvd};
 
@@ -124,11 +124,19 @@ impl Files {
     pub fn submit(&mut self, frame: &Frame, pictures: Vec<PathBuf>) -> Result<(), IoError> {
         let mut jobs = Vec::new();
         let mut files = Vec::new();
+        let kinds =
+            frame.foam.iter().flat_map(|foam| DiffuseKind::ALL.map(|(kind, name)| (foam, kind, name)));
+        let diffuse: Vec<_> = kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind)))).collect();
         for format in &self.tracker.formats {
             if format.has_particles() && format.is_numbered() {
                 let path = self.tracker.layout.particles(frame.index, format.name());
                 files.push(path.clone());
                 jobs.push(Job::Particles(path, Arc::clone(&frame.particles)));
+                for (name, particles) in &diffuse {
+                    let path = self.tracker.layout.diffuse(name, frame.index, format.name());
+                    files.push(path.clone());
+                    jobs.push(Job::Particles(path, Arc::clone(particles)));
+                }
             }
             if let (true, true, Some(mesh)) = (format.has_surface(), format.is_numbered(), &frame.mesh) {
                 let path = self.tracker.layout.mesh(frame.index, format.name());

@@ -17,7 +17,7 @@ pub struct Layout {
 
 /// Folders below the root, with the stems and endings of the numbered files that a run writes there.
 const FOLDERS: [(&str, &[&str], &[&str]); 3] = [
-    ("particles", &["particles"], &["ply", "vtu", "vtk", "bgeo", "npz"]),
+    ("particles", &["particles", "spray", "foam", "bubbles"], &["ply", "vtu", "vtk", "bgeo", "npz"]),
     ("mesh", &["surface"], &["ply", "obj", "vtk", "stl", "glb"]),
     ("pictures", &["surface", "particles"], &["png"]),
 ];
@@ -50,6 +50,11 @@ impl Layout {
     /// Particles of a frame.
     pub fn particles(&self, frame: u32, ending: &str) -> PathBuf {
         self.numbered("particles", "particles", frame, ending)
+    }
+
+    /// Spray, foam or bubbles of a frame.
+    pub fn diffuse(&self, name: &str, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("particles", name, frame, ending)
     }
 
     /// The surface of a frame.

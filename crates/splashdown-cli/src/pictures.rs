@@ -6,12 +6,12 @@ use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
 use splashdown::scene::{PictureKind, Scene};
-use splashdown::{BodyMesh, BodyState};
+use splashdown::{BodyMesh, BodyState, DiffuseParticles};
 use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture, picture};
 use splashdown_render::{
-    Colouring, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
-    SurfaceStyle, UploadedBodies, UploadedParticles, UploadedSurface,
+    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
+    Renderer, SurfaceStyle, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 use splashdown_viewer::stage;
 
@@ -44,6 +44,7 @@ struct Drawn {
     time: f64,
     particles: Arc<Particles>,
     mesh: Option<Arc<Mesh>>,
+    foam: Option<Arc<DiffuseParticles>>,
     bodies: Arc<[BodyState]>,
 }
 
@@ -153,6 +154,7 @@ impl Pictures {
             time: frame.time,
             particles: Arc::clone(&frame.particles),
             mesh: frame.mesh.clone(),
+            foam: frame.foam.clone(),
             bodies: Arc::clone(&frame.bodies),
         };
         // A thread that has failed has said why in `failure`.
@@ -248,6 +250,13 @@ impl Artist {
             Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
             None => None,
         };
+        let foam = match &drawn.foam {
+            Some(foam) => {
+                let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
+                Some(UploadedFoam::new(device, &foam.positions, &foam.lifetimes, &foam.ids, &kinds)?)
+            }
+            None => None,
+        };
         let placed = self.bodies.iter().zip(&*drawn.bodies);
         let bodies = (!self.bodies.is_empty()).then(|| {
             UploadedBodies::new(
@@ -258,6 +267,10 @@ impl Artist {
         let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
         let empty = Frame {
             bodies: bodies.as_ref().map(UploadedBodies::buffers),
+            foam: foam.as_ref().map(|foam| DrawnFoam {
+                buffers: foam.buffers(),
+                radius: self.scene.fluid.particle_radius(),
+            }),
             caption: Some(&caption),
             ..Frame::new(stage::camera(&self.scene, drawn.time), stage::domain(&self.scene))
         };

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_render::{
-    Axis, Camera, Colouring, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
-    PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
+    Axis, Camera, Colouring, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
+    Frame, PassTime, PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 
 use crate::engine::Snapshot;
@@ -84,6 +84,7 @@ impl Picture {
         };
         let mut frame = Frame {
             bodies: self.placed.as_ref().map(|placed| placed.uploaded.buffers()),
+            foam: drawn.foam().map(|buffers| DrawnFoam { buffers, radius: scene.fluid.particle_radius() }),
             ..Frame::new(camera, stage::domain(scene))
         };
         match (look.way, drawn.mesh()) {

@@ -65,6 +65,7 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
     set("solver", "wall_friction", a.wall_friction != b.wall_friction, number(b.wall_friction));
     let (a, b) = (&old.surface, &new.surface);
     set("surface", "cell_size", a.cell_size != b.cell_size || old.fluid != new.fluid, number(b.cell_size));
+    set("foam", "enabled", old.foam.enabled != new.foam.enabled, value(new.foam.enabled));
     let rounds = value(i64::from(b.smoothing_iterations));
     set("surface", "smoothing_iterations", a.smoothing_iterations != b.smoothing_iterations, rounds);
 }

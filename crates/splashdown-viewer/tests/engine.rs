@@ -145,6 +145,34 @@ fn both_devices_show_the_same_surface() {
 }
 
 #[test]
+fn foam_is_computed_where_it_is_wanted_and_drawn_in_every_way() {
+    let Some(gpu) = testing::gpu_or_skip("foam_is_computed_where_it_is_wanted_and_drawn_in_every_way") else {
+        return;
+    };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    until(&mut engine, |_| true);
+    let advance = |engine: &Engine| (0..20).for_each(|_| engine.send(Command::Advance(0.02)));
+    advance(&engine);
+    let (without, _) = until(&mut engine, |now| now.stats.time > 0.39);
+    assert!(without.drawn.foam().is_none());
+    let mut foaming = scene();
+    foaming.foam.enabled = true;
+    engine.send(Command::Open(Box::new(foaming)));
+    advance(&engine);
+    let (with, _) = until(&mut engine, |now| now.stats.time > 0.39 && now.drawn.foam().is_some());
+    assert!(with.drawn.foam().is_some_and(|foam| foam.count > 50), "{:?}", with.drawn.foam());
+    for way in Way::ALL.into_iter().filter(|way| !way.needs_surface()) {
+        let drawn = picture(&gpu, &engine, way);
+        let mut picture = Picture::new(Arc::clone(&gpu)).unwrap();
+        let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
+        picture.draw([160, 90], &without, &Look { way, ..Look::default() }, camera).unwrap();
+        let other = picture.read().unwrap();
+        let differing = drawn.chunks_exact(4).zip(other.chunks_exact(4)).filter(|(a, b)| a != b).count();
+        assert!(differing > 20, "{way:?} shows no foam: {differing} pixels");
+    }
+}
+
+#[test]
 fn every_way_shows_the_water() {
     let Some(gpu) = testing::gpu_or_skip("every_way_shows_the_water") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);

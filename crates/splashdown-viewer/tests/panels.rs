@@ -62,6 +62,18 @@ fn buttons_do_what_they_say() {
 }
 
 #[test]
+fn foam_is_a_matter_of_the_scene_and_is_kept_with_it() {
+    let mut window = wide();
+    assert!(!window.state().0.scene.foam.enabled);
+    window.get_by_label("Foam and spray").click();
+    assert_eq!(actions(&mut window), [Action::Change]);
+    let state = &window.state().0;
+    assert!(state.scene.foam.enabled);
+    let text = splashdown_viewer::save::scene(presets()[1].1, &state.scene, &state.orbit).unwrap();
+    assert!(Scene::parse(&text, "kept.toml").unwrap().foam.enabled, "{text}");
+}
+
+#[test]
 fn keys_do_what_the_help_says() {
     let mut window = wide();
     for (key, action) in [

@@ -55,6 +55,32 @@ fn a_run_leaves_complete_frames_and_a_summary() -> Outcome {
 }
 
 #[test]
+fn spray_foam_and_bubbles_have_files_of_their_own() -> Outcome {
+    let place = Place::new()?;
+    let scene = "[scene]\nname = \"foam\"\nduration = 0.5\nframe_rate = 10\n[domain]\nmin = [0, 0, 0]\nmax = [0.8, 0.8, 0.2]\n\
+                 [fluid]\nparticle_spacing = 0.025\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.25, 0.4, 0.2]\n[foam]\nenabled = true\n";
+    let file = place.write("foam.toml", scene)?;
+    let file = file.to_str().ok_or("no name")?;
+    let options =
+        ["--device", "cpu", "--formats", "ply,vtu", "--no-pictures", "--no-surface", "--out", "out"];
+    let output = place.splashdown(&[&["run", file][..], &options].concat()).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let count = |kind: &str, frame: u32| -> Result<usize, Box<dyn std::error::Error>> {
+        assert!(place.path(&format!("out/particles/{kind}_000{frame}.vtu")).exists());
+        let particles = ply::read_particles(&place.path(&format!("out/particles/{kind}_000{frame}.ply")))?;
+        assert_eq!((particles.velocities.len(), particles.ids.len()), (particles.len(), particles.len()));
+        Ok(particles.len())
+    };
+    for kind in ["spray", "foam", "bubbles"] {
+        // A column that stands makes none, one that falls makes some.
+        assert_eq!(count(kind, 0)?, 0);
+        assert!(count(kind, 5)? > 0, "there are no {kind}");
+    }
+    assert_eq!(fs::read_to_string(place.path("out/particles/particles.pvd"))?.matches(".vtu").count(), 6);
+    Ok(())
+}
+
+#[test]
 fn every_json_line_has_every_key() -> Outcome {
     let place = Place::new()?;
     let output = place.run_small(&["--json", "--formats", "ply"]).output()?;

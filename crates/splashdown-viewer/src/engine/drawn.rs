@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use splashdown::Simulation;
 use splashdown::surface::{Surface, SurfaceStats};
+use splashdown::{Foam, Simulation};
 use splashdown_gpu::{Buffer, Executor, Gpu, GpuElement};
-use splashdown_render::{Draw, ParticleBuffers, SurfaceBuffers};
+use splashdown_render::{Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
 use wgpu::BufferUsages as Use;
 
 /// Copies of the particles and, where wanted, of the surface.
@@ -16,6 +16,7 @@ pub struct Drawn {
     densities: wgpu::Buffer,
     count: u32,
     mesh: Option<DrawnMesh>,
+    foam: Option<(wgpu::Buffer, u32)>,
 }
 
 /// The surface: that of the simulation itself, where it is on the device that draws, else a copy.
@@ -38,6 +39,11 @@ impl Drawn {
             densities: &self.densities,
             count: self.count,
         }
+    }
+
+    /// Foam, spray and bubbles, to be drawn.
+    pub fn foam(&self) -> Option<FoamBuffers<'_>> {
+        self.foam.as_ref().map(|(particles, count)| FoamBuffers { particles, count: *count })
     }
 
     /// The surface, to be drawn.
@@ -72,16 +78,18 @@ impl Copies {
         Self { gpu, pool: Vec::new() }
     }
 
-    /// Copies the particles as they are after all work submitted so far, and the surface extracted last.
+    /// Copies the particles as they are after all work submitted so far, the surface extracted last, and so many particles of foam.
     pub fn take(
         &mut self,
         simulation: &mut Simulation,
         surface: Option<(&Surface, SurfaceStats)>,
+        foam: Option<(&Foam, u32)>,
     ) -> Arc<Drawn> {
         let fields = *simulation.fields();
         let count = simulation.params().particle_count;
         let mut old = self.reuse();
         let mut mesh = old.as_mut().and_then(|drawn| drawn.mesh.take());
+        let old_foam = old.as_mut().and_then(|drawn| drawn.foam.take());
         let mut copy = Copy {
             gpu: &self.gpu,
             encoder: self
@@ -102,6 +110,10 @@ impl Copies {
             velocities: copy.take(fields.velocities, n, v, Use::STORAGE),
             densities: copy.take(fields.densities, n, d, Use::STORAGE),
             count,
+            foam: foam.map(|(foam, count)| {
+                let old = old_foam.map(|(old, _)| old);
+                (copy.take(foam.pool(), count as usize, old, Use::STORAGE), count)
+            }),
             mesh: surface.map(|(surface, stats)| {
                 if let Some(own) = shared(copy.executor, surface, stats) {
                     return own;

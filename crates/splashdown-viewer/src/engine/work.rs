@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use splashdown::scene::Scene;
 use splashdown::surface::{Surface, SurfaceStats};
-use splashdown::{BodyMesh, Checkpoint, Device, Hand, Simulation, SimulationError};
+use splashdown::{BodyMesh, Checkpoint, Device, Foam, Hand, KeptFoam, Simulation, SimulationError};
 use splashdown_gpu::{Executor, Gpu, GpuExecutor, Timings};
 use web_time::Instant;
 
@@ -36,6 +36,9 @@ pub(super) struct Worker {
     copies: Copies,
     simulation: Option<Simulation>,
     surface: Option<Surface>,
+    foam: Option<Foam>,
+    /// Foam of the simulation before, to go on with.
+    kept: Option<KeptFoam>,
     opened: Option<Arc<Opened>>,
     playing: bool,
     wants_surface: bool,
@@ -120,6 +123,8 @@ impl Worker {
             repaint,
             simulation: None,
             surface: None,
+            foam: None,
+            kept: None,
             opened: None,
             playing: false,
             wants_surface: false,
@@ -219,12 +224,14 @@ impl Worker {
     async fn open(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let (executor, told) = self.make_room()?;
         let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
+        self.kept = None;
         self.begin(simulation).await
     }
 
     async fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), SimulationError> {
         let (executor, told) = self.make_room()?;
         let simulation = Simulation::resume_async(checkpoint, executor, &told).await?;
+        self.kept = checkpoint.foam()?;
         self.begin(simulation).await
     }
 
@@ -245,7 +252,10 @@ impl Worker {
 
     async fn checkpoint(&mut self, text: &str, purpose: Purpose) -> Result<(), SimulationError> {
         let Some(simulation) = &mut self.simulation else { return Ok(()) };
-        let checkpoint = Box::new(simulation.checkpoint_async(text).await?);
+        let mut checkpoint = Box::new(simulation.checkpoint_async(text).await?);
+        if let (Some(foam), true) = (&self.foam, simulation.scene().foam.enabled) {
+            checkpoint.set_foam(&simulation.keep_foam_async(foam).await?);
+        }
         lock(&lock(&self.outbox).messages).push(Message::Checkpoint(checkpoint, purpose));
         (self.repaint)();
         Ok(())
@@ -254,7 +264,12 @@ impl Worker {
     async fn change(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let Some(simulation) = &mut self.simulation else { return self.open(scene).await };
         let surface_differs = simulation.scene().surface != scene.surface;
+        let foam_differs = simulation.scene().foam != scene.foam;
         if simulation.adopt(&scene)? {
+            if foam_differs && let Some(foam) = &self.foam {
+                // Old foam would be where the water was then.
+                foam.clear(simulation.executor())?;
+            }
             if surface_differs {
                 self.surface = None;
             }
@@ -264,6 +279,10 @@ impl Worker {
             return self.show().await;
         }
         let next = simulation.carry_over_async(&scene).await?;
+        self.kept = match &self.foam {
+            Some(foam) if simulation.scene().foam.enabled => Some(simulation.keep_foam_async(foam).await?),
+            _ => None,
+        };
         self.begin(next).await
     }
 
@@ -275,6 +294,7 @@ impl Worker {
         simulation.set_hand(self.hand)?;
         self.simulation = Some(simulation);
         self.surface = None;
+        self.foam = None;
         self.grip = None;
         self.pace.forget();
         self.meter = Meter::new();
@@ -300,6 +320,9 @@ impl Worker {
         }
         let before = simulation.stats();
         let stats = simulation.advance_async(seconds).await?;
+        if let (Some(foam), true) = (&self.foam, simulation.scene().foam.enabled) {
+            simulation.advance_foam(foam)?;
+        }
         let steps = (stats.steps - before.steps) as u32;
         let told = simulation.take_warnings();
         lock(&lock(&self.outbox).messages).extend(told.into_iter().map(Message::Note));
@@ -329,8 +352,23 @@ impl Worker {
                 extracted = Some(simulation.extract_async(surface).await?);
             }
         }
+        let mut foam = None;
+        if simulation.scene().foam.enabled {
+            if self.foam.is_none() {
+                let settings = simulation.scene().foam;
+                let new = simulation.foam(&settings)?;
+                if let Some(kept) = self.kept.take() {
+                    simulation.restore_foam(&new, &kept)?;
+                }
+                self.foam = Some(new);
+            }
+            if let Some(there) = &mut self.foam {
+                let count = simulation.foam_state_async(there).await?.count;
+                foam = Some((&*there, count));
+            }
+        }
         let bodies = simulation.body_states_async().await?;
-        let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted));
+        let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted), foam);
         let snapshot = Snapshot {
             opened: Arc::clone(opened),
             stats: simulation.stats(),

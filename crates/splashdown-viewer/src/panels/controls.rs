@@ -17,9 +17,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
         section(ui, "Play", |ui| play(ui, state, actions));
         section(ui, "Solver", |ui| solver(ui, state, actions));
-        if state.look.way != Way::Fluid {
-            section(ui, "Look", |ui| look(ui, state, actions));
-        }
+        section(ui, "Look", |ui| look(ui, state, actions));
         section(ui, "Keep", |ui| keep(ui, state, actions));
     });
 }
@@ -163,6 +161,12 @@ fn name(method: Method) -> &'static str {
 }
 
 fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let foam = ui.checkbox(&mut state.scene.foam.enabled, "Foam and spray").on_hover_text(
+        "What a splash makes beside water: spray in the air, foam on it, bubbles in it (Ihmsen et al. 2012)",
+    );
+    if foam.changed() {
+        actions.push(Action::Change);
+    }
     let look = &mut state.look;
     if look.way.has_colours() {
         ui.horizontal(|ui| {

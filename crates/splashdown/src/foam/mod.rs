@@ -13,6 +13,9 @@
 //! potentials do not depend on the resolution, and their limits are parts of the scene's [reference
 //! speed](crate::scene::Derived::reference_speed): a dam break in a glass and one in a valley that are alike foam alike.
 //!
+//! *What it costs.* A dam break of 28,000 particles over 1.5 s, with up to 18,000 diffuse ones, on two cores: 2.9 % of the steps' time, half of that for the
+//! potentials.
+//!
 //! *Why not* in the step: 16 steps are one to the foam. *Why not* a ring of particles, the oldest overwritten: foam would vanish where it has always been,
 //! while spray of a moment ago stayed. When there is no room fewer are born, evenly everywhere, and it is told.
 
@@ -34,6 +37,7 @@ use splashdown_gpu::bytemuck::Zeroable;
 use splashdown_gpu::compact::Compact;
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+use splashdown_io::Particles;
 
 use crate::SimulationError;
 use crate::cells::Cells;
@@ -308,6 +312,17 @@ impl DiffuseParticles {
     /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+
+    /// Those of a kind, with ids, positions and velocities.
+    pub fn of_kind(&self, kind: DiffuseKind) -> Particles {
+        let of_kind = || (0..self.len()).filter(|&i| self.kinds[i] == kind);
+        Particles {
+            ids: of_kind().map(|i| self.ids[i]).collect(),
+            positions: of_kind().map(|i| self.positions[i]).collect(),
+            velocities: of_kind().map(|i| self.velocities[i]).collect(),
+            ..Particles::default()
+        }
     }
 
     /// How many there are of a kind.

@@ -99,6 +99,12 @@ pub enum DiffuseKind {
     Bubble = 2,
 }
 
+impl DiffuseKind {
+    /// All kinds, with what several of them are called.
+    pub const ALL: [(Self, &'static str); 3] =
+        [(Self::Spray, "spray"), (Self::Foam, "foam"), (Self::Bubble, "bubbles")];
+}
+
 impl Diffuse {
     /// What it is.
     pub fn kind(&self) -> DiffuseKind {

@@ -546,7 +546,7 @@ static FOAM: Table = Table {
             Kind::Numbers(2, range(0.0, 10.0, "")),
             "Speed at which water meets water, over the scene's reference speed: none below the first, all above the second.",
         )
-        .default("[0.05, 0.25]"),
+        .default("[0.07, 0.25]"),
         key(
             "wave_crest_limits",
             Kind::Numbers(2, range(0.0, 10.0, "")),

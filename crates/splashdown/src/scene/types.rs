@@ -452,7 +452,7 @@ impl Default for FoamSettings {
             enabled: false,
             trapped_air: 200.0,
             wave_crest: 1000.0,
-            trapped_air_limits: [0.05, 0.25],
+            trapped_air_limits: [0.07, 0.25],
             wave_crest_limits: [0.1, 0.5],
             speed_limits: [0.2, 0.7],
             lifetime: [2.0, 5.0],

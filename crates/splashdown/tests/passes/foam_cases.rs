@@ -626,7 +626,7 @@ fn emit(name: &'static str, share: u32) -> Case {
     let pool = diffuse(&world, kept + born + 20);
     let mut expected = numbers(&words(&pool));
     let mut edge = vec![false; pool.len()];
-    let radius = f64::from(SPACING) / 2.0;
+    let radius = f64::from(SPACING);
     for i in 0..living {
         for turn in 0..counts[i] {
             let m = starts[i] + turn;

@@ -64,12 +64,11 @@ fn newborn(
     let e1 = along.cross(if along.y.abs() > 0.9 { Vec3::X } else { Vec3::Y });
     let e1 = e1 / e1.length();
     let e2 = along.cross(e1);
-    let radius = 0.5 * params.particle_spacing;
     let s = seed_of(id, now.step).wrapping_add(4 * turn);
     let random = |k: u32| unit(s.wrapping_add(k));
     let (sin, cos) = (std::f32::consts::TAU * random(2)).sin_cos();
     let across = random(1).sqrt() * (cos * e1 + sin * e2);
-    let x = around.positions[i].xyz() + radius * across + (random(3) - 0.5) * now.dt * v;
+    let x = around.positions[i].xyz() + params.particle_spacing * across + (random(3) - 0.5) * now.dt * v;
     let x = x.clamp(params.domain_min, params.domain_max);
     let kind = foam.kind_of(around.at(x).neighbours, false);
     Diffuse {

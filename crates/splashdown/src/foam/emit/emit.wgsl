@@ -36,7 +36,6 @@ fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgro
     // Any direction across; the y axis is one if the motion is not along it.
     let e1 = normalize(cross(along, select(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), abs(along.y) > 0.9)));
     let e2 = cross(along, e1);
-    let radius = 0.5 * params.particle_spacing;
     let seed = seed_of(sorted_ids[i], foam_state.step);
     for (var m = first; m < last; m++) {
         let place = place_of(m, foam_state.share);
@@ -47,7 +46,7 @@ fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgro
         let r = sqrt(unit(s + 1u));
         let angle = 6.2831853 * unit(s + 2u);
         let across = r * (cos(angle) * e1 + sin(angle) * e2);
-        var x = sorted_positions[i].xyz + radius * across + (unit(s + 3u) - 0.5) * foam_state.dt * v;
+        var x = sorted_positions[i].xyz + params.particle_spacing * across + (unit(s + 3u) - 0.5) * foam_state.dt * v;
         x = clamp(x, params.domain_min, params.domain_max);
         let lifetime = foam.lifetime_least + foam.lifetime_range * unit(s + 4u);
         let kind = kind_of(surroundings(x).neighbours, false);

@@ -1,7 +1,8 @@
-//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the fluid's particle that is as wide as the particle and as
+//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the fluid's particle with a radius of one spacing and as
 //! long as its way in this time step, with its velocity and a little more away from the cylinder's axis.
 //!
-//! The paper's cylinder lies before the particle; here its middle is the particle's place.
+//! The paper's cylinder is half as wide, which leaves clumps where a particle makes many, and lies before the particle; here its middle is the
+//! particle's place.
 
 mod cpu;
 
