@@ -105,6 +105,7 @@ fn it_has_the_same_bits_every_time() {
     // Coarse: a software driver takes milliseconds for each step.
     let mut scene = scene(COLUMN);
     scene.fluid.particle_spacing = 0.04;
+    (scene.foam.trapped_air, scene.foam.wave_crest) = (2000.0, 10_000.0);
     let run = |executor: Executor, pause: bool| -> DiffuseParticles {
         let (mut simulation, mut foam) = start(&scene, executor);
         if pause {
