@@ -365,7 +365,7 @@ pub struct BenchArguments {
     pub particles: Vec<u32>,
     #[command(flatten)]
     pub device: DeviceArgument,
-    /// Steps to measure [default: as many as take about two seconds, at least 10]
+    /// Steps to measure [default: as many as take about two seconds]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
     /// Solver to measure: wcsph or mueller2003

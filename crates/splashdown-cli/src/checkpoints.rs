@@ -97,9 +97,7 @@ pub fn find(path: &Path) -> Result<Found, Failure> {
     let refuse = |message: String| Failure::new(Exit::Files, message);
     if path.is_file() {
         let checkpoint = Checkpoint::read(path)?;
-        let folder = path.parent().filter(|folder| folder.ends_with(Layout::CHECKPOINTS));
-        let root = folder.map(|folder| folder.parent().unwrap_or(Path::new("")).to_owned());
-        return Ok(Found { checkpoint, root, passed_over: Vec::new() });
+        return Ok(Found { checkpoint, root: root_of(path), passed_over: Vec::new() });
     }
     if !path.is_dir() {
         let message = format!(
@@ -122,6 +120,19 @@ pub fn find(path: &Path) -> Result<Found, Failure> {
         reasons => reasons.join("; "),
     };
     Err(refuse(format!("--resume: no checkpoint in `{}` can be used: {reason}", path.display())))
+}
+
+/// The output folder that a checkpoint lies in, if it lies in one.
+fn root_of(checkpoint: &Path) -> Option<PathBuf> {
+    let folder = checkpoint.parent()?;
+    if folder.ends_with(Layout::CHECKPOINTS) {
+        let root = folder.parent()?;
+        return Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root.to_owned() });
+    }
+    // As seen from inside the folder of the checkpoints.
+    let whole = checkpoint.canonicalize().ok()?;
+    let folder = whole.parent().filter(|folder| folder.ends_with(Layout::CHECKPOINTS))?;
+    folder.parent().map(Path::to_owned)
 }
 
 /// Removes what a run that was killed left half-written below its folder.

@@ -39,6 +39,16 @@ impl Layout {
         Self { root, digits: frames.to_string().len().max(4) }
     }
 
+    /// Names with this many digits.
+    pub fn with_digits(root: PathBuf, digits: usize) -> Self {
+        Self { root, digits: digits.clamp(4, 10) }
+    }
+
+    /// The digits of the frames' numbers.
+    pub fn digits(&self) -> usize {
+        self.digits
+    }
+
     /// The folder of the checkpoints.
     pub const CHECKPOINTS: &str = "checkpoints";
 

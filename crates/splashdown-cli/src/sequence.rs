@@ -64,7 +64,7 @@ pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
         .zip(&numbers)
         .map(|(input, number)| Step { input, output: output(number) })
         .collect();
-    match steps.iter().find(|step| steps.iter().any(|other| other.input == step.output)) {
+    match steps.iter().find(|step| steps.iter().any(|other| is_same(&other.input, &step.output))) {
         Some(step) => {
             let file = step.output.display();
             Err(Failure::new(
@@ -73,6 +73,14 @@ pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
             ))
         }
         None => Ok(steps),
+    }
+}
+
+/// Whether two paths name one file, however they are spelled.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
     }
 }
 

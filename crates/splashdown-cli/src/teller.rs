@@ -77,6 +77,9 @@ impl Teller {
             human::bytes(started.memory),
             started.device
         ));
+        if started.time > 0.0 {
+            self.note(&format!("Going on after frame {}, at {:.4} s.", started.first_frame, started.time));
+        }
         self.report.device = Some(started.device.clone());
         self.line(&Line::started(started));
     }
@@ -157,7 +160,7 @@ impl Teller {
                 let triangles = self.last.as_ref().and_then(|frame| frame.account.triangles);
                 self.line(&Line::finished(numbers, triangles, names));
                 if timing {
-                    self.say(&format!("\n{}", summary::passes(&numbers.timings, numbers.stats.steps)));
+                    self.say(&format!("\n{}", summary::passes(&numbers.timings, numbers.steps)));
                 }
                 self.say(&format!("\nFinished.\n{}", summary::numbers(numbers)));
                 self.say(&format!("\n{}", summary::files(layout.root(), files, films)));
@@ -176,7 +179,9 @@ impl Teller {
         let left = match self.report.complete_frames {
             0 => "No frame was completed.".to_owned(),
             count => {
-                format!("{count} frames (0 to {}) are complete in {}.", count - 1, layout.root().display())
+                let last = self.last_complete().unwrap_or(count as u32 - 1);
+                let first = u64::from(last) + 1 - count as u64;
+                format!("{count} frames ({first} to {last}) are complete in {}.", layout.root().display())
             }
         };
         match self.can_go_on {

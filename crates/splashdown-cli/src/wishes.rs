@@ -27,6 +27,8 @@ pub struct Wishes {
     pub no_film: bool,
     /// Frames between two checkpoints.
     pub checkpoint_every: Option<u32>,
+    /// Digits of the frames' numbers in the names of files.
+    pub digits: Option<usize>,
     /// Bytes in the files of the probes, in the order of the scene, at the checkpoint.
     pub probe_bytes: Vec<u64>,
 }
@@ -54,6 +56,7 @@ impl Wishes {
             no_pictures: arguments.no_pictures,
             no_film: arguments.no_film,
             checkpoint_every: arguments.checkpoint_every,
+            digits: None,
             probe_bytes: Vec::new(),
         })
     }
@@ -72,6 +75,7 @@ impl Wishes {
             pictures: self.pictures.or(before.pictures),
             no_film: self.no_film || before.no_film,
             checkpoint_every: self.checkpoint_every.or(before.checkpoint_every),
+            digits: before.digits,
             probe_bytes: before.probe_bytes,
         }
     }

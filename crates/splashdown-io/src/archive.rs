@@ -141,11 +141,21 @@ impl Archive {
         let mut zip = ZipArchive::new(Cursor::new(bytes))
             .map_err(|error| format!("it was cut short or damaged ({error})"))?;
         let mut entries = BTreeMap::new();
+        let too_large = || "its entries are packed, or larger than the file".to_owned();
+        let mut total = 0_u64;
         for index in 0..zip.len() {
             let mut entry = zip.by_index(index).map_err(|error| format!("an entry is damaged ({error})"))?;
             let name = entry.name().map_err(|error| format!("an entry has no name ({error})"))?.into_owned();
-            // An entry may claim any size; it is stored, and so no larger than the file.
-            let mut content = Vec::with_capacity((entry.size() as usize).min(bytes.len()));
+            // Packed entries, and entries that overlap, could be far larger than the file.
+            total = entry
+                .size()
+                .checked_add(total)
+                .filter(|&total| total <= bytes.len() as u64)
+                .ok_or_else(too_large)?;
+            if entry.compression() != CompressionMethod::Stored {
+                return Err(too_large());
+            }
+            let mut content = Vec::with_capacity(entry.size() as usize);
             entry
                 .read_to_end(&mut content)
                 .map_err(|error| format!("its entry `{name}` is damaged ({error})"))?;
@@ -188,7 +198,8 @@ fn numbers<T: NpyElement>(bytes: &[u8]) -> Result<Vec<T>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::Archive;
+    use super::{Archive, CompressionMethod, SimpleFileOptions};
+    use std::io::Write;
 
     fn sample() -> Archive {
         let mut archive = Archive::default();
@@ -223,6 +234,16 @@ mod tests {
         let mut changed = bytes.clone();
         changed[data] ^= 1;
         assert!(Archive::from_bytes(&changed).is_err_and(|reason| reason.contains("positions")));
+        // A packed entry unpacks to more than there is.
+        let mut packed = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+        let write = |zip: &mut zip::ZipWriter<_>| {
+            zip.start_file("zeros", options)?;
+            zip.write_all(&vec![0; 1 << 20])
+        };
+        write(&mut packed).map_err(|error| error.to_string())?;
+        let packed = packed.finish().map_err(|error| error.to_string())?.into_inner();
+        assert!(Archive::from_bytes(&packed).is_err_and(|reason| reason.contains("packed")));
         assert!(Archive::from_bytes(b"ply\n").is_err_and(|reason| reason.contains("begin")));
         Ok(())
     }

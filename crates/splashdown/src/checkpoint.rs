@@ -46,6 +46,11 @@ pub enum CheckpointError {
     /// Its scene cannot be read any more.
     #[error("the scene in the checkpoint cannot be used: {0}")]
     Scene(#[from] SceneErrors),
+    /// A mesh of an emitter or a sink has changed.
+    #[error(
+        "the mesh of an outlet or a sink is not the one of the checkpoint: put the old file back, or run the scene anew"
+    )]
+    FlowChanged,
     /// A file that the scene names has changed.
     #[error(
         "body {body:?} is not the one of the checkpoint: its mesh had {then}, now it has {now}. Put the old mesh back, or run the \
@@ -86,6 +91,35 @@ pub(crate) struct HostState {
     /// Emitters of which it was told that they found no room.
     pub told: Vec<bool>,
     pub bodies: Vec<BodyKey>,
+    /// Of the meshes of outlets and sinks.
+    pub flow: u64,
+}
+
+impl HostState {
+    /// What no simulation can have told of itself.
+    fn check(&self) -> Result<(), &'static str> {
+        let Self { stats, stable_dt, sound_speed, initial, capacity, .. } = self;
+        let is_positive = |x: f32| x.is_finite() && x > 0.0;
+        let is_time = stats.time.is_finite() && stats.time >= 0.0;
+        if !(is_time && is_positive(*stable_dt) && is_positive(*sound_speed)) {
+            return Err("its time, its time step or its speed of sound is no positive number");
+        }
+        let (made, gone) = (
+            u64::from(*initial) + u64::from(stats.emitted),
+            u64::from(stats.escaped) + u64::from(stats.drained) + u64::from(stats.non_finite),
+        );
+        let there = made.checked_sub(gone) == Some(u64::from(stats.particles));
+        if !there || initial > capacity || stats.particles > *capacity || stats.steps > 1 << 60 {
+            return Err("its counts of particles contradict one another");
+        }
+        Ok(())
+    }
+}
+
+/// By what a mesh is known again: FNV-1a over its bytes.
+pub(crate) fn hash(bytes: &[u8]) -> u64 {
+    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
 }
 
 /// By what a body is known again.
@@ -96,12 +130,14 @@ pub(crate) struct BodyKey {
     pub triangles: usize,
     /// Of the repaired mesh in m^3.
     pub volume: f32,
+    /// Of its vertices and triangles.
+    pub hash: u64,
 }
 
 impl std::fmt::Display for BodyKey {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { vertices, triangles, volume, .. } = self;
-        write!(f, "{vertices} vertices, {triangles} triangles and {volume:.6e} m^3")
+        let Self { vertices, triangles, volume, hash, .. } = self;
+        write!(f, "{vertices} vertices, {triangles} triangles, {volume:.4e} m^3 and the hash {hash:016x}")
     }
 }
 
@@ -240,7 +276,28 @@ impl Checkpoint {
     }
 
     pub(crate) fn host(&self) -> Result<HostState, CheckpointError> {
-        self.get("host.bin")
+        let host: HostState = self.get("host.bin")?;
+        host.check().map_err(|reason| CheckpointError::Malformed(reason.to_owned()))?;
+        Ok(host)
+    }
+
+    /// Whether it can be gone on from, as far as that can be told without doing it.
+    ///
+    /// # Errors
+    /// [`CheckpointError`].
+    pub fn check(&self) -> Result<(), CheckpointError> {
+        self.scene()?;
+        let n = self.host()?.capacity as usize;
+        for (name, columns) in [("positions", 4), ("velocities", 4), ("densities", 2)] {
+            self.numbers::<f32>(name, columns * n)?;
+        }
+        self.numbers::<u32>("ids", n)?;
+        self.foam()?;
+        Ok(())
+    }
+
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.archive.bytes(name).is_ok()
     }
 
     /// Puts foam in beside the simulation that made it.

@@ -1,6 +1,6 @@
 //! `splashdown run`: one loop over the library's stream of events.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -83,12 +83,21 @@ impl Session {
         let old_root = found.as_ref().and_then(|found| found.root.clone());
         let root = arguments.out.clone().or_else(|| old_root.clone());
         let root = root.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
-        let in_place = old_root.is_some_and(|old| old == root);
-        let layout = Layout::new(root, options.frames.unwrap_or_else(|| scene.frame_count()));
+        let in_place = old_root.is_some_and(|old| is_same(&old, &root));
+        let frames = options.frames.unwrap_or_else(|| scene.frame_count());
+        let layout = match (in_place, wishes.digits) {
+            // The names go on as they began.
+            (true, Some(digits)) => Layout::with_digits(root, digits),
+            _ => Layout::new(root, frames),
+        };
+        wishes.digits = Some(layout.digits());
         let report = Report::begin(&scene);
         let mut teller = Teller::new(arguments.json, arguments.verbosity.level(), report);
         for warning in &scene.warnings {
             teller.warn(&warning.to_string());
+        }
+        if found.is_some() {
+            warn_of_changes(&scene, &teller);
         }
         for reason in found.iter().flat_map(|found| &found.passed_over) {
             teller.warn(&format!("a checkpoint was passed over: {reason}"));
@@ -105,6 +114,13 @@ impl Session {
             Some(found) => Run::resume(&found.checkpoint, &scene, options)?,
             None => Run::new(&scene, options)?,
         };
+        if found.is_some() && run.first_frame() >= frames {
+            let done = run.first_frame();
+            let message = format!(
+                "--resume: frame {done} is done already and the run ends with frame {frames}: give --frames a larger number to make it longer"
+            );
+            return Err(Failure::new(Exit::Usage, message));
+        }
         let begins = if in_place { Some(run.first_frame()) } else { None };
         if let Some(frame) = begins {
             teller.resumed(frame as usize + 1);
@@ -314,6 +330,27 @@ impl Session {
         }
         let films = finish_films(&films, &teller);
         teller.close(&layout, &ended.files, &films, failure, timing)
+    }
+}
+
+/// Whether two paths name one folder, however they are spelled.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// A checkpoint goes on with the scene that is in it, whatever has become of the file since.
+fn warn_of_changes(scene: &Scene, teller: &Teller) {
+    let Some(path) = &scene.source else { return };
+    if let Ok(text) = std::fs::read_to_string(path)
+        && *text != *scene.text
+    {
+        let file = path.display();
+        teller.warn(&format!(
+            "`{file}` has changed since; the run goes on with the scene as it was. Run it anew for the changes"
+        ));
     }
 }
 

@@ -151,7 +151,8 @@ fn draw_panel<DB: DrawingBackend>(
 
 /// The range of the finite numbers with a margin on both sides; something around the only number, or 0 to 1.
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
-    let finite = values.filter(|value| value.is_finite());
+    // What is larger could not be told apart in a picture, and its range would be infinite.
+    let finite = values.filter(|value| value.is_finite() && value.abs() < 1e300);
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
     if low > high {
         return 0.0..1.0;
@@ -236,6 +237,7 @@ mod tests {
     #[test]
     fn ranges_and_labels_are_readable() {
         assert_eq!(range([f64::NAN].into_iter(), 0.1), 0.0..1.0);
+        assert_eq!(range([1e308, -1e308].into_iter(), 0.1), 0.0..1.0);
         assert_eq!(range([2.0, 2.0].into_iter(), 0.1), 1.8..2.2);
         assert_eq!(label(0.30000000000000004, 1.0), "0.30");
         assert_eq!(label(1e-18, 1.0), "0.00");

@@ -164,6 +164,18 @@ fn what_cannot_be_gone_on_from_is_told() -> Outcome {
     assert_refused(&both, 2, &["cannot be used with"]);
     assert_refused(&place.splashdown(&["run"]).output()?, 2, &["SCENE"]);
 
+    // A run that is done is not begun anew, whatever its folder is called.
+    let done = place.run_small(&["--checkpoint-every", "1"]).output()?;
+    assert!(done.status.success(), "{}", stderr(&done));
+    let shorter =
+        place.splashdown(&["run", "--resume", "out", "--out", "./out", "--frames", "2"]).output()?;
+    assert_refused(&shorter, 2, &["frame 2 is done already", "--frames"]);
+    let longer = place.splashdown(&["run", "--resume", "out", "--out", "./out", "--frames", "3"]).output()?;
+    assert!(longer.status.success() && stderr(&longer).contains("after frame 2"), "{}", stderr(&longer));
+    for frame in 0..=3 {
+        assert!(place.path(&format!("out/particles/particles_000{frame}.ply")).exists(), "frame {frame}");
+    }
+
     // A checkpoint that was cut short is passed over for the one before it; alone it is refused.
     let output = place.run_small(&["--frames", "4", "--checkpoint-every", "2"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));

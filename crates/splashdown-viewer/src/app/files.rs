@@ -86,6 +86,8 @@ impl Viewer {
 
     /// Goes on from a checkpoint, at its time.
     pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), String> {
+        // What runs is let go only for what can be gone on from.
+        checkpoint.check().map_err(|error| error.to_string())?;
         let scene = checkpoint.scene().map_err(|error| error.to_string())?;
         self.text = scene.text.to_string();
         self.state.open(scene);

@@ -30,7 +30,7 @@ use splashdown_io::{Mesh, Particles};
 use crate::SimulationError;
 use crate::boundary::KernelPair;
 use crate::cells::Cells;
-use crate::checkpoint::{BodyKey, CheckpointError};
+use crate::checkpoint::{BodyKey, CheckpointError, hash};
 use crate::fields::Fields;
 use crate::passes::Params;
 use crate::scene::{Domain, Script};
@@ -324,6 +324,8 @@ impl Bodies {
                 vertices: mesh.vertices.len(),
                 triangles: mesh.triangles.len(),
                 volume: mesh.volume() as f32,
+                hash: hash(bytemuck::cast_slice(&mesh.vertices))
+                    ^ hash(bytemuck::cast_slice(&mesh.triangles)).rotate_left(1),
             })
             .collect()
     }

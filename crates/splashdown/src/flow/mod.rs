@@ -20,6 +20,7 @@ use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recor
 
 use crate::bodies::{BodyError, closed_solid, owner};
 use crate::cells::Cells;
+use crate::checkpoint::hash;
 use crate::fields::Fields;
 use crate::scene::{Scene, Sink, SinkRegion};
 
@@ -69,6 +70,17 @@ impl LoadedFlow {
             loaded.drains.push(drain);
         }
         Ok(loaded)
+    }
+
+    /// By what the emitters and sinks are known again.
+    pub(crate) fn hash(&self) -> u64 {
+        let parts = [
+            hash(bytemuck::cast_slice(&self.nozzles)),
+            hash(bytemuck::cast_slice(&self.points)),
+            hash(bytemuck::cast_slice(&self.drains)),
+            hash(bytemuck::cast_slice(&self.maps)),
+        ];
+        hash(bytemuck::cast_slice(&parts))
     }
 
     /// True if nothing comes or goes.
@@ -133,6 +145,8 @@ pub struct FlowCount {
 /// Emitters and sinks on a device.
 #[derive(Debug)]
 pub struct Flow {
+    /// By what it is known again.
+    hash: u64,
     nozzles: Option<Nozzles>,
     drains: Option<(Buffer<Drain>, Buffer<f32>)>,
 }
@@ -181,7 +195,12 @@ impl Flow {
             let maps = if loaded.maps.is_empty() { &[0.0][..] } else { &loaded.maps };
             Some((executor.create_from("drains", &loaded.drains)?, executor.create_from("drain_maps", maps)?))
         };
-        Ok(Self { nozzles, drains })
+        Ok(Self { hash: loaded.hash(), nozzles, drains })
+    }
+
+    /// By what the emitters and sinks are known again.
+    pub(crate) fn hash(&self) -> u64 {
+        self.hash
     }
 
     /// True if there are emitters.

@@ -145,6 +145,8 @@ pub struct Summary {
     pub stats: Stats,
     /// Frames computed, the initial one not counted.
     pub frames: u32,
+    /// Steps of this run, without those before the checkpoint that it went on from.
+    pub steps: u64,
     /// Wall time of everything, in seconds.
     pub wall: f64,
     /// Wall time spent in steps, in seconds.

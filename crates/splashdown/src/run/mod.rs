@@ -16,7 +16,7 @@ use web_time::Instant;
 use crate::probes::FluidProbes;
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::{Surface, vertex_velocities};
-use crate::{BodyMesh, BodyState, Checkpoint, Foam, Simulation, SimulationError, Stats};
+use crate::{BodyMesh, BodyState, Checkpoint, CheckpointError, Foam, Simulation, SimulationError, Stats};
 
 /// An excess of density that no sound has: something is told of it.
 const DENSE: f32 = 0.3;
@@ -51,6 +51,10 @@ pub struct Run {
     stage: Stage,
     /// The frame that is there when the run starts: 0, or that of a checkpoint.
     first: u32,
+    /// The last frame that was told, or that of the checkpoint.
+    complete: Option<u32>,
+    /// Steps before this run.
+    steps_before: u64,
     /// What is left of the next frame in seconds, if that is not the whole.
     next_duration: Option<f32>,
     scene_text: Arc<str>,
@@ -88,6 +92,9 @@ struct Account {
     particle_volume: f64,
     watched: Vec<bool>,
 }
+
+/// Frames that a run can have.
+const MOST_FRAMES: u32 = 100_000_000;
 
 /// The name of the account in a checkpoint.
 const ACCOUNT: &str = "run.bin";
@@ -144,14 +151,23 @@ impl Run {
             run.simulation.restore_foam(foam, &kept)?;
         }
         let rate = f64::from(scene.frame_rate);
-        let frame = match checkpoint.get::<Option<Account>>(ACCOUNT) {
-            Ok(Some(account)) => {
+        let account = match checkpoint.has(ACCOUNT) {
+            true => checkpoint.get::<Option<Account>>(ACCOUNT)?,
+            false => None,
+        };
+        let frame = match account {
+            Some(account) if account.frame > MOST_FRAMES => {
+                let reason = format!("its frame is {}, more than {MOST_FRAMES}", account.frame);
+                return Err(CheckpointError::Malformed(reason).into());
+            }
+            Some(account) => {
                 let frame = account.frame;
                 run.restore(account);
+                run.complete = Some(frame);
                 frame
             }
             // From a front end without frames. A part in a million does not make one.
-            _ => {
+            None => {
                 let frame = (time * rate + 1e-6).floor();
                 run.next_duration = Some(((frame + 1.0) / rate - time) as f32);
                 frame as u32
@@ -188,6 +204,8 @@ impl Run {
             duration: f64::from(frames) * f64::from(frame_duration),
             stage: Stage::Start,
             first: 0,
+            complete: None,
+            steps_before: simulation.stats().steps,
             next_duration: None,
             scene_text: Arc::clone(&scene.text),
             started,
@@ -294,12 +312,8 @@ impl Run {
             checkpoint.set_foam(&block_on(self.simulation.keep_foam_async(foam))?);
         }
         // Within a frame there is no account of one.
-        let account = match self.stage {
-            Stage::Begin(next) => Some(next - 1),
-            Stage::Finish | Stage::End => Some(self.frames),
-            Stage::Start | Stage::Steps(_) | Stage::Fetch(_) => None,
-        }
-        .map(|frame| Account {
+        let between = !matches!(self.stage, Stage::Steps(_) | Stage::Fetch(_));
+        let account = self.complete.filter(|_| between).map(|frame| Account {
             frame,
             density_error: self.density_error,
             volume: self.volume,
@@ -383,6 +397,7 @@ impl Run {
             self.volume = Some([first, volume]);
         }
         self.stage = self.after(index);
+        self.complete = Some(index);
         self.clock.frames += begun.elapsed();
         // The sum of frames in single precision would read 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
@@ -437,6 +452,7 @@ impl Run {
         Event::Finished(Summary {
             stats,
             frames: self.frames,
+            steps: stats.steps.saturating_sub(self.steps_before),
             wall,
             step_wall,
             frame_wall: self.clock.frames.as_secs_f64(),

@@ -7,6 +7,7 @@ use splashdown_io::{Archive, NpyElement};
 use super::Simulation;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
 use crate::flow::LoadedFlow;
+use crate::passes::Tally;
 use crate::{SimulationError, memory, solver};
 
 impl Simulation {
@@ -47,8 +48,10 @@ impl Simulation {
             removed: self.removed,
             told: Vec::new(),
             bodies: Vec::new(),
+            flow: 0,
         };
         if let Some(flow) = &self.flow {
+            host.flow = flow.hash();
             host.told = flow.told().to_vec();
         }
         if let Some(bodies) = &self.bodies {
@@ -84,6 +87,8 @@ impl Simulation {
         executor: Executor,
         told: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
+        // Before anything is made that is as large as the file says.
+        checkpoint.check()?;
         let scene = checkpoint.scene()?;
         let host = checkpoint.host()?;
         let loaded = Self::load_bodies(&scene, told)?;
@@ -109,6 +114,9 @@ impl Simulation {
         self.params.sound_speed = host.sound_speed;
         self.executor.write(self.fields.params, &[self.params])?;
         if let Some(flow) = &mut self.flow {
+            if flow.hash() != host.flow {
+                return Err(CheckpointError::FlowChanged.into());
+            }
             flow.set_told(&host.told);
         }
         if let Some(bodies) = &mut self.bodies {
@@ -118,6 +126,13 @@ impl Simulation {
         }
         (self.stats, self.stable_dt) = (host.stats, host.stable_dt);
         (self.initial, self.removed) = (host.initial, host.removed);
+        let tally = self.executor.fetch(self.fields.tally).await?;
+        let stats = &self.stats;
+        let told = [stats.escaped, stats.non_finite, stats.drained];
+        if told != [Tally::ESCAPED, Tally::NON_FINITE, Tally::DRAINED].map(|word| tally[word]) {
+            let reason = "its entry `tally` contradicts its counts of particles".to_owned();
+            return Err(CheckpointError::Malformed(reason).into());
+        }
         Ok(())
     }
 
