@@ -170,7 +170,7 @@ async function survivesALostDevice() {
     return now?.time > 0.1 && Date.now() - begun > 15_000 ? now : undefined;
   });
   await page.evaluate(() => window.lastDevice.destroy());
-  await until("the loss", 30, () => page.evaluate(() => document.body.innerText.includes("device was lost")));
+  await until("the loss", 30, () => page.evaluate(() => window.splashdown.restarts() === 1));
   const after = await until("another start", 60, async () => {
     const now = await figures(page).catch(() => undefined);
     return now && !now.lost && now.time > 0 ? now : undefined;
