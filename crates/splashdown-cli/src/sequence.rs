@@ -76,8 +76,8 @@ pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
     }
 }
 
-/// Whether two paths name one file, however they are spelled.
-fn is_same(a: &Path, b: &Path) -> bool {
+/// Whether two paths name one file or folder, however they are spelled.
+pub fn is_same(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => a == b,

@@ -14,6 +14,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
 use crate::error::IoError;
+use crate::npy::{self, Layout};
 
 /// What an array may be made of.
 pub trait NpyElement: bytemuck::AnyBitPattern + bytemuck::NoUninit {
@@ -22,11 +23,11 @@ pub trait NpyElement: bytemuck::AnyBitPattern + bytemuck::NoUninit {
 }
 
 impl NpyElement for f32 {
-    const DESCR: &'static str = "'<f4'";
+    const DESCR: &'static str = "<f4";
 }
 
 impl NpyElement for u32 {
-    const DESCR: &'static str = "'<u4'";
+    const DESCR: &'static str = "<u4";
 }
 
 /// The content of an archive, by name.
@@ -60,7 +61,9 @@ impl Archive {
 
     /// Puts an array of rows of `columns` numbers in, as `name.npy`.
     pub fn set_array<T: NpyElement>(&mut self, name: &str, data: &[T], columns: usize) {
-        self.set_bytes(&format!("{name}.npy"), npy(data, columns));
+        let mut bytes = npy::header(T::DESCR, [data.len() / columns.max(1), columns]);
+        bytes.extend_from_slice(bytemuck::cast_slice(data));
+        self.set_bytes(&format!("{name}.npy"), bytes);
     }
 
     /// The bytes of an entry.
@@ -165,35 +168,15 @@ impl Archive {
     }
 }
 
-/// An array of rows of `columns` numbers, as the content of a file.
-fn npy<T: NpyElement>(data: &[T], columns: usize) -> Vec<u8> {
-    let rows = data.len() / columns.max(1);
-    let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
-    let mut header = format!("{{'descr': {}, 'fortran_order': False, 'shape': {shape}, }}", T::DESCR);
-    // The data begin at a multiple of 64 bytes; the header ends with a line feed.
-    while !(10 + header.len() + 1).is_multiple_of(64) {
-        header.push(' ');
-    }
-    header.push('\n');
-    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    // A header of two numbers is far shorter than 64 KiB.
-    bytes.extend((header.len() as u16).to_le_bytes());
-    bytes.extend(header.as_bytes());
-    bytes.extend_from_slice(bytemuck::cast_slice(data));
-    bytes
-}
-
 /// All numbers of such an array, whatever its shape.
 fn numbers<T: NpyElement>(bytes: &[u8]) -> Result<Vec<T>, String> {
-    let rest = bytes.strip_prefix(b"\x93NUMPY\x01\x00").ok_or("it is not an array")?;
-    let (length, rest) = rest.split_first_chunk().ok_or("it is not an array")?;
-    let length = usize::from(u16::from_le_bytes(*length));
-    let (header, data) = rest.split_at_checked(length).ok_or("it is not an array")?;
-    let header = String::from_utf8_lossy(header);
-    if !header.contains(T::DESCR) || data.len() % size_of::<T>() != 0 {
-        return Err(format!("it is {}, not of type {}", header.trim(), T::DESCR));
+    let (header, data) = npy::split(bytes)?;
+    let layout = Layout::of(&header)?;
+    let (given, wanted) = (layout.kind(), T::DESCR);
+    if given != wanted {
+        return Err(format!("it is of type '{given}', not '{wanted}'"));
     }
-    Ok(data.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
+    Ok(layout.data(data)?.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
 }
 
 #[cfg(test)]
@@ -218,7 +201,7 @@ mod tests {
         assert_eq!(bits[2], (-0.0_f32).to_bits());
         assert!(f32::from_bits(bits[1]).is_nan());
         assert_eq!(read.array::<u32>("ids")?, [7, u32::MAX]);
-        assert!(read.array::<u32>("positions").is_err_and(|reason| reason.contains("'<f4'")));
+        assert!(read.array::<u32>("positions").is_err_and(|reason| reason.contains("<f4")));
         assert!(read.array::<u32>("velocities").is_err_and(|reason| reason.contains("no entry")));
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Splashdown's files: particles and meshes in, frames out.
 //!
-//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y up; the
-//! modules write and read them:
+//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y
+//! up; the modules write and read them:
 //!
 //! | data | formats | opens in |
 //! |---|---|---|
@@ -34,8 +34,9 @@
 //!
 //! # A series of frames
 //!
-//! [`prepare_folder`] finds out before the first step whether the output folder can be written. [`FrameWriter`] then
-//! writes frames on a thread of its own, beside the simulation, and [`film::Film`] makes the film:
+//! [`prepare_folder`] finds out before the first step whether the output folder can be written.
+//! [`FrameWriter`] then writes frames on a thread of its own, beside the simulation, and [`film::Film`] makes
+//! the film:
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -61,9 +62,10 @@
 //!
 //! # What is promised
 //!
-//! * A file is complete or absent ([`atomic`]): it gets its name when everything is in it. Whatever goes wrong later,
-//!   files written before stay valid.
-//! * An error names the file, the cause and what to do ([`IoError`]). Nothing panics on what a file or user contains.
+//! * A file is complete or absent ([`atomic`]): it gets its name when everything is in it. Whatever goes
+//!   wrong later, files written before stay valid.
+//! * An error names the file, the cause and what to do ([`IoError`]). Nothing panics on what a file or user
+//!   contains.
 //! * Readers refuse a file that promises more than it holds before they ask for memory.
 
 #[cfg(target_endian = "big")]

@@ -4,7 +4,6 @@
 //! cast. Format: numpy.lib.format, versions 1 to 3.
 
 use std::fs;
-use std::io::{self, Write};
 use std::path::Path;
 
 use crate::columns::{Number, triples};
@@ -96,6 +95,11 @@ impl Layout {
         })
     }
 
+    /// The type as numpy writes it, `<f4` say.
+    pub(crate) fn kind(&self) -> String {
+        format!("<{}", self.kind)
+    }
+
     pub(crate) fn shape_in_words(&self) -> String {
         let sizes: Vec<String> = self.shape.iter().map(usize::to_string).collect();
         match &sizes[..] {
@@ -121,23 +125,14 @@ pub(crate) fn split(bytes: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((String::from_utf8_lossy(header).into_owned(), data))
 }
 
-/// Writes an array of `rows` x `columns` numbers of a type (`<f4`, `<u4`); one column is an array of one axis.
-pub(crate) fn write(
-    out: &mut impl Write,
-    kind: &str,
-    [rows, columns]: [usize; 2],
-    data: &[u8],
-) -> io::Result<()> {
+/// What stands before `rows` x `columns` numbers of a type (`<f4`, `<u4`); one column is an array of one axis.
+pub(crate) fn header(kind: &str, [rows, columns]: [usize; 2]) -> Vec<u8> {
     let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // Mark, version and length take ten bytes; the data begin at a multiple of 64, and a line's end stands before them.
     let padded = (10 + header.len() + 1).next_multiple_of(64) - 10;
     header.extend(std::iter::repeat_n(' ', padded - header.len() - 1));
-    out.write_all(b"\x93NUMPY\x01\x00")?;
-    out.write_all(&(padded as u16).to_le_bytes())?;
-    out.write_all(header.as_bytes())?;
-    out.write_all(b"\n")?;
-    out.write_all(data)
+    [b"\x93NUMPY\x01\x00", &(padded as u16).to_le_bytes()[..], header.as_bytes(), b"\n"].concat()
 }
 
 /// What follows `'key':` in the header.
@@ -177,8 +172,8 @@ mod tests {
     #[test]
     fn what_is_written_is_aligned_and_comes_back() {
         let data = [1.0_f32, 2.0, 3.0, -4.0, 5.5, 6.0];
-        let mut bytes = Vec::new();
-        write(&mut bytes, "<f4", [2, 3], bytemuck::cast_slice(&data)).unwrap();
+        let mut bytes = header("<f4", [2, 3]);
+        bytes.extend_from_slice(bytemuck::cast_slice(&data));
         assert_eq!(bytes.len() - 24, 128);
         assert_eq!(parse(&bytes).unwrap(), [[1.0, 2.0, 3.0], [-4.0, 5.5, 6.0]]);
     }

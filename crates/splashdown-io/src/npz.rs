@@ -4,7 +4,7 @@
 //! fast as the disk, and packed ones (`numpy.savez_compressed`) are read too.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read};
+use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
 use zip::write::SimpleFileOptions;
@@ -47,7 +47,8 @@ pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoErro
                 .compression_method(CompressionMethod::Stored)
                 .large_file(data.len() as u64 > u64::from(u32::MAX) - 1024);
             archive.start_file(format!("{name}.npy"), options).map_err(io::Error::other)?;
-            npy::write(&mut archive, kind, [count, columns], data)?;
+            archive.write_all(&npy::header(kind, [count, columns]))?;
+            archive.write_all(data)?;
         }
         archive.finish().map(drop).map_err(io::Error::other)
     })

@@ -71,7 +71,7 @@ pub(crate) fn share(text: &str) -> String {
 /// # Errors
 /// What is wrong with the scene, or why there is no device, as words.
 pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> Result<(), JsValue> {
-    let (scene, text) = open(scene).map_err(|error| JsValue::from_str(&error))?;
+    let scene = open(scene).map_err(|error| JsValue::from_str(&error))?;
     let setup = WgpuSetupCreateNew {
         instance_descriptor: wgpu::InstanceDescriptor {
             backends: wgpu::Backends::BROWSER_WEBGPU,
@@ -90,7 +90,7 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the page came without a device")?;
-        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, None)?;
+        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, None)?;
         if let Some(checkpoint) = RESCUE.take() {
             viewer.resume(checkpoint)?;
         }
@@ -106,7 +106,7 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
     runner.start(canvas, options, Box::new(create)).await
 }
 
-fn open(scene: &str) -> Result<(Scene, String), String> {
+fn open(scene: &str) -> Result<Scene, String> {
     let preset = presets().iter().find(|(name, _)| *name == scene);
     let (name, text) = match preset {
         Some((name, text)) => (*name, *text),
@@ -116,7 +116,7 @@ fn open(scene: &str) -> Result<(Scene, String), String> {
             return Err(format!("there is no scene {scene:?}; there are {}", names.join(", ")));
         }
     };
-    Scene::parse(text, name).map(|scene| (scene, text.to_owned())).map_err(|error| error.to_string())
+    Scene::parse(text, name).map_err(|error| error.to_string())
 }
 
 /// Compiles every pass of the program on this browser's device. JSON: how many there are, and what the browser says of those

@@ -6,15 +6,15 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
 
-/// The scene's file with what differs from it put in; comments and order stay. `text` is what the scene came from.
+/// The scene's file with what differs from it put in; comments and order stay.
 ///
 /// # Errors
 /// A sentence, if the text cannot say what the scene is: that of a scene whose own things were taken out.
-pub fn scene(text: &str, scene: &Scene, orbit: &Orbit) -> Result<String, String> {
+pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let source =
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
-    let old = Scene::parse(text, &source).map_err(|error| error.to_string())?;
-    let mut document: DocumentMut = text.parse().map_err(|error| format!("{source}: {error}"))?;
+    let old = Scene::parse(&scene.text, &source).map_err(|error| error.to_string())?;
+    let mut document: DocumentMut = scene.text.parse().map_err(|error| format!("{source}: {error}"))?;
     numbers(&mut document, &old, scene);
     camera(&mut document, orbit);
     for body in &scene.bodies[old.bodies.len().min(scene.bodies.len())..] {
@@ -160,7 +160,7 @@ mod tests {
             edit::turn_tap(&mut changed);
             let mut orbit = Orbit::of_scene(&changed);
             orbit.azimuth = 77.0;
-            let saved = scene(text, &changed, &orbit).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let saved = scene(&changed, &orbit).unwrap_or_else(|error| panic!("{name}: {error}"));
             let read = Scene::parse(&saved, name).unwrap();
             assert_eq!(read.camera.azimuth, 77.0, "{name}");
             assert_eq!(read.bodies, changed.bodies, "{name}");
@@ -175,6 +175,6 @@ mod tests {
         let mut changed = Scene::parse(text, name).unwrap();
         changed.domain.max.x *= 2.0;
         let orbit = Orbit::of_scene(&changed);
-        assert!(scene(text, &changed, &orbit).is_err());
+        assert!(scene(&changed, &orbit).is_err());
     }
 }

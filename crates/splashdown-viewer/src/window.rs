@@ -14,8 +14,6 @@ use crate::{Viewer, ViewerError};
 pub struct ViewOptions {
     /// The scene to begin with.
     pub scene: Scene,
-    /// Its file's text.
-    pub text: String,
     /// What to go on from; `scene` is then its scene.
     pub checkpoint: Option<Checkpoint>,
     /// The device that draws.
@@ -35,7 +33,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
         return Err(ViewerError::NoDisplay);
     }
-    let ViewOptions { scene, text, checkpoint, device, simulate, size } = options;
+    let ViewOptions { scene, checkpoint, device, simulate, size } = options;
     let title = format!("Splashdown - {}", scene.name);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -48,7 +46,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the window came without a device")?;
-        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, text, simulate)?;
+        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
         if let Some(checkpoint) = checkpoint {
             viewer.resume(checkpoint)?;
         }

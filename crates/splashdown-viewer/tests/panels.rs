@@ -69,7 +69,7 @@ fn foam_is_a_matter_of_the_scene_and_is_kept_with_it() {
     assert_eq!(actions(&mut window), [Action::Change]);
     let state = &window.state().0;
     assert!(state.scene.foam.enabled);
-    let text = splashdown_viewer::save::scene(presets()[1].1, &state.scene, &state.orbit).unwrap();
+    let text = splashdown_viewer::save::scene(&state.scene, &state.orbit).unwrap();
     assert!(Scene::parse(&text, "kept.toml").unwrap().foam.enabled, "{text}");
 }
 

@@ -26,7 +26,7 @@ const FOAM_COLUMNS: usize = size_of::<Diffuse>() / 4;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// Reading or writing the file.
+    /// The file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),
     /// It is none, or damaged.
@@ -201,15 +201,15 @@ impl Checkpoint {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`CheckpointError`]: unreadable, none, cut short, damaged, or of another version.
+    /// [`CheckpointError::Io`] where it cannot be read; else [`CheckpointError`]: none, cut short, damaged, or of another version.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
-        let bytes = std::fs::read(path).map_err(|error| {
-            CheckpointError::Malformed(format!("cannot read `{}`: {error}", path.display()))
+        let named = |reason: String| CheckpointError::Malformed(format!("`{}`: {reason}", path.display()));
+        let archive = Archive::read(path).map_err(|error| match error {
+            IoError::Malformed { reason, .. } => named(reason),
+            other => other.into(),
         })?;
-        Self::from_bytes(&bytes).map_err(|error| match error {
-            CheckpointError::Malformed(reason) => {
-                CheckpointError::Malformed(format!("`{}`: {reason}", path.display()))
-            }
+        Self::of(archive).map_err(|error| match error {
+            CheckpointError::Malformed(reason) => named(reason),
             other => other,
         })
     }
@@ -227,7 +227,11 @@ impl Checkpoint {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let checkpoint = Self { archive: Archive::from_bytes(bytes).map_err(CheckpointError::Malformed)? };
+        Self::of(Archive::from_bytes(bytes).map_err(CheckpointError::Malformed)?)
+    }
+
+    fn of(archive: Archive) -> Result<Self, CheckpointError> {
+        let checkpoint = Self { archive };
         let About { format, version, program, .. } = checkpoint.about()?;
         if format != "Splashdown checkpoint" {
             return Err(CheckpointError::Malformed(format!("it calls itself {format:?}")));

@@ -1,7 +1,7 @@
 //! Going on from a checkpoint gives the same bits as not stopping.
 
 use splashdown::scene::Scene;
-use splashdown::{Checkpoint, Device, Simulation, SimulationError};
+use splashdown::{Checkpoint, CheckpointError, Device, Simulation, SimulationError};
 use splashdown_gpu::testing::gpu_or_skip;
 use splashdown_gpu::{Executor, GpuExecutor};
 use splashdown_io::Particles;
@@ -180,5 +180,9 @@ fn what_is_no_checkpoint_is_refused_with_a_reason() -> Outcome {
     let short = Checkpoint::from_bytes(&other.to_bytes()?)?;
     let message = Simulation::resume(&short, Device::Cpu.executor()?).err().map(|error| error.to_string());
     assert!(message.is_some_and(|message| message.contains("ids")));
+
+    // What is no file is none of these.
+    let folder = std::env::temp_dir();
+    assert!(matches!(Checkpoint::read(&folder), Err(CheckpointError::Io(_))));
     Ok(())
 }

@@ -16,13 +16,9 @@ use crate::{checkpoints, scene_file};
 pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
     let is_checkpoint = arguments.scene.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
     let checkpoint = if is_checkpoint { Some(checkpoints::find(&arguments.scene)?.checkpoint) } else { None };
-    let (scene, text) = match &checkpoint {
-        Some(checkpoint) => {
-            let scene = checkpoint.scene()?;
-            let text = scene.text.to_string();
-            (scene, text)
-        }
-        None => scene_file::load_with_text(&arguments.scene)?,
+    let scene = match &checkpoint {
+        Some(checkpoint) => checkpoint.scene()?,
+        None => scene_file::load(&arguments.scene)?,
     };
     // The CPU cannot show anything: something has to draw.
     let (device, simulate) = match &arguments.device.device {
@@ -31,12 +27,5 @@ pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
         Device::Gpu => (DeviceRequest::Hardware, Some(Simulate::WhereDrawn)),
         Device::Named(name) => (DeviceRequest::Named(name.clone()), Some(Simulate::WhereDrawn)),
     };
-    Ok(splashdown_viewer::view(ViewOptions {
-        scene,
-        text,
-        checkpoint,
-        device,
-        simulate,
-        size: arguments.size,
-    })?)
+    Ok(splashdown_viewer::view(ViewOptions { scene, checkpoint, device, simulate, size: arguments.size })?)
 }

@@ -22,7 +22,7 @@ impl Viewer {
                 let Some((name, text)) = presets().iter().find(|(preset, _)| *preset == name) else { return };
                 match Scene::parse(text, name) {
                     Ok(scene) => {
-                        self.open(scene, (*text).to_owned());
+                        self.open(scene);
                         #[cfg(target_arch = "wasm32")]
                         crate::page::set_address(&format!("?scene={name}"));
                     }
@@ -44,9 +44,8 @@ impl Viewer {
                 let name = source
                     .as_ref()
                     .map_or_else(|| self.state.scene.name.clone(), |path| path.display().to_string());
-                let text = self.text.clone();
-                match Scene::parse(&text, &name) {
-                    Ok(scene) => self.open(Scene { source, ..scene }, text),
+                match Scene::parse(&self.state.scene.text, &name) {
+                    Ok(scene) => self.open(Scene { source, ..scene }),
                     Err(error) => self.state.tell(error.to_string(), true, now),
                 }
             }

@@ -66,10 +66,7 @@ impl Viewer {
 
     fn open_bytes(&mut self, path: &Path, bytes: &[u8], now: f64) {
         let opened = match ending(path).as_str() {
-            "toml" => open_scene(path, bytes).map(|scene| {
-                let text = scene.text.to_string();
-                self.open(scene, text);
-            }),
+            "toml" => open_scene(path, bytes).map(|scene| self.open(scene)),
             Checkpoint::ENDING => {
                 let checkpoint = Checkpoint::from_bytes(bytes).map_err(|error| error.to_string());
                 checkpoint.and_then(|checkpoint| self.resume(checkpoint))
@@ -89,7 +86,6 @@ impl Viewer {
         // What runs is let go only for what can be gone on from.
         checkpoint.check().map_err(|error| error.to_string())?;
         let scene = checkpoint.scene().map_err(|error| error.to_string())?;
-        self.text = scene.text.to_string();
         self.state.open(scene);
         self.engine.send(Command::Hand(None));
         self.engine.send(Command::Resume(Box::new(checkpoint)));

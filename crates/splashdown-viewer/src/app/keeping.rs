@@ -48,14 +48,14 @@ impl Viewer {
         let folder = self.state.scene.source.as_deref().and_then(std::path::Path::parent);
         let name = folder.unwrap_or(std::path::Path::new("")).join(format!("{}.toml", self.state.scene.name));
         let name = name.to_string_lossy().into_owned();
-        let kept = save::scene(&self.text, &self.state.scene, &self.state.orbit)
-            .and_then(|text| keep::text(&name, &text));
+        let kept =
+            save::scene(&self.state.scene, &self.state.orbit).and_then(|text| keep::text(&name, &text));
         self.tell_kept("the scene", kept, now);
     }
 
     /// Asks the engine for a checkpoint.
     pub(super) fn checkpoint(&mut self, purpose: Purpose, now: f64) {
-        match save::scene(&self.text, &self.state.scene, &self.state.orbit) {
+        match save::scene(&self.state.scene, &self.state.orbit) {
             Ok(text) => self.engine.send(Command::Checkpoint(text, purpose)),
             Err(reason) if purpose == Purpose::Keep => self.tell_kept("the checkpoint", Err(reason), now),
             // Nobody has asked for it.
@@ -82,7 +82,7 @@ impl Viewer {
 
     /// Puts the scene as it is now into the page's address, and the address into the clipboard.
     pub(super) fn share(&mut self, now: f64) {
-        let text = save::scene(&self.text, &self.state.scene, &self.state.orbit);
+        let text = save::scene(&self.state.scene, &self.state.orbit);
         #[cfg(target_arch = "wasm32")]
         match text {
             Ok(text) => {

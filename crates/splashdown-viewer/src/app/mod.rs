@@ -34,8 +34,6 @@ pub struct Viewer {
     picture: Picture,
     texture: Option<TextureId>,
     state: State,
-    /// What the scene file said, for saving.
-    text: String,
     seen: Seen,
     drawn: Option<Drawn>,
     /// The fluid some seconds ago, should the device be lost.
@@ -73,7 +71,7 @@ struct Seen {
 }
 
 impl Viewer {
-    /// Opens a scene on the window's device. `text` is the scene's file.
+    /// Opens a scene on the window's device.
     ///
     /// # Errors
     /// [`ViewerError`] if the device cannot draw.
@@ -81,7 +79,6 @@ impl Viewer {
         ctx: &Context,
         render_state: &RenderState,
         scene: Scene,
-        text: String,
         simulate: Option<Simulate>,
     ) -> Result<Self, ViewerError> {
         let gpu = Arc::new(Gpu::from_device(
@@ -102,7 +99,6 @@ impl Viewer {
             picture,
             texture: None,
             state: State::new(scene),
-            text,
             seen: Seen::default(),
             drawn: None,
             rescue: None,
@@ -162,9 +158,8 @@ impl Viewer {
         self.engine.send(Command::Play(self.state.playing));
     }
 
-    fn open(&mut self, scene: Scene, text: String) {
+    fn open(&mut self, scene: Scene) {
         self.state.open(scene);
-        self.text = text;
         self.engine.send(Command::Hand(None));
         self.restart();
     }

@@ -1,7 +1,7 @@
 //! The simulation beside the window: commands go in, snapshots come out, and neither waits for the other.
 //!
 //! On a desktop the engine works on a thread of its own, on a web page as a task between two pictures. Both run the same code
-//! (`work.rs`); what differs is here and in `inbox.rs`.
+//! (`work`); what differs is here and in `inbox.rs`.
 
 mod command;
 mod drawn;

@@ -65,8 +65,9 @@ fn seed_of(id: u32, step: u32) -> u32 {
     return hash(id ^ hash(step));
 }
 
-// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096, rounded down, without
-// overflow. Two that follow one another are at most one apart; of several at one place the last is born.
+// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096,
+// rounded down, without overflow. Two that follow one another are at most one apart; of several at one place
+// the last is born.
 fn place_of(m: u32, share: u32) -> u32 {
     return (m >> 12u) * share + (((m & 4095u) * share) >> 12u);
 }

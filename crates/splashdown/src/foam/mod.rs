@@ -1,23 +1,28 @@
-//! Foam, spray and bubbles: what a splash makes beside water (Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles
-//! for particle-based fluids", The Visual Computer 28).
+//! Foam, spray and bubbles: what a splash makes beside water (Ihmsen, Akinci, Akinci & Teschner 2012,
+//! "Unified spray, foam and air bubbles for particle-based fluids", The Visual Computer 28).
 //!
-//! *How it works.* Diffuse particles are made where the fluid traps air or breaks (`normals`, `potentials`, `count`, `emit`), go where air or water
-//! take them (`advect`), and dissolve. They feel the fluid and it does not feel them, so they are computed after it and not in its steps:
-//! [`Simulation::advance_foam`](crate::Simulation::advance_foam) brings them up to the simulation's time every few milliseconds or once per frame, at the cost of two visits of
-//! the neighbours. A simulation without them pays nothing.
+//! *How it works.* Diffuse particles are made where the fluid traps air or breaks (`normals`, `potentials`,
+//! `count`, `emit`), go where air or water take them (`advect`), and dissolve. They feel the fluid and it
+//! does not feel them, so they are computed after it and not in its steps:
+//! [`Simulation::advance_foam`](crate::Simulation::advance_foam) brings them up to the simulation's time
+//! every few milliseconds or once per frame, at the cost of two visits of the neighbours. A simulation
+//! without them pays nothing.
 //!
-//! *The same bits every time.* Nothing depends on the order of invocations: the living are compacted in their order, the newborn are counted and
-//! placed by a scan behind them, and chance is a hash of a particle's id and the update's number.
+//! *The same bits every time.* Nothing depends on the order of invocations: the living are compacted in their
+//! order, the newborn are counted and placed by a scan behind them, and chance is a hash of a particle's id
+//! and the update's number.
 //!
-//! *Scales.* The paper's potentials grow with the number of neighbours, and its limits are joules and sums of m/s of a scene of several metres. Here
-//! potentials do not depend on the resolution, and their limits are parts of the scene's [reference
-//! speed](crate::scene::Derived::reference_speed): a dam break in a glass and one in a valley that are alike foam alike.
+//! *Scales.* The paper's potentials grow with the number of neighbours, and its limits are joules and sums of
+//! m/s of a scene of several metres. Here potentials do not depend on the resolution, and their limits are
+//! parts of the scene's [reference speed](crate::scene::Derived::reference_speed): a dam break in a glass and
+//! one in a valley that are alike foam alike.
 //!
-//! *What it costs.* A dam break of 28,000 particles over 1.5 s, with up to 18,000 diffuse ones, on two cores: 2.9 % of the steps' time, half of that for the
-//! potentials.
+//! *What it costs.* A dam break of 28,000 particles over 1.5 s, with up to 18,000 diffuse ones, on two cores:
+//! 2.9 % of the steps' time, half of that for the potentials.
 //!
-//! *Why not* in the step: 16 steps are one to the foam. *Why not* a ring of particles, the oldest overwritten: foam would vanish where it has always been,
-//! while spray of a moment ago stayed. When there is no room fewer are born, evenly everywhere, and it is told.
+//! *Why not* in the step: 16 steps are one to the foam. *Why not* a ring of particles, the oldest
+//! overwritten: foam would vanish where it has always been, while spray of a moment ago stayed. When there is
+//! no room fewer are born, evenly everywhere, and it is told.
 
 mod advect;
 mod begin;
@@ -36,13 +41,14 @@ use glam::Vec4;
 use splashdown_gpu::bytemuck::Zeroable;
 use splashdown_gpu::compact::Compact;
 use splashdown_gpu::scan::Scan;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule, wgsl};
 use splashdown_io::Particles;
 
 use crate::SimulationError;
-use crate::cells::Cells;
+use crate::cells::{Cells, GRID};
 use crate::fields::Fields;
-use crate::passes::Params;
+use crate::kernel;
+use crate::passes::{PARAMS, Params, ROWS, STATE};
 use crate::scene::FoamSettings;
 
 /// The WGSL side of [`FoamParams`], [`FoamState`] and [`Diffuse`].
@@ -50,6 +56,8 @@ pub(crate) const FOAM: WgslModule = WgslModule { name: "sph/foam", source: inclu
 /// What is round a point.
 const SURROUNDINGS: WgslModule =
     WgslModule { name: "sph/foam_surroundings", source: include_str!("surroundings.wgsl") };
+/// What a pass imports that looks round where a diffuse particle is.
+const LOOK_ROUND: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS];
 
 /// Diffuse particles per particle of the fluid, unless the scene says how many.
 const PER_PARTICLE: u64 = 4;
@@ -57,9 +65,11 @@ const PER_PARTICLE: u64 = 4;
 const STANDARD_MOST: u64 = 1 << 22;
 /// Bytes of a diffuse particle in the largest buffer.
 const LARGEST_PER_DIFFUSE: u64 = size_of::<Diffuse>() as u64;
-/// Shortest time between two updates within a frame, in seconds: less than the eye sees, and many steps of the fluid.
+/// Shortest time between two updates within a frame, in seconds: less than the eye sees, and many steps of
+/// the fluid.
 const INTERVAL: f32 = 0.004;
-/// Neighbours in the middle of the fluid in Ihmsen's setting, to which his limits of 6 and 20 belong: a ball of two spacings.
+/// Neighbours in the middle of the fluid in Ihmsen's setting, to which his limits of 6 and 20 belong: a ball
+/// of two spacings.
 const IHMSEN_NEIGHBOURS: f32 = 33.5;
 
 /// The passes of this module.
@@ -132,7 +142,8 @@ pub(crate) fn capacity(
 /// Bytes in the buffers of a scene's foam.
 pub(crate) fn forecast(settings: &FoamSettings, particles: u64) -> u64 {
     let most = capacity(settings, particles, u64::MAX).map_or(0, u64::from);
-    // Twice the foam, whether it lives, where it goes, the list of the living; normals, potentials, counts, starts.
+    // Twice the foam, whether it lives, where it goes, the list of the living; normals, potentials, counts,
+    // starts.
     most * (2 * LARGEST_PER_DIFFUSE + 3 * 4) + particles.saturating_mul(2 * 16 + 2 * 4)
 }
 
@@ -248,7 +259,8 @@ impl Foam {
         self.state
     }
 
-    /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last update, in the order of the sort.
+    /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last update, in
+    /// the order of the sort.
     pub fn potentials(&self) -> Buffer<Vec4> {
         self.potentials
     }

@@ -1,4 +1,5 @@
-// What is round a point: the fluid's velocity there, and the number of its neighbours as if no wall cut the support.
+// What is round a point: the fluid's velocity there, and the number of its neighbours as if no wall cut the
+// support.
 struct Surroundings {
     velocity: vec3<f32>,
     neighbours: f32,

@@ -137,7 +137,8 @@ impl FoamParams {
         }
     }
 
-    /// How many diffuse particles are to be expected of a particle of the fluid with these potentials in `dt` seconds.
+    /// How many diffuse particles are to be expected of a particle of the fluid with these potentials in `dt`
+    /// seconds.
     pub(super) fn expected(&self, potentials: glam::Vec4, dt: f32) -> f32 {
         let trapped = self.trapped_air * ramp(potentials.x, self.trapped_air_least, self.trapped_air_scale);
         let crest = self.wave_crest * ramp(potentials.y, self.wave_crest_least, self.wave_crest_scale);
@@ -167,8 +168,9 @@ pub(super) fn seed_of(id: u32, step: u32) -> u32 {
     hash(id ^ hash(step))
 }
 
-/// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096, rounded down, without
-/// overflow. Two that follow one another are at most one apart; of several at one place the last is born.
+/// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096,
+/// rounded down, without overflow. Two that follow one another are at most one apart; of several at one place
+/// the last is born.
 pub(super) fn place_of(m: u32, share: u32) -> u32 {
     (m >> 12) * share + (((m & 4095) * share) >> 12)
 }

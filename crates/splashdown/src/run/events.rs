@@ -55,6 +55,15 @@ impl RunOptions {
             listener: None,
         }
     }
+
+    /// Passes on to the listener, if there is one.
+    pub(super) fn told(&self) -> impl Fn(&str, f32) + Sync {
+        |body, part| {
+            if let Some(Listener(listener)) = &self.listener {
+                listener(body, part);
+            }
+        }
+    }
 }
 
 /// One thing that happened.

@@ -1,6 +1,8 @@
 //! A whole run as one stream of events, which command line, window and Python read.
 
 mod events;
+mod resume;
+mod warnings;
 
 pub use events::{Event, Frame, Listener, Progress, RunOptions, Started, Summary, Told};
 
@@ -8,18 +10,14 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
-use splashdown_gpu::{Gpu, block_on};
+use splashdown_gpu::Gpu;
 use splashdown_io::Mesh;
 use web_time::Instant;
 
 use crate::probes::FluidProbes;
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::{Surface, vertex_velocities};
-use crate::{BodyMesh, BodyState, Checkpoint, CheckpointError, Foam, Simulation, SimulationError, Stats};
-
-/// An excess of density that no sound has: something is told of it.
-const DENSE: f32 = 0.3;
+use crate::{BodyMesh, BodyState, Foam, Simulation, SimulationError, Stats};
 
 /// Time between two [`Event::Progress`].
 const PROGRESS: Duration = Duration::from_millis(100);
@@ -83,22 +81,6 @@ struct Clock {
     frames: Duration,
 }
 
-/// What a run remembers beside its simulation; part of a checkpoint.
-#[derive(Serialize, Deserialize)]
-struct Account {
-    frame: u32,
-    density_error: f32,
-    volume: Option<[f64; 2]>,
-    particle_volume: f64,
-    watched: Vec<bool>,
-}
-
-/// Frames that a run can have.
-const MOST_FRAMES: u32 = 100_000_000;
-
-/// The name of the account in a checkpoint.
-const ACCOUNT: &str = "run.bin";
-
 enum Stage {
     Start,
     /// The frame of this number is about to begin.
@@ -118,63 +100,8 @@ impl Run {
     /// As [`Simulation::new`].
     pub fn new(scene: &Scene, options: RunOptions) -> Result<Self, SimulationError> {
         let started = Instant::now();
-        let told = |body: &str, part: f32| {
-            if let Some(Listener(listener)) = &options.listener {
-                listener(body, part);
-            }
-        };
-        let simulation = Simulation::prepare(scene, options.device.executor()?, &told)?;
+        let simulation = Simulation::prepare(scene, options.device.executor()?, &options.told())?;
         Self::of(simulation, scene, options, started)
-    }
-
-    /// Goes on from a checkpoint, whose scene this is: frames that came before are not told again. A checkpoint that was not made at the end
-    /// of a frame goes on with what is left of the frame that it was made in.
-    ///
-    /// # Errors
-    /// As [`Simulation::resume`].
-    pub fn resume(
-        checkpoint: &Checkpoint,
-        scene: &Scene,
-        options: RunOptions,
-    ) -> Result<Self, SimulationError> {
-        let started = Instant::now();
-        let told = |body: &str, part: f32| {
-            if let Some(Listener(listener)) = &options.listener {
-                listener(body, part);
-            }
-        };
-        let executor = options.device.executor()?;
-        let simulation = block_on(Simulation::resume_async(checkpoint, executor, &told))?;
-        let time = simulation.stats().time;
-        let mut run = Self::of(simulation, scene, options, started)?;
-        if let (Some(foam), Some(kept)) = (&run.foam, checkpoint.foam()?) {
-            run.simulation.restore_foam(foam, &kept)?;
-        }
-        let rate = f64::from(scene.frame_rate);
-        let account = match checkpoint.has(ACCOUNT) {
-            true => checkpoint.get::<Option<Account>>(ACCOUNT)?,
-            false => None,
-        };
-        let frame = match account {
-            Some(account) if account.frame > MOST_FRAMES => {
-                let reason = format!("its frame is {}, more than {MOST_FRAMES}", account.frame);
-                return Err(CheckpointError::Malformed(reason).into());
-            }
-            Some(account) => {
-                let frame = account.frame;
-                run.restore(account);
-                run.complete = Some(frame);
-                frame
-            }
-            // From a front end without frames. A part in a million does not make one.
-            None => {
-                let frame = (time * rate + 1e-6).floor();
-                run.next_duration = Some(((frame + 1.0) / rate - time) as f32);
-                frame as u32
-            }
-        };
-        run.first = frame;
-        Ok(run)
     }
 
     fn of(
@@ -302,74 +229,6 @@ impl Run {
         if frame < self.frames { Stage::Begin(frame + 1) } else { Stage::Finish }
     }
 
-    /// Everything that is needed to go on after the last [`Event::Frame`]; call it before asking for the next event.
-    ///
-    /// # Errors
-    /// As [`Simulation::checkpoint`].
-    pub fn checkpoint(&mut self) -> Result<Checkpoint, SimulationError> {
-        let mut checkpoint = self.simulation.checkpoint(&self.scene_text)?;
-        if let Some(foam) = &self.foam {
-            checkpoint.set_foam(&block_on(self.simulation.keep_foam_async(foam))?);
-        }
-        // Within a frame there is no account of one.
-        let between = !matches!(self.stage, Stage::Steps(_) | Stage::Fetch(_));
-        let account = self.complete.filter(|_| between).map(|frame| Account {
-            frame,
-            density_error: self.density_error,
-            volume: self.volume,
-            particle_volume: self.particle_volume,
-            watched: self.watched.clone(),
-        });
-        checkpoint.set(ACCOUNT, &account);
-        Ok(checkpoint)
-    }
-
-    fn restore(&mut self, account: Account) {
-        let Account { density_error, volume, particle_volume, watched, .. } = account;
-        (self.density_error, self.volume, self.particle_volume) = (density_error, volume, particle_volume);
-        self.watched = watched;
-    }
-
-    /// Puts into words what was lost since the last frame.
-    fn warn(&mut self, stats: &Stats) {
-        let before = std::mem::replace(&mut self.stats_before, *stats);
-        if stats.density_error > DENSE && before.density_error <= DENSE {
-            let text = format!(
-                "at {:.4} s: the density is up to {:.0} % above that at rest: more fluid than there is room for, or fluid \
-                 pushed into a wall. Look at emitters in closed or narrow places, and at particles placed inside one another",
-                stats.time,
-                100.0 * stats.density_error
-            );
-            self.waiting.push_back(Event::Warning(text));
-        }
-        let mut tell = |more: u32, thing: &str, what: &str| {
-            if more > 0 {
-                let plural = if more == 1 { "" } else { "s" };
-                let text = format!("at {:.4} s: {more} {thing}{plural} {what}", stats.time);
-                self.waiting.push_back(Event::Warning(text));
-            }
-        };
-        tell(stats.escaped - before.escaped, "particle", "left through open sides and taken out");
-        let [x, y, z] = stats.non_finite_place;
-        let lost = format!(
-            "NaN or infinite and taken out; the first, id {}, was last at ({x:.4}, {y:.4}, {z:.4}) m. \
-             Lower solver.cfl_factor, or look for particles placed inside one another",
-            stats.non_finite_id
-        );
-        tell(stats.non_finite - before.non_finite, "particle", &lost);
-        tell(
-            stats.wall_corrections - before.wall_corrections,
-            "time",
-            "a particle was put back through a closed wall or the surface of a body",
-        );
-        tell(
-            stats.speed_limits - before.speed_limits,
-            "time",
-            "a particle was slowed down to half a spacing per step: the time step is too long for this motion. \
-             Lower solver.cfl_factor, or raise solver.sound_speed",
-        );
-    }
-
     fn fetch(&mut self, index: u32) -> Result<Frame, SimulationError> {
         let begun = Instant::now();
         let mut mesh = match &mut self.surface {
@@ -425,23 +284,6 @@ impl Run {
             bodies,
             probes: probes.into(),
         })
-    }
-
-    /// Tells once of each free body that is farther outside the domain than the domain is large, or nowhere.
-    fn tell_lost(&mut self, bodies: &[BodyState], time: f64) {
-        let far = self.domain.size().max_element();
-        for ((state, watched), mesh) in
-            bodies.iter().zip(&mut self.watched).zip(self.simulation.body_meshes())
-        {
-            let x = state.position;
-            let away = (self.domain.min - x).max(x - self.domain.max).max_element();
-            if *watched && (away.is_nan() || away >= far) {
-                *watched = false;
-                let text =
-                    format!("at {time:.4} s: body {:?} has left the domain for good, at {x} m", mesh.name);
-                self.waiting.push_back(Event::Warning(text));
-            }
-        }
     }
 
     fn finish(&mut self) -> Event {

@@ -1,31 +1,34 @@
-//! Moves the diffuse particles there are and says what they are (Ihmsen et al. 2012, section 3.2): by the number of their neighbours in the fluid, spray,
-//! foam or bubbles.
+//! Moves the diffuse particles there are and says what they are (Ihmsen et al. 2012, section 3.2): by the
+//! number of their neighbours in the fluid, spray, foam or bubbles.
 //!
 //! * Spray flies: x += dt v + dt^2 g / 2, v += dt g.
 //! * Foam has the velocity of the fluid round it, sum_j v_j W / sum_j W.
-//! * A bubble is drawn to that velocity at the rate `drag` and rises by `buoyancy` times gravity; its v is exact over the time step.
+//! * A bubble is drawn to that velocity at the rate `drag` and rises by `buoyancy` times gravity; its v is
+//!   exact over the time step.
 //!
-//! Foam and bubbles move by the mean of their velocities before and after. The fluid is that at the time step's end, and a particle first goes to where its own velocity takes it
-//! and then looks round, so that steps of several spacings do no harm. The paper's drag is a part per step; a rate does not depend on the step.
+//! Foam and bubbles move by the mean of their velocities before and after. The fluid is that at the time
+//! step's end, and a particle first goes to where its own velocity takes it and then looks round, so that
+//! steps of several spacings do no harm. The paper's drag is a part per step; a rate does not depend on the
+//! step.
 //!
-//! Near a closed side the support is cut off: neighbours are divided by the part of its ball that is inside, a product over the sides.
-//! What is or was foam, and spray that lies on a side, loses lifetime; closed sides hold particles, open ones let them out.
+//! Near a closed side the support is cut off: neighbours are divided by the part of its ball that is inside,
+//! a product over the sides. What is or was foam, and spray that lies on a side, loses lifetime; closed sides
+//! hold particles, open ones let them out.
 
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, read, uniform, write};
 
-use super::{Diffuse, FOAM, FoamParams, FoamState, SURROUNDINGS};
-use crate::cells::{GRID, Grid};
-use crate::kernel;
-use crate::passes::{PARAMS, Params, ROWS, STATE};
+use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
+use crate::cells::Grid;
+use crate::passes::Params;
 
 /// See the module.
 pub static ADVECT: PassDesc = PassDesc {
     label: "foam.advect",
     wgsl: include_str!("advect.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS],
+    imports: LOOK_ROUND,
     entry: "advect",
     workgroup_size: [64, 1, 1],
     constants: &[],

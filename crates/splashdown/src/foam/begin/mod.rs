@@ -1,8 +1,9 @@
-//! Decides whether an update is due, and its time step: the time that the simulation has passed since the last one.
+//! Decides whether an update is due, and its time step: the time that the simulation has passed since the
+//! last one.
 //!
-//! The simulation's clock is on the device, so that nobody has to wait for it. Within a frame an update needs a sorted order that
-//! holds: a batch of steps that is longer than its frame leaves none, and then the update waits for the frame's end. There
-//! it is always due.
+//! The simulation's clock is on the device, so that nobody has to wait for it. Within a frame an update needs
+//! a sorted order that holds: a batch of steps that is longer than its frame leaves none, and then the update
+//! waits for the frame's end. There it is always due.
 
 mod cpu;
 

@@ -1,8 +1,8 @@
-//! How many diffuse particles each particle of the fluid makes (Ihmsen et al. 2012, equation 8): n = I_k (k_ta I_ta + k_wc I_wc) dt, where each I is
-//! a potential's way between its limits, in [0, 1].
+//! How many diffuse particles each particle of the fluid makes (Ihmsen et al. 2012, equation 8): n = I_k
+//! (k_ta I_ta + k_wc I_wc) dt, where each I is a potential's way between its limits, in [0, 1].
 //!
-//! What is left of n behind the whole number is the probability of one more, by a hash of the particle's id and the update's number: the same on every
-//! run, in whatever order the particles lie.
+//! What is left of n behind the whole number is the probability of one more, by a hash of the particle's id
+//! and the update's number: the same on every run, in whatever order the particles lie.
 
 mod cpu;
 

@@ -1,24 +1,24 @@
-//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the fluid's particle with a radius of one spacing and as
-//! long as its way in this time step, with its velocity and a little more away from the cylinder's axis.
+//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the
+//! fluid's particle with a radius of one spacing and as long as its way in this time step, with its velocity
+//! and a little more away from the cylinder's axis.
 //!
-//! The paper's cylinder is half as wide, which leaves clumps where a particle makes many, and lies before the particle; here its middle is the
-//! particle's place.
+//! The paper's cylinder is half as wide, which leaves clumps where a particle makes many, and lies before the
+//! particle; here its middle is the particle's place.
 
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, read, uniform, write};
 
-use super::{Diffuse, FOAM, FoamParams, FoamState, SURROUNDINGS};
-use crate::cells::{GRID, Grid};
-use crate::kernel;
-use crate::passes::{PARAMS, Params, ROWS, STATE};
+use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
+use crate::cells::Grid;
+use crate::passes::Params;
 
 /// See the module.
 pub static EMIT: PassDesc = PassDesc {
     label: "foam.emit",
     wgsl: include_str!("emit.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS],
+    imports: LOOK_ROUND,
     entry: "emit_foam",
     workgroup_size: [64, 1, 1],
     constants: &[],

@@ -1,8 +1,9 @@
-//! Which particles are on the surface, and its normal there: n = -H grad c, c = sum_j V W(x_i - x_j), V = particle_spacing^3 (after
-//! Mueller, Charypar & Gross 2003).
+//! Which particles are on the surface, and its normal there: n = -H grad c, c = sum_j V W(x_i - x_j), V =
+//! particle_spacing^3 (after Mueller, Charypar & Gross 2003).
 //!
-//! On a plane surface |n| is 1.5, a spacing below it 0.3; half and more is the surface. Fluid at a closed side has none there: what of n points out
-//! of the side counts as nothing. The fourth component is 1 on the surface, else all are 0.
+//! On a plane surface |n| is 1.5, a spacing below it 0.3; half and more is the surface. Fluid at a closed
+//! side has none there: what of n points out of the side counts as nothing. The fourth component is 1 on the
+//! surface, else all are 0.
 
 mod cpu;
 

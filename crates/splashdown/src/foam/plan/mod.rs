@@ -1,7 +1,7 @@
 //! How many are left, how many are born, and where these go: behind the others.
 //!
-//! Where more want to be born than find room, a share of them is, spread evenly over all: taking the first would fill one end of the
-//! domain. The rest are counted.
+//! Where more want to be born than find room, a share of them is, spread evenly over all: taking the first
+//! would fill one end of the domain. The rest are counted.
 
 mod cpu;
 

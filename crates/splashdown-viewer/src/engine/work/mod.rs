@@ -1,29 +1,29 @@
 //! The engine's own side: obeys commands, simulates, takes snapshots.
 
+mod meter;
+mod show;
+
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use splashdown::scene::Scene;
-use splashdown::surface::{Surface, SurfaceStats};
+use splashdown::surface::Surface;
 use splashdown::{BodyMesh, Checkpoint, Device, Foam, Hand, KeptFoam, Simulation, SimulationError};
-use splashdown_gpu::{Executor, Gpu, GpuExecutor, Timings};
+use splashdown_gpu::{Executor, Gpu, GpuExecutor};
 use web_time::Instant;
 
 use super::drawn::Copies;
 use super::inbox::Inbox;
 use super::pace::Pace;
-use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, Snapshot, lock};
+use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, lock};
+use meter::Meter;
 
-/// How long a step takes is looked at this often.
-const MEASURE: Duration = Duration::from_millis(500);
 /// Wall time that steps submitted at once may take: the window draws in between.
 const BATCH: f64 = 0.008;
 /// How long the engine sleeps when nothing is due.
 const NAP: Duration = Duration::from_millis(2);
 /// How long it sleeps when the clock stands still; a command wakes it.
 const REST: Duration = Duration::from_millis(200);
-/// Up to this many particles their mean height is looked at.
-const FEW: u32 = 20_000;
 /// How quickly a held body comes along, in 1/s.
 const GRIP_RATE: f32 = 12.0;
 
@@ -47,63 +47,6 @@ pub(super) struct Worker {
     grip: Option<Grip>,
     pace: Pace,
     meter: Meter,
-}
-
-/// What was done lately.
-struct Meter {
-    since: Instant,
-    steps: u64,
-    simulated: f64,
-    steps_per_second: f64,
-    speed: f64,
-    timings: Arc<Timings>,
-    timed_steps: u64,
-    mean_height: f32,
-}
-
-impl Meter {
-    fn new() -> Self {
-        Self {
-            since: Instant::now(),
-            steps: 0,
-            simulated: 0.0,
-            steps_per_second: 0.0,
-            speed: 0.0,
-            timings: Arc::default(),
-            timed_steps: 0,
-            mean_height: f32::NAN,
-        }
-    }
-
-    async fn count(
-        &mut self,
-        steps: u32,
-        simulated: f64,
-        simulation: &mut Simulation,
-    ) -> Result<(), SimulationError> {
-        self.steps += u64::from(steps);
-        self.simulated += simulated;
-        let passed = self.since.elapsed();
-        if passed >= MEASURE {
-            self.steps_per_second = self.steps as f64 / passed.as_secs_f64();
-            self.speed = self.simulated / passed.as_secs_f64();
-            self.timings = Arc::new(simulation.take_timings());
-            self.timed_steps = self.steps;
-            if simulation.stats().particles <= FEW {
-                let positions = simulation.particles_async().await?.positions;
-                let heights = positions.iter().map(|x| f64::from(x[1]));
-                self.mean_height = (heights.sum::<f64>() / positions.len().max(1) as f64) as f32;
-            }
-            (self.since, self.steps, self.simulated) = (Instant::now(), 0, 0.0);
-        }
-        Ok(())
-    }
-
-    fn stand_still(&mut self) {
-        let (timings, timed_steps, mean_height) =
-            (Arc::clone(&self.timings), self.timed_steps, self.mean_height);
-        *self = Self { timings, timed_steps, mean_height, ..Self::new() };
-    }
 }
 
 impl Worker {
@@ -337,69 +280,6 @@ impl Worker {
         let shown = if wanted { self.show().await } else { Ok(()) };
         self.pace.learn(f64::from(seconds), stepped, begun.elapsed() - stepped);
         shown
-    }
-
-    /// Takes a snapshot.
-    async fn show(&mut self) -> Result<(), SimulationError> {
-        let (Some(simulation), Some(opened)) = (&mut self.simulation, &self.opened) else { return Ok(()) };
-        let mut extracted: Option<SurfaceStats> = None;
-        if self.wants_surface {
-            if self.surface.is_none() {
-                let settings = simulation.scene().surface.clone();
-                self.surface = Some(simulation.surface(&settings)?);
-            }
-            if let Some(surface) = &mut self.surface {
-                extracted = Some(simulation.extract_async(surface).await?);
-            }
-        }
-        let mut foam = None;
-        if simulation.scene().foam.enabled {
-            if self.foam.is_none() {
-                let settings = simulation.scene().foam;
-                let new = simulation.foam(&settings)?;
-                if let Some(kept) = self.kept.take() {
-                    simulation.restore_foam(&new, &kept)?;
-                }
-                self.foam = Some(new);
-            }
-            if let Some(there) = &mut self.foam {
-                let count = simulation.foam_state_async(there).await?.count;
-                foam = Some((&*there, count));
-            }
-        }
-        let bodies = simulation.body_states_async().await?;
-        let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted), foam);
-        let snapshot = Snapshot {
-            opened: Arc::clone(opened),
-            stats: simulation.stats(),
-            drawn,
-            bodies,
-            mean_height: self.meter.mean_height,
-            steps_per_second: self.meter.steps_per_second,
-            speed: self.meter.speed,
-            timings: Arc::clone(&self.meter.timings),
-            timed_steps: self.meter.timed_steps,
-            playing: self.playing,
-        };
-        let mut outbox = lock(&self.outbox);
-        (outbox.snapshot, outbox.is_seen) = (Some(Arc::new(snapshot)), false);
-        drop(outbox);
-        (self.repaint)();
-        Ok(())
-    }
-
-    async fn export(&mut self) -> Result<(), SimulationError> {
-        let Some(simulation) = &mut self.simulation else { return Ok(()) };
-        if self.surface.is_none() {
-            let settings = simulation.scene().surface.clone();
-            self.surface = Some(simulation.surface(&settings)?);
-        }
-        let Some(surface) = &mut self.surface else { return Ok(()) };
-        simulation.extract_async(surface).await?;
-        let mesh = Arc::new(simulation.mesh_async(surface).await?);
-        lock(&lock(&self.outbox).messages).push(Message::Exported(mesh));
-        (self.repaint)();
-        Ok(())
     }
 
     /// The simulation stands still, and the user hears why.

@@ -1,0 +1,177 @@
+//! The command line: one declaration gives the parser, the help and the shells' completions.
+
+mod plot;
+mod run;
+mod scenes;
+mod surface;
+mod view;
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgAction, Args, Parser, Subcommand};
+use clap_complete::Shell;
+use splashdown::Device;
+use splashdown::scene::Choice;
+
+use crate::console::Verbosity;
+use crate::{exit, human};
+
+pub use plot::PlotArguments;
+pub use run::RunArguments;
+pub use scenes::{ScenesAction, ScenesArguments};
+pub use surface::SurfaceArguments;
+pub use view::ViewArguments;
+
+/// Fast SPH water on any GPU, from a scene file to particles, a watertight mesh and a picture.
+#[derive(Debug, Parser)]
+#[command(name = "splashdown", version, max_term_width = 100, after_help = exit::HELP)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The words after `splashdown`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate a scene and write its frames
+    Run(RunArguments),
+    /// Open a window to watch a scene and to play with it
+    View(ViewArguments),
+    /// Validate a scene and print what follows from it, without simulating
+    Check(CheckArguments),
+    /// List the devices of this machine, what fits on them, and what is missing
+    Doctor(DoctorArguments),
+    /// List, show or copy the scenes that come with the program
+    Scenes(ScenesArguments),
+    /// Make meshes of anybody's particles
+    Surface(SurfaceArguments),
+    /// Draw what probes have measured
+    Plot(PlotArguments),
+    /// Measure the time of a step, by pass and by number of particles
+    Bench(BenchArguments),
+    /// Print completions for a shell
+    Completions(CompletionsArguments),
+}
+
+/// How much is said.
+#[derive(Debug, Args)]
+pub struct VerbosityArguments {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Also say what the library remarks
+    #[arg(short, long, action = ArgAction::SetTrue)]
+    pub verbose: bool,
+}
+
+impl VerbosityArguments {
+    /// As a level.
+    pub fn level(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
+        }
+    }
+}
+
+/// The device to compute on.
+#[derive(Debug, Args)]
+pub struct DeviceArgument {
+    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor`
+    #[arg(short, long, value_name = "auto|gpu|cpu|NAME", default_value = "auto", value_parser = clap::value_parser!(Device))]
+    pub device: Device,
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  splashdown check scenes/dam-break.toml
+  splashdown check my.toml --json
+
+The expected time is an estimate: a few steps of a small scene are measured on this machine.";
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+#[command(after_help = CHECK_EXAMPLES)]
+pub struct CheckArguments {
+    /// Scene file (TOML), or the name of one that comes with the program
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `doctor`.
+#[derive(Debug, Args)]
+pub struct DoctorArguments {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  splashdown bench
+  splashdown bench --particles 8K,16K,32K,64K,128K,256K,512K,1M --device cpu
+  splashdown bench --particles 64K --device llvmpipe --steps 10";
+
+/// Options of `bench`.
+#[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
+pub struct BenchArguments {
+    /// Numbers of particles, separated by commas (64K = 65,536)
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_value = "64K", value_parser = human::parse_count)]
+    pub particles: Vec<u32>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Steps to measure [default: as many as take about two seconds]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub steps: Option<u32>,
+    /// Solver to measure: wcsph or mueller2003
+    #[arg(short = 'm', long, default_value = "wcsph", value_parser = choice::<splashdown::scene::Method>())]
+    pub solver: splashdown::scene::Method,
+    /// Measure from 8K particles to as many as fit, doubling: how does the cost grow?
+    #[arg(long, conflicts_with = "particles")]
+    pub compare: bool,
+    /// Do not split the time by pass (measuring each pass costs a little on a GPU)
+    #[arg(long)]
+    pub no_passes: bool,
+    /// Print one JSON object per number of particles
+    #[arg(long)]
+    pub json: bool,
+}
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  splashdown completions bash > ~/.local/share/bash-completion/completions/splashdown
+  splashdown completions zsh > ~/.zfunc/_splashdown
+  splashdown completions fish > ~/.config/fish/completions/splashdown.fish
+  splashdown completions powershell >> $PROFILE";
+
+/// Options of `completions`.
+#[derive(Debug, Args)]
+#[command(after_help = COMPLETIONS_EXAMPLES)]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// Reads one word of a choice of the scene file; help and completions list the words.
+fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
+    words::<C>(&[]).try_map(|word| C::from_name(&word).ok_or("unknown word"))
+}
+
+/// As [`choice`], with the word `none` for nothing.
+fn choice_or_none<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = Option<C>> {
+    words::<C>(&["none"]).map(|word| C::from_name(&word))
+}
+
+fn words<C: Choice>(more: &[&'static str]) -> PossibleValuesParser {
+    let words = C::ALL.iter().map(|&(_, word, about)| PossibleValue::new(word).help(about.trim()));
+    PossibleValuesParser::new(words.chain(more.iter().map(|word| PossibleValue::new(word).help("Nothing."))))
+}

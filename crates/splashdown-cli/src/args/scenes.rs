@@ -1,0 +1,48 @@
+//! Options of `scenes`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+const SCENES_EXAMPLES: &str = "\
+Examples:
+  splashdown scenes                       list them
+  splashdown scenes show honey            print one
+  splashdown scenes copy dam-break        write dam-break.toml here, to change it
+  splashdown scenes schema > scene.schema.json";
+
+/// Options of `scenes`.
+#[derive(Debug, Args)]
+#[command(after_help = SCENES_EXAMPLES)]
+pub struct ScenesArguments {
+    /// What to do; without a word, the list.
+    #[command(subcommand)]
+    pub action: Option<ScenesAction>,
+}
+
+/// The words after `splashdown scenes`.
+#[derive(Debug, Subcommand)]
+pub enum ScenesAction {
+    /// List names and what the scenes are (the default)
+    List,
+    /// Print a scene file
+    Show {
+        /// Name of the scene
+        name: String,
+    },
+    /// Copy a scene file, to change it
+    Copy {
+        /// Name of the scene
+        name: String,
+        /// File or folder to write to
+        #[arg(default_value = ".")]
+        destination: PathBuf,
+        /// Replace a file that is there
+        #[arg(short, long)]
+        force: bool,
+    },
+    /// Print the JSON schema of scene files, for completion in an editor
+    Schema,
+    /// Print a table of all keys of a scene file, in Markdown
+    Reference,
+}

@@ -1,0 +1,77 @@
+//! Options of `surface`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::DeviceArgument;
+
+const SURFACE_EXAMPLES: &str = "\
+Examples:
+  splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
+  splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
+  splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
+
+Particles are read from PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; meshes are written as PLY, OBJ,
+STL, VTK or GLB. Where particles have velocities, so have the vertices (PLY, VTK, GLB). The meshes of
+several files have the numbers of their files, at the place of the star or before the ending.
+
+Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
+particle radius is half of the particle spacing.";
+
+/// Options of `surface`.
+#[derive(Debug, Args)]
+#[command(after_help = SURFACE_EXAMPLES)]
+pub struct SurfaceArguments {
+    /// Files of particles, patterns with * and ?, or a folder with one series of files
+    #[arg(value_name = "PARTICLES", required = true)]
+    pub particles: Vec<PathBuf>,
+    /// File for the mesh; for several a folder, or a name whose * becomes the number
+    #[arg(short, long, value_name = "MESH")]
+    pub out: PathBuf,
+    /// Distance of the particles in the fluid's bulk
+    #[arg(short = 's', long, value_name = "S", value_parser = length)]
+    pub particle_spacing: Option<f32>,
+    /// Use a spacing that does not fit the particles all the same
+    #[arg(long)]
+    pub force: bool,
+    /// Edge of a marching-cubes cell [default: half a spacing]
+    #[arg(short, long, value_name = "C", value_parser = length)]
+    pub cell_size: Option<f32>,
+    /// Distance from which on a particle is not felt [default: two spacings]
+    #[arg(long, value_name = "R", value_parser = length)]
+    pub support_radius: Option<f32>,
+    /// The field's value at the surface; it is about 1 in the bulk and 0 outside
+    #[arg(long, value_name = "LEVEL", default_value_t = 0.6)]
+    pub iso_level: f32,
+    /// Rounds of smoothing; 15 to 25 remove the particles' bumps and keep the volume
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub smoothing: u32,
+    /// Leave out separate pieces smaller than this many particles in the bulk; lone particles count 1 to 2
+    #[arg(long, value_name = "N", default_value_t = 0.0, value_parser = particles_of_a_blob)]
+    pub min_blob: f64,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Print one JSON object per mesh to stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// A length above zero.
+fn length(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|length| (1e-12..=1e12).contains(length))
+        .ok_or_else(|| "a length is a number above 0, such as 0.02".to_owned())
+}
+
+/// A number of particles, which need not be whole.
+fn particles_of_a_blob(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|size: &f64| (0.0..=1e12).contains(size))
+        .ok_or_else(|| "the smallest blob is a number of particles, 0 or more".to_owned())
+}

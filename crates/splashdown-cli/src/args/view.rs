@@ -1,0 +1,32 @@
+//! Options of `view`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::DeviceArgument;
+
+/// Options of `view`.
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Scene file (TOML), the name of one that comes with the program, or a checkpoint to go on from
+    #[arg(value_name = "SCENE", default_value = "dam-break")]
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Width and height of the window
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = window_size)]
+    pub size: [f32; 2],
+}
+
+/// Two numbers with an x between them.
+fn window_size(text: &str) -> Result<[f32; 2], String> {
+    let side = |side: &str| side.parse().ok().filter(|side| (200.0..=16_384.0).contains(side));
+    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+        Some((Some(width), Some(height))) => Ok([width, height]),
+        _ => {
+            Err("a size is two numbers between 200 and 16384 with an x between them, such as 1280x800"
+                .to_owned())
+        }
+    }
+}
