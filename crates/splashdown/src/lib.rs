@@ -33,6 +33,7 @@ pub mod probes;
 mod run;
 pub mod sample;
 pub mod scene;
+pub mod simd;
 mod simulation;
 pub mod solid;
 pub mod solver;

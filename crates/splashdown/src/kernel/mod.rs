@@ -8,23 +8,26 @@ use std::f32::consts::PI;
 
 use splashdown_gpu::WgslModule;
 
+use crate::simd::Lanes;
+
 /// The WGSL side: `kernel_w`, `kernel_g`, chosen by `override KERNEL`.
 pub const WGSL: WgslModule = WgslModule { name: "sph/kernel", source: include_str!("kernel.wgsl") };
 
-/// A kernel as the CPU's loops see it: plain arithmetic without branches, so that it vectorises.
+/// A kernel as the CPU's loops see it: arithmetic without branches, for one number or a whole register of them.
+/// Implementations must be `#[inline(always)]`.
 pub trait Kernel: Copy + Send + Sync + 'static {
     /// The number by which WGSL's `KERNEL` chooses it.
     const ID: u32;
     /// W * H^3.
-    fn w(q: f32) -> f32;
+    fn w<V: Lanes>(q: V) -> V;
     /// The factor g with grad W = g / H^5 * (x_i - x_j).
-    fn g(q: f32) -> f32;
+    fn g<V: Lanes>(q: V) -> V;
 }
 
-/// Larger of two numbers, as one instruction; the second one if the first is NaN.
+/// 1 - q, zero beyond the support.
 #[inline(always)]
-pub fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+fn inside<V: Lanes>(q: V) -> V {
+    (V::splat(1.0) - q).max(V::splat(0.0))
 }
 
 /// Wendland C2 (Wendland 1995; Dehnen & Aly 2012): no pairing instability, and a gradient without division by r.
@@ -35,16 +38,16 @@ impl Kernel for WendlandC2 {
     const ID: u32 = 0;
 
     #[inline(always)]
-    fn w(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
+    fn w<V: Lanes>(q: V) -> V {
+        let t = inside(q);
         let t2 = t * t;
-        21.0 / (2.0 * PI) * t2 * t2 * (1.0 + 4.0 * q)
+        t2 * t2 * (q * 4.0 + 1.0) * (21.0 / (2.0 * PI))
     }
 
     #[inline(always)]
-    fn g(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
-        -210.0 / PI * t * t * t
+    fn g<V: Lanes>(q: V) -> V {
+        let t = inside(q);
+        t * t * t * (-210.0 / PI)
     }
 }
 
@@ -56,19 +59,19 @@ impl Kernel for CubicSpline {
     const ID: u32 = 1;
 
     #[inline(always)]
-    fn w(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
-        let near = 6.0 * q * q * (q - 1.0) + 1.0;
-        let far = 2.0 * t * t * t;
-        8.0 / PI * if q <= 0.5 { near } else { far }
+    fn w<V: Lanes>(q: V) -> V {
+        let t = inside(q);
+        let near = q * q * (q - 1.0) * 6.0 + 1.0;
+        let far = t * t * t * 2.0;
+        q.if_less(V::splat(0.5), near, far) * (8.0 / PI)
     }
 
     #[inline(always)]
-    fn g(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
-        let near = 3.0 * q - 2.0;
-        let far = -t * t / max(q, 0.5);
-        48.0 / PI * if q <= 0.5 { near } else { far }
+    fn g<V: Lanes>(q: V) -> V {
+        let (t, half) = (inside(q), V::splat(0.5));
+        let near = q * 3.0 - 2.0;
+        let far = t * t * -1.0 / q.max(half);
+        q.if_less(half, near, far) * (48.0 / PI)
     }
 }
 
@@ -80,24 +83,23 @@ impl Kernel for Poly6 {
     const ID: u32 = 2;
 
     #[inline(always)]
-    fn w(q: f32) -> f32 {
-        let t = max(1.0 - q * q, 0.0);
-        315.0 / (64.0 * PI) * t * t * t
+    fn w<V: Lanes>(q: V) -> V {
+        let t = inside(q * q);
+        t * t * t * (315.0 / (64.0 * PI))
     }
 
     #[inline(always)]
-    fn g(q: f32) -> f32 {
-        let t = max(1.0 - q * q, 0.0);
-        -945.0 / (32.0 * PI) * t * t
+    fn g<V: Lanes>(q: V) -> V {
+        let t = inside(q * q);
+        t * t * (-945.0 / (32.0 * PI))
     }
 }
 
 impl Poly6 {
     /// The Laplacian of W times H^5.
     #[inline(always)]
-    pub fn laplacian(q: f32) -> f32 {
-        let t = max(1.0 - q * q, 0.0);
-        -945.0 / (32.0 * PI) * t * (3.0 - 7.0 * q * q)
+    pub fn laplacian<V: Lanes>(q: V) -> V {
+        inside(q * q) * (V::splat(3.0) - q * q * 7.0) * (-945.0 / (32.0 * PI))
     }
 }
 
@@ -112,22 +114,22 @@ impl Kernel for Spiky {
     const ID: u32 = 3;
 
     #[inline(always)]
-    fn w(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
-        15.0 / PI * t * t * t
+    fn w<V: Lanes>(q: V) -> V {
+        let t = inside(q);
+        t * t * t * (15.0 / PI)
     }
 
     #[inline(always)]
-    fn g(q: f32) -> f32 {
-        let t = max(1.0 - q, 0.0);
-        -45.0 / PI * t * t / max(q, SMALLEST_Q)
+    fn g<V: Lanes>(q: V) -> V {
+        let t = inside(q);
+        t * t * (-45.0 / PI) / q.max(V::splat(SMALLEST_Q))
     }
 }
 
 /// The Laplacian, times H^5, of the viscosity kernel of the same paper: positive everywhere, so friction never heats.
 #[inline(always)]
-pub fn viscosity_laplacian(q: f32) -> f32 {
-    45.0 / PI * max(1.0 - q, 0.0)
+pub fn viscosity_laplacian<V: Lanes>(q: V) -> V {
+    inside(q) * (45.0 / PI)
 }
 
 #[cfg(test)]

@@ -45,11 +45,11 @@ fn the_checks_can_fail() {
     struct Wrong;
     impl Kernel for Wrong {
         const ID: u32 = 9;
-        fn w(q: f32) -> f32 {
-            1.01 * WendlandC2::w(q)
+        fn w<V: Lanes>(q: V) -> V {
+            WendlandC2::w(q) * 1.01
         }
-        fn g(q: f32) -> f32 {
-            1.05 * WendlandC2::g(q)
+        fn g<V: Lanes>(q: V) -> V {
+            WendlandC2::g(q) * 1.05
         }
     }
     assert!((integral::<Wrong>() - 1.0).abs() > 1e-3);

@@ -14,8 +14,7 @@ pub mod mueller;
 pub mod normals;
 pub mod state_equation;
 
-pub(crate) mod rows;
-pub(crate) mod simd;
+pub(crate) mod pairs;
 
 use crate::boundary::{KernelPair, Walls};
 use glam::{UVec2, Vec3};

@@ -1,14 +1,12 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::cells::Grid;
 use crate::foam::FoamState;
 use crate::kernel::{Kernel, WendlandC2};
 use crate::passes::Params;
-use crate::passes::rows::{self, Window};
-use crate::passes::simd::{Leaf, vectorised};
+use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::simd::Register;
 
-const LANES: usize = 16;
 const LEAST_NORMAL: f32 = 0.5;
 
 pub(super) fn normals(_: CpuWork, slots: &mut [Slot<'_>]) {
@@ -16,53 +14,42 @@ pub(super) fn normals(_: CpuWork, slots: &mut [Slot<'_>]) {
     if foam_state.get::<FoamState>().is_due == 0 {
         return;
     }
-    let (params, grid) = (&params.get::<Params>(), &grid.get::<Grid>());
-    let (cell_start, positions) = (cell_start.read::<u32>(), positions.read::<Vec4>());
-    rows::for_each(grid, cell_start, normals.write::<Vec4>(), |window, row, _, out| {
-        vectorised(Row { params, grid, cell_start, positions, row, window, out });
-    });
+    let (params, grid) = (&params.get::<Params>(), &grid.get());
+    let positions = positions.read();
+    let scale = 1.0 / params.support_radius;
+    let share = params.particle_spacing * scale;
+    let pass = Normals { params, positions, scale, factor: -share * share * share * scale };
+    pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), normals.write(), &pass);
 }
 
-struct Row<'a> {
+struct Normals<'a> {
     params: &'a Params,
-    grid: &'a Grid,
-    cell_start: &'a [u32],
     positions: &'a [Vec4],
-    row: usize,
-    window: &'a mut Window<3>,
-    out: &'a mut [Vec4],
+    scale: f32,
+    factor: f32,
 }
 
-impl Leaf for Row<'_> {
-    type Output = ();
+impl PairSum<3, 3> for Normals<'_> {
+    type Output = Vec4;
 
     #[inline(always)]
-    fn run(self) {
-        let scale = 1.0 / self.params.support_radius;
-        let share = self.params.particle_spacing * scale;
-        let factor = share * share * share * scale;
-        let (row, positions) = (self.row, self.positions);
-        self.window.gather(self.grid, self.cell_start, row, |j| positions[j].xyz().to_array());
-        let first = self.cell_start[row] as usize;
-        for (x, places) in rows::occupied(self.grid, self.cell_start, row) {
-            let [xs, ys, zs] = self.window.candidates::<LANES>(x);
-            for i in places {
-                let p = positions[i];
-                let mut sums = [[0.0; LANES]; 3];
-                for ((xs, ys), zs) in xs.iter().zip(ys).zip(zs) {
-                    for l in 0..LANES {
-                        let (dx, dy, dz) = (p.x - xs[l], p.y - ys[l], p.z - zs[l]);
-                        let q = (dx * dx + dy * dy + dz * dz).sqrt() * scale;
-                        let g = WendlandC2::g(q);
-                        sums[0][l] -= g * dx;
-                        sums[1][l] -= g * dy;
-                        sums[2][l] -= g * dz;
-                    }
-                }
-                let n = factor * Vec3::from(sums.map(rows::sum));
-                self.out[i - first] = on_surface(self.params, p.xyz(), n);
-            }
+    fn load(&self, j: usize) -> [f32; 3] {
+        self.positions[j].xyz().to_array()
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 3]) -> [V; 3] {
+        let x = splat::<V>(self.positions[i]);
+        #[inline(always)]
+        move |other| {
+            let d = difference(x, other);
+            scaled(WendlandC2::g(dot(d, d).sqrt() * self.scale), d)
         }
+    }
+
+    #[inline(always)]
+    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
+        *out = on_surface(self.params, self.positions[i].xyz(), self.factor * Vec3::from(sums));
     }
 }
 

@@ -1,0 +1,62 @@
+//! The particles' quantities, one array per quantity.
+
+use std::cell::Cell;
+
+use rayon::prelude::*;
+
+use crate::simd::BLOCK;
+
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+thread_local! {
+    /// The memory of the last columns that this thread made: fresh pages would cost as much as filling them.
+    static MEMORY: Cell<Vec<f32>> = const { Cell::new(Vec::new()) };
+}
+
+/// `F` columns; behind the end of each, a block may be read.
+pub(super) struct Columns<const F: usize> {
+    values: Vec<f32>,
+    stride: usize,
+}
+
+impl<const F: usize> Columns<F> {
+    /// The columns of `count` particles.
+    pub fn new(count: usize, load: impl Fn(usize) -> [f32; F] + Sync) -> Self {
+        let stride = count + BLOCK;
+        let mut values = MEMORY.take();
+        // What lies there from last time is overwritten, or masked where it is read.
+        values.resize(values.len().max(F * stride), 0.0);
+        let mut rest: [&mut [f32]; F] = {
+            let mut columns = values.chunks_exact_mut(stride);
+            std::array::from_fn(|_| &mut columns.next().expect("the size was chosen so")[..count])
+        };
+        let mut tasks = Vec::with_capacity(count.div_ceil(CHUNK));
+        for begin in (0..count).step_by(CHUNK) {
+            let size = CHUNK.min(count - begin);
+            let piece =
+                rest.each_mut().map(|column| column.split_off_mut(..size).expect("that much is left"));
+            tasks.push((begin, size, piece));
+        }
+        tasks.into_par_iter().for_each(|(begin, size, mut piece)| {
+            for k in 0..size {
+                for (column, value) in piece.iter_mut().zip(load(begin + k)) {
+                    column[k] = value;
+                }
+            }
+        });
+        Self { values, stride }
+    }
+
+    /// A column.
+    #[inline(always)]
+    pub fn column(&self, f: usize) -> &[f32] {
+        &self.values[f * self.stride..(f + 1) * self.stride]
+    }
+}
+
+impl<const F: usize> Drop for Columns<F> {
+    fn drop(&mut self) {
+        MEMORY.set(std::mem::take(&mut self.values));
+    }
+}
