@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use splashdown::{Checkpoint, Run};
-use splashdown_io::{FrameWriter, Job};
+use splashdown::{Checkpoint, CheckpointError, Run};
+use splashdown_io::{FrameWriter, Job, WrittenFile};
 
 use crate::exit::{Exit, Failure};
 use crate::layout::Layout;
@@ -56,25 +56,30 @@ impl Checkpoints {
     /// The writer's first failure.
     pub fn write(&mut self, complete: u32, writer: &FrameWriter) -> Result<(), Failure> {
         while let Some((frame, checkpoint)) = self.taken.pop_front_if(|(frame, _)| *frame <= complete) {
+            // Before, so that there are never more than are promised. The one that stays is whole, whatever becomes of this one.
+            self.layout.keep_checkpoints(KEPT - 1);
             writer.submit(vec![Job::Bytes(self.layout.checkpoint(frame), checkpoint.to_bytes()?)])?;
-            self.layout.keep_checkpoints(KEPT);
         }
         Ok(())
     }
 
-    /// Writes the rest, once the writer has ended. The last one's path comes back, if there is one on the disk.
+    /// Writes the rest, once the writer has ended, and returns it.
     ///
     /// # Errors
     /// [`Exit::Files`].
-    pub fn finish(mut self, complete: Option<u32>) -> Result<Option<PathBuf>, Failure> {
+    pub fn finish(mut self, complete: Option<u32>) -> Result<Vec<WrittenFile>, Failure> {
+        let mut written = Vec::new();
         while let Some((frame, checkpoint)) = self.taken.pop_front() {
             if complete.is_some_and(|complete| frame <= complete) {
                 self.layout.make_checkpoints()?;
-                checkpoint.write(&self.layout.checkpoint(frame))?;
+                self.layout.keep_checkpoints(KEPT - 1);
+                let path = self.layout.checkpoint(frame);
+                let bytes = checkpoint.write(&path)?;
+                written.push(WrittenFile { path, bytes });
             }
         }
         self.layout.keep_checkpoints(KEPT);
-        Ok(self.layout.checkpoints().pop())
+        Ok(written)
     }
 }
 
@@ -83,21 +88,25 @@ impl Checkpoints {
 pub struct Found {
     /// It.
     pub checkpoint: Checkpoint,
+    /// What was asked of the run that wrote it.
+    pub wishes: Wishes,
     /// The output folder of the run that wrote it, if it lies in one.
     pub root: Option<PathBuf>,
     /// Newer ones that cannot be used, and why.
     pub passed_over: Vec<String>,
 }
 
-/// Finds what `path` names: a checkpoint, or the newest one below an output folder.
+/// Finds what `path` names: a checkpoint, or the newest one below an output folder or in its folder of checkpoints.
 ///
 /// # Errors
 /// [`Exit::Files`], with what is there instead.
 pub fn find(path: &Path) -> Result<Found, Failure> {
     let refuse = |message: String| Failure::new(Exit::Files, message);
     if path.is_file() {
-        let checkpoint = Checkpoint::read(path)?;
-        return Ok(Found { checkpoint, root: root_of(path), passed_over: Vec::new() });
+        let (checkpoint, wishes) = read(path)?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let root = root_of(folder.unwrap_or(Path::new(".")));
+        return Ok(Found { checkpoint, wishes, root, passed_over: Vec::new() });
     }
     if !path.is_dir() {
         let message = format!(
@@ -107,32 +116,55 @@ pub fn find(path: &Path) -> Result<Found, Failure> {
         );
         return Err(refuse(message));
     }
-    let layout = Layout::new(path.to_owned(), 0);
+    let mut root = path.to_owned();
+    let mut files = Layout::new(root.clone(), 0).checkpoints();
+    if let (true, Some(above)) = (files.is_empty(), root_of(path)) {
+        files = Layout::new(above.clone(), 0).checkpoints();
+        root = above;
+    }
     let mut passed_over = Vec::new();
-    for file in layout.checkpoints().into_iter().rev() {
-        match Checkpoint::read(&file) {
-            Ok(checkpoint) => return Ok(Found { checkpoint, root: Some(path.to_owned()), passed_over }),
+    for file in files.into_iter().rev() {
+        match read(&file) {
+            Ok((checkpoint, wishes)) => {
+                return Ok(Found { checkpoint, wishes, root: Some(root), passed_over });
+            }
             Err(error) => passed_over.push(error.to_string()),
         }
     }
-    let reason = match passed_over.as_slice() {
-        [] => "it holds none; `--checkpoint-every N` writes them, and so does Ctrl-C".to_owned(),
-        reasons => reasons.join("; "),
+    let reason = match (passed_over.as_slice(), any_in(path)) {
+        ([], None) => "it holds none; `--checkpoint-every N` writes them, and so does Ctrl-C".to_owned(),
+        ([], Some(file)) => format!("no run wrote it; name a file, as in `--resume {}`", file.display()),
+        (reasons, _) => reasons.join("; "),
     };
     Err(refuse(format!("--resume: no checkpoint in `{}` can be used: {reason}", path.display())))
 }
 
-/// The output folder that a checkpoint lies in, if it lies in one.
-fn root_of(checkpoint: &Path) -> Option<PathBuf> {
-    let folder = checkpoint.parent()?;
+fn read(path: &Path) -> Result<(Checkpoint, Wishes), CheckpointError> {
+    let checkpoint = Checkpoint::read(path)?;
+    let wishes = Wishes::in_checkpoint(&checkpoint).map_err(|error| match error {
+        CheckpointError::Malformed(reason) => {
+            CheckpointError::Malformed(format!("`{}`: {reason}", path.display()))
+        }
+        other => other,
+    })?;
+    Ok((checkpoint, wishes))
+}
+
+/// A checkpoint of whatever name in a folder.
+fn any_in(folder: &Path) -> Option<PathBuf> {
+    let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    files.filter(|path| path.extension().is_some_and(|ending| ending == Checkpoint::ENDING)).min()
+}
+
+/// The output folder to which a folder of checkpoints belongs, if it is one.
+fn root_of(folder: &Path) -> Option<PathBuf> {
     if folder.ends_with(Layout::CHECKPOINTS) {
         let root = folder.parent()?;
         return Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root.to_owned() });
     }
-    // As seen from inside the folder of the checkpoints.
-    let whole = checkpoint.canonicalize().ok()?;
-    let folder = whole.parent().filter(|folder| folder.ends_with(Layout::CHECKPOINTS))?;
-    folder.parent().map(Path::to_owned)
+    // As seen from inside of it.
+    let whole = folder.canonicalize().ok().filter(|folder| folder.ends_with(Layout::CHECKPOINTS))?;
+    whole.parent().map(Path::to_owned)
 }
 
 /// Removes what a run that was killed left half-written below its folder.

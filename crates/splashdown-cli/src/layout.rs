@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use splashdown::Checkpoint;
 use splashdown::scene::{Choice, Format, PictureKind, Scene};
-use splashdown_io::{IoError, prepare_folder};
+use splashdown_io::{IoError, WrittenFile, prepare_folder};
 
 /// The names of all files of a run.
 #[derive(Clone, Debug)]
@@ -162,6 +162,29 @@ impl Layout {
                 }
             }
         }
+    }
+
+    /// The files of a run up to this frame that are there, but for its films, probes, index and report.
+    pub fn files_up_to(&self, frame: u32) -> Vec<WrittenFile> {
+        let mut files = Vec::new();
+        let mut add = |path: PathBuf| {
+            if let Ok(data) = fs::metadata(&path) {
+                files.push(WrittenFile { path, bytes: data.len() });
+            }
+        };
+        let checkpoints = (Self::CHECKPOINTS, &[CHECKPOINT][..], &[Checkpoint::ENDING][..]);
+        for (folder, stems, endings) in FOLDERS.into_iter().chain([checkpoints, ANIMATED]) {
+            for entry in fs::read_dir(self.root.join(folder)).into_iter().flatten().flatten() {
+                let number = frame_number(&entry.file_name().to_string_lossy(), stems, endings);
+                if number.is_some_and(|number| number <= frame) {
+                    add(self.root.join(folder).join(entry.file_name()));
+                }
+            }
+        }
+        for (kind, ..) in PictureKind::ALL {
+            add(self.animated(*kind, None));
+        }
+        files
     }
 
     fn numbered(&self, folder: &str, stem: &str, frame: u32, ending: &str) -> PathBuf {

@@ -13,6 +13,7 @@ mod human;
 mod interrupt;
 mod layout;
 mod lines;
+mod lock;
 mod memory;
 mod pictures;
 mod plot;

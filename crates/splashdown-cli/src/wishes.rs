@@ -1,8 +1,8 @@
 //! What was asked of a run: it is kept in its checkpoints, so that going on writes what was written before.
 
 use serde::{Deserialize, Serialize};
-use splashdown::scene::{Choice, PictureKind, Scene};
-use splashdown::{Checkpoint, Device};
+use splashdown::scene::{Choice, Format, PictureKind, Scene};
+use splashdown::{Checkpoint, CheckpointError, Device};
 
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure};
@@ -29,6 +29,8 @@ pub struct Wishes {
     pub checkpoint_every: Option<u32>,
     /// Digits of the frames' numbers in the names of files.
     pub digits: Option<usize>,
+    /// The first frame that was written as is asked here.
+    pub since: u32,
     /// Bytes in the files of the probes, in the order of the scene, at the checkpoint.
     pub probe_bytes: Vec<u64>,
 }
@@ -46,9 +48,8 @@ impl Wishes {
             }
             formats => formats.as_ref().map(|formats| words(formats.iter().flatten().copied())),
         };
-        let device = &arguments.device.device;
         Ok(Self {
-            device: (*device != Device::Auto).then(|| device.to_string()),
+            device: arguments.device.as_ref().map(Device::to_string),
             frames: arguments.frames,
             formats,
             no_surface: arguments.no_surface,
@@ -56,16 +57,40 @@ impl Wishes {
             no_pictures: arguments.no_pictures,
             no_film: arguments.no_film,
             checkpoint_every: arguments.checkpoint_every,
-            digits: None,
-            probe_bytes: Vec::new(),
+            ..Self::default()
         })
     }
 
-    /// Those of the run that a checkpoint belongs to, where this command line has none of its own.
-    pub fn or_of(self, checkpoint: &Checkpoint) -> Self {
-        // Notes of another front end say nothing to this one.
-        let before: Self =
-            checkpoint.notes().and_then(|notes| serde_json::from_str(notes).ok()).unwrap_or_default();
+    /// Those in a checkpoint; none where no command line made it.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`] for what no command line can have asked for.
+    pub fn in_checkpoint(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
+        let Some(notes) = checkpoint.notes() else { return Ok(Self::default()) };
+        let checked = serde_json::from_str(notes).map_err(|error| error.to_string()).and_then(Self::checked);
+        checked.map_err(|reason| CheckpointError::Malformed(format!("its entry `notes.json`: {reason}")))
+    }
+
+    fn checked(self) -> Result<Self, String> {
+        let numbers = [("frames", self.frames), ("checkpoint_every", self.checkpoint_every)];
+        for (name, number) in numbers {
+            if number.is_some_and(|number| !(1..=1_000_000).contains(&number)) {
+                return Err(format!("`{name}` is not between 1 and 1000000"));
+            }
+        }
+        if self.digits.is_some_and(|digits| !(4..=10).contains(&digits)) {
+            return Err("`digits` is not between 4 and 10".to_owned());
+        }
+        let formats = self.formats.iter().flatten().filter(|word| Format::from_name(word).is_none());
+        let pictures = self.pictures.iter().flatten().filter(|word| PictureKind::from_name(word).is_none());
+        match formats.chain(pictures).next() {
+            Some(word) => Err(format!("it asks for {word:?}, which this program cannot write")),
+            None => Ok(self),
+        }
+    }
+
+    /// Those of the run that goes on, where this command line has none of its own.
+    pub fn or(self, before: Self) -> Self {
         Self {
             device: self.device.or(before.device),
             frames: self.frames.or(before.frames),
@@ -76,6 +101,7 @@ impl Wishes {
             no_film: self.no_film || before.no_film,
             checkpoint_every: self.checkpoint_every.or(before.checkpoint_every),
             digits: before.digits,
+            since: before.since,
             probe_bytes: before.probe_bytes,
         }
     }
@@ -120,7 +146,7 @@ fn words<T: Choice>(list: impl Iterator<Item = T>) -> Vec<String> {
     list.map(|choice| choice.name().to_owned()).collect()
 }
 
-/// A file that is asked for twice is written once: two writers of one name would race. Words of a later version are left out.
+/// A file that is asked for twice is written once: two writers of one name would race.
 fn choices<T: Choice + PartialEq>(words: &[String]) -> Vec<T> {
     words.iter().filter_map(|word| T::from_name(word)).fold(Vec::new(), |mut found, item| {
         if !found.contains(&item) {

@@ -75,6 +75,8 @@ struct About {
     scene: String,
     /// The scene's file.
     source: Option<PathBuf>,
+    /// Of the adapter, or `CPU`.
+    device: Option<String>,
     time: f64,
     particles: u32,
 }
@@ -167,7 +169,7 @@ impl Checkpoint {
     /// The ending of a checkpoint's file name.
     pub const ENDING: &'static str = "splashdown";
 
-    pub(crate) fn new(archive: Archive, scene: &Scene, text: &str, host: &HostState) -> Self {
+    pub(crate) fn new(archive: Archive, scene: &Scene, text: &str, device: String, host: &HostState) -> Self {
         let mut checkpoint = Self { archive };
         let about = About {
             format: "Splashdown checkpoint".to_owned(),
@@ -179,6 +181,7 @@ impl Checkpoint {
                 .source
                 .as_ref()
                 .map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+            device: Some(device),
             time: host.stats.time,
             particles: host.stats.particles,
         };
@@ -267,6 +270,14 @@ impl Checkpoint {
     /// [`CheckpointError::Malformed`].
     pub fn time(&self) -> Result<f64, CheckpointError> {
         Ok(self.host()?.stats.time)
+    }
+
+    /// What it was made on: an adapter's name, or `CPU`; the same bits follow there. `None` where an earlier version did not say.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`].
+    pub fn device(&self) -> Result<Option<String>, CheckpointError> {
+        Ok(self.about()?.device)
     }
 
     /// What a front end left with [`set_notes`](Self::set_notes), if it did.

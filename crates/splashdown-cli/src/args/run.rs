@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use splashdown::Device;
 use splashdown::scene::{Format, PictureKind};
 
-use super::{DeviceArgument, VerbosityArguments, choice, choice_or_none};
+use super::{VerbosityArguments, choice, choice_or_none};
 
 const RUN_EXAMPLES: &str = "\
 Examples:
@@ -51,8 +52,10 @@ pub struct RunArguments {
     /// Folder for the results [default: out/ and the scene's name]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub device: DeviceArgument,
+    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor` [default: auto, or what
+    /// the run that goes on was given]
+    #[arg(short, long, value_name = "auto|gpu|cpu|NAME", value_parser = clap::value_parser!(Device))]
+    pub device: Option<Device>,
     /// Number of frames after the initial one [default: the scene's]
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,

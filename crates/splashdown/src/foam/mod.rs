@@ -270,6 +270,11 @@ impl Foam {
         self.params
     }
 
+    /// Whoever kept this has been told already of those that found no room.
+    pub(crate) fn remember(&mut self, state: &FoamState) {
+        self.has_told |= state.refused > 0;
+    }
+
     /// A sentence when some found no room for the first time.
     pub(crate) fn tell(&mut self, state: &FoamState) -> Option<String> {
         (state.refused > 0 && !std::mem::replace(&mut self.has_told, true)).then(|| {

@@ -40,7 +40,7 @@ impl Run {
         let simulation = block_on(Simulation::resume_async(checkpoint, executor, &options.told()))?;
         let time = simulation.stats().time;
         let mut run = Self::of(simulation, scene, options, started)?;
-        if let (Some(foam), Some(kept)) = (&run.foam, checkpoint.foam()?) {
+        if let (Some(foam), Some(kept)) = (&mut run.foam, checkpoint.foam()?) {
             run.simulation.restore_foam(foam, &kept)?;
         }
         let rate = f64::from(scene.frame_rate);

@@ -62,7 +62,8 @@ impl Simulation {
                 bodies.motion_columns(),
             );
         }
-        let mut checkpoint = Checkpoint::new(archive, &self.scene, scene_text, &host);
+        let device = self.executor.gpu().map_or_else(|| "CPU".to_owned(), |gpu| gpu.name());
+        let mut checkpoint = Checkpoint::new(archive, &self.scene, scene_text, device, &host);
         if let Some(bodies) = &self.bodies {
             checkpoint.set("collisions.bin", bodies.collisions());
         }

@@ -52,8 +52,9 @@ impl Simulation {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn restore_foam(&mut self, foam: &Foam, kept: &KeptFoam) -> Result<(), SimulationError> {
+    pub fn restore_foam(&mut self, foam: &mut Foam, kept: &KeptFoam) -> Result<(), SimulationError> {
         let count = kept.pool.len().min(foam.capacity() as usize);
+        foam.remember(&kept.state);
         self.executor.write(foam.pool(), &kept.pool[..count])?;
         Ok(self.executor.write(foam.state(), &[FoamState { count: count as u32, ..kept.state }])?)
     }

@@ -1,5 +1,6 @@
 //! `splashdown run`: one loop over the library's stream of events.
 
+mod earlier;
 mod start;
 
 use std::path::PathBuf;
@@ -7,7 +8,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use splashdown::{Event, Run};
-use splashdown_io::Film;
+use splashdown_io::{Film, WrittenFile};
 
 use crate::args::RunArguments;
 use crate::checkpoints::Checkpoints;
@@ -17,6 +18,7 @@ use crate::files::Files;
 use crate::interrupt::{Interrupt, Wish};
 use crate::layout::Layout;
 use crate::lines::Line;
+use crate::lock::FolderLock;
 use crate::pictures::Pictures;
 use crate::probes::ProbeFiles;
 use crate::teller::Teller;
@@ -54,6 +56,10 @@ struct Session {
     timing: bool,
     layout: Layout,
     teller: Teller,
+    /// Files of the frames before, where the run goes on.
+    earlier: Vec<WrittenFile>,
+    /// Keeps other runs out of the folder.
+    _lock: FolderLock,
 }
 
 impl Session {
@@ -132,13 +138,15 @@ impl Session {
             files,
             probes,
             checkpoints,
+            frame: _,
             pictures,
             mut no_more_pictures,
             pictures_demanded,
             timing,
             layout,
             mut teller,
-            ..
+            mut earlier,
+            _lock,
         } = self;
         drop(run);
         teller.waiting("finishing pictures and files");
@@ -153,19 +161,23 @@ impl Session {
             }
         }
         let mut ended = files.finish(no_more_pictures);
-        ended.files.extend(probes.finish());
+        earlier.append(&mut ended.files);
+        earlier.extend(probes.finish());
         teller.complete(ended.frames);
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());
         }
         match checkpoints.finish(teller.last_complete()) {
-            Ok(checkpoint) => teller.can_go_on(checkpoint.is_some()),
+            Ok(mut written) => earlier.append(&mut written),
             Err(error) => {
                 failure.get_or_insert(error);
             }
         }
+        teller.can_go_on(!layout.checkpoints().is_empty());
         let films = finish_films(&films, &teller);
-        teller.close(&layout, &ended.files, &films, failure, timing)
+        // Of the checkpoints only the last stay.
+        earlier.retain(|file| file.path.exists());
+        teller.close(&layout, &earlier, &films, failure, timing)
     }
 }
 

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use splashdown::scene::{PictureKind, Scene};
-use splashdown::{Run, RunOptions};
+use splashdown::{Checkpoint, Run, RunOptions};
 
 use super::Session;
+use super::earlier::Earlier;
 use crate::args::RunArguments;
-use crate::checkpoints::{self, Checkpoints};
+use crate::checkpoints::{self, Checkpoints, Found};
 use crate::exit::{Exit, Failure};
 use crate::files::Files;
 use crate::layout::{Folders, Layout};
+use crate::lock::FolderLock;
 use crate::pictures::{self, Pictures};
 use crate::probes::ProbeFiles;
 use crate::report::Report;
@@ -25,7 +27,7 @@ impl Session {
         let mut wishes = Wishes::of(arguments)?;
         let mut scene = match (&arguments.scene, &found) {
             (_, Some(found)) => {
-                wishes = wishes.or_of(&found.checkpoint);
+                wishes = wishes.or(found.wishes.clone());
                 found.checkpoint.scene()?
             }
             (Some(scene), None) => scene_file::load(scene)?,
@@ -65,6 +67,7 @@ impl Session {
         }
         let wanted = Folders::of(&scene, scene.surface.enabled, !kinds.is_empty());
         layout.make(wanted)?;
+        let lock = FolderLock::take(layout.root())?;
         if wishes.checkpoint_every.is_some() {
             layout.make_checkpoints()?;
         }
@@ -81,6 +84,14 @@ impl Session {
                 "--resume: frame {done} is done already and the run ends with frame {frames}: give --frames a larger number to make it longer"
             );
             return Err(Failure::new(Exit::Usage, message));
+        }
+        if let Some(found) = &found {
+            note_of_device(&found.checkpoint, &run, &teller)?;
+            let as_before =
+                (&wishes.formats, wishes.no_surface) == (&found.wishes.formats, found.wishes.no_surface);
+            if !(in_place && as_before) {
+                wishes.since = run.first_frame() + 1;
+            }
         }
         let begins = if in_place { Some(run.first_frame()) } else { None };
         if let Some(frame) = begins {
@@ -105,6 +116,8 @@ impl Session {
             timing: arguments.timing,
             layout,
             teller,
+            earlier: Vec::new(),
+            _lock: lock,
         };
         match session.start_pictures(&scene, kinds, wishes.no_film, begins) {
             Err(failure) if session.pictures_demanded => return Err(failure),
@@ -117,6 +130,9 @@ impl Session {
         match begins {
             Some(frame) => {
                 session.layout.remove_after(frame);
+                if let Some(found) = &found {
+                    session.look_back(found, frame)?;
+                }
                 session.probes = ProbeFiles::resume(&scene, &session.layout, &wishes.probe_bytes)?;
             }
             None => {
@@ -125,6 +141,19 @@ impl Session {
             }
         }
         Ok(session)
+    }
+
+    /// Finds the files of the frames before, and tells which are not there.
+    fn look_back(&mut self, found: &Found, last: u32) -> Result<(), Failure> {
+        let mut scene = found.checkpoint.scene()?;
+        found.wishes.change(&mut scene);
+        let pictures = found.wishes.pictures(&scene)?;
+        let earlier = Earlier::find(&self.layout, &scene, &pictures, found.wishes.since, last);
+        if let Some(warning) = earlier.warning(self.layout.root()) {
+            self.teller.warn(&warning);
+        }
+        self.earlier = earlier.files;
+        Ok(())
     }
 
     /// Removes what an earlier run left, and leaves the first word of this one.
@@ -194,4 +223,17 @@ fn warn_of_changes(scene: &Scene, teller: &Teller) {
             "`{file}` has changed since; the run goes on with the scene as it was. Run it anew for the changes"
         ));
     }
+}
+
+/// The bits are those of a run that did not stop only where they were made.
+fn note_of_device(checkpoint: &Checkpoint, run: &Run, teller: &Teller) -> Result<(), Failure> {
+    let now = run.gpu().map_or_else(|| "CPU".to_owned(), |gpu| gpu.name());
+    if let Some(then) = checkpoint.device()?
+        && then != now
+    {
+        teller.note(&format!(
+            "The checkpoint was made on {then}, and the run goes on on {now}: from here on its numbers differ in their last digits."
+        ));
+    }
+    Ok(())
 }

@@ -26,9 +26,9 @@ impl Worker {
         if simulation.scene().foam.enabled {
             if self.foam.is_none() {
                 let settings = simulation.scene().foam;
-                let new = simulation.foam(&settings)?;
+                let mut new = simulation.foam(&settings)?;
                 if let Some(kept) = self.kept.take() {
-                    simulation.restore_foam(&new, &kept)?;
+                    simulation.restore_foam(&mut new, &kept)?;
                 }
                 self.foam = Some(new);
             }

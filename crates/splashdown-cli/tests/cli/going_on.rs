@@ -1,0 +1,159 @@
+//! Going on with a run: what may be named, what is told, and that two runs do not write into one folder.
+
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use splashdown_io::Archive;
+
+use crate::place::{Outcome, Place, assert_refused, stderr};
+
+/// A finished run of two frames with a checkpoint of each, in `out`.
+fn two_frames() -> Result<Place, Box<dyn std::error::Error>> {
+    let place = Place::new()?;
+    let output = place.run_small(&["--frames", "2", "--checkpoint-every", "1"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    Ok(place)
+}
+
+/// Changes an entry of the newest checkpoint.
+fn change(place: &Place, entry: &str, new: impl Fn(&str) -> String) -> Outcome {
+    let path = place.path("out/checkpoints/checkpoint_0002.splashdown");
+    let mut archive = Archive::read(&path)?;
+    let text = new(archive.text(entry)?);
+    archive.set_text(entry, &text);
+    archive.write(&path)?;
+    Ok(())
+}
+
+#[test]
+fn two_runs_do_not_write_into_one_folder() -> Outcome {
+    let place = Place::new()?;
+    let mut first = Command::new(assert_cmd::cargo::cargo_bin!("splashdown"))
+        .current_dir(place.path("."))
+        .args(["run", "small.toml", "--out", "out", "--device", "cpu", "--no-pictures", "--frames", "99999"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let begun = Instant::now();
+    while !place.path("out/run.json").exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let refused = place.run_small(&[]).output()?;
+    // Another folder is free.
+    let beside =
+        place.splashdown(&["run", "small.toml", "--out", "b", "-d", "cpu", "--no-pictures"]).output()?;
+    first.kill()?;
+    first.wait()?;
+    assert_refused(&refused, 2, &["another run is writing into `out`", "--out"]);
+    assert!(beside.status.success(), "{}", stderr(&beside));
+    // What a killed run leaves holds nobody up, and a run that ends leaves nothing.
+    let output = place.run_small(&[]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(!place.path("out/.lock").exists());
+    Ok(())
+}
+
+#[test]
+fn the_folder_of_the_checkpoints_and_a_file_in_it_name_the_run_too() -> Outcome {
+    let place = two_frames()?;
+    let named = ["out/checkpoints", "out/checkpoints/", "out/checkpoints/checkpoint_0004.splashdown"];
+    for (name, frames) in named.iter().zip(["3", "4", "5"]) {
+        let output = place.splashdown(&["run", "--resume", name, "--frames", frames]).output()?;
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        assert!(place.path(&format!("out/particles/particles_000{frames}.ply")).exists(), "{name}");
+    }
+    // From inside.
+    let mut inside = place.splashdown(&["run", "--resume", ".", "--frames", "6"]);
+    let output = inside.current_dir(place.path("out/checkpoints")).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(place.path("out/particles/particles_0006.ply").exists());
+    // One that was kept by hand has to be named itself.
+    fs::create_dir(place.path("kept"))?;
+    fs::copy(place.path("out/checkpoints/checkpoint_0006.splashdown"), place.path("kept/mine.splashdown"))?;
+    let output = place.splashdown(&["run", "--resume", "kept"]).output()?;
+    assert_refused(&output, 5, &["--resume kept/mine.splashdown"]);
+    Ok(())
+}
+
+#[test]
+fn another_device_is_chosen_and_told() -> Outcome {
+    let place = two_frames()?;
+    let longer = |frames: &str, more: &[&str]| {
+        place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
+    };
+    let asked = |frame: u32| -> Result<Value, Box<dyn std::error::Error>> {
+        let archive =
+            Archive::read(&place.path(&format!("out/checkpoints/checkpoint_000{frame}.splashdown")))?;
+        Ok(serde_json::from_str::<Value>(archive.text("notes.json")?)?["device"].clone())
+    };
+    change(&place, "about.json", |text| text.replace("\"CPU\"", "\"Abacus\""))?;
+    let output = longer("3", &[])?;
+    assert!(stderr(&output).contains("made on Abacus, and the run goes on on CPU"), "{}", stderr(&output));
+    assert_eq!(asked(3)?, "cpu");
+    // The control: the same device is nothing to tell.
+    let output = longer("4", &["--device", "auto"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(asked(4)?, "auto");
+    if stderr(&output).contains("on CPU (") {
+        assert!(!stderr(&output).contains("was made on"), "{}", stderr(&output));
+    }
+    Ok(())
+}
+
+#[test]
+fn files_that_are_gone_are_missed_and_all_are_counted() -> Outcome {
+    let place = Place::new()?;
+    let report = |root: &str| -> Result<Value, Box<dyn std::error::Error>> {
+        Ok(serde_json::from_slice(&fs::read(place.path(root).join("run.json"))?)?)
+    };
+    let run = ["run", "small.toml", "--device", "cpu", "--no-pictures", "--checkpoint-every", "1"];
+    for (root, frames) in [("straight", "4"), ("out", "2")] {
+        let output = place.splashdown(&[&run[..], &["--out", root, "--frames", frames]].concat()).output()?;
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let output = place.splashdown(&["run", "--resume", "out", "--frames", "4"]).output()?;
+    assert!(!stderr(&output).contains("cannot be found"), "{}", stderr(&output));
+    // Five frames of particles and surface, two checkpoints.
+    assert_eq!(report("straight")?["files"], 12);
+    assert_eq!(report("out")?["files"], 12);
+
+    // Other formats are asked for from here on: the frames before never had them.
+    let longer = |frames: &str, more: &[&str]| {
+        place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
+    };
+    let output = longer("5", &["--formats", "ply,vtk"])?;
+    assert!(!stderr(&output).contains("cannot be found"), "{}", stderr(&output));
+    let output = longer("6", &[])?;
+    assert!(!stderr(&output).contains("cannot be found"), "{}", stderr(&output));
+    fs::remove_file(place.path("out/particles/particles_0006.vtk"))?;
+    let output = longer("7", &[])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = "1 file of the frames before cannot be found any more: particles/particles_0006.vtk";
+    assert!(stderr(&output).contains(said), "{}", stderr(&output));
+    Ok(())
+}
+
+#[test]
+fn notes_that_no_command_line_can_have_left_are_refused() -> Outcome {
+    let place = two_frames()?;
+    let wrong = [
+        ("words", "notes.json"),
+        ("{\"frames\": 0}", "`frames`"),
+        ("{\"checkpoint_every\": 4000000000}", "`checkpoint_every`"),
+        ("{\"digits\": 99}", "`digits`"),
+        ("{\"formats\": [\"ply\", \"abc\"]}", "\"abc\""),
+        ("{\"pictures\": [\"ply\"]}", "\"ply\""),
+    ];
+    for (notes, word) in wrong {
+        change(&place, "notes.json", |_| notes.to_owned())?;
+        let newest = "out/checkpoints/checkpoint_0002.splashdown";
+        let output = place.splashdown(&["run", "--resume", newest, "--frames", "3"]).output()?;
+        assert_refused(&output, 5, &["checkpoint_0002", "notes.json", word]);
+    }
+    // The one before it is as good.
+    let output = place.splashdown(&["run", "--resume", "out"]).output()?;
+    assert!(output.status.success() && stderr(&output).contains("passed over"), "{}", stderr(&output));
+    Ok(())
+}
