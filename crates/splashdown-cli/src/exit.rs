@@ -34,7 +34,7 @@ pub const HELP: &str = "\
 Exit codes:
     0  done
     1  the simulation failed on its way (frames already written are complete)
-    2  the command line was not understood
+    2  the command line was not understood, or another run writes into the same folder
     3  the scene file, or another file that was given, is missing or wrong
     4  the device is missing, too small, or was lost; or pictures were demanded and nothing
        can draw them

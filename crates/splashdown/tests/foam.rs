@@ -5,40 +5,47 @@ use splashdown::scene::Scene;
 use splashdown::{
     Device, DiffuseKind, DiffuseParticles, Event, Foam, FoamState, Run, RunOptions, Simulation,
 };
-use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, testing};
+use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, block_on, testing};
 
 const HEAD: &str = "
 [scene]
 name = \"foam\"
 duration = 1.0
 ";
-/// A column that falls against the other end.
+/// A column that falls against the other end, as coarse as still makes spray, foam and bubbles.
 const COLUMN: &str = "
 [domain]
 min = [0, 0, 0]
 max = [0.8, 0.8, 0.2]
 [fluid]
-particle_spacing = 0.02
+particle_spacing = 0.03
 [[fluid.block]]
 shape = \"box\"
 position = [0, 0, 0]
 size = [0.24, 0.4, 0.2]
 ";
-/// Water that fills a small tank to a half.
+/// Water that fills a narrow tank to a half.
 const CALM: &str = "
 [domain]
 min = [0, 0, 0]
-max = [0.2, 0.6, 0.2]
+max = [0.2, 0.6, 0.125]
 [fluid]
-particle_spacing = 0.02
+particle_spacing = 0.025
 [[fluid.block]]
 shape = \"box\"
 position = [0, 0, 0]
-size = [0.2, 0.3, 0.2]
+size = [0.2, 0.3, 0.125]
 ";
 
 fn scene(fluid: &str) -> Scene {
     Scene::parse(&format!("{HEAD}{fluid}"), "foam.toml").unwrap()
+}
+
+/// The column in three times as much foam.
+fn foaming_column() -> Scene {
+    let mut scene = scene(COLUMN);
+    (scene.foam.trapped_air, scene.foam.wave_crest) = (600.0, 3000.0);
+    scene
 }
 
 fn start(scene: &Scene, executor: Executor) -> (Simulation, Foam) {
@@ -87,6 +94,7 @@ fn a_falling_column_foams_and_calm_water_does_not() {
     let (mut simulation, mut foam) = cpu(&column);
     advance(&mut simulation, &foam, 30);
     let diffuse = simulation.diffuse(&mut foam).unwrap();
+
     let kinds = [DiffuseKind::Spray, DiffuseKind::Foam, DiffuseKind::Bubble].map(|kind| diffuse.count(kind));
     assert!(kinds.iter().all(|&n| n > 20), "{kinds:?}");
     // Near the water, or thrown by it; all of it inside of the tank.
@@ -140,7 +148,7 @@ fn the_water_does_not_feel_it() {
 
 #[test]
 fn a_resumed_run_foams_on_with_the_same_bits() {
-    let mut scene = scene(COLUMN);
+    let mut scene = foaming_column();
     scene.surface.enabled = false;
     scene.foam.enabled = true;
     let options =
@@ -166,7 +174,7 @@ fn a_resumed_run_foams_on_with_the_same_bits() {
 fn spray_flies_along_a_parabola() {
     let scene = scene(CALM);
     let (mut simulation, mut foam) = cpu(&scene);
-    put(&mut simulation, &foam, [0.02, 0.45, 0.1], [0.7, 1.0, 0.0], DiffuseKind::Spray);
+    put(&mut simulation, &foam, [0.02, 0.45, 0.06], [0.7, 1.0, 0.0], DiffuseKind::Spray);
     for frame in 1..=10 {
         simulation.advance(0.02).unwrap();
         simulation.advance_foam(&foam).unwrap();
@@ -174,7 +182,7 @@ fn spray_flies_along_a_parabola() {
         let diffuse = simulation.diffuse(&mut foam).unwrap();
         assert_eq!(diffuse.kinds, [DiffuseKind::Spray]);
         let [x, y, z] = diffuse.positions[0];
-        let expected = [0.02 + 0.7 * t, 0.45 + t - 0.5 * 9.81 * t * t, 0.1];
+        let expected = [0.02 + 0.7 * t, 0.45 + t - 0.5 * 9.81 * t * t, 0.06];
         // Rounding of the clock, 1e-7 s at some m/s.
         let off = (x - expected[0]).abs().max((y - expected[1]).abs()).max((z - expected[2]).abs());
         assert!(off < 1e-5, "{off} m at {t} s");
@@ -187,7 +195,7 @@ fn spray_flies_along_a_parabola() {
 fn bubbles_rise_and_become_foam() {
     let scene = scene(CALM);
     let (mut simulation, mut foam) = cpu(&scene);
-    put(&mut simulation, &foam, [0.1, 0.06, 0.1], [0.0; 3], DiffuseKind::Bubble);
+    put(&mut simulation, &foam, [0.1, 0.06, 0.06], [0.0; 3], DiffuseKind::Bubble);
     let mut heights = vec![0.06];
     for _ in 0..60 {
         simulation.advance(0.02).unwrap();
@@ -218,7 +226,7 @@ fn bubbles_rise_and_become_foam() {
 
 #[test]
 fn a_full_pool_thins_evenly_and_says_so() {
-    let mut scene = scene(COLUMN);
+    let mut scene = foaming_column();
     let (mut simulation, mut foam) = cpu(&scene);
     advance(&mut simulation, &foam, 30);
     let free = simulation.diffuse(&mut foam).unwrap();
@@ -235,4 +243,10 @@ fn a_full_pool_thins_evenly_and_says_so() {
     assert!(told.len() == 1 && told[0].contains("room for 200"), "{told:?}");
     simulation.diffuse(&mut foam).unwrap();
     assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "it is told once");
+    // Foam that was kept, in a checkpoint say, has told it already.
+    let kept = block_on(simulation.keep_foam_async(&foam)).unwrap();
+    let mut again = simulation.foam(&scene.foam).unwrap();
+    simulation.restore_foam(&mut again, &kept).unwrap();
+    simulation.diffuse(&mut again).unwrap();
+    assert_eq!(simulation.take_warnings(), Vec::<String>::new());
 }
