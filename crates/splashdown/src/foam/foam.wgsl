@@ -65,11 +65,13 @@ fn seed_of(id: u32, step: u32) -> u32 {
     return hash(id ^ hash(step));
 }
 
-// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096,
-// rounded down, without overflow. Two that follow one another are at most one apart; of several at one place
-// the last is born.
+// Where the m-th of those that want to be born goes if a `share` of them finds room: k f / 4096, rounded down,
+// without overflow, where f are the share's lower 16 bits, s the upper ones, and k is m / 2^s. Two that follow
+// one another are at most one apart; of several at one place the last is born.
 fn place_of(m: u32, share: u32) -> u32 {
-    return (m >> 12u) * share + (((m & 4095u) * share) >> 12u);
+    let k = m >> (share >> 16u);
+    let part = share & 0xffffu;
+    return (k >> 12u) * part + (((k & 4095u) * part) >> 12u);
 }
 
 fn ramp(value: f32, least: f32, scale: f32) -> f32 {

@@ -62,7 +62,8 @@ gpu_struct! {
         kept: u32,
         /// How many were born in it.
         born: u32,
-        /// The part of those that wanted to be born that found room, times 4096.
+        /// The part of those that wanted to be born that found room, times 4096, in the lower 16 bits; in the
+        /// upper ones s, where 2^s share one such chance.
         share: u32,
         /// How many have been born so far, which is the number of the next one.
         next_id: u32,
@@ -168,9 +169,10 @@ pub(super) fn seed_of(id: u32, step: u32) -> u32 {
     hash(id ^ hash(step))
 }
 
-/// Where the m-th of those that want to be born goes if `share` / 4096 of them find room: m share / 4096,
-/// rounded down, without overflow. Two that follow one another are at most one apart; of several at one place
-/// the last is born.
+/// Where the m-th of those that want to be born goes if a [`FoamState::share`] of them finds room: k f / 4096,
+/// rounded down, without overflow, where f are the share's lower bits and k is m / 2^s. Two that follow one
+/// another are at most one apart; of several at one place the last is born.
 pub(super) fn place_of(m: u32, share: u32) -> u32 {
-    (m >> 12) * share + (((m & 4095) * share) >> 12)
+    let (k, part) = (m >> (share >> 16), share & 0xffff);
+    (k >> 12) * part + (((k & 4095) * part) >> 12)
 }

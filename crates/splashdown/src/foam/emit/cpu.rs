@@ -42,7 +42,8 @@ pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
 
 /// The last m with `place_of(m, share) == place`.
 fn last_at(place: u32, share: u32) -> u32 {
-    let m = ((u64::from(place) + 1) * 4096).div_ceil(u64::from(share)) as u32 - 1;
+    let k = ((u64::from(place) + 1) * 4096).div_ceil(u64::from(share & 0xffff));
+    let m = ((k << (share >> 16)) - 1) as u32;
     debug_assert!(place_of(m, share) == place && place_of(m + 1, share) > place);
     m
 }

@@ -23,7 +23,13 @@ pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
             some >>= 1;
             all = all.div_ceil(2);
         }
-        share = some * 4096 / all;
+        // Less than a 4096th: several share one chance.
+        let mut several = 0;
+        while some > 0 && all >> 12 >= some {
+            all = all.div_ceil(2);
+            several += 1;
+        }
+        share = (some * 4096 / all) | (several << 16);
     }
     let born = place_of(wanted, share);
     now.kept = kept;

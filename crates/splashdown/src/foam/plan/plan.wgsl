@@ -25,7 +25,13 @@ fn plan_foam() {
             some = some >> 1u;
             all = (all + 1u) >> 1u;
         }
-        share = some * 4096u / all;
+        // Less than a 4096th: several share one chance.
+        var several = 0u;
+        while (some > 0u && (all >> 12u) >= some) {
+            all = (all + 1u) >> 1u;
+            several++;
+        }
+        share = (some * 4096u / all) | (several << 16u);
     }
     let born = place_of(wanted, share);
     foam_state.kept = kept;

@@ -57,6 +57,11 @@ pub(super) fn begin(
     }
 }
 
+/// The number of those born before the m-th of those that want to be.
+fn place_of(m: u32, share: u32) -> u32 {
+    (u64::from(m >> (share >> 16)) * u64::from(share & 0xffff) / 4096) as u32
+}
+
 /// 500 are kept; `wanted` want to be born.
 pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
     let kept = 500;
@@ -64,11 +69,17 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
     let mut share = 4096;
     if wanted > room {
         // In halves while there are more than 2^20, as the shader has no longer numbers.
-        let halvings = room.ilog2().saturating_sub(19);
+        let halvings = room.max(1).ilog2().saturating_sub(19);
         let all = (0..halvings).fold(wanted, |all, _| all.div_ceil(2));
         share = (u64::from(room >> halvings) * 4096 / u64::from(all)) as u32;
+        // Where that is none, twice as many share a chance, until it is one.
+        let halved = |times: u32| (0..times).fold(all, |all, _| all.div_ceil(2));
+        if share == 0 && room > 0 {
+            let several = (0..32).find(|&times| halved(times) < 4096 * room).unwrap_or(0);
+            share = 4096 * room / halved(several) + (several << 16);
+        }
     }
-    let born = (u64::from(wanted) * u64::from(share) / 4096) as u32;
+    let born = place_of(wanted, share);
     let before = FoamState { count: 640, next_id: 9000, refused: 11, wanted: 3, ..now() };
     let expected = FoamState {
         kept,
@@ -80,7 +91,8 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
         next_id: 9000 + born,
         ..before
     };
-    assert!(born <= room && born + 1 + wanted / 4096 >= wanted.min(room));
+    let chances = wanted >> (share >> 16);
+    assert!(born <= room && born + 1 + chances / 4096 >= wanted.min(room).min(chances), "{born} of {room}");
     Case {
         pass: pass("foam.plan"),
         name: name.into(),
@@ -114,7 +126,7 @@ pub(super) fn emit(name: &'static str, share: u32) -> Case {
         starts[i + 1] = starts[i] + counts.get(i).copied().unwrap_or(0);
     }
     let wanted = starts[world.len()];
-    let place_of = |m: u32| (u64::from(m) * u64::from(share) / 4096) as u32;
+    let place_of = |m: u32| place_of(m, share);
     let (kept, born) = (40, place_of(wanted));
     let now = FoamState { kept, born, share, wanted, count: kept + born, next_id: 5000 + born, ..now() };
     let foam = foam();
@@ -151,7 +163,7 @@ pub(super) fn emit(name: &'static str, share: u32) -> Case {
             edge[slot] = doubtful;
         }
     }
-    assert!(born > 300, "{born}");
+    assert!(born > 300 >> (share >> 16), "{born}");
     let same = move |a: &[f32], b: &[f64]| alike(a, b, &edge);
     let again = same.clone();
     Case {

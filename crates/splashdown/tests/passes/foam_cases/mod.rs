@@ -32,10 +32,13 @@ pub fn cases() -> Vec<Case> {
         births::plan("with room", 5000, 300),
         births::plan("with little room", 1000, 300),
         births::plan("full", 600, 300),
+        births::plan("with room for one in a million", 503, 3_000_000),
+        births::plan("without any room", 500, 300),
         births::plan("beyond what counts in 20 bits", 3_000_000, 3_999_999),
         moving::settle(),
         births::emit("all of them", 4096),
         births::emit("a part of them", 1700),
+        births::emit("a part of them, four by four", 1700 + (2 << 16)),
     ];
     let idle: Vec<Case> = cases.iter().filter_map(when_not_due).collect();
     cases.extend(idle);
