@@ -5,9 +5,11 @@ mod bench;
 mod demo;
 mod layers;
 mod page;
+mod peers;
 mod pictures;
 mod process;
 mod python;
+mod report;
 mod serve;
 mod setup;
 mod suite;
@@ -23,7 +25,9 @@ Usage: cargo xtask <WORD> [OPTIONS]
   demo [ARGUMENTS]  check or install what is needed, build, and run the dam break into out/dam-break;
                     further arguments go to `splashdown run` (for example --frames 20)
   test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
-  bench [--quick]   the numbers of docs/performance.md as Markdown tables (--quick: small sizes only)
+  bench [--quick]   measure and write docs/bench.md (--quick: small sizes only, and nothing is written)
+  bench --peers [--quick] [--particles FILE SPACING]
+                    measure beside SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
   pictures [SCENE]  make the pictures of the README anew
   web [--build] [--port N]
                     the web page: build it and serve it on localhost (--build: build it only)

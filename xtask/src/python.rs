@@ -24,6 +24,15 @@ pub fn ensure() {
     }
 }
 
+/// Makes an environment in a folder, installs a list of packages into it where that has not been done, and returns its interpreter.
+///
+/// # Errors
+/// If Python or a package cannot be had.
+pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
+    install(folder, list)?;
+    Ok(interpreter(folder))
+}
+
 fn install(folder: &Path, list: &Path) -> Result<()> {
     let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
     // What was installed last is noted beside it, so that a second call costs nothing.

@@ -94,6 +94,17 @@ pub fn ensure_screen() {
     }
 }
 
+/// The system's OpenGL, without which a wheel that is compared with does not load.
+pub fn ensure_gl() {
+    if !cfg!(target_os = "linux") || has_library("libGL.so.1") || !can_install() {
+        return;
+    }
+    say("Installing libgl1 (apt-get) ...");
+    if let Err(error) = install(&["libgl1"]) {
+        say(format!("WARNING: the installation failed: {error:#}. SPlisHSPlasH may not load."));
+    }
+}
+
 /// Debian or Ubuntu, and allowed to install.
 pub fn can_install() -> bool {
     cfg!(target_os = "linux") && is_root() && process::exists("apt-get", "--version")
@@ -158,16 +169,19 @@ fn manifests() -> Vec<PathBuf> {
 }
 
 fn has_loader() -> bool {
+    has_library("libvulkan.so.1")
+        || ["/usr/lib/libvulkan.so.1", "/usr/lib64/libvulkan.so.1"]
+            .iter()
+            .any(|path| Path::new(path).exists())
+}
+
+/// True if the dynamic loader knows this library.
+fn has_library(name: &str) -> bool {
     let listed = process::command("ldconfig").arg("-p").output().or_else(|_| {
         // Outside of root's PATH on some systems.
         process::command("/sbin/ldconfig").arg("-p").output()
     });
-    let listed =
-        listed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("libvulkan.so.1"));
-    listed
-        || ["/usr/lib/libvulkan.so.1", "/usr/lib64/libvulkan.so.1"]
-            .iter()
-            .any(|path| Path::new(path).exists())
+    listed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(name))
 }
 
 fn has_graphics_card() -> bool {

@@ -40,6 +40,16 @@ pub fn available() -> Option<u64> {
     value("MemAvailable:")
 }
 
+/// Bytes that this process has in memory now.
+pub fn resident() -> Option<u64> {
+    parse(&std::fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
+}
+
+/// The most bytes that this process has had in memory so far.
+pub fn peak() -> Option<u64> {
+    parse(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+}
+
 fn value(name: &str) -> Option<u64> {
     parse(&std::fs::read_to_string("/proc/meminfo").ok()?, name)
 }
@@ -60,5 +70,6 @@ mod tests {
         assert_eq!(parse(text, "MemAvailable:"), Some(23_000_000 * 1024));
         assert_eq!(parse(text, "SwapTotal:"), None);
         assert_eq!(parse("MemTotal: lots kB", "MemTotal:"), None);
+        assert_eq!(parse("VmPeak:\t 9 kB\nVmHWM:\t    7040 kB\n", "VmHWM:"), Some(7040 * 1024));
     }
 }

@@ -47,7 +47,7 @@ pub use error::SimulationError;
 pub use fields::Fields;
 pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam};
 pub use hand::Hand;
-pub use memory::{largest_particle_count, memory_forecast, memory_forecast_of};
+pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
 pub use simulation::Simulation;
 pub use stats::Stats;

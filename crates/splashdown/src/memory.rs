@@ -20,18 +20,31 @@ pub fn largest_particle_count(largest_buffer: u64) -> u64 {
     (largest_buffer / LARGEST_PER_PARTICLE).min(u64::from(u32::MAX) - 1)
 }
 
-/// Refuses what does not fit.
-pub(crate) fn check(particles: u64, largest_buffer: u64) -> Result<(), SimulationError> {
+/// Refuses a number of particles that a device cannot hold, and says how many and which spacing it can. A device binds every buffer as a whole:
+/// they are not split, because each pass would then have to find a neighbour's half first.
+///
+/// # Errors
+/// [`SimulationError::TooMany`].
+pub fn check_particles(
+    particles: u64,
+    largest_buffer: u64,
+    particle_spacing: f32,
+) -> Result<(), SimulationError> {
     let allowed = largest_particle_count(largest_buffer);
-    if particles > allowed {
-        return Err(SimulationError::TooMany {
-            what: "particles",
-            given: particles,
-            allowed,
-            advice: "make fluid.particle_spacing larger, or use a device with larger buffers (`splashdown doctor`)".into(),
-        });
+    if particles <= allowed {
+        return Ok(());
     }
-    Ok(())
+    let fitting = sample::fitting_spacing(particle_spacing, particles, allowed);
+    Err(SimulationError::TooMany {
+        what: "particles",
+        given: particles,
+        allowed,
+        advice: format!(
+            "a buffer of this device holds {} MB, and a position takes {LARGEST_PER_PARTICLE} bytes. Use a fluid.particle_spacing of {fitting} m \
+             or more, or a device with larger buffers (`splashdown doctor` lists them)",
+            largest_buffer / 1_000_000
+        ),
+    })
 }
 
 /// Bytes in the buffers of a scene's simulation and, where the scene asks for them, of its surface and its foam. Particles inside bodies, which a
@@ -122,5 +135,60 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// A block as deep as asked for, in a box that stays as it is.
+    fn block(spacing: f64, depth: f64) -> Scene {
+        let text = format!(
+            "[scene]\nname = \"block\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [3, 2, 2]\n\
+             [fluid]\nparticle_spacing = {spacing}\n\
+             [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, {depth}]\n"
+        );
+        Scene::parse(&text, "block").unwrap()
+    }
+
+    /// Bytes in the buffers of a simulation of `wcsph`, and its particles.
+    fn taken(depth: f64) -> [f64; 2] {
+        let simulation = Simulation::new(&block(1.0 / 16.0, depth), &Device::Cpu).unwrap();
+        [simulation.memory() as f64, f64::from(simulation.stats().particles)]
+    }
+
+    #[test]
+    fn a_particle_takes_at_most_160_bytes() {
+        // The same box twice, so that cells do not count.
+        let [less, more] = [taken(0.5), taken(1.0)];
+        let each = (more[0] - less[0]) / (more[1] - less[1]);
+        assert!((each / PER_PARTICLE as f64 - 1.0).abs() < 0.01, "{each} bytes");
+        assert!(each <= 160.0, "{each} bytes");
+    }
+
+    #[test]
+    fn ten_million_particles_fit_four_gibibytes() {
+        let budget = 4 << 30;
+        let scene = |spacing, enabled| {
+            let scene = block(spacing, 2.0);
+            Scene { surface: SurfaceSettings { enabled, ..scene.surface.clone() }, ..scene }
+        };
+        let bare = scene(0.00584, false);
+        assert!((10_000_000..10_200_000).contains(&Derived::new(&bare).particles));
+        // Motion alone takes a third of the budget.
+        assert!(memory_forecast(&bare) < budget / 3, "{}", memory_forecast(&bare));
+        // Control: eighty million do not fit.
+        assert!(memory_forecast(&scene(0.00292, false)) > budget);
+        // One buffer of theirs is more than the least that every device binds.
+        assert!(check_particles(10_000_000, 128 << 20, 0.00584).is_err());
+        assert!(check_particles(10_000_000, 160_000_000, 0.00584).is_ok());
+    }
+
+    #[test]
+    fn the_count_that_fits_is_told_and_the_spacing_told_fits() {
+        let error = check_particles(20_000_000, 128 << 20, 0.01).unwrap_err();
+        assert!(matches!(error, SimulationError::TooMany { allowed: 8_388_608, .. }), "{error}");
+        let text = error.to_string();
+        assert!(text.contains("at most 8388608 fit") && text.contains("134 MB"), "{text}");
+        let (_, rest) = text.split_once("particle_spacing of ").unwrap();
+        let told: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+        let fitting = 20e6 * (0.01 / told).powi(3);
+        assert!((7e6..8_388_608.0).contains(&fitting), "{told} m gives {fitting}");
     }
 }

@@ -1,5 +1,6 @@
 //! The command line: one declaration gives the parser, the help and the shells' completions.
 
+mod bench;
 mod plot;
 mod run;
 mod scenes;
@@ -15,8 +16,9 @@ use splashdown::Device;
 use splashdown::scene::Choice;
 
 use crate::console::Verbosity;
-use crate::{exit, human};
+use crate::exit;
 
+pub use bench::BenchArguments;
 pub use plot::PlotArguments;
 pub use run::RunArguments;
 pub use scenes::{ScenesAction, ScenesArguments};
@@ -110,38 +112,6 @@ pub struct CheckArguments {
 #[derive(Debug, Args)]
 pub struct DoctorArguments {
     /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
-}
-
-const BENCH_EXAMPLES: &str = "\
-Examples:
-  splashdown bench
-  splashdown bench --particles 8K,16K,32K,64K,128K,256K,512K,1M --device cpu
-  splashdown bench --particles 64K --device llvmpipe --steps 10";
-
-/// Options of `bench`.
-#[derive(Debug, Args)]
-#[command(after_help = BENCH_EXAMPLES)]
-pub struct BenchArguments {
-    /// Numbers of particles, separated by commas (64K = 65,536)
-    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_value = "64K", value_parser = human::parse_count)]
-    pub particles: Vec<u32>,
-    #[command(flatten)]
-    pub device: DeviceArgument,
-    /// Steps to measure [default: as many as take about two seconds]
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub steps: Option<u32>,
-    /// Solver to measure: wcsph or mueller2003
-    #[arg(short = 'm', long, default_value = "wcsph", value_parser = choice::<splashdown::scene::Method>())]
-    pub solver: splashdown::scene::Method,
-    /// Measure from 8K particles to as many as fit, doubling: how does the cost grow?
-    #[arg(long, conflicts_with = "particles")]
-    pub compare: bool,
-    /// Do not split the time by pass (measuring each pass costs a little on a GPU)
-    #[arg(long)]
-    pub no_passes: bool,
-    /// Print one JSON object per number of particles
     #[arg(long)]
     pub json: bool,
 }

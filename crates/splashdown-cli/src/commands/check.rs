@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use splashdown::sample::{self, Inventory};
 use splashdown::scene::{Derived, Scene, SceneWarning};
-use splashdown::{Device, Simulation, memory_forecast_of};
+use splashdown::{Device, Simulation, check_particles, memory_forecast_of};
 
 use crate::args::CheckArguments;
 use crate::exit::Failure;
@@ -60,6 +60,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let inventory = sample::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let memory = memory_forecast_of(&scene, &inventory);
+    // The scene is valid all the same: what is said of it comes before what the device says.
+    let largest = arguments.device.device.executor()?.largest_buffer();
+    let fits = check_particles(inventory.particles, largest, scene.fluid.particle_spacing);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
     if arguments.json {
         console::print_json(&Report {
@@ -74,14 +77,14 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             speed: &speed,
             warnings: &scene.warnings,
         });
-        return Ok(());
+        return Ok(fits?);
     }
     for warning in &scene.warnings {
         console::note(format!("{warning}\n"));
     }
     let file = arguments.scene.display();
     console::print(format!("{file}: valid\n{}", describe(&scene, &derived, &inventory, memory, &speed)));
-    Ok(())
+    Ok(fits?)
 }
 
 fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {

@@ -14,7 +14,7 @@ use splashdown_io::{
 use crate::args::SurfaceArguments;
 use crate::exit::{Exit, Failure};
 use crate::sequence::{self, Step};
-use crate::{console, human};
+use crate::{console, human, memory};
 
 /// How far a spacing may be from what the particles look like before it is taken for a mistake: a radius for a
 /// diameter, or another unit.
@@ -36,11 +36,26 @@ struct Line<'a> {
     manifold: bool,
     oriented: bool,
     velocities: bool,
+    /// From particles in memory to the mesh in memory.
+    surface_seconds: f64,
+    /// Everything, with reading and writing.
     seconds: f64,
+    /// Bytes that this process had in memory before it read anything, and the most so far; where the system tells.
+    start_memory: Option<u64>,
+    peak_memory: Option<u64>,
+}
+
+/// Which file of how many, and what the process took before the first.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    number: usize,
+    all: usize,
+    start_memory: Option<u64>,
 }
 
 /// Makes the meshes.
 pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
+    let start_memory = memory::resident();
     let inputs = sequence::expand(&arguments.particles, PARTICLE_FORMATS_READ)?;
     let steps = sequence::steps(inputs, &arguments.out)?;
     for Step { output, .. } in &steps {
@@ -61,7 +76,8 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let mut executor = arguments.device.device.executor()?;
     let (mut open, mut last) = (Vec::new(), None);
     for (number, step) in steps.iter().enumerate() {
-        let topology = one(step, &params, arguments, &mut executor, [number + 1, steps.len()])?;
+        let place = Place { number: number + 1, all: steps.len(), start_memory };
+        let topology = one(step, &params, arguments, &mut executor, place)?;
         if !topology.is_watertight() {
             open.push(format!("`{}` is {topology}", step.output.display()));
         }
@@ -76,12 +92,14 @@ fn one(
     params: &SurfaceParams,
     arguments: &SurfaceArguments,
     executor: &mut Executor,
-    [number, all]: [usize; 2],
+    Place { number, all, start_memory }: Place,
 ) -> Result<Topology, Failure> {
     let begun = Instant::now();
     let Step { input, output } = step;
     let particles = read(input)?;
+    let read = Instant::now();
     let (mut surface, _) = reconstruct(&particles.positions, params, executor)?;
+    let surface_seconds = read.elapsed().as_secs_f64();
     let dropped_blobs = if arguments.min_blob > 0.0 {
         drop_blobs(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
     } else {
@@ -106,7 +124,10 @@ fn one(
         manifold: topology.is_manifold(),
         oriented: topology.is_oriented(),
         velocities: !surface.velocities.is_empty(),
+        surface_seconds,
         seconds: begun.elapsed().as_secs_f64(),
+        start_memory,
+        peak_memory: memory::peak(),
     };
     if arguments.json {
         console::print_json(&line);

@@ -1,6 +1,8 @@
 //! Bad input: each case gets one clear error and its exit code, and frames already written stay valid.
 
-use crate::place::{Outcome, Place, SMALL, assert_refused, lines, stderr};
+use std::io::Write;
+
+use crate::place::{Outcome, Place, SMALL, assert_refused, can_draw, lines, stderr, stdout};
 use splashdown_io::ply;
 
 /// Scene files that are refused with exit code 3, and a word that the message must contain.
@@ -89,6 +91,32 @@ fn folders_that_cannot_be_written_are_told_before_the_first_step() -> Outcome {
             .output()?;
         assert_refused(&output, 5, &["file"]);
     }
+    Ok(())
+}
+
+#[test]
+fn more_particles_than_a_device_binds_are_refused_with_the_count_that_fits() -> Outcome {
+    let doctor = crate::place::splashdown(&["doctor"]).output()?;
+    if !can_draw() || !stdout(&doctor).contains("llvmpipe") {
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED: more_particles_than_a_device_binds_are_refused_with_the_count_that_fits: there is no llvmpipe"
+        );
+        return Ok(());
+    }
+    let place = Place::new()?;
+    let scene = "[scene]\nname = \"big\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [3, 2, 2]\n\
+                 [fluid]\nparticle_spacing = 0.0093\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [2, 2, 2]\n";
+    place.write("big.toml", scene)?;
+    let words = ["at most 8388608 fit", "134 MB", "particle_spacing of 0.0099 m"];
+    for arguments in [&["run", "big.toml"][..], &["check", "big.toml"], &["bench", "--scene", "big.toml"]] {
+        let output = place.splashdown(&[arguments, &["--device", "llvmpipe"]].concat()).output()?;
+        assert_refused(&output, 4, &words);
+    }
+    // Control: the spacing that is told is taken; `check` is enough to see that.
+    place.write("big.toml", scene.replace("0.0093", "0.0099"))?;
+    let output = place.splashdown(&["check", "big.toml", "--device", "llvmpipe"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
     Ok(())
 }
 

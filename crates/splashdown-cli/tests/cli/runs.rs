@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::place::{Outcome, Place, can_draw, lines, names, stderr, stdout};
-use serde_json::Value;
+use serde_json::{Value, json};
 use splashdown_io::ply;
 
 /// Keys that every line has.
@@ -223,6 +223,32 @@ fn without_ffmpeg_there_are_pictures_and_the_command_for_later() -> Outcome {
     }
     assert_eq!(names(&place.path("out/pictures"))?.len(), 4);
     assert!(!place.path("out/surface.mp4").exists());
+    Ok(())
+}
+
+#[test]
+fn the_benchmark_takes_scenes_and_numbers_of_threads() -> Outcome {
+    let place = Place::new()?;
+    let words = ["bench", "--scene", "small.toml", "--steps", "2", "--device", "cpu", "--threads", "1,2"];
+    let output = place.splashdown(&[&words[..], &["--json", "--no-passes"]].concat()).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let rows: Vec<Value> =
+        stdout(&output).lines().map(serde_json::from_str).collect::<Result<_, serde_json::Error>>()?;
+    let threads: Vec<_> = rows.iter().map(|row| row["threads"].as_u64()).collect();
+    assert_eq!(threads, [Some(1), Some(2)]);
+    for row in rows {
+        assert_eq!(row["device"], format!("CPU ({} threads)", row["threads"]));
+        assert!(
+            row["particles"].as_u64().is_some_and(|count| count > 0) && row["passes"] == json!({}),
+            "{row}"
+        );
+        // The floor counts the dispatches also where passes are not told.
+        assert!(row["dispatches_per_step"].as_f64().is_some_and(|count| count > 4.0), "{row}");
+        let ratio = row["support_radius"].as_f64().zip(row["spacing"].as_f64()).map(|(h, s)| h / s);
+        assert!(ratio.is_some_and(|ratio| (ratio - 2.0).abs() < 1e-5), "{row}");
+    }
+    let output = place.splashdown(&words).output()?;
+    assert!(stdout(&output).contains("2 threads over 1:"), "{}", stdout(&output));
     Ok(())
 }
 

@@ -161,7 +161,7 @@ impl<'a> Filler<'a> {
             return Ok(());
         }
         let spacing = self.spacing;
-        Err(SampleError::TooMany { count, spacing, fitting: fitting_spacing(spacing, count) })
+        Err(SampleError::TooMany { count, spacing, fitting: fitting_spacing(spacing, count, MAX_PARTICLES) })
     }
 
     fn outside(&self, what: &str, how: &'static str, (low, high): (Vec3, Vec3)) -> SampleError {

@@ -211,9 +211,9 @@ pub(crate) fn estimate(fluid: &Fluid) -> u64 {
     fluid.blocks.iter().map(|block| lattice::estimate(&block.shape, spacing)).sum::<f64>() as u64
 }
 
-/// A spacing at which `count` particles become no more than allowed, rounded up to two digits.
-pub(crate) fn fitting_spacing(spacing: f32, count: u64) -> f32 {
-    let exact = f64::from(spacing) * (count as f64 / MAX_PARTICLES as f64).cbrt();
+/// A spacing at which `count` particles become no more than `allowed`, rounded up to two digits.
+pub(crate) fn fitting_spacing(spacing: f32, count: u64, allowed: u64) -> f32 {
+    let exact = f64::from(spacing) * (count as f64 / allowed.max(1) as f64).cbrt();
     let unit = 10f64.powf(exact.log10().floor() - 1.0);
     ((exact / unit * 1.001).ceil() * unit) as f32
 }

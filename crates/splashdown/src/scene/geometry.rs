@@ -45,7 +45,7 @@ pub(crate) fn check(
     };
     let count = sample::estimate(&fluid);
     if count > MAX_PARTICLES {
-        let fitting = rounded(sample::fitting_spacing(spacing, count));
+        let fitting = rounded(sample::fitting_spacing(spacing, count, MAX_PARTICLES));
         let message = format!("fluid.particle_spacing = {spacing} m gives {} particles", grouped(count));
         let allowed = format!("at most {} particles", grouped(MAX_PARTICLES));
         let hint = format!("a spacing of {fitting} m or more fits, or make the blocks smaller");

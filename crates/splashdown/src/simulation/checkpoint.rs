@@ -94,7 +94,8 @@ impl Simulation {
         let host = checkpoint.host()?;
         let loaded = Self::load_bodies(&scene, told)?;
         let loaded_flow = LoadedFlow::new(&scene).map_err(SimulationError::Body)?;
-        memory::check(u64::from(host.capacity), executor.largest_buffer())?;
+        let spacing = scene.fluid.particle_spacing;
+        memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), spacing)?;
         let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow)?;
         simulation.restore(checkpoint, host).await?;
         Ok(simulation)

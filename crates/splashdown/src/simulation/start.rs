@@ -101,7 +101,7 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
         let largest = executor.largest_buffer();
-        memory::check(n as u64, largest)?;
+        memory::check_particles(n as u64, largest, scene.fluid.particle_spacing)?;
         let loaded_flow = LoadedFlow::new(scene)?;
         // The unborn have places of their own.
         let initial = n as u32;

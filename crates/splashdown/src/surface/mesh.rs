@@ -436,12 +436,17 @@ impl Surface {
         Ok(executor.fetch(self.b.status).await?[0])
     }
 
-    /// Gives the memory of all buffers back to the device.
-    pub(crate) fn release(mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
+    /// Gives the memory of the field and of what smoothing needs back to the device: the mesh stays, and is the last one.
+    pub(crate) fn release_field(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let lattice = &mut self.lattice;
         (lattice.particle_capacity, lattice.block_count, lattice.block_capacity) = (0, 0, 0);
-        (lattice.vertex_capacity, lattice.triangle_capacity) = (0, 0);
         self.b.resize(executor, &self.lattice, false)
+    }
+
+    /// Gives the memory of all buffers back to the device.
+    pub(crate) fn release(mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
+        (self.lattice.vertex_capacity, self.lattice.triangle_capacity) = (0, 0);
+        self.release_field(executor)
     }
 
     /// Positions of the vertices in m; the fourth component is of no use outside. The first

@@ -39,10 +39,12 @@ pub fn reconstruct(
     let mut input = upload(executor, &finite, params)?;
     let mut surface = Surface::new(executor, *params, input)?;
     let stats = surface.extract(executor)?;
-    let mesh = surface.mesh(executor)?;
-    surface.release(executor)?;
+    // Before the mesh is copied: the field is most of the memory.
+    surface.release_field(executor)?;
     executor.resize(&mut input.positions, 0)?;
     executor.resize(&mut input.cell_start, 0)?;
+    let mesh = surface.mesh(executor)?;
+    surface.release(executor)?;
     Ok((mesh, SurfaceStats { not_finite, ..stats }))
 }
 

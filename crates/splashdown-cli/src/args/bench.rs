@@ -1,0 +1,59 @@
+//! Options of `bench`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use splashdown::scene::Method;
+
+use super::{DeviceArgument, choice};
+use crate::human;
+
+const EXAMPLES: &str = "\
+Examples:
+  splashdown bench
+  splashdown bench --particles 8K,16K,32K,64K,128K,256K,512K,1M --device cpu
+  splashdown bench --particles 64K --device llvmpipe --steps 10
+  splashdown bench --particles 64K --device cpu --threads 1,2,4 --no-passes
+  splashdown bench --scene my.toml --json";
+
+/// Options of `bench`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct BenchArguments {
+    /// Numbers of particles, separated by commas (64K = 65,536)
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_value = "64K", value_parser = human::parse_count)]
+    pub particles: Vec<u32>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Steps to measure [default: as many as take about two seconds]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub steps: Option<u32>,
+    /// Solver to measure: wcsph or mueller2003 [default: wcsph, or the scene's]
+    #[arg(short = 'm', long, value_parser = choice::<Method>())]
+    pub solver: Option<Method>,
+    /// Measure a scene (a file, or the name of one that comes with the program), not the benchmark's dam break
+    #[arg(long, value_name = "SCENE", conflicts_with_all = ["particles", "compare"])]
+    pub scene: Option<PathBuf>,
+    /// Measure from 8K particles to as many as fit, doubling: how does the cost grow?
+    #[arg(long, conflicts_with = "particles")]
+    pub compare: bool,
+    /// Numbers of threads to measure with, separated by commas; for the CPU [default: all there are]
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = threads)]
+    pub threads: Vec<usize>,
+    /// Do not split the time by pass
+    #[arg(long)]
+    pub no_passes: bool,
+    /// Print one JSON object per number of particles
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A number of threads.
+fn threads(text: &str) -> Result<usize, String> {
+    let allowed = |threads: &usize| (1..=1024).contains(threads);
+    text.trim()
+        .parse()
+        .ok()
+        .filter(allowed)
+        .ok_or_else(|| "a number of threads is a whole number from 1 to 1024".to_owned())
+}

@@ -1,0 +1,181 @@
+//! One row: a scene's step, measured.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use serde::Serialize;
+use splashdown::Simulation;
+use splashdown::scene::Scene;
+use splashdown_gpu::Timings;
+use splashdown_gpu::floors::Floors;
+
+use crate::args::BenchArguments;
+use crate::exit::Failure;
+use crate::memory;
+use crate::report::{PassNumbers, passes};
+use crate::speed::seconds_per_step;
+
+/// Steps before the first measurement: the lattice gives way, pipelines are built, buffers find their size.
+pub const WARM_UP: u32 = 30;
+
+/// Measurements, of which the median counts: other programs disturb some of them.
+const ROUNDS: usize = 5;
+
+/// How long all rounds of one size should take together.
+const BUDGET: Duration = Duration::from_secs(2);
+
+/// Steps in which dispatches are counted where no passes are wanted.
+const COUNTED: u32 = 2;
+
+/// What a step must at least move and compute per particle, with about 28 neighbours: every array once, in a step whose passes are joined as far as
+/// they can be; and the arithmetic of tests, density and forces. docs/performance.md derives both.
+const FLOOR_BYTES: f64 = 192.0;
+const FLOOR_OPERATIONS: f64 = 6047.0;
+/// Particles of whose neighbours the mean is told.
+const SAMPLED: usize = 256;
+
+/// The measurement of one size.
+#[derive(Debug, Serialize)]
+pub struct Row {
+    pub device: String,
+    pub solver: String,
+    pub particles: u64,
+    /// Threads that compute, where the CPU does.
+    pub threads: usize,
+    pub rounds: usize,
+    pub steps_per_round: u32,
+    /// Median over the rounds, in s.
+    pub seconds_per_step: f64,
+    /// The fastest round, in s.
+    pub fastest: f64,
+    pub nanoseconds_per_particle: f64,
+    pub particle_steps_per_second: f64,
+    /// Distance of particles on the lattice they start from, in m.
+    pub spacing: f32,
+    /// Where the kernel becomes zero, in m.
+    pub support_radius: f32,
+    /// Mean number of neighbours within the support radius.
+    pub neighbours: f64,
+    /// Bytes in the simulation's buffers.
+    pub memory: u64,
+    /// The most bytes that this process has had in memory so far, where the system tells.
+    pub peak_memory: Option<u64>,
+    /// The shortest time that this device could take, in s.
+    pub floor: f64,
+    /// `seconds_per_step` over `floor`.
+    pub over_floor: f64,
+    /// What the floor is made of.
+    pub copy_bytes_per_second: f64,
+    pub flops: f64,
+    pub dispatch_seconds: f64,
+    pub dispatches_per_step: f64,
+    pub passes: BTreeMap<&'static str, PassNumbers>,
+    #[serde(skip)]
+    pub timings: Timings,
+    #[serde(skip)]
+    pub timed_steps: u64,
+}
+
+/// Measures a scene.
+///
+/// # Errors
+/// Those of the simulation.
+pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Result<Row, Failure> {
+    let mut simulation = Simulation::new(scene, &arguments.device.device)?;
+    let (each, _) = seconds_per_step(&mut simulation, WARM_UP)?;
+    let steps = arguments.steps.unwrap_or_else(|| {
+        let fitting = BUDGET.as_secs_f64() / ROUNDS as f64 / each.max(1e-9);
+        (fitting as u32).clamp(2, 10_000)
+    });
+    let mut rounds = Vec::with_capacity(ROUNDS);
+    for _ in 0..ROUNDS {
+        rounds.push(seconds_per_step(&mut simulation, steps)?.0);
+    }
+    rounds.sort_by(f64::total_cmp);
+    let seconds = rounds[ROUNDS / 2];
+    // After the rounds: clocks round every pass cost a little on a GPU. The floor needs the number of dispatches in any case.
+    let mut timed_steps = 0;
+    if simulation.enable_timing() {
+        let steps = if arguments.no_passes { COUNTED.min(steps) } else { steps };
+        timed_steps = seconds_per_step(&mut simulation, steps)?.1;
+    }
+    let timings = simulation.take_timings();
+    let count = u64::from(simulation.stats().particles);
+    let dispatches: u64 = timings.passes.values().map(|time| time.count).sum();
+    let dispatches = if timed_steps > 0 { dispatches as f64 / f64::from(timed_steps) } else { 0.0 };
+    let (bytes, operations) = (FLOOR_BYTES * count as f64, FLOOR_OPERATIONS * count as f64);
+    // The floor of the dispatches that there are: fewer of them would lower it.
+    let floor = floors.seconds(bytes, operations, dispatches);
+    let support_radius = simulation.params().support_radius;
+    let positions = simulation.particles()?.positions;
+    Ok(Row {
+        device: simulation.device_name(),
+        solver: scene.solver.method.to_string(),
+        particles: count,
+        threads: rayon::current_num_threads(),
+        rounds: ROUNDS,
+        steps_per_round: steps,
+        seconds_per_step: seconds,
+        fastest: rounds[0],
+        nanoseconds_per_particle: 1e9 * seconds / count as f64,
+        particle_steps_per_second: count as f64 / seconds,
+        spacing: scene.fluid.particle_spacing,
+        support_radius,
+        neighbours: neighbours(&positions, support_radius),
+        memory: simulation.memory(),
+        peak_memory: memory::peak(),
+        floor,
+        over_floor: seconds / floor,
+        copy_bytes_per_second: floors.bytes_per_second,
+        flops: floors.flops,
+        dispatch_seconds: floors.dispatch,
+        dispatches_per_step: dispatches,
+        passes: if arguments.no_passes { BTreeMap::new() } else { passes(&timings) },
+        timings,
+        timed_steps: timed_steps.into(),
+    })
+}
+
+/// The mean number of particles within the support radius of one, itself left out, over a few of them.
+fn neighbours(positions: &[[f32; 3]], support_radius: f32) -> f64 {
+    // Regular steps would fall into step with the lattice and take particles of one wall.
+    let golden = |k: usize| ((k as f64 * 0.618_033_988_75).fract() * positions.len() as f64) as usize;
+    let sampled: BTreeSet<usize> = (0..SAMPLED).map(golden).collect();
+    let (mut found, mut count) = (0_u64, 0_u64);
+    for x in sampled.iter().filter_map(|&index| positions.get(index)) {
+        let near = |y: &&[f32; 3]| {
+            let square: f32 = x.iter().zip(*y).map(|(a, b)| (a - b) * (a - b)).sum();
+            square < support_radius * support_radius
+        };
+        found += positions.iter().filter(near).count() as u64 - 1;
+        count += 1;
+    }
+    found as f64 / count.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::neighbours;
+
+    #[test]
+    fn neighbours_on_a_lattice_are_counted() {
+        let lattice: Vec<[f32; 3]> =
+            (0..27).map(|i| [(i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32]).collect();
+        // The middle has six, a face five, an edge four, a corner three.
+        assert!((neighbours(&lattice, 1.1) - (6.0 + 6.0 * 5.0 + 12.0 * 4.0 + 8.0 * 3.0) / 27.0).abs() < 1e-9);
+        assert_eq!(neighbours(&lattice[..1], 1.1), 0.0);
+        assert_eq!(neighbours(&[], 1.1), 0.0);
+    }
+
+    #[test]
+    fn the_sample_does_not_keep_step_with_a_lattice() {
+        let side = 32;
+        let lattice: Vec<[f32; 3]> = (0..side * side * side)
+            .map(|i| [i % side, i / side % side, i / side / side].map(|c| c as f32))
+            .collect();
+        // Of the six, what the faces lack on average.
+        let mean = 6.0 * (side - 1) as f64 / side as f64;
+        let found = neighbours(&lattice, 1.1);
+        assert!((found - mean).abs() < 0.1, "{found} instead of {mean}");
+    }
+}

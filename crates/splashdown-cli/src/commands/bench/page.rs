@@ -1,0 +1,82 @@
+//! The rows as Markdown.
+
+use super::measure::{Row, WARM_UP};
+use crate::{human, summary};
+
+/// What holds for all rows of one device and number of threads, and the heads of their columns.
+pub fn header(row: &Row, another: bool) -> String {
+    format!(
+        "{}`{}` on {}: median of {} rounds after {WARM_UP} steps.\n\n\
+         Measured floors: copies {}/s, {:.0} GFLOP/s, {:.2} us per dependent dispatch.\n\n\
+         | particles | neighbours | memory | ms per step | fastest | ns per particle | particle-steps/s | over the floor |\n\
+         |---:|---:|---:|---:|---:|---:|---:|---:|",
+        if another { "\n" } else { "" },
+        row.solver,
+        row.device,
+        row.rounds,
+        human::bytes(row.copy_bytes_per_second as u64),
+        1e-9 * row.flops,
+        1e6 * row.dispatch_seconds
+    )
+}
+
+/// One row of the table.
+pub fn line(row: &Row) -> String {
+    format!(
+        "| {} | {:.1} | {} | {:.3} | {:.3} | {:.1} | {} | {:.1} |",
+        human::count(row.particles),
+        row.neighbours,
+        human::bytes(row.memory),
+        1e3 * row.seconds_per_step,
+        1e3 * row.fastest,
+        row.nanoseconds_per_particle,
+        human::scaled(row.particle_steps_per_second).trim_end(),
+        row.over_floor
+    )
+}
+
+/// What follows from the rows together, and the passes of each.
+pub fn closing(rows: &[Row], no_passes: bool) -> String {
+    let mut text = growth(rows) + &scaling(rows);
+    for row in rows.iter().filter(|row| !no_passes && row.timed_steps > 0) {
+        text += &format!(
+            "\n{} particles on {}, by pass:\n\n{}\n",
+            human::count(row.particles),
+            row.device,
+            summary::passes(&row.timings, row.timed_steps)
+        );
+    }
+    text
+}
+
+/// How the cost of a particle grows with their number.
+fn growth(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for group in rows.chunk_by(|a, b| a.device == b.device).filter(|group| group.len() > 1) {
+        let costs = || group.iter().map(|row| row.nanoseconds_per_particle);
+        let ratio = costs().fold(0.0, f64::max) / costs().fold(f64::INFINITY, f64::min);
+        text += &format!(
+            "\nCost per particle on {}, the largest over the smallest: {ratio:.2}\n",
+            group[0].device
+        );
+    }
+    text
+}
+
+/// How much faster more threads are, size by size, than the first number of them.
+fn scaling(rows: &[Row]) -> String {
+    let Some(first) = rows.first() else { return String::new() };
+    let mut text = String::new();
+    for row in rows.iter().filter(|row| row.threads != first.threads) {
+        let same = |other: &&Row| other.particles == row.particles && other.threads == first.threads;
+        let Some(base) = rows.iter().find(same) else { continue };
+        text += &format!(
+            "\n{} particles, {} threads over {}: {:.2} times as fast\n",
+            human::count(row.particles),
+            row.threads,
+            first.threads,
+            base.seconds_per_step / row.seconds_per_step
+        );
+    }
+    text
+}

@@ -1,0 +1,132 @@
+//! `cargo xtask bench --peers`: the same work done by this program and by what people use, one after the other on the same
+//! machine with the same number of threads, several times. The peers come from Python's registry.
+
+mod numbers;
+mod steps;
+mod surface;
+mod table;
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::process::{self, root, say, target};
+use crate::report::Page;
+use crate::{python, report, setup};
+
+/// How often each side is measured, in turn; the median counts.
+const ROUNDS: usize = 5;
+
+/// What both sides are started with.
+struct Sides {
+    /// This program.
+    ours: PathBuf,
+    /// The interpreter that knows the peers.
+    python: PathBuf,
+    /// Where scenes and meshes go.
+    folder: PathBuf,
+    threads: usize,
+    rounds: usize,
+    quick: bool,
+}
+
+/// What `bench --peers` is told.
+#[derive(Debug, Default, PartialEq)]
+struct Options {
+    quick: bool,
+    /// Particles for the surface, and their spacing.
+    particles: Option<(PathBuf, f64)>,
+}
+
+impl Options {
+    fn parse(arguments: &[String]) -> Result<Self> {
+        let mut options = Self::default();
+        let mut words = arguments.iter();
+        while let Some(word) = words.next() {
+            match word.as_str() {
+                "--quick" => options.quick = true,
+                "--particles" => {
+                    let usage = "--particles takes a file (.npy, .npz) and the particles' spacing";
+                    let path = words.next().context(usage)?;
+                    let spacing = words.next().and_then(|text| text.parse().ok()).context(usage)?;
+                    options.particles = Some((path.into(), spacing));
+                }
+                other => bail!(
+                    "bench --peers takes --quick and --particles FILE SPACING, got {other}; `cargo xtask help`"
+                ),
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// Measures and writes `docs/peers.md`; with `--quick`, which is for trying the command, it only prints.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let options = Options::parse(arguments)?;
+    let ours = process::build_release()?;
+    setup::ensure_gl();
+    let folder = target().join("peers");
+    let python = python::environment(&folder, &root().join("xtask/peers/requirements.txt"))
+        .context("the peers cannot be installed (is there a network?)")?;
+    let sides = Sides {
+        ours,
+        python,
+        folder: folder.join("work"),
+        threads: report::threads(),
+        rounds: if options.quick { 1 } else { ROUNDS },
+        quick: options.quick,
+    };
+    std::fs::create_dir_all(&sides.folder)?;
+    let mut page = Page::new(
+        "Beside others",
+        &format!("cargo xtask bench --peers {}", arguments.join(" ")),
+        &sides.ours,
+    )?;
+    page.add(&format!(
+        "Both sides run in turn, {} times each, in processes of their own with {} threads; medians. The peers are the wheels of \
+         `xtask/peers/requirements.txt` from PyPI.",
+        sides.rounds, sides.threads
+    ));
+    steps::compare(&sides, &mut page)?;
+    surface::compare(&sides, options.particles, &mut page)?;
+    if options.quick {
+        say("\n--quick: docs/peers.md is left as it is.");
+        return Ok(());
+    }
+    page.write("docs/peers.md")
+}
+
+/// Runs a command and returns the last line that it prints, which is its answer.
+fn answer(command: &mut Command) -> Result<String> {
+    let words = process::line(command);
+    let output = command.output().with_context(|| format!("cannot start `{words}`"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    ensure!(
+        output.status.success(),
+        "`{words}` failed ({}):\n{text}{}",
+        output.status,
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let line = text.lines().rev().find(|line| line.starts_with('{'));
+    Ok(line.with_context(|| format!("`{words}` printed no answer:\n{text}"))?.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Options;
+
+    fn parse(words: &[&str]) -> anyhow::Result<Options> {
+        Options::parse(&words.iter().map(|&word| word.to_owned()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn options_are_read_and_others_refused() {
+        assert_eq!(parse(&[]).unwrap(), Options::default());
+        let options = parse(&["--particles", "a.npy", "0.05", "--quick"]).unwrap();
+        assert_eq!(options, Options { quick: true, particles: Some(("a.npy".into(), 0.05)) });
+        for wrong in [&["--particles", "a.npy"][..], &["--particles", "a.npy", "wide"], &["--fast"]] {
+            assert!(parse(wrong).is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! A page of measurements: what was measured, when, on which machine and with which command.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+
+use crate::process::{self, root, say};
+
+/// A page that is printed while it grows and written at its end.
+pub struct Page {
+    text: String,
+}
+
+impl Page {
+    /// Begins with the title and with what holds for all of it.
+    pub fn new(title: &str, command: &str, binary: &Path) -> Result<Self> {
+        let mut page = Self { text: String::new() };
+        page.add(&format!("# {title}"));
+        page.add(&format!("Written by `{}`, {}, on {}", command.trim(), date(), machine(binary)?));
+        page.add("Shared machines are noisy: trust ratios taken in one run, not single times.");
+        Ok(page)
+    }
+
+    /// Adds a paragraph, a table or a heading.
+    pub fn add(&mut self, paragraph: &str) {
+        say(format!("\n{paragraph}"));
+        if !self.text.is_empty() {
+            self.text.push('\n');
+        }
+        self.text += paragraph.trim();
+        self.text.push('\n');
+    }
+
+    /// Writes it below the repository.
+    pub fn write(self, path: &str) -> Result<()> {
+        fs::write(root().join(path), self.text).with_context(|| format!("cannot write {path}"))?;
+        say(format!("\nWritten: {path}"));
+        Ok(())
+    }
+}
+
+/// The day, as the system tells it.
+fn date() -> String {
+    let seconds =
+        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let [year, month, day] = civil(seconds / 86_400);
+    format!("{year}-{month:02}-{day:02}")
+}
+
+/// Year, month and day of the days since 1970-01-01 (Hinnant, "chrono-Compatible Low-Level Date Algorithms", 2014). Years
+/// begin in March here, so that the leap day is their last.
+fn civil(days: u64) -> [u64; 3] {
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let january = month >= 10;
+    let number = if january { month - 9 } else { month + 3 };
+    [year + era * 400 + u64::from(january), number, day - (153 * month + 2) / 5 + 1]
+}
+
+/// Threads that this machine runs at once.
+pub fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Processor, threads, instructions and adapters in one line, as `splashdown doctor` finds them.
+fn machine(binary: &Path) -> Result<String> {
+    let output = process::command(binary).args(["doctor", "--json"]).output()?;
+    let json = String::from_utf8_lossy(&output.stdout).into_owned();
+    let adapters = texts(&json, "name").into_iter().zip(texts(&json, "kind"));
+    let mut adapters: Vec<String> = adapters.map(|(name, kind)| format!("{name} ({kind})")).collect();
+    if !texts(&json, "kind").iter().any(|kind| kind.ends_with(" GPU")) {
+        adapters.push("no GPU".to_owned());
+    }
+    Ok(format!(
+        "{}, {} threads ({}), {}.",
+        processor(),
+        threads(),
+        list(&json, "features"),
+        adapters.join(", ")
+    ))
+}
+
+/// All texts of this name.
+fn texts(json: &str, name: &str) -> Vec<String> {
+    let key = format!("\"{name}\":\"");
+    json.split(&key).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect()
+}
+
+/// The texts of the list of this name, with commas between them.
+fn list(json: &str, name: &str) -> String {
+    let key = format!("\"{name}\":[");
+    let inside =
+        json.split_once(&key).and_then(|(_, rest)| rest.split_once(']')).map_or("", |(list, _)| list);
+    inside.replace('"', "").replace(',', ", ")
+}
+
+/// What the processor calls itself, where the system tells it in a file.
+fn processor() -> String {
+    let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    model.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{civil, list, texts};
+
+    #[test]
+    fn days_have_their_dates() {
+        for (days, date) in [
+            (0, [1970, 1, 1]),
+            (59, [1970, 3, 1]),
+            (11_016, [2000, 2, 29]),
+            (11_017, [2000, 3, 1]),
+            (20_453, [2025, 12, 31]),
+            (20_454, [2026, 1, 1]),
+        ] {
+            assert_eq!(civil(days), date);
+        }
+    }
+
+    #[test]
+    fn what_doctor_says_is_read() {
+        let json = r#"{"cpu":{"features":["avx2","fma"]},"adapters":[{"name":"a (b)","kind":"software driver"},{"name":"c"}]}"#;
+        assert_eq!(list(json, "features"), "avx2, fma");
+        assert_eq!(texts(json, "name"), ["a (b)", "c"]);
+        assert_eq!(texts(json, "kind"), ["software driver"]);
+        assert_eq!(list("{}", "features"), "");
+    }
+}
