@@ -44,6 +44,8 @@ def scene(method, divisor, folder):
     for owner, keys in ((box, ("translation", "scale")), (block, ("start", "end"))):
         for key in keys:
             owner[key] = [scale * x for x in owner[key]]
+    # A row of particles less fits than one would think.
+    block["end"] = [x + 2 * configuration["particleRadius"] for x in block["end"]]
     # One corner of the box, less the distance of the scene's own from its walls.
     gap, [left, floor] = 0.05, [box["translation"][axis] - box["scale"][axis] / 2 for axis in (0, 1)]
     block["translation"] = [left + gap - block["start"][0], floor + gap - block["start"][1], 0]

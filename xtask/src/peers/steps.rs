@@ -78,7 +78,7 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
         ours.note(&step(sides, &path)?)?;
         dfsph.note(&their_step(sides, "dfsph", divisor)?)?;
     }
-    // Per particle, because the numbers of particles are not quite the same.
+    // Per particle, should their numbers ever differ.
     let each = |side: &Side| median(&side.seconds) / side.particles;
     let mut table = Table::new(&[
         "step",
@@ -96,7 +96,7 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
     page.add("## A step");
     page.add(table.text());
     page.add(
-        "Scene: SPlisHSPlasH's own `DamBreakModel.json`, its block and its box twice as long; WCSPH with stiffness 50,000, exponent 7 \
+        "Scene: SPlisHSPlasH's own `DamBreakModel.json`, its block and its box twice as long (and the block a spacing more, which gives it 40 particles on every side); WCSPH with stiffness 50,000, exponent 7 \
          and steps of 0.1 ms. *Equal*: spacing, support radius, size of block and box, threads, `f32`. *Not equal*: the kernel (Wendland C2 \
          here, cubic spline there), walls (integrals here, volume maps there; neither has boundary particles, so both visit fluid neighbours only), \
          viscosity, and how long the steps are: ours follow the speed of sound, DFSPH's are ten and more times longer and hold several \

@@ -248,7 +248,7 @@ fn the_benchmark_takes_scenes_and_numbers_of_threads() -> Outcome {
         assert!(ratio.is_some_and(|ratio| (ratio - 2.0).abs() < 1e-5), "{row}");
     }
     let output = place.splashdown(&words).output()?;
-    assert!(stdout(&output).contains("2 threads over 1:"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("on 2 threads over 1:"), "{}", stdout(&output));
     Ok(())
 }
 

@@ -69,11 +69,11 @@ pub struct Row {
     pub flops: f64,
     pub dispatch_seconds: f64,
     pub dispatches_per_step: f64,
+    /// Steps that the passes' numbers are the sums of.
+    pub timed_steps: u64,
     pub passes: BTreeMap<&'static str, PassNumbers>,
     #[serde(skip)]
     pub timings: Timings,
-    #[serde(skip)]
-    pub timed_steps: u64,
 }
 
 /// Measures a scene.
@@ -130,9 +130,9 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
         flops: floors.flops,
         dispatch_seconds: floors.dispatch,
         dispatches_per_step: dispatches,
+        timed_steps: timed_steps.into(),
         passes: if arguments.no_passes { BTreeMap::new() } else { passes(&timings) },
         timings,
-        timed_steps: timed_steps.into(),
     })
 }
 

@@ -38,6 +38,9 @@ pub fn line(row: &Row) -> String {
 /// What follows from the rows together, and the passes of each.
 pub fn closing(rows: &[Row], no_passes: bool) -> String {
     let mut text = growth(rows) + &scaling(rows);
+    if let Some(peak) = rows.last().and_then(|row| row.peak_memory) {
+        text += &format!("\nPeak memory of this process: {}\n", human::bytes(peak));
+    }
     for row in rows.iter().filter(|row| !no_passes && row.timed_steps > 0) {
         text += &format!(
             "\n{} particles on {}, by pass:\n\n{}\n",
@@ -71,9 +74,9 @@ fn scaling(rows: &[Row]) -> String {
         let same = |other: &&Row| other.particles == row.particles && other.threads == first.threads;
         let Some(base) = rows.iter().find(same) else { continue };
         text += &format!(
-            "\n{} particles, {} threads over {}: {:.2} times as fast\n",
+            "\n{} particles on {} over {}: {:.2} times as fast\n",
             human::count(row.particles),
-            row.threads,
+            human::counted(row.threads as u64, "thread"),
             first.threads,
             base.seconds_per_step / row.seconds_per_step
         );
