@@ -1,8 +1,10 @@
 //! What bounds the fluid: the box's closed sides.
 
 mod contact;
+mod near;
 mod walls;
 
+pub(crate) use near::NearWalls;
 pub use walls::{KernelPair, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};
 
 use splashdown_gpu::WgslModule;

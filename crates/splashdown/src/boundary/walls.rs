@@ -263,13 +263,6 @@ pub struct WallTerms {
 }
 
 impl Walls {
-    /// True if a wall is within the support at `x`.
-    #[inline]
-    pub fn near(&self, x: Vec3) -> bool {
-        let (_, distance) = self.nearest(x);
-        distance.min_element() < self.support_radius
-    }
-
     /// Signs of the normals and distances of the nearest closed side of each axis.
     #[inline]
     fn nearest(&self, x: Vec3) -> (Vec3, Vec3) {
@@ -284,16 +277,26 @@ impl Walls {
     pub fn terms(&self, table: &[Vec4], x: Vec3) -> WallTerms {
         let (normal, distance) = self.nearest(x);
         let q = (distance / self.support_radius).max(Vec3::ZERO).to_array();
-        let behind = ((distance + self.offset) / self.support_radius).max(Vec3::ZERO).to_array();
         let planes = q.map(|q| self.plane(q));
         WallTerms {
-            density: self.density(table, behind),
+            density: self.density(table, self.behind(distance)),
             slope: self.slope(table, q, planes),
             plane: Vec3::from_array(planes.map(|(d, _)| d)),
             plane_slope: Vec3::from_array(planes.map(|(_, a)| a)),
             normal,
             distance,
         }
+    }
+
+    /// The density of [`terms`](Self::terms) alone.
+    pub fn density_at(&self, table: &[Vec4], x: Vec3) -> f32 {
+        let (_, distance) = self.nearest(x);
+        self.density(table, self.behind(distance))
+    }
+
+    /// Distances of the solids, over the support.
+    fn behind(&self, distance: Vec3) -> [f32; 3] {
+        ((distance + self.offset) / self.support_radius).max(Vec3::ZERO).to_array()
     }
 
     /// (D, A) of one plane for the gradient's kernel.

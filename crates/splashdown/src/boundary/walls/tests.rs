@@ -1,4 +1,5 @@
 use super::*;
+use crate::boundary::NearWalls;
 
 const ALL: [KernelPair; 3] = [KernelPair::WendlandC2, KernelPair::CubicSpline, KernelPair::Mueller];
 
@@ -107,7 +108,13 @@ fn open_sides_contribute_nothing_and_the_upper_side_mirrors_the_lower() {
     assert_eq!((low.normal.x, high.normal.x), (1.0, -1.0));
     walls.closed = 0b111101;
     assert_eq!(walls.terms(&table, Vec3::new(3.8, 2.0, 2.0)).density, 0.0);
-    assert!(walls.near(Vec3::new(0.2, 2.0, 2.0)) && !walls.near(Vec3::new(3.8, 2.0, 2.0)));
+    let (low_point, high_point) = (Vec3::new(0.2, 2.0, 2.0), Vec3::new(3.8, 2.0, 2.0));
+    let near = NearWalls::new(walls.clone(), &table);
+    assert_eq!(near.terms(low_point), Some(walls.terms(&table, low_point)));
+    assert_eq!(near.density(low_point), walls.terms(&table, low_point).density);
+    assert_eq!((near.terms(high_point), near.density(high_point)), (None, 0.0));
+    let closed = NearWalls::new(corner_box(kernels), &table);
+    assert!(closed.terms(high_point).is_some() && closed.terms(Vec3::splat(2.0)).is_none());
 }
 
 #[test]

@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{WallKernel, Walls};
+use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::passes::{Params, StepState};
@@ -22,8 +22,7 @@ pub(super) fn continuity<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'
         dt: state.dt,
         positions,
         velocities: velocities.read(),
-        walls: params.walls(K::WALLS),
-        wall_table: wall_table.read(),
+        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
         scale,
         soft: 0.01 * params.support_radius * params.support_radius,
         diffusion: params.density_diffusion * params.support_radius * params.sound_speed,
@@ -40,8 +39,7 @@ struct Continuity<'a, K> {
     positions: &'a [Vec4],
     /// The density is the fourth component.
     velocities: &'a [Vec4],
-    walls: Walls,
-    wall_table: &'a [Vec4],
+    walls: NearWalls<'a>,
     scale: f32,
     soft: f32,
     diffusion: f32,
@@ -80,8 +78,7 @@ impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
     fn finish(&self, i: usize, [sum]: [f32; 1], out: &mut Vec2) {
         let (x, v) = (self.positions[i].xyz(), self.velocities[i]);
         let mut rate = sum;
-        if self.walls.near(x) {
-            let terms = self.walls.terms(self.wall_table, x);
+        if let Some(terms) = self.walls.terms(x) {
             rate -= 2.0 * v.w * self.scale * (terms.slope * terms.normal).dot(v.xyz());
         }
         let next = v.w + self.dt * rate;

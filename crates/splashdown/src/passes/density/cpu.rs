@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{WallKernel, Walls};
+use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::Params;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
@@ -17,8 +17,7 @@ pub(super) fn density<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]
     let pass = Density::<K> {
         params,
         positions,
-        walls: params.walls(K::WALLS),
-        wall_table: wall_table.read(),
+        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
         scale,
         factor: params.particle_mass * scale * scale * scale,
         kernel: PhantomData,
@@ -30,8 +29,7 @@ pub(super) fn density<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]
 struct Density<'a, K> {
     params: &'a Params,
     positions: &'a [Vec4],
-    walls: Walls,
-    wall_table: &'a [Vec4],
+    walls: NearWalls<'a>,
     scale: f32,
     factor: f32,
     kernel: PhantomData<K>,
@@ -58,10 +56,7 @@ impl<K: Kernel> PairSum<3, 1> for Density<'_, K> {
     #[inline(always)]
     fn finish(&self, i: usize, [sum]: [f32; 1], out: &mut Vec2) {
         let (params, x) = (self.params, self.positions[i].xyz());
-        out.x = self.factor * sum;
-        if self.walls.near(x) {
-            out.x += params.rest_density * self.walls.terms(self.wall_table, x).density;
-        }
+        out.x = self.factor * sum + params.rest_density * self.walls.density(x);
         out.y = params.pressure_at(out.x);
     }
 }

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{WallKernel, Walls};
+use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::{Kernel, SMALLEST_Q};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::passes::{Params, StepState};
@@ -38,8 +38,7 @@ pub(super) fn momentum<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>
         positions,
         velocities: velocities.read(),
         densities: densities.read(),
-        walls: params.walls(K::WALLS),
-        wall_table: wall_table.read(),
+        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
         scale,
         factor: (scale * scale) * (scale * scale) * scale,
         soft: 0.01 * support * support,
@@ -65,8 +64,7 @@ struct Momentum<'a, K> {
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
     densities: &'a [Vec2],
-    walls: Walls,
-    wall_table: &'a [Vec4],
+    walls: NearWalls<'a>,
     scale: f32,
     factor: f32,
     soft: f32,
@@ -115,8 +113,7 @@ impl<K: Kernel> PairSum<7, 3> for Momentum<'_, K> {
     fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
         let (params, x) = (self.params, self.positions[i].xyz());
         let mut a = self.factor * Vec3::from(sums);
-        if self.walls.near(x) {
-            let terms = self.walls.terms(self.wall_table, x);
+        if let Some(terms) = self.walls.terms(x) {
             let [rho, pressure] = self.densities[i].to_array();
             let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
             a = terms.acceleration(params, self.velocities[i].xyz(), self.body, a, push, self.dt);

@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{KernelPair, Walls};
+use crate::boundary::{KernelPair, NearWalls};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::passes::{Params, StepState};
@@ -22,8 +22,7 @@ pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
         positions,
         velocities: velocities.read(),
         densities: densities.read(),
-        walls: params.walls(KernelPair::Mueller),
-        wall_table: wall_table.read(),
+        walls: NearWalls::new(params.walls(KernelPair::Mueller), wall_table.read()),
         scale: 1.0 / params.support_radius,
     };
     pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), accelerations.write(), &pass);
@@ -36,8 +35,7 @@ struct Mueller<'a> {
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
     densities: &'a [Vec2],
-    walls: Walls,
-    wall_table: &'a [Vec4],
+    walls: NearWalls<'a>,
     scale: f32,
 }
 
@@ -89,8 +87,7 @@ impl PairSum<8, 7> for Mueller<'_> {
             force -= params.surface_tension * laplacian / steepness * normal;
         }
         let mut a = force / rho;
-        if self.walls.near(x) {
-            let terms = self.walls.terms(self.wall_table, x);
+        if let Some(terms) = self.walls.terms(x) {
             a = terms.acceleration(params, v, self.body, a, pressure / rho, self.dt);
         }
         *out = (a + self.body).extend(0.0);

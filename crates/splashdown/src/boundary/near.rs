@@ -1,0 +1,41 @@
+//! Asks only those particles about the walls that are near one.
+
+use glam::{BVec3, Vec3, Vec4};
+
+use super::{WallTerms, Walls};
+
+/// Walls with their table, and the box in which no wall is within the support.
+pub(crate) struct NearWalls<'a> {
+    walls: Walls,
+    table: &'a [Vec4],
+    low: Vec3,
+    high: Vec3,
+}
+
+impl<'a> NearWalls<'a> {
+    pub fn new(walls: Walls, table: &'a [Vec4]) -> Self {
+        let closed = |side: u32| {
+            BVec3::from_array([0, 1, 2].map(|axis: u32| (walls.closed >> (2 * axis + side)) & 1 == 1))
+        };
+        let low = Vec3::select(closed(0), walls.min + walls.support_radius, Vec3::NEG_INFINITY);
+        let high = Vec3::select(closed(1), walls.max - walls.support_radius, Vec3::INFINITY);
+        Self { walls, table, low, high }
+    }
+
+    #[inline(always)]
+    fn is_near(&self, x: Vec3) -> bool {
+        x.cmplt(self.low).any() || x.cmpgt(self.high).any()
+    }
+
+    /// What the walls contribute at `x`, a point inside the box; `None` where none is within the support.
+    #[inline(always)]
+    pub fn terms(&self, x: Vec3) -> Option<WallTerms> {
+        self.is_near(x).then(|| self.walls.terms(self.table, x))
+    }
+
+    /// Their density alone, over the rest density.
+    #[inline(always)]
+    pub fn density(&self, x: Vec3) -> f32 {
+        if self.is_near(x) { self.walls.density_at(self.table, x) } else { 0.0 }
+    }
+}
