@@ -1,4 +1,4 @@
-//! The same three passes on the cores. Integer sums wrap and may be taken in any order, so the number of threads
+//! The same passes on the cores. Integer sums wrap and may be taken in any order, so the number of threads
 //! changes nothing.
 
 use rayon::prelude::*;
@@ -30,13 +30,24 @@ pub(super) fn single<const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     starts[len] = run::<MOST>(&counts.read::<u32>()[..len], &mut starts[..len], 0);
 }
 
-/// The prefix sums inside every block, on top of those of the blocks before.
-pub(super) fn spread<const RUN: usize, const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, counts, offsets, starts] = slots else { unreachable!("four bindings") };
+/// The prefix sums inside every block, on top of the sums of the blocks before.
+pub(super) fn spread<const RUN: usize, const MOST: u32, const SCANNED: bool>(
+    _: CpuWork,
+    slots: &mut [Slot<'_>],
+) {
+    let [params, counts, sums, starts] = slots else { unreachable!("four bindings") };
     let ScanParams { len, blocks } = params.get();
     let (starts, total) = starts.write::<u32>()[..=len as usize].split_at_mut(len as usize);
-    let offsets = offsets.read::<u32>();
-    total[0] = offsets[blocks as usize];
+    let (sums, blocks) = (sums.read::<u32>(), blocks as usize);
+    let mut scanned = Vec::new();
+    let offsets = if SCANNED {
+        sums
+    } else {
+        scanned.resize(blocks + 1, 0);
+        scanned[blocks] = run::<{ u32::MAX }>(&sums[..blocks], &mut scanned[..blocks], 0);
+        &scanned
+    };
+    total[0] = offsets[blocks];
     counts.read::<u32>()[..len as usize]
         .par_chunks(256 * RUN)
         .with_min_len(BLOCKS_PER_TASK)
