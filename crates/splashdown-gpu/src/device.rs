@@ -39,6 +39,7 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// What it allows.
     pub limits: wgpu::Limits,
+    checks_shaders: bool,
     trouble: Arc<Mutex<Option<Trouble>>>,
 }
 
@@ -204,7 +205,20 @@ impl Gpu {
                 note(&report, Trouble::Lost(format!("{reason:?}: {message}")));
             }
         });
-        Self { limits: device.limits(), device, queue, info, trouble }
+        Self { limits: device.limits(), device, queue, info, checks_shaders: true, trouble }
+    }
+
+    /// The same device without the checks that keep shaders inside their buffers and out of endless loops. The passes stay inside
+    /// by themselves, which the tests show under the checks; so this is for measuring what the checks cost. A browser has its
+    /// own, which stay.
+    #[must_use]
+    pub fn without_shader_checks(self) -> Self {
+        Self { checks_shaders: false, ..self }
+    }
+
+    /// True unless shaders run [without checks](Self::without_shader_checks).
+    pub fn checks_shaders(&self) -> bool {
+        self.checks_shaders
     }
 
     /// The name and the API behind it, e.g. "NVIDIA H200 (Vulkan)".

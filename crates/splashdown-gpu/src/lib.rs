@@ -51,7 +51,7 @@ pub use element::{Field, GpuElement, GpuMember, GpuStruct};
 pub use error::GpuError;
 pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback, refused_passes};
 pub use host::{Slot, as_atomic};
-pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, write};
+pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, uniform_array, write};
 pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording, dispatch_groups};
 pub use timing::{PassTime, Timings};
 pub use wait::block_on;

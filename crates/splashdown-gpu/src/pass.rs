@@ -37,6 +37,11 @@ pub const fn uniform<T: GpuStruct>(name: &'static str) -> Binding {
     binding::<T>(name, Access::Uniform)
 }
 
+/// Declares a uniform array of vectors of four.
+pub const fn uniform_array(name: &'static str) -> Binding {
+    binding::<glam::Vec4>(name, Access::Uniform)
+}
+
 /// Declares a storage array, or a storage struct, that the pass reads.
 pub const fn read<T: GpuElement>(name: &'static str) -> Binding {
     binding::<T>(name, Access::Read)

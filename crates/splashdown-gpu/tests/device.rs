@@ -1,8 +1,12 @@
 //! Adapters: choosing, refusing by name, and a machine without drivers.
 
 use std::process::Command;
+use std::sync::Arc;
 
-use splashdown_gpu::{DeviceRequest, Gpu, GpuError, list_adapters, testing};
+use splashdown_gpu::scan::Scan;
+use splashdown_gpu::{
+    DeviceRequest, Executor, Gpu, GpuError, GpuExecutor, Recording, list_adapters, testing,
+};
 
 #[test]
 fn listed_adapters_can_be_opened_by_name() {
@@ -50,6 +54,29 @@ fn asking_for_a_kind_that_is_missing_names_what_there_is() {
             Err(error) => panic!("{request:?}: {error}"),
         }
     }
+}
+
+#[test]
+fn shaders_without_checks_compute_the_same() {
+    if testing::gpu_or_skip("shaders_without_checks_compute_the_same").is_none() {
+        return;
+    }
+    let flags: Vec<u32> = (0..50_000).map(|i| testing::noise(i) & 1).collect();
+    let scanned = |gpu: Gpu| {
+        let mut executor = Executor::from(GpuExecutor::new(Arc::new(gpu)));
+        let (counts, starts) =
+            (executor.create_from("counts", &flags).unwrap(), executor.create("starts", 50_001).unwrap());
+        let mut recording = Recording::new("scan");
+        Scan::new(&mut executor, 50_000).unwrap().record(&mut recording, counts, starts);
+        executor.run(&recording).unwrap();
+        executor.read(starts).unwrap()
+    };
+    let open = || Gpu::open(&DeviceRequest::Auto).unwrap();
+    let (checked, unchecked) = (open(), open().without_shader_checks());
+    assert!(checked.checks_shaders() && !unchecked.checks_shaders());
+    let starts = scanned(checked);
+    assert_eq!(starts.last(), Some(&flags.iter().sum()));
+    assert!(scanned(unchecked) == starts);
 }
 
 /// Set in the child process that runs without drivers.

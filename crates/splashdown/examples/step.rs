@@ -1,7 +1,10 @@
 //! Steps a scene and prints its account and the time of every pass:
-//! `cargo run --release -p splashdown --example step -- SCENE [DEVICE] [FRAMES]`
+//! `cargo run --release -p splashdown --example step -- SCENE [DEVICE] [FRAMES] [unchecked] [apart]`
+//!
+//! `unchecked` runs shaders without checks; `apart` has a hand that does nothing, so that forces and motion are two passes.
 
-use splashdown::{Device, Simulation, scene::Scene};
+use glam::Vec3;
+use splashdown::{Device, Hand, Simulation, scene::Scene};
 
 #[expect(clippy::print_stdout, reason = "an example that prints")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -9,7 +12,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::load(arguments.next().ok_or("give a scene file")?)?;
     let device: Device = arguments.next().unwrap_or_else(|| "auto".into()).parse()?;
     let frames: u32 = arguments.next().map_or(Ok(3), |text| text.parse())?;
-    let mut simulation = Simulation::new(&scene, &device)?;
+    let ways: Vec<String> = arguments.collect();
+    let has = |way: &str| ways.iter().any(|given| given == way);
+    let executor = if has("unchecked") { device.unchecked_executor()? } else { device.executor()? };
+    let mut simulation = Simulation::with_executor(&scene, executor)?;
+    if has("apart") {
+        simulation.set_hand(Some(Hand::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0)))?;
+    }
     println!(
         "{} particles on {}, {} MB",
         simulation.stats().particles,

@@ -50,8 +50,24 @@ impl Device {
     /// # Errors
     /// [`GpuError::NoAdapter`] and [`GpuError::UnknownDevice`]; never for [`Auto`](Self::Auto) and [`Cpu`](Self::Cpu).
     pub fn executor(&self) -> Result<Executor, GpuError> {
-        let gpu =
-            |request: &DeviceRequest| Ok(Executor::from(GpuExecutor::new(Arc::new(Gpu::open(request)?))));
+        self.open(true)
+    }
+
+    /// As [`executor`](Self::executor), [without the checks](Gpu::without_shader_checks) that keep shaders inside their
+    /// buffers: to measure what they cost.
+    ///
+    /// # Errors
+    /// As [`executor`](Self::executor).
+    pub fn unchecked_executor(&self) -> Result<Executor, GpuError> {
+        self.open(false)
+    }
+
+    fn open(&self, checks_shaders: bool) -> Result<Executor, GpuError> {
+        let gpu = |request: &DeviceRequest| {
+            let gpu = Gpu::open(request)?;
+            let gpu = if checks_shaders { gpu } else { gpu.without_shader_checks() };
+            Ok(Executor::from(GpuExecutor::new(Arc::new(gpu))))
+        };
         match self {
             Self::Cpu => Ok(CpuExecutor::new().into()),
             Self::Gpu => gpu(&DeviceRequest::Hardware),

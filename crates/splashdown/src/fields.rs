@@ -1,5 +1,6 @@
 //! The buffers of a simulation.
 
+use bytemuck::Zeroable;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{Buffer, Executor, GpuError};
 
@@ -29,12 +30,13 @@ pub struct Fields {
     pub sorted_positions: Buffer<Vec4>,
     /// Sorted by cell: as `velocities`.
     pub sorted_velocities: Buffer<Vec4>,
-    /// Sorted by cell: as `ids`.
+    /// Sorted by cell: as `ids`, after a sort without a step. A step puts them straight to the resting ones.
     pub sorted_ids: Buffer<u32>,
     /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the resting arrays
     /// once the step is done.
     pub densities: Buffer<Vec2>,
-    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`.
+    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`. One entry where forces and motion are
+    /// one pass.
     pub accelerations: Buffer<Vec4>,
     /// Normals for surface tension; order as `densities`. One entry where there is none.
     pub normals: Buffer<Vec4>,
@@ -54,10 +56,10 @@ impl Fields {
         let n = params.particle_count as usize;
         Ok(Self {
             params: executor.create_uniform("params", params)?,
-            state: executor.create("state", 1)?,
+            state: executor.create_small("state", &[StepState::zeroed()])?,
             duration: executor.create_from("duration", &[0.0])?,
             tally: executor.create_from("tally", &[0; Tally::WORDS])?,
-            wall_table: executor.create_from("wall_table", &wall_table(walls))?,
+            wall_table: executor.create_small("wall_table", &wall_table(walls))?,
             positions: executor.create("positions", n)?,
             velocities: executor.create("velocities", n)?,
             ids: executor.create("ids", n)?,
@@ -65,8 +67,19 @@ impl Fields {
             sorted_velocities: executor.create("sorted_velocities", n)?,
             sorted_ids: executor.create("sorted_ids", n)?,
             densities: executor.create("densities", n)?,
-            accelerations: executor.create("accelerations", n)?,
+            accelerations: executor.create("accelerations", 1)?,
             normals: executor.create("normals", if normals { n } else { 1 })?,
         })
+    }
+
+    /// Makes room for the accelerations, which a step in one pass less does without.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn make_accelerations(&mut self, executor: &mut Executor) -> Result<(), GpuError> {
+        match self.positions.len() {
+            n if n > self.accelerations.len() => executor.resize(&mut self.accelerations, n as usize),
+            _ => Ok(()),
+        }
     }
 }

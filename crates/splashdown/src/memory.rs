@@ -4,14 +4,19 @@ use crate::cells::Grid;
 use crate::flow::LoadedFlow;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
+use crate::solver::Solver;
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
 /// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): two positions, two
-/// velocities, two ids, density and pressure, acceleration, cell and rank, slot, order.
-const PER_PARTICLE: u64 = 4 * 16 + 2 * 4 + 8 + 16 + 8 + 4 + 4;
+/// velocities, two ids, density and pressure, cell, slot.
+const PER_PARTICLE: u64 = 4 * 16 + 2 * 4 + 8 + 4 + 8;
+/// Bytes per particle of what only some scenes need: an acceleration, a normal, a pair for the bitonic sort.
+const ACCELERATION: u64 = 16;
+const NORMAL: u64 = 16;
+const PAIR: u64 = 8;
 /// Bytes per cell: its count and its start.
 const PER_CELL: u64 = 8;
 
@@ -64,11 +69,8 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
     // A mesh that cannot be read is reported where the simulation starts.
     let flow = LoadedFlow::new(scene).unwrap_or_default();
     let particles = flow.capacity(particles, u64::MAX);
-    let normals = if scene.solver.surface_tension == SurfaceTension::Akinci2013 { 16 } else { 0 };
-    let pairs = if scene.solver.sort == Sort::Bitonic { 8 } else { 0 };
-    let motion = particles
-        .saturating_mul(PER_PARTICLE + normals + pairs)
-        .saturating_add(bodies::forecast(scene, particles));
+    let motion =
+        particles.saturating_mul(per_particle(scene)).saturating_add(bodies::forecast(scene, particles));
     // A domain of more cells than there can be is refused at the start.
     let Some(grid) = Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene)) else {
         return motion.saturating_add(PER_CELL << 31);
@@ -84,6 +86,20 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
     motion.saturating_add(u64::from(grid.cell_count) * PER_CELL).saturating_add(surface).saturating_add(foam)
 }
 
+/// Bytes per particle in the buffers of a scene's simulation, but for what its bodies need.
+fn per_particle(scene: &Scene) -> u64 {
+    let is_plain = scene.bodies.is_empty()
+        && scene.emitters.is_empty()
+        && scene.sinks.is_empty()
+        && scene.probes.is_empty()
+        && Solver::new(scene).fuses();
+    let some = |needed: bool, bytes: u64| if needed { bytes } else { 0 };
+    PER_PARTICLE
+        + some(!is_plain, ACCELERATION)
+        + some(scene.solver.surface_tension == SurfaceTension::Akinci2013, NORMAL)
+        + some(scene.solver.sort == Sort::Bitonic, PAIR)
+}
+
 /// What a cell of the grid must span, in metres: one grid serves the motion and the surface.
 pub(crate) fn grid_reach(scene: &Scene) -> f32 {
     let spacing = scene.fluid.particle_spacing;
@@ -92,9 +108,43 @@ pub(crate) fn grid_reach(scene: &Scene) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+    use splashdown_gpu::{CpuExecutor, Executor};
+
     use super::*;
+    use crate::boundary::KernelPair;
+    use crate::cells::Cells;
+    use crate::fields::Fields;
+    use crate::passes::Params;
     use crate::scene::{Derived, SurfaceSettings};
     use crate::{Device, Simulation};
+
+    /// Bytes in all buffers of this many particles in one grid.
+    fn in_arrays(particles: u32, normals: bool, sort: Sort) -> u64 {
+        let mut executor = Executor::from(CpuExecutor::new());
+        let params = Params { particle_count: particles, ..bytemuck::Zeroable::zeroed() };
+        let mut fields = Fields::new(&mut executor, &params, KernelPair::WendlandC2, normals).unwrap();
+        if normals {
+            fields.make_accelerations(&mut executor).unwrap();
+        }
+        let grid = Grid::new(Vec3::ZERO, Vec3::ONE, 0.1).unwrap();
+        Cells::new(&mut executor, grid, particles, sort).unwrap();
+        executor.bytes()
+    }
+
+    #[test]
+    fn with_all_that_a_scene_can_ask_for_a_particle_takes_at_most_160_bytes() {
+        let per_particle = |normals, sort| {
+            (in_arrays(3 << 16, normals, sort) - in_arrays(1 << 16, normals, sort)) / (2 << 16)
+        };
+        let plain = per_particle(false, Sort::Counting);
+        assert_eq!(plain, 92);
+        assert_eq!(plain, PER_PARTICLE);
+        // With all that a scene can ask for.
+        let most = per_particle(true, Sort::Bitonic);
+        assert_eq!(most, PER_PARTICLE + ACCELERATION + NORMAL + PAIR);
+        assert!(most <= 160, "{most}");
+    }
 
     #[test]
     fn the_forecast_is_what_the_buffers_take() {

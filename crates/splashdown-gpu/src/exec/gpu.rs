@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::pipeline::Pipeline;
 use super::readback::Mapping;
-use super::table::{Meta, Table};
+use super::table::{Kind, Meta, Table};
 use super::{Readback, readback};
 use crate::{
     BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings, block_on,
@@ -97,8 +97,11 @@ impl GpuExecutor {
                 fits: limit / meta.size as u64,
             });
         }
-        let kind =
-            if meta.uniform { Use::UNIFORM } else { Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX };
+        let kind = match meta.kind {
+            Kind::Uniform => Use::UNIFORM,
+            Kind::Storage => Use::STORAGE | Use::INDIRECT | Use::VERTEX | Use::INDEX,
+            Kind::Either => Use::STORAGE | Use::UNIFORM,
+        };
         let (buffer, error) = self.gpu.scoped(wgpu::ErrorFilter::OutOfMemory, |device| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(&meta.label),
@@ -110,7 +113,7 @@ impl GpuExecutor {
         if error.is_some() {
             return Err(GpuError::OutOfMemory { label: meta.label.clone(), bytes });
         }
-        if self.table.poison && !meta.uniform {
+        if self.table.poison && meta.kind != Kind::Uniform {
             self.gpu.queue.write_buffer(
                 &buffer,
                 0,

@@ -13,6 +13,7 @@ pub use readback::Readback;
 
 use std::marker::PhantomData;
 
+use self::table::{Kind, Meta};
 use crate::{Buffer, BufferId, GpuElement, GpuError, GpuStruct, Recording, Timings};
 
 /// Owns buffers and runs [`Recording`]s over them, on a GPU or on the CPU.
@@ -70,7 +71,7 @@ impl Executor {
     /// # Errors
     /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
     pub fn create<T: GpuElement>(&mut self, label: &str, len: usize) -> Result<Buffer<T>, GpuError> {
-        let id = either!(self, e => e.create(table::Meta::new::<T>(label, len, false))?);
+        let id = either!(self, e => e.create(Meta::new::<T>(label, len, Kind::Storage))?);
         Ok(Buffer { id, len: len as u32, element: PhantomData })
     }
 
@@ -84,12 +85,23 @@ impl Executor {
         Ok(buffer)
     }
 
+    /// Makes a storage buffer with this content that passes may bind as a uniform too. For what is small: at most 64 KiB.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn create_small<T: GpuElement>(&mut self, label: &str, data: &[T]) -> Result<Buffer<T>, GpuError> {
+        let id = either!(self, e => e.create(Meta::new::<T>(label, data.len(), Kind::Either))?);
+        let buffer = Buffer { id, len: data.len() as u32, element: PhantomData };
+        self.write(buffer, data)?;
+        Ok(buffer)
+    }
+
     /// Makes a uniform with this content.
     ///
     /// # Errors
     /// As [`create`](Self::create).
     pub fn create_uniform<T: GpuStruct>(&mut self, label: &str, value: &T) -> Result<Buffer<T>, GpuError> {
-        let id = either!(self, e => e.create(table::Meta::new::<T>(label, 1, true))?);
+        let id = either!(self, e => e.create(Meta::new::<T>(label, 1, Kind::Uniform))?);
         let buffer = Buffer { id, len: 1, element: PhantomData };
         self.write(buffer, std::slice::from_ref(value))?;
         Ok(buffer)

@@ -2,6 +2,18 @@
 
 use crate::{Access, BufferId, Command, Flag, GpuElement, GpuError, Grid, PassDesc, Recording};
 
+/// How passes may bind a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Storage,
+    Uniform,
+    /// As either, in turn.
+    Either,
+}
+
+/// Most bytes of a uniform on every adapter.
+const LARGEST_UNIFORM: u64 = 65_536;
+
 /// A buffer's name, type and length.
 #[derive(Clone, Debug)]
 pub(crate) struct Meta {
@@ -9,12 +21,12 @@ pub(crate) struct Meta {
     pub element: &'static str,
     pub size: usize,
     pub len: usize,
-    pub uniform: bool,
+    pub kind: Kind,
 }
 
 impl Meta {
-    pub fn new<T: GpuElement>(label: &str, len: usize, uniform: bool) -> Self {
-        Self { label: label.to_owned(), element: T::WGSL, size: size_of::<T>(), len, uniform }
+    pub fn new<T: GpuElement>(label: &str, len: usize, kind: Kind) -> Self {
+        Self { label: label.to_owned(), element: T::WGSL, size: size_of::<T>(), len, kind }
     }
 
     /// WebGPU binds no empty buffers, so the smallest has room for one element.
@@ -22,17 +34,22 @@ impl Meta {
         self.size as u64 * self.len.max(1) as u64
     }
 
-    /// Refuses more elements than 32-bit numbers can tell apart: passes have no others.
+    /// Refuses more elements than 32-bit numbers can tell apart, which passes have no others than, and more bytes than a
+    /// uniform may have.
     pub fn check_len(&self) -> Result<(), GpuError> {
-        if u32::try_from(self.len).is_ok() {
+        let fits = match self.kind {
+            Kind::Storage => u64::from(u32::MAX),
+            Kind::Uniform | Kind::Either => LARGEST_UNIFORM / self.size as u64,
+        };
+        if self.len as u64 <= fits {
             return Ok(());
         }
         Err(GpuError::TooLarge {
             label: self.label.clone(),
             len: self.len as u64,
             bytes: self.bytes(),
-            limit: u64::from(u32::MAX) * self.size as u64,
-            fits: u64::from(u32::MAX),
+            limit: fits * self.size as u64,
+            fits,
         })
     }
 }
@@ -138,7 +155,8 @@ impl Table {
                     binding.name, binding.element
                 )));
             }
-            if (binding.access == Access::Uniform) != meta.uniform {
+            let is_uniform = binding.access == Access::Uniform;
+            if meta.kind != Kind::Either && is_uniform != (meta.kind == Kind::Uniform) {
                 return Err(bad(format!("binding {:?} and {meta}: one is a uniform", binding.name)));
             }
             let twice = buffers[..i].iter().zip(pass.bindings).any(|(other, other_binding)| {

@@ -1,21 +1,24 @@
 //! Neighbour search: particles sorted by the cells of a uniform grid.
 //!
-//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, prefix sum, scatter; then order
-//! each cell's few particles by id, so that the result does not depend on the order of the invocations. x runs fastest
+//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, prefix sum, scatter their numbers;
+//! then copy them, each cell's few in order of id, so that the result does not depend on the order of the invocations. The
+//! pass that moves particles counts them for the next step's sort; only where nothing moved before does a pass of its own. x
+//! runs fastest
 //! in the numbers of the cells, so that the 27 cells round a particle are nine contiguous runs of particles
 //! (Dominguez et al. 2011). The thesis's bitonic sort is there as a second way with the same result.
 //!
 //! *Why not* a hash: the domain is a box, and its dense grid is one look-up. *Why not* a radix sort: a counting sort is
 //! one, of a single digit.
 
+mod arrange;
 mod bounds;
+pub(crate) mod census;
 mod count;
 pub(crate) mod grid;
 mod keys;
-mod order;
-mod reorder;
 mod scatter;
 
+pub use census::WGSL as CENSUS;
 pub use grid::{Grid, WGSL as GRID};
 
 use glam::UVec2;
@@ -25,10 +28,11 @@ use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recor
 
 use crate::fields::Fields;
 use crate::scene::Sort;
+use crate::solver::settle;
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![&bounds::BOUNDS, &count::COUNT, &keys::KEYS, &order::ORDER, &reorder::REORDER, &scatter::SCATTER]
+    vec![&arrange::ARRANGE, &bounds::BOUNDS, &count::COUNT, &keys::KEYS, &scatter::SCATTER]
 }
 
 /// The grid and the buffers of the sort.
@@ -40,11 +44,11 @@ pub struct Cells {
     /// Where every cell's particles begin in the sorted arrays: one entry per cell; then one for the dead, which is the
     /// number of the living; then the number of all.
     pub cell_start: Buffer<u32>,
+    /// How many particles every cell has, one entry per cell and one for the dead; then the cell of every particle.
+    pub census: Buffer<u32>,
     particles: u32,
-    counts: Buffer<u32>,
-    cell_rank: Buffer<UVec2>,
-    slots: Buffer<u32>,
-    order: Buffer<u32>,
+    /// Id and number of the particles of every cell, in the order of their arrival.
+    slots: Buffer<UVec2>,
     way: Way,
 }
 
@@ -67,10 +71,8 @@ impl Cells {
             grid_uniform: executor.create_uniform("grid", &grid)?,
             cell_start: executor.create("cell_start", cells as usize + 1)?,
             particles,
-            counts: executor.create("cell counts", cells as usize)?,
-            cell_rank: executor.create("cell_rank", n)?,
+            census: executor.create("census", cells as usize + n)?,
             slots: executor.create("slots", n)?,
-            order: executor.create("order", n)?,
             way: match sort {
                 Sort::Counting => Way::Counting(Scan::new(executor, cells)?),
                 Sort::Bitonic => Way::Bitonic {
@@ -81,56 +83,79 @@ impl Cells {
         })
     }
 
-    /// Appends the sort of the resting arrays into the sorted ones.
+    /// Appends the sort of the resting arrays into the sorted ones, without a step: nobody has counted before.
     pub fn record(&self, recording: &mut Recording, fields: &Fields) {
-        let all = Extent::Items(self.particles);
-        let (state, grid) = (fields.state.id(), self.grid_uniform.id());
-        let (cell_rank, cell_start, slots) = (self.cell_rank.id(), self.cell_start.id(), self.slots.id());
-        recording.clear(self.counts);
-        recording.dispatch(
-            &count::COUNT,
-            all,
-            &[
-                fields.params.id(),
-                grid,
-                state,
-                fields.positions.id(),
-                fields.velocities.id(),
-                cell_rank,
-                self.counts.id(),
-                fields.tally.id(),
-            ],
-        );
+        self.record_first_count(recording, fields);
+        self.record_sort(recording, fields, fields.sorted_ids);
+    }
+
+    /// Appends the count that the first sort of a frame needs.
+    pub fn record_first_count(&self, recording: &mut Recording, fields: &Fields) {
+        // A frame that was given up leaves a count that nobody has used.
+        recording.clear(self.census);
+        self.record_count(recording, fields);
+    }
+
+    /// Appends the count for the next step where the pass that moves particles does not count.
+    pub fn record_count(&self, recording: &mut Recording, fields: &Fields) {
+        let buffers = [
+            fields.params.id(),
+            self.grid_uniform.id(),
+            fields.state.id(),
+            fields.positions.id(),
+            fields.velocities.id(),
+            self.census.id(),
+            fields.tally.id(),
+        ];
+        recording.dispatch(&count::COUNT, self.all(), &buffers);
+    }
+
+    /// Appends the sort of the resting arrays, whose particles have been counted, into the sorted ones, ids into `sorted_ids`;
+    /// and the settling of the step before, if there is one.
+    pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
+        let (state, grid, ids) = (fields.state.id(), self.grid_uniform.id(), fields.ids.id());
+        let (census, cell_start, slots) = (self.census.id(), self.cell_start.id(), self.slots.id());
         match &self.way {
             Way::Counting(scan) => {
-                scan.record(recording, self.counts, self.cell_start);
-                recording.dispatch(&scatter::SCATTER, all, &[state, cell_rank, cell_start, slots]);
+                scan.record(recording, self.census, self.cell_start);
+                let (params, tally) = (fields.params.id(), fields.tally.id());
+                recording.dispatch(
+                    &scatter::SCATTER,
+                    self.all(),
+                    &[params, grid, state, tally, census, cell_start, ids, slots],
+                );
             }
             Way::Bitonic { sort, pairs } => {
-                recording.dispatch(&keys::KEYS, all, &[state, cell_rank, pairs.id()]);
+                recording.append(&settle(fields));
+                recording.dispatch(&keys::KEYS, self.all(), &[grid, state, census, pairs.id()]);
                 sort.record(recording, *pairs);
                 let one_more = Extent::Items(self.particles + 1);
-                recording.dispatch(&bounds::BOUNDS, one_more, &[grid, state, pairs.id(), cell_start, slots]);
+                recording.dispatch(
+                    &bounds::BOUNDS,
+                    one_more,
+                    &[grid, state, pairs.id(), ids, cell_start, slots],
+                );
             }
         }
         recording.dispatch(
-            &order::ORDER,
-            all,
-            &[state, cell_rank, cell_start, slots, fields.ids.id(), self.order.id()],
-        );
-        recording.dispatch(
-            &reorder::REORDER,
-            all,
+            &arrange::ARRANGE,
+            self.all(),
             &[
-                state,
-                self.order.id(),
+                grid,
+                census,
+                cell_start,
+                slots,
                 fields.positions.id(),
                 fields.velocities.id(),
-                fields.ids.id(),
                 fields.sorted_positions.id(),
                 fields.sorted_velocities.id(),
-                fields.sorted_ids.id(),
+                sorted_ids.id(),
             ],
         );
+    }
+
+    /// An invocation per particle; one where there is none, so that steps are settled and time goes on.
+    fn all(&self) -> Extent {
+        Extent::Items(self.particles.max(1))
     }
 }

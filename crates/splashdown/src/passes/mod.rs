@@ -2,22 +2,27 @@
 //!
 //! Particles rest in arrays "A" (`positions`, `velocities`, `ids`). A step sorts them by cell into arrays "B"
 //! (`sorted_*`), computes from B, and integrates back into A, so that a step needs no swap of buffers and one that
-//! has nothing to do leaves A untouched.
+//! has nothing to do leaves A untouched. The pass that moves particles counts them for the next step's sort, and that sort
+//! settles the step before it.
 
 pub mod begin;
-pub mod cfl;
 pub mod continuity;
 pub mod density;
 pub mod integrate;
 pub mod momentum;
+pub mod motion;
 pub mod mueller;
 pub mod normals;
+pub mod settle;
 pub mod state_equation;
 
+pub(crate) mod moving;
 pub(crate) mod pairs;
 
+pub use moving::WGSL as MOVING;
+
 use crate::boundary::{KernelPair, Walls};
-use glam::{UVec2, Vec3};
+use glam::Vec3;
 use splashdown_gpu::{PassDesc, WgslModule, gpu_struct};
 
 /// The WGSL side of [`StepState`].
@@ -26,8 +31,12 @@ pub const STATE: WgslModule = WgslModule { name: "sph/state", source: include_st
 pub const PARAMS: WgslModule = WgslModule { name: "sph/params", source: include_str!("params.wgsl") };
 /// `row_range`: how the GPU visits neighbours.
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
+/// `acceleration_of`: all forces in one visit of the neighbours.
+pub const FORCES: WgslModule = WgslModule { name: "sph/forces", source: include_str!("forces.wgsl") };
 /// The WGSL side of [`Tally`].
 pub const TALLY: WgslModule = WgslModule { name: "sph/tally", source: include_str!("tally.wgsl") };
+/// `settle_step`: the end of a step; imports [`TALLY`].
+pub const STEPS: WgslModule = WgslModule { name: "sph/steps", source: include_str!("steps.wgsl") };
 
 gpu_struct! {
     /// What does not change while a simulation runs. SI units.
@@ -136,8 +145,10 @@ impl Tally {
     pub const MAX_EXCESS: usize = 6;
     /// Particles that went into sinks.
     pub const DRAINED: usize = 7;
+    /// 1 if particles have moved since the last step was [settled](settle).
+    pub const MOVED: usize = 8;
     /// Number of words.
-    pub const WORDS: usize = 8;
+    pub const WORDS: usize = 9;
 }
 
 /// Mark of a particle that left, in the fourth component of its position.
@@ -148,6 +159,24 @@ pub const DEAD_NON_FINITE: f32 = 2.0;
 pub const DEAD_UNBORN: f32 = 3.0;
 /// Mark of a particle that went into a sink.
 pub const DEAD_DRAINED: f32 = 4.0;
+
+impl StepState {
+    /// The length of a step: what is left of the frame is split evenly, so that no tiny step is left over.
+    pub fn step_length(stable: f32, remaining: f32) -> f32 {
+        if remaining >= 2.0 * stable {
+            stable
+        } else if remaining <= stable {
+            remaining
+        } else {
+            0.5 * remaining
+        }
+    }
+
+    /// True of the step that completes its frame. Both numbers are stored, so all passes decide alike.
+    pub fn is_last_step(&self) -> bool {
+        self.dt >= self.remaining
+    }
+}
 
 impl Params {
     /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
@@ -164,6 +193,12 @@ impl Params {
             stiffness * (x.powf(self.exponent) - 1.0)
         };
         if self.clamp_pressure == 1 { p.max(0.0) } else { p }
+    }
+
+    /// True of a finite point outside the domain.
+    #[inline]
+    pub fn is_outside(&self, x: Vec3) -> bool {
+        x.cmplt(self.domain_min).any() || x.cmpgt(self.domain_max).any()
     }
 
     /// The closed sides of the domain for these kernels.
@@ -184,26 +219,26 @@ impl Params {
     }
 }
 
-/// The cell of a particle and its place among those that arrived there.
-pub type CellRank = UVec2;
-
 /// Every pass of this module and of [`cells`](crate::cells).
 pub fn passes() -> Vec<&'static PassDesc> {
     let mut all = crate::cells::passes();
     all.extend([
         &begin::BEGIN,
-        &cfl::CFL,
         &continuity::WENDLAND_C2,
         &continuity::CUBIC_SPLINE,
         &density::WENDLAND_C2,
         &density::CUBIC_SPLINE,
         &density::POLY6,
         &integrate::INTEGRATE,
+        &integrate::UNCOUNTED,
         &momentum::WENDLAND_C2,
         &momentum::CUBIC_SPLINE,
+        &motion::WENDLAND_C2,
+        &motion::CUBIC_SPLINE,
         &mueller::MUELLER,
         &normals::WENDLAND_C2,
         &normals::CUBIC_SPLINE,
+        &settle::SETTLE,
         &state_equation::STATE_EQUATION,
     ]);
     all

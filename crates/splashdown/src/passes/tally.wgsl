@@ -7,6 +7,7 @@ const TALLY_MAX_SPEED: u32 = 4u;
 const TALLY_MAX_ACCELERATION: u32 = 5u;
 const TALLY_MAX_EXCESS: u32 = 6u;
 const TALLY_DRAINED: u32 = 7u;
+const TALLY_MOVED: u32 = 8u;
 
 // Marks in the fourth component of a position.
 const DEAD_ESCAPED: f32 = 1.0;

@@ -1,6 +1,6 @@
 //! Foam, spray and bubbles of a running simulation.
 
-use splashdown_gpu::block_on;
+use splashdown_gpu::{Recording, block_on};
 
 use super::Simulation;
 use crate::SimulationError;
@@ -32,6 +32,11 @@ impl Simulation {
     pub fn advance_foam(&mut self, foam: &Foam) -> Result<(), SimulationError> {
         if self.frame.is_none() {
             self.sort()?;
+        } else {
+            // Within a frame the sorted arrays are those of the last step, whose ids went straight to the resting ones.
+            let mut ids = Recording::new("ids");
+            ids.copy(self.fields.ids, self.fields.sorted_ids);
+            self.executor.run(&ids)?;
         }
         Ok(self.executor.run(foam.recording())?)
     }

@@ -27,7 +27,7 @@ impl Simulation {
         stirrer.set(&mut self.executor, hand.unwrap_or(Hand::NONE))?;
         self.stirrer = Some(stirrer);
         if is_first {
-            self.record_batches();
+            self.record_batches()?;
         }
         Ok(())
     }

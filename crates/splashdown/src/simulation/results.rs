@@ -95,7 +95,7 @@ impl Simulation {
         self.frame = None;
         let mut recording = Recording::new("sort");
         recording.append(&self.begin);
-        self.cells.record(&mut recording, &self.fields);
+        self.cells.record_sort(&mut recording, &self.fields, self.fields.sorted_ids);
         self.executor.write(self.fields.duration, &[0.0])?;
         Ok(self.executor.run(&recording)?)
     }

@@ -153,7 +153,7 @@ impl Simulation {
 
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
         let mut simulation = Self {
-            begin: solver::begin_frame(&fields),
+            begin: solver::begin_frame(&cells, &fields),
             prime: solver.prime(&cells, &fields, bodies.as_ref(), capacity),
             executor,
             scene: scene.clone(),
@@ -174,28 +174,38 @@ impl Simulation {
             initial: 0,
             told: Vec::new(),
         };
-        simulation.record_batches();
+        simulation.record_batches()?;
         Ok(simulation)
     }
 
     /// Records the step anew, with what is there now.
-    pub(super) fn record_batches(&mut self) {
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub(super) fn record_batches(&mut self) -> Result<(), SimulationError> {
+        let solver = Solver::new(&self.scene);
         let things = Things {
             bodies: self.bodies.as_ref(),
             flow: self.flow.as_ref(),
             probes: self.probes.as_ref(),
             stirrer: self.stirrer.as_ref(),
         };
-        let step =
-            Solver::new(&self.scene).step(&self.cells, &self.fields, &things, self.params.particle_count);
+        if !(solver.fuses() && things.is_empty()) {
+            self.fields.make_accelerations(&mut self.executor)?;
+        }
+        let step = solver.step(&self.cells, &self.fields, &things, self.params.particle_count);
+        let settle = solver::settle(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done));
         self.batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
                 let mut batch = Recording::new(format!("{} steps", 1 << power));
                 batch.repeat(&step, 1 << power, done);
+                // The step before is settled by the one that follows; behind the last one nothing follows.
+                batch.append(&settle);
                 batch
             })
             .collect();
+        Ok(())
     }
 }
 

@@ -1,6 +1,8 @@
 //! A step as a list of passes that reads like the paper.
 
 mod mueller2003;
+#[cfg(test)]
+mod tests;
 mod wcsph;
 
 use splashdown_gpu::{Grid as Extent, Recording};
@@ -11,7 +13,7 @@ use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
 use crate::hand::Stirrer;
-use crate::passes::{Params, begin, cfl, integrate, state_equation};
+use crate::passes::{Params, begin, integrate, settle, state_equation};
 use crate::probes::Probes;
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
 
@@ -36,6 +38,13 @@ pub struct Things<'a> {
     pub probes: Option<&'a Probes>,
     /// A hand.
     pub stirrer: Option<&'a Stirrer>,
+}
+
+impl Things<'_> {
+    /// True if there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_none() && self.flow.is_none() && self.probes.is_none() && self.stirrer.is_none()
+    }
 }
 
 /// What a scene's solver section asks for.
@@ -73,14 +82,21 @@ impl Solver {
         self.tension
     }
 
-    /// One step: sort, density and pressure, accelerations, motion, next time step.
+    /// True if forces and motion of a step without [`Things`] are one pass, which needs no accelerations.
+    pub fn fuses(&self) -> bool {
+        self.method == Method::Wcsph && !self.tension
+    }
+
+    /// One step: the settling of the last one, sort, density and pressure, accelerations, motion. Before the first one of a
+    /// frame goes [`begin_frame`], behind the last one of a submission [`settle`]. Needs accelerations unless it
+    /// [fuses](Self::fuses) and there are no things.
     pub fn step(&self, cells: &Cells, fields: &Fields, things: &Things<'_>, particles: u32) -> Recording {
         let Things { bodies, flow, probes, stirrer } = *things;
         let mut step = Recording::new("step");
-        let all = Extent::Items(particles);
-        cells.record(&mut step, fields);
-        // The resting arrays take the sorted order when the step integrates back into them.
-        step.copy(fields.sorted_ids, fields.ids);
+        // An invocation where there is no particle, so that time goes on.
+        let all = Extent::Items(particles.max(1));
+        // The resting arrays take the sorted order when the step integrates back into them; the ids do so at once.
+        cells.record_sort(&mut step, fields, fields.ids);
         if let Some(bodies) = bodies {
             bodies.record_contacts(&mut step, cells, fields, all);
         }
@@ -90,6 +106,10 @@ impl Solver {
         }
         if let Some(bodies) = bodies {
             bodies.record_share(&mut step, cells, fields, all, self.continuity);
+        }
+        if self.fuses() && things.is_empty() {
+            self.wcsph_motion(&mut step, cells, fields, all);
+            return step;
         }
         match self.method {
             Method::Wcsph => self.wcsph_forces(&mut step, cells, fields, all),
@@ -105,11 +125,13 @@ impl Solver {
         if let Some(stirrer) = stirrer {
             stirrer.record(&mut step, cells, fields, all);
         }
+        let emits = flow.is_some_and(Flow::emits);
         step.dispatch(
-            &integrate::INTEGRATE,
+            if emits { &integrate::UNCOUNTED } else { &integrate::INTEGRATE },
             all,
             &[
                 fields.params.id(),
+                cells.grid_uniform.id(),
                 fields.state.id(),
                 fields.sorted_positions.id(),
                 fields.sorted_velocities.id(),
@@ -118,6 +140,7 @@ impl Solver {
                 fields.positions.id(),
                 fields.velocities.id(),
                 fields.tally.id(),
+                cells.census.id(),
             ],
         );
         if let Some(probes) = probes {
@@ -126,11 +149,9 @@ impl Solver {
         if let Some(flow) = flow {
             flow.record_after_integrate(&mut step, cells, fields);
         }
-        step.dispatch(
-            &cfl::CFL,
-            Extent::Groups(1),
-            &[fields.params.id(), fields.state.id(), fields.tally.id()],
-        );
+        if emits {
+            cells.record_count(&mut step, fields);
+        }
         step
     }
 
@@ -143,9 +164,8 @@ impl Solver {
         particles: u32,
     ) -> Recording {
         let mut prime = Recording::new("prime");
-        prime.append(&begin_frame(fields));
-        cells.record(&mut prime, fields);
-        prime.copy(fields.sorted_ids, fields.ids);
+        prime.append(&begin_frame(cells, fields));
+        cells.record_sort(&mut prime, fields, fields.ids);
         let all = Extent::Items(particles);
         if let Some(bodies) = bodies {
             bodies.record_contacts(&mut prime, cells, fields, all);
@@ -178,11 +198,20 @@ impl Solver {
     }
 }
 
-/// Begins a frame of the length that `duration` holds.
-pub fn begin_frame(fields: &Fields) -> Recording {
+/// Begins a frame of the length that `duration` holds: the next sort finds the particles counted.
+pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
     let mut recording = Recording::new("begin frame");
     let buffers = [fields.params.id(), fields.duration.id(), fields.state.id()];
     recording.dispatch(&begin::BEGIN, Extent::Groups(1), &buffers);
+    cells.record_first_count(&mut recording, fields);
+    recording
+}
+
+/// Settles the last step, where no other follows that does: the host, or another step's passes, may look at the state then.
+pub fn settle(fields: &Fields) -> Recording {
+    let mut recording = Recording::new("settle");
+    let buffers = [fields.params.id(), fields.state.id(), fields.tally.id()];
+    recording.dispatch(&settle::SETTLE, Extent::Groups(1), &buffers);
     recording
 }
 

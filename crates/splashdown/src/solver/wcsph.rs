@@ -5,7 +5,7 @@ use splashdown_gpu::{Grid as Extent, PassDesc, Recording};
 use super::Solver;
 use crate::cells::Cells;
 use crate::fields::Fields;
-use crate::passes::{continuity, density, momentum, normals};
+use crate::passes::{continuity, density, momentum, motion, normals};
 use crate::scene::KernelKind;
 
 impl Solver {
@@ -67,6 +67,28 @@ impl Solver {
                 fields.normals.id(),
                 fields.wall_table.id(),
                 fields.accelerations.id(),
+            ],
+        );
+    }
+
+    /// All accelerations in one visit of the neighbours, and the motion that follows from them.
+    pub(super) fn wcsph_motion(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        step.dispatch(
+            self.by_kernel(&motion::WENDLAND_C2, &motion::CUBIC_SPLINE),
+            all,
+            &[
+                fields.params.id(),
+                cells.grid_uniform.id(),
+                fields.state.id(),
+                fields.wall_table.id(),
+                cells.cell_start.id(),
+                fields.sorted_positions.id(),
+                fields.sorted_velocities.id(),
+                fields.densities.id(),
+                fields.positions.id(),
+                fields.velocities.id(),
+                fields.tally.id(),
+                cells.census.id(),
             ],
         );
     }

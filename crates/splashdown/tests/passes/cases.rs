@@ -1,18 +1,23 @@
 //! The passes without neighbours: the frame's begin and end, the equation of state, the motion.
 
 use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
-use splashdown::passes::{DEAD_NON_FINITE, Params, StepState, Tally};
+use splashdown::cells::Grid;
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
 use splashdown_gpu::{Grid as Extent, testing};
 
 use super::harness::{Case, Check, Compare, Data, close, exact, wide};
 use super::oracle;
-use super::sort_cases::pass;
+use super::sort_cases::{cell, empty_census, pass};
 use super::world::{SPACING, World, params, state};
 
 pub fn cases() -> Vec<Case> {
-    let mut cases =
-        vec![begin("a frame", 0.02), begin("shorter than a step", 1e-5), begin("of length zero", 0.0)];
-    cases.extend(cfl_cases());
+    let mut cases = vec![
+        begin("a frame", 0.02),
+        begin("shorter than a step", 1e-5),
+        begin("a little longer than a step", 5.1e-4),
+        begin("of length zero", 0.0),
+    ];
+    cases.extend(settle_cases());
     for (name, exponent, clamp_pressure) in [
         ("exponent 7", 7.0, 0),
         ("exponent 7, clamped", 7.0, 1),
@@ -21,18 +26,21 @@ pub fn cases() -> Vec<Case> {
     ] {
         cases.push(state_equation(name, Params { exponent, clamp_pressure, ..params(2.0) }));
     }
-    cases.push(integrate("closed", params(2.0)));
-    cases.push(integrate("open above and at one side", Params { closed: 0b110101, ..params(2.0) }));
+    let open = Params { closed: 0b110101, ..params(2.0) };
+    cases.push(integrate("integrate", "closed", params(2.0), 0.01, true));
+    cases.push(integrate("integrate", "open above and at one side", open, 0.01, true));
+    cases.push(integrate("integrate", "the last step of a frame", params(2.0), 4e-4, false));
+    cases.push(integrate("integrate.uncounted", "before births", open, 0.01, false));
     cases
 }
 
-fn state_of(data: &Data) -> StepState {
+pub fn state_of(data: &Data) -> StepState {
     let Data::State(state) = data else { panic!("no state") };
     *state
 }
 
 /// Times, limits and maxima to some roundings each; counters to the last bit.
-fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
+pub fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
     let counters = |s: &StepState| [s.done, s.run_count, s.steps, s.too_small];
     exact("done, run_count, steps, too_small", &counters(a), &counters(b))?;
     let floats = |s: &StepState| {
@@ -66,7 +74,11 @@ fn begin(name: &str, length: f32) -> Case {
     let expected = StepState {
         frame_duration: length,
         remaining: length,
-        dt: if length < 5e-4 { length } else { 5e-4 },
+        dt: match length {
+            _ if length <= 5e-4 => length,
+            _ if length < 1e-3 => 0.5 * length,
+            _ => 5e-4,
+        },
         done: 0,
         run_count: 1234,
         steps: 0,
@@ -87,7 +99,7 @@ fn begin(name: &str, length: f32) -> Case {
     }
 }
 
-fn cfl_cases() -> Vec<Case> {
+fn settle_cases() -> Vec<Case> {
     let state = state(100);
     let calm = [0.5, 10.0, 0.002];
     let ways: [(&str, StepState, [f32; 3], Params); 9] = [
@@ -102,33 +114,34 @@ fn cfl_cases() -> Vec<Case> {
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
     ];
     let mut cases: Vec<Case> =
-        ways.map(|(name, state, maxima, params)| cfl(name, state, maxima, params)).into();
-    // A frame that is complete: nothing changes. The control wakes it up.
-    let mut complete = cfl("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
+        ways.map(|(name, state, maxima, params)| settle(name, state, maxima, params)).into();
+    // A frame that is complete, or a step that has been settled: nothing changes. The control has one that has not.
+    let mut complete = settle("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
     complete.control = |input| {
-        let Data::State(state) = &mut input[1] else { panic!("no state") };
-        state.run_count = 1;
+        let Data::U32(tally) = &mut input[2] else { panic!("no tally") };
+        tally[Tally::MOVED] = 1;
     };
     cases.push(complete);
     cases
 }
 
-fn cfl(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
-    let mut tally = vec![5, 6, 7, 8, 0, 0, 0, 0];
+fn settle(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
+    let mut tally = vec![5, 6, 7, 8, 0, 0, 0, 0, 0];
+    tally[Tally::MOVED] = u32::from(state.run_count > 0);
     for (k, value) in maxima.iter().enumerate() {
         tally[Tally::MAX_SPEED + k] = value.to_bits();
     }
     let (expected, left) = if state.run_count == 0 {
         (state, tally.clone())
     } else {
-        (next_state(&params, &state, maxima.map(f64::from)), vec![5, 6, 7, 8, 0, 0, 0, 0])
+        (next_state(&params, &state, maxima.map(f64::from)), vec![5, 6, 7, 8, 0, 0, 0, 0, 0])
     };
     let oracle: Check = Box::new(move |out| {
         same_state(&state_of(&out[0]), &expected)?;
         exact("tally", out[1].words(), &left)
     });
     Case {
-        pass: pass("cfl"),
+        pass: pass("settle"),
         name: name.into(),
         extent: Extent::Groups(1),
         input: vec![Data::Params(params), Data::State(state), Data::U32(tally)],
@@ -144,7 +157,7 @@ fn cfl(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
 }
 
 /// Monaghan's and Morris's limits, in f64.
-fn next_state(params: &Params, state: &StepState, [speed, acceleration, excess]: [f64; 3]) -> StepState {
+pub fn next_state(params: &Params, state: &StepState, [speed, acceleration, excess]: [f64; 3]) -> StepState {
     let p = |value: f32| f64::from(value);
     let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
     let limits = [
@@ -158,8 +171,8 @@ fn next_state(params: &Params, state: &StepState, [speed, acceleration, excess]:
     let least = limits.into_iter().fold(f64::INFINITY, f64::min);
     let stable = least.max(p(params.min_dt));
     // As the pass does it: what is left is a difference, and would not survive another rounding.
-    let remaining = state.remaining - state.dt;
-    let complete = remaining <= 1e-6 * state.frame_duration;
+    let complete = state.dt >= state.remaining;
+    let remaining = if complete { 0.0 } else { state.remaining - state.dt };
     let dt = match p(remaining) {
         _ if complete => p(state.dt),
         left if left <= stable => left,
@@ -228,7 +241,8 @@ fn same_motion(out: &[Data], positions: &[f64], velocities: &[f64], tally: &[u32
     close("maxima", &floats(maxima), &expected, &tolerance)
 }
 
-fn integrate(name: &str, params: Params) -> Case {
+/// `counts`: whether the particles are to be counted for the next step.
+fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bool) -> Case {
     let mut world = World::new(params, 1500);
     let (living, n) = (world.living(), world.len());
     let signed = |i: usize| testing::noise(i as u32 + 9) as f32 / (u32::MAX / 2) as f32 - 1.0;
@@ -248,33 +262,55 @@ fn integrate(name: &str, params: Params) -> Case {
             _ => {}
         }
     }
+    let grid = world.grid;
+    let census = empty_census(&grid, n);
     let input = vec![
         Data::Params(params),
-        Data::State(world.state),
+        Data::Grid(grid),
+        Data::State(StepState { remaining, ..world.state }),
         Data::Vec4(world.positions.clone()),
         Data::Vec4(world.velocities.clone()),
         Data::Vec2(world.densities.clone()),
         Data::Vec4(accelerations.clone()),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
-        Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0]),
+        Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0, 0]),
+        Data::U32(census.clone()),
     ];
     let (positions, velocities, tally) = moved(&world, &accelerations);
     assert!((1..4).all(|k| tally[k] > 5) || params.closed != 0b111111, "{tally:?}");
     Case {
-        pass: pass("integrate"),
+        pass: pass(label),
         name: name.into(),
         extent: Extent::Items(n as u32),
         input,
         compare: Box::new(|a, b| same_motion(a, &wide(b[0].floats()), &wide(b[1].floats()), b[2].words())),
-        oracle: Box::new(move |out| same_motion(out, &positions, &velocities, &tally)),
+        oracle: Box::new(move |out| {
+            same_motion(out, &positions, &velocities, &tally)?;
+            let expected = if counts { census_of(&grid, &out[0]) } else { census.clone() };
+            exact("census", out[3].words(), &expected)
+        }),
         // One particle is pushed a little harder.
         control: |input| {
-            let Data::Vec4(accelerations) = &mut input[5] else { panic!("no accelerations") };
+            let Data::Vec4(accelerations) = &mut input[6] else { panic!("no accelerations") };
             accelerations[100].y += 4.0;
             accelerations[101].y -= 4.0;
         },
     }
+}
+
+/// The census of particles that are where a pass says.
+pub fn census_of(grid: &Grid, positions: &Data) -> Vec<u32> {
+    let Data::Vec4(positions) = positions else { panic!("no positions") };
+    let mut counts = vec![0; grid.cell_count as usize + 1];
+    let mut cells = Vec::new();
+    for p in positions {
+        let at = if p.w == 0.0 { cell(grid, p.xyz()) } else { grid.cell_count };
+        counts[at as usize] += 1;
+        cells.push(at);
+    }
+    counts.extend(cells);
+    counts
 }
 
 /// Symplectic Euler with its limits, particle by particle in f64.
@@ -283,7 +319,7 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
     let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
     let closed = |axis: usize, side: usize| params.closed >> (2 * axis + side) & 1 == 1;
     let (mut positions, mut velocities) = (Vec::new(), Vec::new());
-    let mut tally = [0, 3, 1, 2, 0, 0, 0, 0];
+    let mut tally = [0, 3, 1, 2, 0, 0, 0, 0, 1];
     let mut highest = [0.0_f64; 3];
     for (i, &p) in world.positions.iter().enumerate() {
         let (old, a) = (world.velocities[i], accelerations[i].xyz().as_dvec3());
@@ -329,7 +365,9 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
             *highest = highest.max(value);
         }
         let push = |out: &mut Vec<f64>, v: DVec3, w: f64| out.extend([v.x, v.y, v.z, w]);
-        push(&mut positions, next, 0.0);
+        let escaped = next.cmplt(min).any() || next.cmpgt(max).any();
+        tally[Tally::ESCAPED] += u32::from(escaped);
+        push(&mut positions, next, if escaped { f64::from(DEAD_ESCAPED) } else { 0.0 });
         push(&mut velocities, v, rho);
     }
     for (k, value) in highest.iter().enumerate() {

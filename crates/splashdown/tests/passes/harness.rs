@@ -161,24 +161,29 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         name: &str,
         values: &[T],
         wrap: fn(Vec<T>) -> Data,
+        uniform: bool,
     ) -> (BufferId, Reader) {
-        let buffer: Buffer<T> = executor.create_from(name, values).unwrap();
+        let buffer: Buffer<T> = if uniform {
+            executor.create_small(name, values).unwrap()
+        } else {
+            executor.create_from(name, values).unwrap()
+        };
         (buffer.id(), Box::new(move |executor| wrap(executor.read(buffer).unwrap())))
     }
     match data {
-        Data::U32(v) => array(executor, name, v, Data::U32),
-        Data::F32(v) => array(executor, name, v, Data::F32),
-        Data::Vec2(v) => array(executor, name, v, Data::Vec2),
-        Data::Vec4(v) => array(executor, name, v, Data::Vec4),
-        Data::UVec2(v) => array(executor, name, v, Data::UVec2),
-        Data::Nozzles(v) => array(executor, name, v, Data::Nozzles),
-        Data::Drains(v) => array(executor, name, v, Data::Drains),
-        Data::Probes(v) => array(executor, name, v, Data::Probes),
-        Data::Bodies(v) => array(executor, name, v, Data::Bodies),
-        Data::Hand(v) => array(executor, name, &[*v], |v| Data::Hand(v[0])),
-        Data::FoamState(v) => array(executor, name, &[*v], |v| Data::FoamState(v[0])),
-        Data::Diffuse(v) => array(executor, name, v, Data::Diffuse),
-        Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0])),
+        Data::U32(v) => array(executor, name, v, Data::U32, uniform),
+        Data::F32(v) => array(executor, name, v, Data::F32, uniform),
+        Data::Vec2(v) => array(executor, name, v, Data::Vec2, uniform),
+        Data::Vec4(v) => array(executor, name, v, Data::Vec4, uniform),
+        Data::UVec2(v) => array(executor, name, v, Data::UVec2, uniform),
+        Data::Nozzles(v) => array(executor, name, v, Data::Nozzles, uniform),
+        Data::Drains(v) => array(executor, name, v, Data::Drains, uniform),
+        Data::Probes(v) => array(executor, name, v, Data::Probes, uniform),
+        Data::Bodies(v) => array(executor, name, v, Data::Bodies, uniform),
+        Data::Hand(v) => array(executor, name, &[*v], |v| Data::Hand(v[0]), uniform),
+        Data::FoamState(v) => array(executor, name, &[*v], |v| Data::FoamState(v[0]), uniform),
+        Data::Diffuse(v) => array(executor, name, v, Data::Diffuse, uniform),
+        Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0]), uniform),
         Data::Params(v) => {
             assert!(uniform, "{name} is no uniform");
             (

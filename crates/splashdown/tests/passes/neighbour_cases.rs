@@ -2,12 +2,13 @@
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
-use splashdown::passes::Params;
-use splashdown_gpu::Grid as Extent;
+use splashdown::passes::{Params, Tally};
+use splashdown_gpu::{CpuExecutor, Grid as Extent};
 
-use super::harness::{Case, Data, close, wide};
+use super::cases::census_of;
+use super::harness::{Case, Data, close, exact, wide};
 use super::oracle::{self, Kernel, Sum};
-use super::sort_cases::pass;
+use super::sort_cases::{empty_census, pass};
 use super::walls::{Kernels, Wall};
 use super::world::{World, params};
 
@@ -54,6 +55,9 @@ pub fn cases() -> Vec<Case> {
         ] {
             cases.push(momentum(name, kernels, params));
         }
+        cases.push(motion("pressure, viscosities, walls", kernels, params(2.0), 0.01));
+        cases.push(motion("wider support, clamped, open above", kernels, rich, 0.01));
+        cases.push(motion("the last step of a frame", kernels, params(2.0), 4e-4));
     }
     let tension = Params { surface_tension: 7.0, exponent: 1.0, ..params(2.0) };
     cases.push(mueller("pressure, viscosity, walls", Params { exponent: 1.0, ..params(2.0) }));
@@ -230,6 +234,108 @@ fn momentum(name: &str, kernels: Kernels, params: Params) -> Case {
     input.push(table(kernels));
     let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
     expected.case(format!("momentum.{}", word(kernels)), name, &world, input, output, heavier)
+}
+
+/// What forces and motion leave in two passes on the CPU, each of which is compared with the oracle by itself.
+fn two_passes(world: &World, kernels: Kernels) -> Vec<Data> {
+    let case = momentum("", kernels, world.params);
+    let accelerations = case.run(&mut CpuExecutor::new().into()).remove(0);
+    let [state, _, positions, velocities, densities] = pair_input(world);
+    let integrate = Case {
+        pass: pass("integrate"),
+        input: vec![
+            Data::Params(world.params),
+            Data::Grid(world.grid),
+            state,
+            positions.clone(),
+            velocities.clone(),
+            densities,
+            accelerations,
+            positions.poison(),
+            velocities.poison(),
+            Data::U32(vec![0; Tally::WORDS]),
+            Data::U32(empty_census(&world.grid, world.len())),
+        ],
+        ..case
+    };
+    integrate.run(&mut CpuExecutor::new().into())
+}
+
+fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case {
+    let mut world = world(params);
+    world.state.remaining = remaining;
+    let expected = two_passes(&world, kernels);
+    let walls = oracle::walls(&world, kernels);
+    let dt = f64::from(world.state.dt);
+    let mut tolerances = [Vec::new(), Vec::new()];
+    for sum in oracle::momentum(&world, kernels.gradient, &walls) {
+        // Contacts divide a place's rounding by the step.
+        let velocity = 2.0 * dt * ROUNDING * sum.size + 1.3e-7 / dt;
+        tolerances[0].extend([2e-7 + dt * velocity; 4]);
+        tolerances[1].extend([velocity; 4]);
+    }
+    // The dead behind the living stay as they are.
+    tolerances.iter_mut().for_each(|list| list.resize(4 * world.len(), 0.0));
+    let grid = world.grid;
+    let is_last = world.state.is_last_step();
+    let same = move |out: &[Data], expected: &[Data]| {
+        for (k, what) in ["positions", "velocities"].into_iter().enumerate() {
+            let (floats, wanted) = (out[k].floats(), wide(expected[k].floats()));
+            let tolerance: Vec<f64> =
+                tolerances[k].iter().zip(&wanted).map(|(t, v)| t + 1e-5 * v.abs().min(1e30)).collect();
+            close(what, floats, &wanted, &tolerance)?;
+        }
+        let maxima = Tally::MAX_SPEED..=Tally::MAX_EXCESS;
+        for word in (0..Tally::WORDS).filter(|word| !maxima.contains(word)) {
+            exact("tally", &out[2].words()[word..=word], &expected[2].words()[word..=word])?;
+        }
+        let wanted = wide(&expected[2].floats()[maxima.clone()]);
+        let tolerance: Vec<f64> = wanted.iter().map(|v| 1e-4 * v).collect();
+        close("maxima", &out[2].floats()[maxima], &wanted, &tolerance)?;
+        let census =
+            if is_last { empty_census(&grid, out[0].words().len() / 4) } else { census_of(&grid, &out[0]) };
+        exact("census", out[3].words(), &census)
+    };
+    let same = std::rc::Rc::new(same);
+    let oracle = std::rc::Rc::clone(&same);
+    let [state, starts, positions, velocities, densities] = pair_input(&world);
+    Case {
+        pass: pass(&format!("motion.{}", word(kernels))),
+        name: name.into(),
+        extent: Extent::Items(world.len() as u32),
+        input: vec![
+            Data::Params(world.params),
+            Data::Grid(grid),
+            state,
+            table(kernels),
+            starts,
+            positions.clone(),
+            velocities.clone(),
+            densities,
+            positions.poison(),
+            velocities.poison(),
+            Data::U32(vec![0; Tally::WORDS]),
+            Data::U32(empty_census(&grid, world.len())),
+        ],
+        compare: Box::new(move |a, b| same(a, b)),
+        oracle: Box::new(move |out| oracle(out, &expected)),
+        control: heavier,
+    }
+}
+
+/// Joining two passes changes no bit on the CPU.
+#[test]
+fn forces_and_motion_in_one_pass_are_what_two_passes_make() {
+    for kernels in [C2, CUBIC] {
+        let case = motion("", kernels, params(2.0), 0.01);
+        let mut executor = CpuExecutor::new().into();
+        let expected = two_passes(&world(params(2.0)), kernels);
+        for (k, (one, two)) in case.run(&mut executor).iter().zip(&expected).enumerate() {
+            assert_eq!(exact(&format!("output {k}"), one.words(), two.words()), Ok(()));
+        }
+        let spoiled = case.run_control(&mut executor);
+        assert_ne!(spoiled[0].words(), expected[0].words(), "a control that shows nothing");
+    }
 }
 
 fn pair_input(world: &World) -> [Data; 5] {

@@ -2,9 +2,10 @@
 
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, Tally};
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
 use splashdown_gpu::{Grid as Extent, PassDesc};
 
+use super::cases::{next_state, same_state, state_of};
 use super::harness::{Case, Check, Compare, Data, exact};
 use super::world::{World, params, points, state};
 
@@ -50,29 +51,28 @@ fn case(
 pub fn cases() -> Vec<Case> {
     let world = World::new(params(2.0), 1500);
     let n = world.len();
-    let mut cases = vec![count()];
+    let mut cases = vec![
+        count("with every kind of wrong particle", 0.01, 0),
+        count("after a step", 0.01, 1),
+        count("after the last step", 4e-4, 1),
+    ];
     for (name, run) in [("all", n), ("only some", n - 700), ("a frame that is complete", 0)] {
-        cases.extend([keys(&world, name, run), scatter(&world, name, run), reorder(&world, name, run)]);
+        cases.push(keys(&world, name, run));
     }
-    cases.extend([bounds(&world), order(&world)]);
-    cases.retain(|case| case.name != "a frame that is complete" || can_notice(case));
+    cases.extend([scatter(&world, "all", 0), scatter(&world, "after a step", 1)]);
+    cases.extend([arrange(&world), bounds(&world)]);
     cases
 }
 
-/// A frame that is complete changes nothing, whatever the input; its case is about the poison that must stay.
-fn can_notice(case: &Case) -> bool {
-    case.pass.label == "cells.keys"
-}
-
 /// What the definition of cells says of a point, in f64.
-fn cell(grid: &Grid, x: glam::Vec3) -> u32 {
+pub fn cell(grid: &Grid, x: glam::Vec3) -> u32 {
     let at = (x.as_dvec3() - grid.origin.as_dvec3()) / f64::from(grid.cell_size);
     let index = |axis: usize, size: u32| (at[axis].floor().max(1.0) as u32).min(size - 2);
     let [i, j, k] = [index(0, grid.size_x), index(1, grid.size_y), index(2, grid.size_z)];
     (k * grid.size_y + j) * grid.size_x + i
 }
 
-fn count() -> Case {
+fn count(name: &str, remaining: f32, moved: u32) -> Case {
     let params = params(2.0);
     let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
     let mut positions: Vec<Vec4> = points(&params, 1300).iter().map(|x| x.extend(0.0)).collect();
@@ -92,42 +92,32 @@ fn count() -> Case {
         positions[i] = Vec4::new(nan, 0.2, 0.3, if i == 401 { DEAD_ESCAPED } else { DEAD_NON_FINITE });
     }
     let n = positions.len();
-    let poisoned = Data::UVec2(vec![UVec2::ZERO; n]).poison();
-    let zeros = |n: usize| Data::U32(vec![0; n]);
+    let state = StepState { remaining, ..state(n) };
+    let census = empty_census(&grid, n);
+    let mut tally = vec![0; Tally::WORDS];
+    tally[Tally::MOVED] = moved;
     let input = vec![
         Data::Params(params),
         Data::Grid(grid),
-        Data::State(state(n)),
+        Data::State(state),
         Data::Vec4(positions.clone()),
         Data::Vec4(velocities.clone()),
-        poisoned,
-        zeros(grid.cell_count as usize + 1),
-        zeros(Tally::WORDS),
+        Data::U32(census.clone()),
+        Data::U32(tally.clone()),
     ];
-    let expected = judge(&params, &grid, &positions, &velocities);
-    // Ranks follow the order of arrival, which is nobody's business: they must only be different and without gaps.
-    let same = |a: &[Data], b: &[Data]| {
-        let (Data::UVec2(ranks), Data::UVec2(other)) = (&a[1], &b[1]) else { panic!("no ranks") };
-        let cells = |ranks: &[UVec2]| ranks.iter().map(|c| c.x).collect::<Vec<_>>();
-        exact("cells", &cells(ranks), &cells(other))?;
-        let sorted = |ranks: &[UVec2]| {
-            let mut all: Vec<[u32; 2]> = ranks.iter().map(|c| c.to_array()).collect();
-            all.sort_unstable();
-            all.concat()
-        };
-        exact("ranks", &sorted(ranks), &sorted(other))?;
-        for k in [0, 2, 3] {
-            exact(&format!("output {k}"), a[k].words(), b[k].words())?;
-        }
-        Ok(())
-    };
+    let mut expected = judge(&params, &grid, &positions, &velocities, tally);
+    // There is nothing to count for behind the last step of a frame.
+    let counts_for_none = moved == 1 && state.is_last_step();
+    if counts_for_none {
+        expected[1] = Data::U32(census);
+    }
     Case {
         pass: pass("cells.count"),
-        name: "with every kind of wrong particle".into(),
+        name: name.into(),
         extent: Extent::Items(n as u32),
         input,
-        compare: Box::new(same),
-        oracle: Box::new(move |out| same(out, &expected)),
+        compare: exact_all(),
+        oracle: expecting(expected),
         // One particle moves to the next cell.
         control: |input| {
             let Data::Vec4(positions) = &mut input[3] else { panic!("no positions") };
@@ -137,12 +127,24 @@ fn count() -> Case {
     }
 }
 
-/// Positions, cells with ranks in order of number, counts and tally, particle by particle.
-fn judge(params: &Params, grid: &Grid, positions: &[Vec4], velocities: &[Vec4]) -> Vec<Data> {
+/// A census without a count, its cells poisoned.
+pub fn empty_census(grid: &Grid, particles: usize) -> Vec<u32> {
+    let mut census = vec![0; grid.cell_count as usize + 1];
+    census.extend(vec![u32::MAX; particles]);
+    census
+}
+
+/// Positions, census and tally, particle by particle.
+fn judge(
+    params: &Params,
+    grid: &Grid,
+    positions: &[Vec4],
+    velocities: &[Vec4],
+    mut tally: Vec<u32>,
+) -> Vec<Data> {
     let mut positions = positions.to_vec();
     let mut counts = vec![0; grid.cell_count as usize + 1];
-    let mut tally = vec![0; Tally::WORDS];
-    let mut ranks = Vec::new();
+    let mut cells = Vec::new();
     for (p, v) in positions.iter_mut().zip(velocities) {
         let x = p.xyz();
         let v = v.to_array().map(f64::from);
@@ -165,10 +167,11 @@ fn judge(params: &Params, grid: &Grid, positions: &[Vec4], velocities: &[Vec4]) 
                 at = cell(grid, x);
             }
         }
-        ranks.push(UVec2::new(at, counts[at as usize]));
+        cells.push(at);
         counts[at as usize] += 1;
     }
-    vec![Data::Vec4(positions), Data::UVec2(ranks), Data::U32(counts), Data::U32(tally)]
+    counts.extend(cells);
+    vec![Data::Vec4(positions), Data::U32(counts), Data::U32(tally)]
 }
 
 /// The first `run` entries of `all`, and poison behind.
@@ -185,59 +188,89 @@ fn only(all: &Data, run: usize) -> Data {
 }
 
 fn keys(world: &World, name: &str, run: usize) -> Case {
-    let cell_rank = world.shuffled().cell_rank;
-    let pairs = cell_rank.iter().enumerate().map(|(i, c)| UVec2::new(c.x, i as u32));
+    let (census, cells) = world.shuffled().census(world);
+    let pairs = cells.iter().enumerate().map(|(i, &cell)| UVec2::new(cell, i as u32));
     let pairs = Data::UVec2(pairs.collect());
-    let input = vec![Data::State(state(run)), Data::UVec2(cell_rank), pairs.poison()];
+    let input = vec![Data::Grid(world.grid), Data::State(state(run)), Data::U32(census), pairs.poison()];
     let control: fn(&mut [Data]) = |input| {
-        let Data::UVec2(cell_rank) = &mut input[1] else { panic!("no cells") };
-        cell_rank[0].x ^= 1;
+        let Data::Grid(grid) = &input[0] else { panic!("no grid") };
+        let first = grid.cell_count as usize + 1;
+        let Data::U32(census) = &mut input[2] else { panic!("no census") };
+        census[first] ^= 1;
         // In a frame that is complete nothing may be written at all: what must be noticed there is one entry more.
-        let Data::State(state) = &mut input[0] else { panic!("no state") };
+        let Data::State(state) = &mut input[1] else { panic!("no state") };
         state.run_count = state.run_count.max(1);
     };
     case("cells.keys", name, world.len(), input, vec![only(&pairs, run)], control)
 }
 
-fn scatter(world: &World, name: &str, run: usize) -> Case {
-    let cell_rank = world.shuffled().cell_rank;
-    let mut slots = vec![u32::MAX; world.len()];
-    for (i, c) in cell_rank.iter().enumerate().take(run) {
-        slots[(world.cell_start[c.x as usize] + c.y) as usize] = i as u32;
+fn scatter(world: &World, name: &str, moved: u32) -> Case {
+    let shuffled = world.shuffled();
+    let (census, cells) = shuffled.census(world);
+    let params = Params { particle_count: world.len() as u32, ..world.params };
+    let (before, ids) = (state(world.len()), shuffled.of(&world.ids));
+    let mut tally = vec![0; Tally::WORDS];
+    tally[Tally::MOVED] = moved;
+    let mut after = before;
+    if moved == 1 {
+        let maxima = [0.5, 10.0, 0.002];
+        for (k, value) in maxima.iter().enumerate() {
+            tally[Tally::MAX_SPEED + k] = f32::to_bits(*value);
+        }
+        after = next_state(&params, &before, maxima.map(f64::from));
     }
-    let slots = Data::U32(slots);
+    let slots = Data::UVec2(vec![UVec2::ZERO; world.len()]);
     let input = vec![
-        Data::State(state(run)),
-        Data::UVec2(cell_rank),
+        Data::Params(params),
+        Data::Grid(world.grid),
+        Data::State(before),
+        Data::U32(tally),
+        Data::U32(census),
         Data::U32(world.cell_start.clone()),
+        Data::U32(ids.clone()),
         slots.poison(),
     ];
-    case("cells.scatter", name, world.len(), input, vec![slots], |input| {
-        let Data::UVec2(cell_rank) = &mut input[1] else { panic!("no cells") };
-        cell_rank.swap(3, 4);
-    })
+    // All have been taken off the census; where each is stays known.
+    let mut taken = vec![0; world.grid.cell_count as usize + 1];
+    taken.extend(&cells);
+    // The order of arrival is nobody's business: every cell's slots hold its particles.
+    let starts = world.cell_start.clone();
+    let mut expected: Vec<[u32; 3]> =
+        cells.iter().zip(&ids).enumerate().map(|(i, (&cell, &id))| [cell, id, i as u32]).collect();
+    expected.sort_unstable();
+    let oracle: Check = Box::new(move |out| {
+        same_state(&state_of(&out[0]), &after)?;
+        exact("tally", out[1].words(), &[0; Tally::WORDS])?;
+        exact("census", out[2].words(), &taken)?;
+        exact("slots", &in_cells(&starts, &out[3]), &expected.concat())
+    });
+    let starts = world.cell_start.clone();
+    Case {
+        pass: pass("cells.scatter"),
+        name: name.into(),
+        extent: Extent::Items(world.len() as u32),
+        input,
+        compare: Box::new(move |a, b| {
+            same_state(&state_of(&a[0]), &state_of(&b[0]))?;
+            exact_all()(&a[1..3], &b[1..3])?;
+            exact("slots", &in_cells(&starts, &a[3]), &in_cells(&starts, &b[3]))
+        }),
+        oracle,
+        control: |input| {
+            let Data::U32(ids) = &mut input[6] else { panic!("no ids") };
+            ids.swap(3, 4);
+        },
+    }
 }
 
-fn reorder(world: &World, name: &str, run: usize) -> Case {
-    let shuffled = world.shuffled();
-    let sorted = [
-        Data::Vec4(world.positions.clone()),
-        Data::Vec4(world.velocities.clone()),
-        Data::U32(world.ids.clone()),
-    ];
-    let mut input = vec![
-        Data::State(state(run)),
-        Data::U32(places(&shuffled.order)),
-        Data::Vec4(shuffled.of(&world.positions)),
-        Data::Vec4(shuffled.of(&world.velocities)),
-        Data::U32(shuffled.of(&world.ids)),
-    ];
-    input.extend(sorted.iter().map(Data::poison));
-    let expected = sorted.iter().map(|all| only(all, run)).collect();
-    case("cells.reorder", name, world.len(), input, expected, |input| {
-        let Data::U32(order) = &mut input[1] else { panic!("no order") };
-        order.swap(5, 6);
-    })
+/// Cell, id and number of every slot, in order.
+fn in_cells(starts: &[u32], slots: &Data) -> Vec<u32> {
+    let Data::UVec2(slots) = slots else { panic!("no slots") };
+    let cell = |k: usize| starts.partition_point(|&start| start as usize <= k) as u32 - 1;
+    let mut all: Vec<[u32; 3]> =
+        slots.iter().enumerate().map(|(k, entry)| [cell(k), entry.x, entry.y]).collect();
+    all.sort_unstable();
+    all.concat()
 }
 
 /// Where each sorted particle stands among the unsorted.
@@ -251,13 +284,17 @@ fn places(order: &[u32]) -> Vec<u32> {
 
 fn bounds(world: &World) -> Case {
     let shuffled = world.shuffled();
-    let slots = places(&shuffled.order);
-    let pairs = slots.iter().map(|&i| UVec2::new(shuffled.cell_rank[i as usize].x, i)).collect();
-    let (starts, slots) = (Data::U32(world.cell_start.clone()), Data::U32(slots));
+    let (_, cells) = shuffled.census(world);
+    let ids = shuffled.of(&world.ids);
+    let order = places(&shuffled.order);
+    let pairs = order.iter().map(|&i| UVec2::new(cells[i as usize], i)).collect();
+    let slots = order.iter().map(|&i| UVec2::new(ids[i as usize], i)).collect();
+    let (starts, slots) = (Data::U32(world.cell_start.clone()), Data::UVec2(slots));
     let input = vec![
         Data::Grid(world.grid),
         Data::State(state(world.len())),
         Data::UVec2(pairs),
+        Data::U32(ids),
         starts.poison(),
         slots.poison(),
     ];
@@ -268,34 +305,37 @@ fn bounds(world: &World) -> Case {
     })
 }
 
-fn order(world: &World) -> Case {
+fn arrange(world: &World) -> Case {
     let shuffled = world.shuffled();
+    let (census, cells) = shuffled.census(world);
+    let ids = shuffled.of(&world.ids);
     // Slots in the order of arrival, which is not that of ids.
-    let mut slots = vec![0; world.len()];
-    for (i, c) in shuffled.cell_rank.iter().enumerate() {
-        slots[(world.cell_start[c.x as usize] + c.y) as usize] = i as u32;
+    let mut slots = vec![UVec2::ZERO; world.len()];
+    let mut next = world.cell_start.clone();
+    for (i, &cell) in cells.iter().enumerate() {
+        let slot = &mut next[cell as usize];
+        slots[*slot as usize] = UVec2::new(ids[i], i as u32);
+        *slot += 1;
     }
-    let ordered = Data::U32(places(&shuffled.order));
-    let input = vec![
-        Data::State(state(world.len())),
-        Data::UVec2(shuffled.cell_rank.clone()),
-        Data::U32(world.cell_start.clone()),
-        Data::U32(slots),
-        Data::U32(shuffled.of(&world.ids)),
-        ordered.poison(),
+    let sorted = [
+        Data::Vec4(world.positions.clone()),
+        Data::Vec4(world.velocities.clone()),
+        Data::U32(world.ids.clone()),
     ];
-    case("cells.order", "all", world.len(), input, vec![ordered], |input| {
-        let Data::UVec2(cell_rank) = &input[1] else { panic!("no cells") };
-        let (mut a, mut b) = (0, 1);
-        'found: for i in 0..cell_rank.len() {
-            for j in i + 1..cell_rank.len() {
-                if cell_rank[i].x == cell_rank[j].x {
-                    (a, b) = (i, j);
-                    break 'found;
-                }
-            }
-        }
-        let Data::U32(ids) = &mut input[4] else { panic!("no ids") };
-        ids.swap(a, b);
+    let mut input = vec![
+        Data::Grid(world.grid),
+        Data::U32(census),
+        Data::U32(world.cell_start.clone()),
+        Data::UVec2(slots),
+        Data::Vec4(shuffled.of(&world.positions)),
+        Data::Vec4(shuffled.of(&world.velocities)),
+    ];
+    input.extend(sorted.iter().map(Data::poison));
+    case("cells.arrange", "all", world.len(), input, sorted.to_vec(), |input| {
+        let Data::U32(starts) = &input[2] else { panic!("no starts") };
+        let crowded = starts.windows(2).position(|bounds| bounds[1] - bounds[0] >= 2).unwrap();
+        let k = starts[crowded] as usize;
+        let Data::UVec2(slots) = &mut input[3] else { panic!("no slots") };
+        (slots[k].x, slots[k + 1].x) = (slots[k + 1].x, slots[k].x);
     })
 }

@@ -1,6 +1,6 @@
 //! Random clouds of particles in a box, sorted the plain way, with everything the passes read.
 
-use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
 use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState};
 use splashdown_gpu::{bytemuck, testing};
@@ -153,32 +153,34 @@ impl World {
         self.positions.len()
     }
 
-    /// Cell and rank of unsorted particles: the sorted ones in another order.
+    /// Unsorted particles: the sorted ones in another order.
     pub fn shuffled(&self) -> Shuffled {
         let n = self.len();
         let mut order: Vec<u32> = (0..n as u32).collect();
         for i in 0..n {
             order.swap(i, testing::noise(i as u32 + 4242) as usize % n);
         }
-        let cell = |k: usize| self.cell_start.partition_point(|&start| start as usize <= k) as u32 - 1;
-        let mut arrived = vec![0; self.cell_start.len()];
-        let cell_rank = order.iter().map(|&k| {
-            let c = cell(k as usize);
-            arrived[c as usize] += 1;
-            UVec2::new(c, arrived[c as usize] - 1)
-        });
-        Shuffled { cell_rank: cell_rank.collect(), order }
+        Shuffled { order }
     }
 }
 
 /// The particles before the sort.
 pub struct Shuffled {
-    pub cell_rank: Vec<UVec2>,
     /// Which sorted particle stands at each place.
     pub order: Vec<u32>,
 }
 
 impl Shuffled {
+    /// The census that counting leaves, and the cells of the particles alone.
+    pub fn census(&self, world: &World) -> (Vec<u32>, Vec<u32>) {
+        let starts = &world.cell_start;
+        let cell = |&k: &u32| starts.partition_point(|&start| start <= k) as u32 - 1;
+        let cells: Vec<u32> = self.order.iter().map(cell).collect();
+        let mut census: Vec<u32> = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).collect();
+        census.extend(&cells);
+        (census, cells)
+    }
+
     pub fn of<T: Copy>(&self, sorted: &[T]) -> Vec<T> {
         self.order.iter().map(|&k| sorted[k as usize]).collect()
     }

@@ -21,8 +21,9 @@ pub static BOUNDS: PassDesc = PassDesc {
         uniform::<Grid>("grid"),
         read::<StepState>("state"),
         read::<UVec2>("pairs"),
+        read::<u32>("ids"),
         write::<u32>("cell_start"),
-        write::<u32>("slots"),
+        write::<UVec2>("slots"),
     ],
     cpu: cpu::bounds,
 };

@@ -1,21 +1,23 @@
 use std::sync::atomic::Ordering::Relaxed;
 
-use glam::{UVec2, Vec4, Vec4Swizzles};
+use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
+use crate::cells::census::{self, Enroller};
 use crate::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
 
 const CHUNK: usize = 4096;
 
 pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, positions, velocities, cell_rank, counts, tally] = slots else {
-        unreachable!()
-    };
-    let (params, grid) = (params.get::<Params>(), grid.get::<Grid>());
-    let n = state.get::<StepState>().run_count as usize;
-    let (counts, tally) = (counts.atomics(), tally.atomics());
+    let [params, grid, state, positions, velocities, census, tally] = slots else { unreachable!() };
+    let (params, grid, state) = (&params.get::<Params>(), &grid.get::<Grid>(), state.get::<StepState>());
+    let n = state.run_count as usize;
+    let tally = tally.atomics();
+    // After the last step of a frame there is no next one to count for.
+    let counts_for_none = tally[Tally::MOVED].load(Relaxed) != 0 && state.is_last_step();
+    let (counts, cells) = census::split(grid, census.write());
     let classify = |p: &mut Vec4, v: Vec4| {
         let x = p.xyz();
         if p.w != 0.0 {
@@ -27,7 +29,7 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
         } else if !(v.xyz().length_squared() + v.w).is_finite() {
             p.w = DEAD_NON_FINITE;
             tally[Tally::NON_FINITE].fetch_add(1, Relaxed);
-        } else if x.cmplt(params.domain_min).any() || x.cmpgt(params.domain_max).any() {
+        } else if params.is_outside(x) {
             p.w = DEAD_ESCAPED;
             tally[Tally::ESCAPED].fetch_add(1, Relaxed);
         } else {
@@ -36,12 +38,16 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
         grid.cell_count
     };
     let positions = positions.write::<Vec4>()[..n].par_chunks_mut(CHUNK);
-    let cell_rank = cell_rank.write::<UVec2>()[..n].par_chunks_mut(CHUNK);
     let velocities = velocities.read::<Vec4>()[..n].par_chunks(CHUNK);
-    positions.zip(velocities).zip(cell_rank).for_each(|((positions, velocities), cell_rank)| {
-        for ((p, &v), out) in positions.iter_mut().zip(velocities).zip(cell_rank) {
+    let cells = cells[..n].par_chunks_mut(CHUNK);
+    positions.zip(velocities).zip(cells).for_each(|((positions, velocities), cells)| {
+        let mut enroller = Enroller::new(counts);
+        for ((p, &v), out) in positions.iter_mut().zip(velocities).zip(cells) {
             let cell = classify(p, v);
-            *out = UVec2::new(cell, counts[cell as usize].fetch_add(1, Relaxed));
+            if !counts_for_none {
+                *out = cell;
+                enroller.add(cell);
+            }
         }
     });
 }

@@ -1,4 +1,5 @@
-//! Counts the particles of every cell, and notes each one's cell and the order of its arrival there.
+//! Counts the particles of every cell, and notes each one's cell, where the pass that moves them does not: before the first
+//! step of a frame, and after emitters.
 //!
 //! Dead particles go to one more cell behind the last, so that sorting puts them behind the living. Particles that are
 //! outside the domain, or whose position, velocity or density is not finite, are marked dead here, and counted: before
@@ -6,17 +7,17 @@
 
 mod cpu;
 
-use glam::{UVec2, Vec4};
+use glam::Vec4;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{GRID, Grid};
+use super::{CENSUS, GRID, Grid};
 use crate::passes::{PARAMS, Params, STATE, StepState, TALLY};
 
 /// See the module.
 pub static COUNT: PassDesc = PassDesc {
     label: "cells.count",
     wgsl: include_str!("count.wgsl"),
-    imports: &[wgsl::INDEX, GRID, STATE, PARAMS, TALLY],
+    imports: &[wgsl::INDEX, GRID, STATE, PARAMS, TALLY, CENSUS],
     entry: "count",
     workgroup_size: [64, 1, 1],
     constants: &[],
@@ -26,8 +27,7 @@ pub static COUNT: PassDesc = PassDesc {
         read::<StepState>("state"),
         write::<Vec4>("positions"),
         read::<Vec4>("velocities"),
-        write::<UVec2>("cell_rank"),
-        write::<u32>("counts"),
+        write::<u32>("census"),
         write::<u32>("tally"),
     ],
     cpu: cpu::count,

@@ -3,18 +3,24 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
+use super::{GRID, Grid};
 use crate::passes::{STATE, StepState};
 
 /// See the module.
 pub static KEYS: PassDesc = PassDesc {
     label: "cells.keys",
     wgsl: include_str!("keys.wgsl"),
-    imports: &[wgsl::INDEX, STATE],
+    imports: &[wgsl::INDEX, STATE, GRID],
     entry: "keys",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[read::<StepState>("state"), read::<UVec2>("cell_rank"), write::<UVec2>("pairs")],
+    bindings: &[
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        read::<u32>("census"),
+        write::<UVec2>("pairs"),
+    ],
     cpu: cpu::keys,
 };

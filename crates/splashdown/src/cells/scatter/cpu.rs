@@ -1,17 +1,37 @@
 use std::sync::atomic::Ordering::Relaxed;
 
-use glam::UVec2;
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::passes::StepState;
+use crate::cells::{Grid, census};
+use crate::passes::settle::settle_step;
+use crate::passes::{Params, StepState};
+
+const CHUNK: usize = 4096;
 
 pub(super) fn scatter(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [state, cell_rank, cell_start, out] = slots else { unreachable!() };
-    let n = state.get::<StepState>().run_count as usize;
-    let (cell_rank, cell_start, out) = (cell_rank.read::<UVec2>(), cell_start.read::<u32>(), out.atomics());
+    let [params, grid, state, tally, census, cell_start, ids, out] = slots else { unreachable!() };
+    settle_step(&params.get::<Params>(), &mut state.write::<StepState>()[0], tally.write());
+    let grid = grid.get::<Grid>();
+    let cell_start = cell_start.read::<u32>();
+    let n = cell_start[grid.cell_count as usize + 1] as usize;
+    let (counts, cells) = census::split(&grid, census.write());
     // Every place is written once; relaxed atomic stores are plain ones that two threads may make side by side.
-    cell_rank[..n].par_iter().enumerate().with_min_len(4096).for_each(|(i, c)| {
-        out[(cell_start[c.x as usize] + c.y) as usize].store(i as u32, Relaxed);
+    let out = out.atomics();
+    let chunks = cells[..n].par_chunks(CHUNK).zip(ids.read::<u32>()[..n].par_chunks(CHUNK));
+    chunks.enumerate().for_each(|(chunk, (cells, ids))| {
+        let mut i = (chunk * CHUNK) as u32;
+        let mut ids = ids.iter();
+        // Neighbours in the arrays that share a cell take themselves off it together.
+        for run in cells.chunk_by(|a, b| a == b) {
+            let (cell, len) = (run[0] as usize, run.len());
+            let left = counts[cell].fetch_sub(len as u32, Relaxed);
+            let first = (cell_start[cell + 1] - left) as usize;
+            for (slot, id) in (first..).zip(ids.by_ref().take(len)) {
+                out[2 * slot].store(*id, Relaxed);
+                out[2 * slot + 1].store(i, Relaxed);
+                i += 1;
+            }
+        }
     });
 }

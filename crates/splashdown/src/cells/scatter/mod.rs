@@ -1,25 +1,35 @@
-//! Puts the number of every particle into its cell's part of `slots`, in the order of arrival.
+//! Puts the id and the number of every particle into its cell's part of `slots`, in the order of arrival.
+//!
+//! Each one takes itself off the census: what is left of its cell's number tells the place, and once all are placed all
+//! numbers are zero again, ready for the next count. So nothing has to be cleared, and no rank to be written and read.
+//!
+//! The first invocation settles the step before, which a dispatch of its own would do otherwise.
 
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use crate::passes::{STATE, StepState};
+use super::{GRID, Grid};
+use crate::passes::{PARAMS, Params, STATE, STEPS, StepState, TALLY};
 
 /// See the module.
 pub static SCATTER: PassDesc = PassDesc {
     label: "cells.scatter",
     wgsl: include_str!("scatter.wgsl"),
-    imports: &[wgsl::INDEX, STATE],
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, TALLY, STEPS],
     entry: "scatter",
     workgroup_size: [64, 1, 1],
     constants: &[],
     bindings: &[
-        read::<StepState>("state"),
-        read::<UVec2>("cell_rank"),
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        write::<StepState>("state"),
+        write::<u32>("tally"),
+        write::<u32>("census"),
         read::<u32>("cell_start"),
-        write::<u32>("slots"),
+        read::<u32>("ids"),
+        write::<UVec2>("slots"),
     ],
     cpu: cpu::scatter,
 };

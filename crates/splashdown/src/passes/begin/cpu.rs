@@ -8,7 +8,7 @@ pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
     let state = &mut state.write::<StepState>()[0];
     state.frame_duration = length;
     state.remaining = length;
-    state.dt = state.stable_dt.min(length);
+    state.dt = StepState::step_length(state.stable_dt, length);
     state.done = 0;
     state.run_count = params.get::<Params>().particle_count;
     state.steps = 0;

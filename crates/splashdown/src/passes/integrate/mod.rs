@@ -4,26 +4,31 @@
 //! velocities: a particle nearer than a quarter of a spacing, or on its way there within this step, loses just the
 //! speed that would take it past. Pressure keeps a body of fluid off the wall; this holds the lone drops that have none.
 //! A particle that is outside all the same is put back and counted: the count is zero in a sound run. A result that is
-//! not finite leaves the particle where it was, dead, and is counted.
+//! not finite leaves the particle where it was, dead, and is counted; so is one that leaves through an open side.
+//!
+//! The particles are counted by cell for the next step's sort, unless emitters are to make more before it, or there is no
+//! next step in this frame.
 
 mod cpu;
 
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, STATE, StepState, TALLY};
+use super::{MOVING, PARAMS, Params, STATE, StepState, TALLY};
+use crate::cells::{CENSUS, GRID, Grid};
 
 /// See the module.
 pub static INTEGRATE: PassDesc = PassDesc {
     label: "integrate",
     wgsl: include_str!("integrate.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, TALLY],
+    imports: &[wgsl::INDEX, STATE, PARAMS, TALLY, GRID, CENSUS, MOVING],
     entry: "integrate",
     workgroup_size: [256, 1, 1],
     constants: &[],
     bindings: &[
         uniform::<Params>("params"),
-        read::<StepState>("state"),
+        uniform::<Grid>("grid"),
+        uniform::<StepState>("state"),
         read::<Vec4>("sorted_positions"),
         read::<Vec4>("sorted_velocities"),
         read::<Vec2>("densities"),
@@ -31,6 +36,15 @@ pub static INTEGRATE: PassDesc = PassDesc {
         write::<Vec4>("positions"),
         write::<Vec4>("velocities"),
         write::<u32>("tally"),
+        write::<u32>("census"),
     ],
-    cpu: cpu::integrate,
+    cpu: cpu::integrate::<true>,
+};
+
+/// Leaves the count for the next step to [`cells`](crate::cells).
+pub static UNCOUNTED: PassDesc = PassDesc {
+    label: "integrate.uncounted",
+    constants: &[("COUNTS", 0.0)],
+    cpu: cpu::integrate::<false>,
+    ..INTEGRATE
 };

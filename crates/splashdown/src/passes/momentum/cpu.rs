@@ -26,26 +26,16 @@ pub(super) fn momentum<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>
     else {
         unreachable!()
     };
-    let (params, grid, state) = (&params.get::<Params>(), &grid.get(), state.get::<StepState>());
+    let (params, grid) = (&params.get::<Params>(), &grid.get());
     let positions = positions.read();
-    let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
-    let volume = params.particle_mass / params.rest_density;
-    let laminar = 10.0 * params.viscosity * volume;
-    let pass = Momentum::<K> {
+    let pass = Momentum::<K>::new(
         params,
-        dt: state.dt,
-        body: params.body_acceleration(state.time),
+        &state.get(),
         positions,
-        velocities: velocities.read(),
-        densities: densities.read(),
-        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
-        scale,
-        factor: (scale * scale) * (scale * scale) * scale,
-        soft: 0.01 * support * support,
-        parting: laminar,
-        approaching: laminar + params.artificial_viscosity * params.sound_speed * 0.5 * support * volume,
-        kernel: PhantomData,
-    };
+        velocities.read(),
+        densities.read(),
+        wall_table.read(),
+    );
     let sorted = Sorted::new(params, grid, cell_start.read(), positions);
     let out = accelerations.write();
     // Columns and arithmetic that a scene does not ask for cost nothing.
@@ -57,7 +47,7 @@ pub(super) fn momentum<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>
 }
 
 /// Pressure and viscosity.
-struct Momentum<'a, K> {
+pub(crate) struct Momentum<'a, K> {
     params: &'a Params,
     dt: f32,
     body: Vec3,
@@ -74,7 +64,51 @@ struct Momentum<'a, K> {
     kernel: PhantomData<K>,
 }
 
+impl<'a, K: WallKernel> Momentum<'a, K> {
+    /// Of a step's arrays, and the table of the walls.
+    pub fn new(
+        params: &'a Params,
+        state: &StepState,
+        positions: &'a [Vec4],
+        velocities: &'a [Vec4],
+        densities: &'a [Vec2],
+        wall_table: &'a [Vec4],
+    ) -> Self {
+        let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
+        let volume = params.particle_mass / params.rest_density;
+        let laminar = 10.0 * params.viscosity * volume;
+        Self {
+            params,
+            dt: state.dt,
+            body: params.body_acceleration(state.time),
+            positions,
+            velocities,
+            densities,
+            walls: NearWalls::new(params.walls(K::WALLS), wall_table),
+            scale,
+            factor: (scale * scale) * (scale * scale) * scale,
+            soft: 0.01 * support * support,
+            parting: laminar,
+            approaching: laminar + params.artificial_viscosity * params.sound_speed * 0.5 * support * volume,
+            kernel: PhantomData,
+        }
+    }
+}
+
 impl<K> Momentum<'_, K> {
+    /// The acceleration of a particle from its sums.
+    #[inline(always)]
+    pub fn acceleration(&self, i: usize, sums: [f32; 3]) -> Vec3 {
+        let (params, x) = (self.params, self.positions[i].xyz());
+        let mut a = self.factor * Vec3::from(sums);
+        if let Some(terms) = self.walls.terms(x) {
+            let [rho, pressure] = self.densities[i].to_array();
+            let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+            a = terms.acceleration(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
+        }
+        a + self.body
+    }
+
     /// Mass times pressure over the square of the density.
     #[inline(always)]
     fn push(&self, j: usize) -> f32 {
@@ -111,14 +145,7 @@ impl<K: Kernel> PairSum<7, 3> for Momentum<'_, K> {
 
     #[inline(always)]
     fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
-        let (params, x) = (self.params, self.positions[i].xyz());
-        let mut a = self.factor * Vec3::from(sums);
-        if let Some(terms) = self.walls.terms(x) {
-            let [rho, pressure] = self.densities[i].to_array();
-            let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
-            a = terms.acceleration(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
-        }
-        *out = (a + self.body).extend(0.0);
+        *out = self.acceleration(i, sums).extend(0.0);
     }
 }
 

@@ -11,12 +11,12 @@
 //! Walls push with the particle's own pressure and its image's, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else they do is
 //! in [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
 
-mod cpu;
+pub(crate) mod cpu;
 
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, ROWS, STATE, StepState};
+use super::{FORCES, PARAMS, Params, ROWS, STATE, StepState};
 use crate::boundary::{self, KernelPair};
 use crate::cells::{GRID, Grid};
 use crate::kernel::{self, CubicSpline, Kernel};
@@ -25,7 +25,17 @@ use crate::kernel::{self, CubicSpline, Kernel};
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "momentum.wendland_c2",
     wgsl: include_str!("momentum.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::WGSL],
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::PLANES,
+        boundary::WGSL,
+        FORCES,
+    ],
     entry: "momentum",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],

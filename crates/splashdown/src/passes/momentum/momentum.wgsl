@@ -4,6 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/walls
+#import sph/forces
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> grid: Grid;
@@ -23,59 +24,22 @@ fn cohesion(q: f32) -> f32 {
     return 32.0 / PI * select(t3, 2.0 * t3 - 1.0 / 64.0, q <= 0.5);
 }
 
+fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {
+    if (params.surface_tension <= 0.0) {
+        return vec3(0.0);
+    }
+    let scale = 1.0 / params.support_radius;
+    let k = -params.surface_tension * 2.0 * params.rest_density / (rho_i + rho_j);
+    let pull = params.particle_mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
+    return k * (pull * d + normals[i].xyz - normals[j].xyz);
+}
+
 @compute @workgroup_size(64)
 fn momentum(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (i >= living()) {
         return;
     }
-    let x = sorted_positions[i].xyz;
-    let v = sorted_velocities[i].xyz;
-    let rho = densities[i].x;
-    let pressure = densities[i].y;
-    let specific = pressure / (rho * rho);
-    let body = body_acceleration(state.time);
-    let cell = cell_of(x);
-
-    let support = params.support_radius;
-    let scale = 1.0 / support;
-    let scale5 = scale * scale * scale * scale * scale;
-    let reach = support * support;
-    let soft = 0.01 * reach;
-    let mass = params.particle_mass;
-    let volume = mass / params.rest_density;
-    let laminar = 10.0 * params.viscosity * volume;
-    let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
-    let tension = params.surface_tension > 0.0;
-    var own_normal = vec3(0.0);
-    if (tension) {
-        own_normal = normals[i].xyz;
-    }
-
-    var a = vec3(0.0);
-    for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
-        for (var j = range.x; j < range.y; j++) {
-            let d = x - sorted_positions[j].xyz;
-            let r2 = dot(d, d);
-            if (r2 >= reach || j == i) {
-                continue;
-            }
-            let q = sqrt(r2) * scale;
-            let g = kernel_g(q) * scale5;
-            let other = densities[j];
-            let vx = dot(v - sorted_velocities[j].xyz, d);
-            let rub = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-            a += (g * (rub - mass * (specific + other.y / (other.x * other.x)))) * d;
-            if (tension) {
-                let k = -params.surface_tension * 2.0 * params.rest_density / (rho + other.x);
-                let pull = mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
-                a += k * (pull * d + own_normal - normals[j].xyz);
-            }
-        }
-    }
-
-    let push = params.rest_density * specific + pressure / params.rest_density;
-    a = wall_acceleration(wall_terms(x), v, body, a, push, state.dt);
-    accelerations[i] = vec4(a + body, 0.0);
+    let a = acceleration_of(i, sorted_positions[i].xyz, sorted_velocities[i].xyz, densities[i]);
+    accelerations[i] = vec4(a, 0.0);
 }

@@ -1,19 +1,14 @@
-#import sph/params
 #import sph/tally
+// The end of a step; needs `params`, `state` and `tally` (not atomic). See passes/settle.
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read_write> state: StepState;
-@group(0) @binding(2) var<storage, read_write> tally: array<u32>;
-
-@compute @workgroup_size(1)
-fn cfl() {
-    // A frame that is complete. Without any particle time goes on.
-    if (state.done != 0u && state.run_count == 0u) {
+fn settle_step() {
+    if (tally[TALLY_MOVED] == 0u) {
         return;
     }
     let speed = bitcast<f32>(tally[TALLY_MAX_SPEED]);
     let acceleration = bitcast<f32>(tally[TALLY_MAX_ACCELERATION]);
     let excess = bitcast<f32>(tally[TALLY_MAX_EXCESS]);
+    tally[TALLY_MOVED] = 0u;
     tally[TALLY_MAX_SPEED] = 0u;
     tally[TALLY_MAX_ACCELERATION] = 0u;
     tally[TALLY_MAX_EXCESS] = 0u;
@@ -29,20 +24,18 @@ fn cfl() {
         stable = params.min_dt;
         state.too_small = 1u;
     }
-    let remaining = state.remaining - state.dt;
     state.time += state.dt;
     state.steps += 1u;
     state.stable_dt = stable;
     state.max_speed = speed;
     state.max_acceleration = acceleration;
     state.density_error = max(state.density_error, excess);
-    state.remaining = remaining;
-    if (remaining <= 1e-6 * state.frame_duration) {
+    if (is_last_step(state.dt, state.remaining)) {
+        state.remaining = 0.0;
         state.done = 1u;
         state.run_count = 0u;
-    } else if (remaining < 2.0 * stable) {
-        state.dt = select(0.5 * remaining, remaining, remaining <= stable);
     } else {
-        state.dt = stable;
+        state.remaining -= state.dt;
+        state.dt = step_length(stable, state.remaining);
     }
 }

@@ -4,21 +4,29 @@
 //! (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last. The maxima are those of the step that
 //! ends, so the choice is one step late; the limit on velocities of half a spacing per step catches the rest. Near the
 //! end of the frame the rest is split evenly, so that no tiny step is left over.
+//!
+//! A step that is to be settled says so by [`Tally::MOVED`], so settling twice does it once. The pass of this module runs
+//! once per submission; inside one, the next step's [`scatter`](crate::cells) settles the step before it, which
+//! saves a dispatch per step: nothing before it in a step looks at the state.
 
 mod cpu;
 
 use splashdown_gpu::{PassDesc, uniform, write};
 
-use super::{PARAMS, Params, STATE, StepState, TALLY};
+#[cfg(doc)]
+use super::Tally;
+use super::{PARAMS, Params, STATE, STEPS, StepState, TALLY};
+
+pub(crate) use cpu::settle_step;
 
 /// See the module.
-pub static CFL: PassDesc = PassDesc {
-    label: "cfl",
-    wgsl: include_str!("cfl.wgsl"),
-    imports: &[STATE, PARAMS, TALLY],
-    entry: "cfl",
+pub static SETTLE: PassDesc = PassDesc {
+    label: "settle",
+    wgsl: include_str!("settle.wgsl"),
+    imports: &[STATE, PARAMS, TALLY, STEPS],
+    entry: "settle",
     workgroup_size: [1, 1, 1],
     constants: &[],
     bindings: &[uniform::<Params>("params"), write::<StepState>("state"), write::<u32>("tally")],
-    cpu: cpu::cfl,
+    cpu: cpu::settle,
 };

@@ -2,14 +2,16 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::passes::{Params, StepState, Tally};
 
-pub(super) fn cfl(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn settle(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, tally] = slots else { unreachable!() };
-    let params = params.get::<Params>();
-    let state = &mut state.write::<StepState>()[0];
-    if state.done != 0 && state.run_count == 0 {
+    settle_step(&params.get(), &mut state.write::<StepState>()[0], tally.write());
+}
+
+/// Settles the step before, if there is one to settle.
+pub(crate) fn settle_step(params: &Params, state: &mut StepState, tally: &mut [u32]) {
+    if std::mem::take(&mut tally[Tally::MOVED]) == 0 {
         return;
     }
-    let tally = tally.write::<u32>();
     let mut take = |word: usize| f32::from_bits(std::mem::take(&mut tally[word]));
     let [speed, acceleration, excess] =
         [Tally::MAX_SPEED, Tally::MAX_ACCELERATION, Tally::MAX_EXCESS].map(&mut take);
@@ -26,20 +28,18 @@ pub(super) fn cfl(_: CpuWork, slots: &mut [Slot<'_>]) {
         stable = params.min_dt;
         state.too_small = 1;
     }
-    let remaining = state.remaining - state.dt;
     state.time += state.dt;
     state.steps += 1;
     state.stable_dt = stable;
     state.max_speed = speed;
     state.max_acceleration = acceleration;
     state.density_error = state.density_error.max(excess);
-    state.remaining = remaining;
-    if remaining <= 1e-6 * state.frame_duration {
+    if state.is_last_step() {
+        state.remaining = 0.0;
         state.done = 1;
         state.run_count = 0;
-    } else if remaining < 2.0 * stable {
-        state.dt = if remaining <= stable { remaining } else { 0.5 * remaining };
     } else {
-        state.dt = stable;
+        state.remaining -= state.dt;
+        state.dt = StepState::step_length(stable, state.remaining);
     }
 }

@@ -1,0 +1,63 @@
+use splashdown_gpu::{Command, CpuExecutor, Executor};
+
+use super::*;
+use crate::cells::Grid;
+use crate::scene::Sort;
+
+/// A block of 64 particles in a box of so many metres, whose cells have edges of 0.2 m.
+fn scene(size: f32, solver: &str) -> Scene {
+    let text = format!(
+        r#"
+        [scene]
+        name = "block"
+        duration = 1.0
+        [domain]
+        min = [0, 0, 0]
+        max = [{size}, {size}, {size}]
+        [fluid]
+        particle_spacing = 0.1
+        [[fluid.block]]
+        position = [0, 0, 0]
+        size = [0.4, 0.4, 0.4]
+        [solver]
+        {solver}
+        "#
+    );
+    Scene::parse(&text, "block.toml").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// Cells, and the commands of a step by kind: labels of its dispatches, clears and copies.
+fn step(size: f32, solver: &str, with_hand: bool) -> (u32, Vec<&'static str>) {
+    let scene = scene(size, solver);
+    let (solver, params) = (Solver::new(&scene), params(&scene, 64));
+    let mut executor = Executor::from(CpuExecutor::new());
+    let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals()).unwrap();
+    let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();
+    let cells = Cells::new(&mut executor, grid, 64, Sort::Counting).unwrap();
+    let hand = with_hand.then(|| Stirrer::new(&mut executor).unwrap());
+    let things = Things { stirrer: hand.as_ref(), ..Things::default() };
+    let label = |command: &Command| match command {
+        Command::Dispatch { pass, .. } => pass.label,
+        Command::Clear { .. } => "clear",
+        Command::Copy { .. } => "copy",
+        Command::Repeat { .. } => "repeat",
+    };
+    let step = solver.step(&cells, &fields, &things, 64);
+    (grid.cell_count, step.commands.iter().map(label).collect())
+}
+
+#[test]
+fn a_plain_step_is_five_dispatches_and_six_where_there_are_many_cells() {
+    let (cells, small) = step(2.0, "", false);
+    assert!(cells < 16_384);
+    let passes =
+        ["scan.single", "cells.scatter", "cells.arrange", "density.wendland_c2", "motion.wendland_c2"];
+    assert_eq!(small, passes);
+    let (cells, large) = step(10.0, "", false);
+    assert!(cells > 16_384);
+    assert_eq!(large[..2], ["scan.reduce", "scan.spread"]);
+    assert_eq!(large[2..], passes[1..]);
+    // Controls: what comes between forces and motion parts them.
+    assert_eq!(step(2.0, "", true).1.len(), 7);
+    assert_eq!(step(2.0, "surface_tension = \"akinci2013\"", false).1.len(), 7);
+}
