@@ -4,6 +4,7 @@
 //! files, errors into one message and one exit code.
 
 mod args;
+mod attributes;
 mod checkpoints;
 mod commands;
 mod console;

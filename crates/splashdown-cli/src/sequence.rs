@@ -40,15 +40,26 @@ pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Failu
 }
 
 /// Names what is made of each of the files: `out` itself for one file; for several `out` with each file's number at the place of its
-/// star or before its ending. A folder gets files `surface_NUMBER.ply`.
+/// star or before its ending. A folder, which for several files any name without star and ending is, gets files `surface_NUMBER.ply`.
 ///
 /// # Errors
-/// If two files would get the same name.
+/// If a file would be read and written, or a star is in the name of a folder.
 pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
-    let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+    let single = inputs.len() == 1;
+    let is_name =
+        out.extension().is_some() || out.file_name().is_some_and(|name| name.to_string_lossy().contains('*'));
+    let is_folder =
+        out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', '\\']) || !(single || is_name);
+    let folder = if is_folder { Some(out) } else { out.parent() };
+    if folder.is_some_and(|folder| folder.to_string_lossy().contains('*') && !folder.is_dir()) {
+        let message = format!(
+            "--out: `{}` has a star in the name of a folder; it stands for the number in the name of a file",
+            out.display()
+        );
+        return Err(Failure::new(Exit::Usage, message));
+    }
     let pattern = if is_folder { out.join("surface_*.ply") } else { out.to_owned() };
     let name = pattern.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let single = inputs.len() == 1;
     let numbers = numbers(&inputs);
     let output = |number: &str| {
         let file = match (name.split_once('*'), name.rsplit_once('.')) {
@@ -220,7 +231,14 @@ mod tests {
             outputs(&["é12é.bgeo.gz", "é9é.bgeo.gz"], "out/"),
             ["out/surface_0012.ply", "out/surface_0009.ply"]
         );
+        assert_eq!(outputs(&["a1.ply", "a2.ply"], "m3"), ["m3/surface_0001.ply", "m3/surface_0002.ply"]);
         assert!(steps(paths(&["a.ply"]), "a.ply".as_ref()).is_err());
+        for out in ["m2*/", "m2*/x.ply", "m*/x*.ply"] {
+            assert!(
+                steps(paths(&["a1.ply", "a2.ply"]), out.as_ref())
+                    .is_err_and(|error| error.message.contains("star"))
+            );
+        }
     }
 
     #[test]

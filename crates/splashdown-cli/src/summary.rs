@@ -112,14 +112,20 @@ pub fn files(root: &Path, files: &[WrittenFile], films: &[(std::path::PathBuf, u
         entry.0 += 1;
         entry.1 += file.bytes;
     }
-    let mut lines: Vec<String> = kinds
+    let mut rows: Vec<[String; 3]> = kinds
         .into_iter()
-        .map(|(kind, (count, bytes))| format!("  {kind:32} {count:>5} files, {}", human::bytes(bytes)))
+        .map(|(kind, (count, bytes))| [kind, human::counted(count as u64, "file"), human::bytes(bytes)])
         .collect();
     for (path, bytes) in films {
         let name = path.strip_prefix(root).unwrap_or(path).display().to_string();
-        lines.push(format!("  {name:32}     1 film,  {}", human::bytes(*bytes)));
+        rows.push([name, human::counted(1, "film"), human::bytes(*bytes)]);
     }
+    let [first, second] =
+        [0, 1].map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let lines: Vec<String> = rows
+        .iter()
+        .map(|[name, count, bytes]| format!("  {name:first$}  {count:>second$}  {bytes}"))
+        .collect();
     if lines.is_empty() {
         return format!("No frames were written; the summary is in {}.", root.join("run.json").display());
     }
@@ -157,7 +163,12 @@ mod tests {
         let written =
             [file("mesh/surface_0000.ply"), file("mesh/surface_0001.ply"), file("mesh/surface_0000.obj")];
         let text = files(Path::new("out_1"), &written, &[]);
-        assert!(text.contains("mesh/surface_*.ply") && text.contains("2 files, 2.00 kB"), "{text}");
+        assert!(text.contains("mesh/surface_*.ply") && text.contains("2 files  2.00 kB"), "{text}");
+        // However long a name is, the columns stand below one another.
+        let long = [file("checkpoints/checkpoint_0010.splashdown"), file("mesh/surface_0000.ply")];
+        let text = files(Path::new("out_1"), &long, &[]);
+        let ends: Vec<_> = text.lines().skip(1).filter_map(|line| line.find("1 file")).collect();
+        assert!(ends.len() == 2 && ends[0] == ends[1], "{text}");
         assert_eq!(text.lines().count(), 3);
         assert!(files(Path::new("out_1"), &[], &[]).contains("No frames"));
     }

@@ -54,6 +54,7 @@ fn particles_of(count: usize) -> Particles {
         velocities: vectors(3),
         densities: (0..count).map(|n| 1000.0 + value(n, 6)).collect(),
         pressures: (0..count).map(|n| 1e4 * value(n, 7)).collect(),
+        ..Particles::default()
     }
 }
 

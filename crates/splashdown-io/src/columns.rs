@@ -1,5 +1,6 @@
 //! What the readers of particle files share: the meaning of an array's name, and numbers of any type.
 
+use crate::attribute::Attribute;
 use crate::particles::Particles;
 
 /// The arrays that mean something here.
@@ -38,6 +39,45 @@ impl Column {
                     })?);
                 }
             }
+        }
+        Ok(())
+    }
+}
+
+/// Which arrays of a file are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Those that mean something here.
+    Known,
+    /// All others too, as attributes.
+    All,
+}
+
+impl Wanted {
+    /// Whether this array is one of them.
+    pub(crate) fn has(self, name: &str, components: usize) -> bool {
+        Column::named(name, components).is_some() || self == Self::All && matches!(components, 1 | 3)
+    }
+
+    /// Appends values to the arrays that they belong to.
+    pub(crate) fn append(
+        self,
+        particles: &mut Particles,
+        name: &str,
+        components: usize,
+        values: &[f64],
+    ) -> Result<(), String> {
+        if let Some(column) = Column::named(name, components) {
+            column.append(particles, values)?;
+        }
+        if self == Self::All && matches!(components, 1 | 3) {
+            let known = particles.attributes.iter().position(|attribute| attribute.name == name);
+            let index = known.unwrap_or_else(|| {
+                let name = name.to_owned();
+                particles.attributes.push(Attribute { name, components, values: Vec::new() });
+                particles.attributes.len() - 1
+            });
+            particles.attributes[index].values.extend(values.iter().map(|&value| value as f32));
         }
         Ok(())
     }

@@ -63,7 +63,7 @@ pub enum IoError {
     )]
     Length {
         /// The attribute's name as in [`crate::Particles`] or [`crate::Mesh`].
-        attribute: &'static str,
+        attribute: String,
         /// Its length.
         given: usize,
         /// The number of particles or vertices.

@@ -75,6 +75,7 @@ compile_error!(
 
 pub mod archive;
 pub mod atomic;
+mod attribute;
 pub mod bgeo;
 mod columns;
 pub mod csv;
@@ -100,12 +101,13 @@ pub mod xyz;
 
 pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;
+pub use attribute::Attribute;
 pub use csv::CsvLog;
 pub use error::{IoError, WriteCause};
 pub use film::{Film, FilmError, FilmOptions};
 pub use mesh::Mesh;
 pub use particles::Particles;
 pub use picture::Picture;
-pub use read::{MESH_FORMATS_READ, PARTICLE_FORMATS_READ, read_mesh, read_particles};
+pub use read::{MESH_FORMATS_READ, PARTICLE_FORMATS_READ, read_all, read_mesh, read_particles};
 pub use topology::Topology;
 pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::attribute::Attribute;
 use crate::error::IoError;
 use crate::particles::{check_count, extension};
 use crate::topology::{MAX_TRIANGLES, Topology};
@@ -18,7 +19,12 @@ pub struct Mesh {
     pub velocities: Vec<[f32; 3]>,
     /// Three vertex numbers (from 0) per triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// What else the vertices carry; PLY and VTK files hold it.
+    pub attributes: Vec<Attribute>,
 }
+
+/// File name endings of the formats that hold [`Mesh::attributes`].
+pub const WITH_ATTRIBUTES: &[&str] = &[".ply", ".vtk"];
 
 /// File name endings that [`write()`] understands.
 pub const FORMATS: &[&str] = &[".ply", ".obj", ".stl", ".vtk", ".glb"];
@@ -36,7 +42,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Tells whether normals and velocities are absent or one per vertex, whether every index is in range, and whether a file can
+    /// Tells whether normals, velocities and attributes are absent or one per vertex, whether every index is in range, and whether a file can
     /// count it all.
     ///
     /// # Errors
@@ -47,9 +53,11 @@ impl Mesh {
         let expected = self.vertices.len();
         for (attribute, given) in [("normals", self.normals.len()), ("velocities", self.velocities.len())] {
             if given != 0 && given != expected {
+                let attribute = attribute.to_owned();
                 return Err(IoError::Length { attribute, given, expected, owner: "vertices" });
             }
         }
+        self.attributes.iter().try_for_each(|attribute| attribute.check(expected, "vertices"))?;
         for (triangle, corners) in self.triangles.iter().enumerate() {
             for &index in corners {
                 if index as usize >= expected {

@@ -11,7 +11,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
-use crate::columns::{Column, triples};
+use crate::columns::{Wanted, triples};
 use crate::error::IoError;
 use crate::npy::{self, Layout};
 use crate::particles::Particles;
@@ -61,6 +61,10 @@ pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoErro
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`], which names the array; [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     regular(path)?;
     let file = File::open(path).map_err(|error| IoError::read(path, &error))?;
     let malformed = |reason: String| IoError::malformed(path, "NPZ", reason);
@@ -88,14 +92,21 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     }
     particles.positions = triples(&positions.values).collect();
     for name in names.iter().filter(|name| *name != first) {
-        let [scalar, vector] = [1, 3].map(|components| Column::named(&stem(name), components));
-        let Some(column) = scalar.or(vector) else { continue };
-        let Array { columns, values } = array(&mut archive, name).map_err(malformed)?;
-        if Column::named(&stem(name), columns) != Some(column) || values.len() / columns.max(1) != count {
+        let own = name.strip_suffix(".npy").unwrap_or(name);
+        if ![1, 3].iter().any(|&components| wanted.has(own, components)) {
             continue;
         }
-        column
-            .append(&mut particles, &values)
+        let Array { columns, values } = match array(&mut archive, name) {
+            Ok(array) => array,
+            // Of an array that means nothing here no more is asked than that it can be used.
+            Err(_) if ![1, 3].iter().any(|&n| Wanted::Known.has(own, n)) => continue,
+            Err(reason) => return Err(malformed(reason)),
+        };
+        if !wanted.has(own, columns) || values.len() / columns.max(1) != count {
+            continue;
+        }
+        wanted
+            .append(&mut particles, own, columns, &values)
             .map_err(|reason| malformed(format!("array `{name}`: {reason}")))?;
     }
     Ok(particles)

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::attribute::Attribute;
 use crate::error::IoError;
 use crate::{bgeo, npz, ply, vtk, vtu};
 
@@ -22,6 +23,8 @@ pub struct Particles {
     pub densities: Vec<f32>,
     /// Pressures in Pa.
     pub pressures: Vec<f32>,
+    /// Everything that a file has for each particle, where it was asked for ([`read_all`](crate::read_all)). The writers pass over it.
+    pub attributes: Vec<Attribute>,
 }
 
 /// File name endings that [`write()`] understands.
@@ -54,9 +57,11 @@ impl Particles {
         ];
         for (attribute, given) in lengths {
             if given != 0 && given != expected {
+                let attribute = attribute.to_owned();
                 return Err(IoError::Length { attribute, given, expected, owner: "particles" });
             }
         }
+        self.attributes.iter().try_for_each(|attribute| attribute.check(expected, "particles"))?;
         check_count("particles", expected)
     }
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+use crate::columns::Wanted;
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::particles::{Particles, extension};
@@ -22,7 +23,7 @@ pub(crate) const MOST: usize = 1 << 27;
 
 /// The readers of one format.
 type MeshReader = fn(&Path) -> Result<Mesh, IoError>;
-type ParticleReader = fn(&Path) -> Result<Particles, IoError>;
+type ParticleReader = fn(&Path, Wanted) -> Result<Particles, IoError>;
 
 /// Reads a triangle mesh in the format that the name's ending tells ([`MESH_FORMATS_READ`]).
 ///
@@ -67,25 +68,41 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
 /// [`IoError::Malformed`] where it is broken, cut short, empty, or holds numbers that are not finite;
 /// [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+/// As [`read_particles`], with everything that the file has for each particle in [`Particles::attributes`], velocities and densities
+/// too, by their names in the file: one number or three of whatever type. Properties `a_x a_y a_z` of a PLY file are one vector `a`,
+/// and `vx vy vz` is `velocity`.
+///
+/// # Errors
+/// As [`read_particles`].
+pub fn read_all(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::All)
+}
+
+fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let ending = match extension(path).as_deref() {
         // Of two endings the first tells what is inside.
         Some("gz") => extension(&path.with_extension("")).filter(|inner| inner == "bgeo"),
         _ => extension(path),
     };
     let (format, read): (_, ParticleReader) = match ending.as_deref() {
-        Some("ply") => ("PLY", ply::read_particles),
+        Some("ply") => ("PLY", ply::read),
         Some("npy") => {
-            ("NPY", |path| Ok(Particles { positions: npy::read_positions(path)?, ..Particles::default() }))
+            ("NPY", |path, _| Ok(Particles { positions: npy::read_positions(path)?, ..Particles::default() }))
         }
-        Some("vtk") => ("VTK", vtk::read_particles),
-        Some("vtu" | "vtp") => ("VTU", vtu::read_particles),
-        Some("bgeo") => ("BGEO", bgeo::read_particles),
-        Some("npz") => ("NPZ", npz::read_particles),
-        Some("xyz") => ("XYZ", xyz::read_particles),
+        Some("vtk") => ("VTK", vtk::read),
+        Some("vtu" | "vtp") => ("VTU", vtu::read),
+        Some("bgeo") => ("BGEO", bgeo::read),
+        Some("npz") => ("NPZ", npz::read),
+        Some("xyz") => ("XYZ", |path, _| xyz::read_particles(path)),
         _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: PARTICLE_FORMATS_READ }),
     };
     regular(path)?;
-    let particles = read(path)?;
+    let mut particles = read(path, wanted)?;
+    let count = particles.len();
+    particles.attributes.retain(|attribute| attribute.check(count, "particles").is_ok());
     let malformed = |reason: String| IoError::malformed(path, format, reason);
     if particles.is_empty() {
         return Err(malformed("it holds no particles".to_owned()));
@@ -114,6 +131,14 @@ fn finite(what: &str, vectors: &[[f32; 3]]) -> Result<(), String> {
     Err(format!(
         "{bad} of its {all} {what} are not finite, the first is number {first} (from 0): ({x}, {y}, {z})"
     ))
+}
+
+/// Why a mesh is not read as particles.
+pub(crate) fn not_particles(faces: usize) -> String {
+    let plural = if faces == 1 { "" } else { "s" };
+    format!(
+        "it is a mesh of {faces} face{plural}, and the vertices of a mesh are not particles: give the particles themselves"
+    )
 }
 
 /// A pipe or device may never end.

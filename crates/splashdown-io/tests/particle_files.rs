@@ -44,6 +44,7 @@ fn plain(count: usize) -> Particles {
         velocities: (0..count).map(|n| [value(3 * n), 0.0, value(n + 1)]).collect(),
         densities: (0..count).map(|n| 1000.0 + value(n)).collect(),
         pressures: (0..count).map(|n| value(n) * 100.0).collect(),
+        ..Particles::default()
     }
 }
 

@@ -48,6 +48,7 @@ prop_compose! {
             densities: rows.iter().take(keep(has[1])).map(|row| row.2).collect(),
             pressures: rows.iter().take(keep(has[2])).map(|row| row.3).collect(),
             ids: rows.iter().take(keep(has[3])).map(|row| row.4).collect(),
+            ..Particles::default()
         }
     }
 }
@@ -61,6 +62,7 @@ prop_compose! {
             normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
             velocities: vertices.iter().filter(|_| velocities).map(|v| v.2).collect(),
             triangles,
+            ..Mesh::default()
         }
     }
 }
@@ -151,6 +153,9 @@ fn a_foreign_text_file_with_other_types_and_quads_is_read() {
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(mesh.normals.is_empty());
 
+    // The vertices of a mesh are no particles; a mesh without faces is none.
+    assert!(ply::read_particles(&path).unwrap_err().to_string().contains("it is a mesh of 1 face,"));
+    let (_keep, path) = file(text.replace("face 1", "face 0").as_bytes());
     let particles = ply::read_particles(&path).unwrap();
     assert_eq!(particles.positions, mesh.vertices);
     assert!(particles.ids.is_empty() && particles.velocities.is_empty());

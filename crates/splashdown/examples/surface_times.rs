@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use splashdown::scene::Scene;
-use splashdown::surface::{SurfaceParams, reconstruct, vertex_velocities};
+use splashdown::surface::{SurfaceParams, interpolate, reconstruct};
 use splashdown::{Device, Simulation};
 use splashdown_gpu::Executor;
 use splashdown_io::npy;
@@ -82,7 +82,7 @@ fn times(
 ) -> Result<(), Failure> {
     let total = timed(|| reconstruct(points, params, &mut executor));
     let vertices = reconstruct(points, params, &mut executor)?.0.vertices;
-    let velocities = timed(|| vertex_velocities(&vertices, points, points, params));
+    let velocities = timed(|| interpolate(&vertices, points, points, params));
     println!("  {name}: {} vertices, their velocities (on the CPU) in {velocities:.1} ms", vertices.len());
     executor.enable_timing();
     reconstruct(points, params, &mut executor)?;

@@ -46,7 +46,7 @@ fn run(scene: &Scene, executor: Executor, frames: u32, frame: f32) -> (Vec<u32>,
     for _ in 0..frames {
         simulation.advance(frame).unwrap();
     }
-    let Particles { ids, positions, velocities, densities, pressures } = simulation.particles().unwrap();
+    let Particles { ids, positions, velocities, densities, pressures, .. } = simulation.particles().unwrap();
     let floats = [positions.as_flattened(), velocities.as_flattened(), &densities, &pressures].concat();
     (ids.into_iter().chain(floats.into_iter().map(f32::to_bits)).collect(), simulation.stats())
 }

@@ -10,11 +10,14 @@ const SURFACE_EXAMPLES: &str = "\
 Examples:
   splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
   splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
+  splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
   splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
 
 Particles are read from PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; meshes are written as PLY, OBJ,
-STL, VTK or GLB. Where particles have velocities, so have the vertices (PLY, VTK, GLB). The meshes of
-several files have the numbers of their files, at the place of the star or before the ending.
+STL, VTK or GLB. Where particles have velocities, so have the vertices (PLY, VTK, GLB). Other
+attributes (a number or a vector for each particle) come with --attribute into PLY and VTK; OBJ, STL
+and GLB cannot hold them. The meshes of several files have the numbers of their files, at the place of
+the star or before the ending.
 
 Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
 particle radius is half of the particle spacing.";
@@ -30,26 +33,29 @@ pub struct SurfaceArguments {
     #[arg(short, long, value_name = "MESH")]
     pub out: PathBuf,
     /// Distance of the particles in the fluid's bulk
-    #[arg(short = 's', long, value_name = "S", value_parser = length)]
+    #[arg(short = 's', long, value_name = "S", allow_negative_numbers = true, value_parser = length)]
     pub particle_spacing: Option<f32>,
     /// Use a spacing that does not fit the particles all the same
     #[arg(long)]
     pub force: bool,
     /// Edge of a marching-cubes cell [default: half a spacing]
-    #[arg(short, long, value_name = "C", value_parser = length)]
+    #[arg(short, long, value_name = "C", allow_negative_numbers = true, value_parser = length)]
     pub cell_size: Option<f32>,
     /// Distance from which on a particle is not felt [default: two spacings]
-    #[arg(long, value_name = "R", value_parser = length)]
+    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = length)]
     pub support_radius: Option<f32>,
     /// The field's value at the surface; it is about 1 in the bulk and 0 outside
-    #[arg(long, value_name = "LEVEL", default_value_t = 0.6)]
+    #[arg(long, value_name = "LEVEL", allow_negative_numbers = true, default_value_t = 0.6)]
     pub iso_level: f32,
     /// Rounds of smoothing; 15 to 25 remove the particles' bumps and keep the volume
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub smoothing: u32,
     /// Leave out separate pieces smaller than this many particles in the bulk; lone particles count 1 to 2
-    #[arg(long, value_name = "N", default_value_t = 0.0, value_parser = particles_of_a_blob)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = particles_of_a_blob)]
     pub min_blob: f64,
+    /// Give the vertices this attribute of the particles too, by its name in the file, or `all`; may be repeated (PLY, VTK)
+    #[arg(short, long, value_name = "NAME|all")]
+    pub attribute: Vec<String>,
     #[command(flatten)]
     pub device: DeviceArgument,
     /// Print one JSON object per mesh to stdout

@@ -5,16 +5,16 @@ use std::time::Instant;
 
 use serde::Serialize;
 use splashdown::sample::typical_spacing;
-use splashdown::surface::{SurfaceParams, drop_blobs, reconstruct, vertex_velocities};
+use splashdown::surface::{SurfaceError, SurfaceParams, drop_blobs, interpolate, reconstruct};
 use splashdown_gpu::Executor;
 use splashdown_io::{
-    IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_particles,
+    IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_all, read_particles,
 };
 
 use crate::args::SurfaceArguments;
 use crate::exit::{Exit, Failure};
 use crate::sequence::{self, Step};
-use crate::{console, human, memory};
+use crate::{attributes, console, human, memory};
 
 /// How far a spacing may be from what the particles look like before it is taken for a mistake: a radius for a
 /// diameter, or another unit.
@@ -36,6 +36,7 @@ struct Line<'a> {
     manifold: bool,
     oriented: bool,
     velocities: bool,
+    attributes: Vec<String>,
     /// From particles in memory to the mesh in memory.
     surface_seconds: f64,
     /// Everything, with reading and writing.
@@ -59,7 +60,8 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let inputs = sequence::expand(&arguments.particles, PARTICLE_FORMATS_READ)?;
     let steps = sequence::steps(inputs, &arguments.out)?;
     for Step { output, .. } in &steps {
-        mesh_format(output)?;
+        mesh_format(output, &arguments.out)?;
+        attributes::check_format(&arguments.attribute, output, &ending(output))?;
     }
     let spacing = spacing(arguments, &steps)?;
     let params = SurfaceParams {
@@ -96,9 +98,11 @@ fn one(
 ) -> Result<Topology, Failure> {
     let begun = Instant::now();
     let Step { input, output } = step;
-    let particles = read(input)?;
+    let particles = read(input, arguments)?;
+    let chosen = attributes::chosen(&particles, &arguments.attribute, input)?;
     let read = Instant::now();
-    let (mut surface, _) = reconstruct(&particles.positions, params, executor)?;
+    let (mut surface, _) =
+        reconstruct(&particles.positions, params, executor).map_err(|error| of_input(error, input))?;
     let surface_seconds = read.elapsed().as_secs_f64();
     let dropped_blobs = if arguments.min_blob > 0.0 {
         drop_blobs(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
@@ -107,8 +111,9 @@ fn one(
     };
     if !particles.velocities.is_empty() && holds_velocities(output) {
         let Particles { positions, velocities, .. } = &particles;
-        surface.velocities = vertex_velocities(&surface.vertices, positions, velocities, params)?;
+        surface.velocities = interpolate(&surface.vertices, positions, velocities, params)?;
     }
+    attributes::put(&mut surface, &chosen, &particles.positions, params)?;
     let topology = surface.topology()?;
     mesh::write(output, &surface)?;
     let line = Line {
@@ -124,6 +129,7 @@ fn one(
         manifold: topology.is_manifold(),
         oriented: topology.is_oriented(),
         velocities: !surface.velocities.is_empty(),
+        attributes: surface.attributes.iter().map(|attribute| attribute.name.clone()).collect(),
         surface_seconds,
         seconds: begun.elapsed().as_secs_f64(),
         start_memory,
@@ -146,9 +152,12 @@ fn told(line: &Line<'_>, surface: &Mesh) -> String {
         0 => String::new(),
         count => format!(", {} left out", human::counted(count as u64, "blob")),
     };
-    let velocities = if line.velocities { ", with velocities" } else { "" };
+    let velocities = line.velocities.then_some("velocities");
+    let carried: Vec<&str> =
+        velocities.into_iter().chain(line.attributes.iter().map(String::as_str)).collect();
+    let carried = if carried.is_empty() { String::new() } else { format!(", with {}", carried.join(", ")) };
     format!(
-        "{}: {particles} -> {}: {triangles} triangles{velocities}, volume {}{blobs} ({})",
+        "{}: {particles} -> {}: {triangles} triangles{carried}, volume {}{blobs} ({})",
         line.input.display(),
         line.output.display(),
         human::three_digits(line.volume),
@@ -182,8 +191,21 @@ fn conclude(
 }
 
 /// What cannot be read is the fault of what was given, not of the place for the results.
-fn read(path: &Path) -> Result<Particles, Failure> {
-    read_particles(path).map_err(|error| Failure::new(Exit::Scene, error.to_string()))
+fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure> {
+    let particles = if arguments.attribute.is_empty() { read_particles(path) } else { read_all(path) };
+    particles.map_err(|error| Failure::new(Exit::Scene, error.to_string()))
+}
+
+/// What makes no surface is the fault of what was given: numbers of the command line, or particles.
+fn of_input(error: SurfaceError, input: &Path) -> Failure {
+    let exit = match &error {
+        SurfaceError::NoSurface { .. } | SurfaceError::Parameter { .. } => Exit::Usage,
+        SurfaceError::TooLarge { .. } | SurfaceError::TooFar { .. } | SurfaceError::GridTooFine { .. } => {
+            Exit::Scene
+        }
+        _ => return error.into(),
+    };
+    Failure::new(exit, format!("`{}`: {error}", input.display()))
 }
 
 /// The spacing that was given, if the first file's particles are about so far from each other.
@@ -193,7 +215,7 @@ fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure>
     if let (Some(given), true) = (given, arguments.force) {
         return Ok(given);
     }
-    let particles = read(first)?;
+    let particles = read(first, arguments)?;
     let found = typical_spacing(&particles.positions).filter(|&found| found > 0.0);
     let name = first.display();
     match (given, found) {
@@ -228,12 +250,12 @@ fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure>
 }
 
 /// Tells before anything is computed that a mesh cannot be written.
-fn mesh_format(path: &Path) -> Result<(), Failure> {
-    let ending = ending(path);
+fn mesh_format(output: &Path, given: &Path) -> Result<(), Failure> {
+    let ending = ending(output);
     if mesh::FORMATS.iter().any(|format| *format == ending) {
         return Ok(());
     }
-    let error = IoError::UnknownFormat { path: path.to_owned(), allowed: mesh::FORMATS };
+    let error = IoError::UnknownFormat { path: given.to_owned(), allowed: mesh::FORMATS };
     Err(Failure::new(Exit::Usage, error.to_string()))
 }
 

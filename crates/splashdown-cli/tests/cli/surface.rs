@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
-use splashdown_io::{Particles, particles, ply, read_mesh};
+use splashdown_io::{Mesh, Particles, particles, ply, read_mesh};
 
 use crate::place::{Outcome, Place, assert_refused, stderr, stdout};
 
@@ -58,6 +58,70 @@ fn a_file_becomes_a_closed_mesh_with_velocities() -> Outcome {
     Ok(())
 }
 
+/// The numbers of each vertex of a PLY file whose properties are all floats, with their names.
+fn columns(file: &[u8]) -> Option<(Vec<String>, Vec<Vec<f32>>)> {
+    let end = b"end_header\n";
+    let start = file.windows(end.len()).position(|window| window == end)? + end.len();
+    let header = String::from_utf8_lossy(&file[..start]).into_owned();
+    let names = header.lines().filter_map(|line| line.strip_prefix("property float "));
+    let names: Vec<String> = names.map(str::to_owned).collect();
+    let count: usize = header.lines().find_map(|line| line.strip_prefix("element vertex "))?.parse().ok()?;
+    let word = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let rows = file[start..].chunks_exact(4 * names.len()).take(count);
+    Some((names, rows.map(|row| row.chunks_exact(4).map(word).collect()).collect()))
+}
+
+#[test]
+fn what_particles_carry_comes_to_the_vertices() -> Outcome {
+    let place = Place::new()?;
+    let block = block([0.0; 3]);
+    let list = |number: &dyn Fn(&[f32; 3]) -> String| -> String {
+        block.positions.iter().map(|place| number(place) + "\n").collect()
+    };
+    let count = block.len();
+    let text = format!(
+        "# vtk DataFile Version 3.0\nhot water\nASCII\nDATASET POLYDATA\nPOINTS {count} float\n{}POINT_DATA {count}\n\
+         SCALARS temperature double 1\nLOOKUP_TABLE default\n{}VECTORS force float\n{}SCALARS id int 1\n{}",
+        list(&|[x, y, z]| format!("{x} {y} {z}")),
+        list(&|[x, ..]| format!("{}", 290.0 + 100.0 * x)),
+        list(&|_| "1 -2 0.5".to_owned()),
+        list(&|_| "7".to_owned()),
+    );
+    place.write("hot.vtk", text)?;
+    let surface = |out: &str, more: &[&str]| {
+        place
+            .splashdown(&[&["surface", "hot.vtk", "-o", out, "-s", "0.02", "-d", "cpu"], more].concat())
+            .output()
+    };
+    let output = surface("all.ply", &["--attribute", "all"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("with temperature, force,"), "{}", stderr(&output));
+    let (names, rows) = columns(&fs::read(place.path("all.ply"))?).ok_or("no PLY")?;
+    assert_eq!(names[6..], ["temperature", "force_x", "force_y", "force_z"]);
+    let mut off = 0.0_f32;
+    for row in &rows {
+        // A number that is the same everywhere stays so; one with a slope of 100 is off by the way to the particles around.
+        let force = [row[7] - 1.0, row[8] + 2.0, row[9] - 0.5];
+        assert!(force.iter().all(|off| off.abs() < 1e-5), "{row:?}");
+        off = off.max((row[6] - 290.0 - 100.0 * row[0]).abs());
+    }
+    assert!(off < 100.0 * SPACING && off > 0.1 * SPACING, "{off}");
+
+    // One of them, and the mesh is what it was.
+    let output = surface("one.ply", &["-a", "force"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let (names, _) = columns(&fs::read(place.path("one.ply"))?).ok_or("no PLY")?;
+    assert_eq!(names[6..], ["force_x", "force_y", "force_z"]);
+    let mesh = |name: &str| read_mesh(&place.path(name));
+    assert_eq!(mesh("one.ply")?, mesh("all.ply")?);
+    assert!(surface("one.vtk", &["-a", "temperature", "-a", "force"])?.status.success());
+    let vtk = fs::read(place.path("one.vtk"))?;
+    for words in ["SCALARS temperature float 1\n", "VECTORS force float\n"] {
+        assert!(vtk.windows(words.len()).any(|window| window == words.as_bytes()), "{words}");
+    }
+    Ok(())
+}
+
 #[test]
 fn a_series_becomes_a_series() -> Outcome {
     let place = Place::new()?;
@@ -92,7 +156,10 @@ fn what_is_wrong_is_said_before_anything_is_made() -> Outcome {
     fs::write(place.path("two.xyz"), "0 0 0\n0 0 1\n")?;
     fs::write(place.path("notes.txt"), "words")?;
     let spacing = ["--particle-spacing", "0.02"];
-    let cases: [Case<'_>; 11] = [
+    let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let face = Mesh { vertices: corners, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    splashdown_io::mesh::write(&place.path("mesh.ply"), &face)?;
+    let cases: [Case<'_>; 18] = [
         ("absent.ply", "m.ply", &spacing, 3, &["absent.ply"]),
         ("notes.txt", "m.ply", &spacing, 3, &["notes.txt", ".bgeo", ".xyz"]),
         ("empty.xyz", "m.ply", &spacing, 3, &["no particles"]),
@@ -104,6 +171,19 @@ fn what_is_wrong_is_said_before_anything_is_made() -> Outcome {
         ("block.ply", "m.ply", &["--particle-spacing", "20"], 2, &["0.0200", "--force"]),
         ("block.ply", "m.ply", &[], 2, &["--particle-spacing", "0.0200"]),
         ("two.xyz", "m.ply", &[], 2, &["too few particles"]),
+        ("mesh.ply", "m.ply", &spacing, 3, &["mesh.ply", "it is a mesh of 1 face"]),
+        ("block.ply", "m.ply", &["-s", "-1"], 2, &["a length is a number above 0"]),
+        ("block.ply", "m.ply", &["-s", "1e-7", "--force"], 3, &["block.ply", "cell_size"]),
+        (
+            "block.ply",
+            "m.ply",
+            &["-s", "0.02", "--iso-level", "5"],
+            2,
+            &["no surface", "iso_level of 5", "from 0 outside to 1."],
+        ),
+        ("block.ply", "m*/x.ply", &spacing, 2, &["m*/x.ply", "star"]),
+        ("block.ply", "m.obj", &["-s", "0.02", "-a", "all"], 2, &["m.obj", ".ply and .vtk"]),
+        ("block.ply", "m.ply", &["-s", "0.02", "-a", "heat"], 2, &["`heat`", "it has velocity"]),
     ];
     for (input, out, options, code, words) in cases {
         let output = place.splashdown(&[&["surface", input, "-o", out], options].concat()).output()?;

@@ -8,5 +8,6 @@
 mod read;
 mod write;
 
+pub(crate) use read::read;
 pub use read::read_particles;
 pub use write::{write_particles, write_particles_to};

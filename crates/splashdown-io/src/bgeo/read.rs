@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::columns::{Column, Number};
+use crate::columns::{Column, Number, Wanted};
 use crate::error::IoError;
 use crate::particles::Particles;
 use crate::read::{MOST, regular};
@@ -25,6 +25,10 @@ const ROWS: usize = 1024;
 /// [`IoError::Read`]; [`IoError::Malformed`] where the file is another version or format, or cut short;
 /// [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     regular(path)?;
     let failed = |error: io::Error| IoError::read(path, &error);
     let mut file = File::open(path).map_err(failed)?;
@@ -32,7 +36,10 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     let packed = file.read(&mut magic).map_err(failed)? == 2 && magic == [0x1f, 0x8b];
     io::Seek::rewind(&mut file).map_err(failed)?;
     let file = BufReader::new(file);
-    let result = if packed { parse(&mut BufReader::new(GzDecoder::new(file))) } else { parse(&mut { file }) };
+    let result = match packed {
+        true => parse(&mut BufReader::new(GzDecoder::new(file)), wanted),
+        false => parse(&mut { file }, wanted),
+    };
     result.map_err(|reason| match reason {
         Reason::Text(reason) => IoError::malformed(path, "BGEO", reason),
         Reason::TooMany(given) => IoError::TooMany { what: "particles", given, limit: MOST },
@@ -50,15 +57,15 @@ impl From<String> for Reason {
     }
 }
 
-/// An attribute that means something here: which, where in the row, how many numbers, of which type.
-struct Wanted {
-    column: Column,
+/// An attribute that is wanted: which, where in the row, how many numbers, of which type.
+struct Place {
+    name: String,
     at: usize,
     components: usize,
     number: Number,
 }
 
-fn parse(file: &mut impl Read) -> Result<Particles, Reason> {
+fn parse(file: &mut impl Read, wanted: Wanted) -> Result<Particles, Reason> {
     let magic: [u8; 4] = take(file, "its header")?;
     if magic != *b"Bgeo" {
         return Err(Reason::Text("it does not begin with `Bgeo`".to_owned()));
@@ -78,14 +85,14 @@ fn parse(file: &mut impl Read) -> Result<Particles, Reason> {
         return Err(Reason::TooMany(points));
     }
     // A row begins with x, y, z and a weight.
-    let (mut row, mut wanted) = (16, Vec::new());
+    let (mut row, mut places) = (16, Vec::new());
     for number in 0..attributes {
-        row += attribute(file, number, row, &mut wanted)?;
+        row += attribute(file, number, row, wanted, &mut places)?;
         if row > MOST_ROW {
             return Err(Reason::Text(format!("its rows are more than {MOST_ROW} bytes long")));
         }
     }
-    rows(file, points, row, &wanted)
+    rows(file, points, row, wanted, &places)
 }
 
 /// Reads the description of one attribute that begins at byte `at` of a row; returns its bytes in the row.
@@ -93,7 +100,8 @@ fn attribute(
     file: &mut impl Read,
     number: usize,
     at: usize,
-    wanted: &mut Vec<Wanted>,
+    wanted: Wanted,
+    places: &mut Vec<Place>,
 ) -> Result<usize, String> {
     let what = "its list of attributes";
     let name = text(file, what)?;
@@ -111,10 +119,11 @@ fn attribute(
         for _ in 0..components {
             word(file, what)?;
         }
-        if let Some(column) = Column::named(&name, components) {
+        if wanted.has(&name, components) {
+            let is_id = Column::named(&name, components) == Some(Column::Id);
             // The format has signed integers only; ids of its upper half are told by their bits.
-            let number = if (column, kind) == (Column::Id, Number::I32) { Number::U32 } else { kind };
-            wanted.push(Wanted { column, at, components, number });
+            let number = if is_id && kind == Number::I32 { Number::U32 } else { kind };
+            places.push(Place { name, at, components, number });
         }
     } else {
         for _ in 0..word(file, what)? {
@@ -124,7 +133,13 @@ fn attribute(
     Ok(4 * components)
 }
 
-fn rows(file: &mut impl Read, points: usize, row: usize, wanted: &[Wanted]) -> Result<Particles, Reason> {
+fn rows(
+    file: &mut impl Read,
+    points: usize,
+    row: usize,
+    wanted: Wanted,
+    places: &[Place],
+) -> Result<Particles, Reason> {
     let mut particles = Particles::default();
     let mut buffer = vec![0; ROWS * row];
     for first in (0..points).step_by(ROWS) {
@@ -139,9 +154,9 @@ fn rows(file: &mut impl Read, points: usize, row: usize, wanted: &[Wanted]) -> R
             let [x, y, z] = [0, 4, 8]
                 .map(|at| f32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
             particles.positions.push([x, y, z]);
-            for Wanted { column, at, components, number } in wanted {
+            for Place { name, at, components, number } in places {
                 let values = number.decode(&bytes[*at..at + 4 * components], true);
-                column.append(&mut particles, &values)?;
+                wanted.append(&mut particles, name, *components, &values)?;
             }
         }
     }

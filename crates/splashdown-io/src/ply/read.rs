@@ -6,33 +6,83 @@ use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyDef, PropertyType,
+    ScalarType,
 };
 
-use crate::columns::whole;
+use crate::attribute::Attribute;
+use crate::columns::{Wanted, whole};
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::particles::Particles;
+use crate::read::not_particles;
 
 /// Reads particles from the `vertex` element of a PLY file.
 ///
 /// `x y z` must be there; `vx vy vz` (or `velocity_x ..`, `u v w`), `density` (`rho`), `pressure` (`p`) and `id` are
-/// taken where they are present. Faces and other elements are ignored.
+/// taken where they are present. Other elements are ignored, but for faces: the vertices of a mesh are not particles.
 ///
 /// # Errors
 /// [`IoError::Read`] or [`IoError::Malformed`], which says what is missing or where the file ends too early.
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let file = PlyFile::open(path)?;
-    let has = Present::of(file.element("vertex")?);
-    let (vertices, _) = file.read(false)?;
+    let element = file.element("vertex")?;
+    let has = Present::of(element);
+    let names: Vec<String> = Everything::names(element).map(str::to_owned).collect();
+    if let Some(faces) = file.header.elements.get("face").filter(|face| face.count > 0) {
+        return Err(malformed(path, not_particles(faces.count)));
+    }
+    if wanted == Wanted::Known {
+        return Ok(known(&file.read::<Vertex>(false)?.0, &has));
+    }
+    let (vertices, _) = file.read::<Everything>(false)?;
+    let columns = names.iter().enumerate().map(|(column, name)| {
+        let values = vertices.iter().map(|vertex| vertex.others[column]).collect();
+        Attribute { name: name.clone(), components: 1, values }
+    });
+    let attributes = vectors(columns.collect());
+    let vertices: Vec<Vertex> = vertices.into_iter().map(|vertex| vertex.known).collect();
+    Ok(Particles { attributes, ..known(&vertices, &has) })
+}
+
+fn known(vertices: &[Vertex], has: &Present) -> Particles {
     let every = |present: bool| vertices.iter().take(if present { usize::MAX } else { 0 });
-    Ok(Particles {
+    Particles {
         ids: every(has.id).map(|v| v.id).collect(),
         positions: vertices.iter().map(|v| v.position).collect(),
         velocities: every(has.velocity == [true; 3]).map(|v| v.velocity).collect(),
         densities: every(has.density).map(|v| v.density).collect(),
         pressures: every(has.pressure).map(|v| v.pressure).collect(),
-    })
+        attributes: Vec::new(),
+    }
+}
+
+/// Puts three numbers that follow one another and are called `a_x a_y a_z`, or `vx vy vz`, together.
+fn vectors(mut columns: Vec<Attribute>) -> Vec<Attribute> {
+    let mut found = Vec::new();
+    while !columns.is_empty() {
+        let stem = |column: usize, axis: char| columns.get(column)?.name.strip_suffix(axis);
+        let stems = [stem(0, 'x'), stem(1, 'y'), stem(2, 'z')];
+        let name = match stems {
+            [Some("v"), Some("v"), Some("v")] => Some("velocity".to_owned()),
+            [Some(a), Some(b), Some(c)] if a == b && b == c => a.strip_suffix('_').map(str::to_owned),
+            _ => None,
+        };
+        match name {
+            Some(name) => {
+                let three: Vec<Attribute> = columns.drain(..3).collect();
+                let rows = 0..three[0].values.len();
+                let values = rows.flat_map(|row| three.iter().map(move |column| column.values[row]));
+                found.push(Attribute { name, components: 3, values: values.collect() });
+            }
+            None => found.push(columns.remove(0)),
+        }
+    }
+    found
 }
 
 /// Reads a mesh from the `vertex` and `face` elements of a PLY file.
@@ -46,7 +96,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let file = PlyFile::open(path)?;
     file.element("face")?;
     let has = Present::of(file.element("vertex")?);
-    let (vertices, faces) = file.read(true)?;
+    let (vertices, faces) = file.read::<Vertex>(true)?;
     let mut mesh = Mesh { vertices: vertices.iter().map(|v| v.position).collect(), ..Mesh::default() };
     if has.normal == [true; 3] {
         mesh.normals = vertices.iter().map(|v| v.normal).collect();
@@ -122,7 +172,7 @@ impl<'a> PlyFile<'a> {
     }
 
     /// Reads the vertices and, if wanted, the faces. Elements stand in the file in the header's order.
-    fn read(mut self, want_faces: bool) -> Result<(Vec<Vertex>, Vec<Face>), IoError> {
+    fn read<V: PropertyAccess>(mut self, want_faces: bool) -> Result<(Vec<V>, Vec<Face>), IoError> {
         let (mut vertices, mut faces) = (None, None);
         for (name, element) in &self.header.elements {
             let done = vertices.is_some() && (faces.is_some() || !want_faces);
@@ -269,6 +319,44 @@ impl PropertyAccess for Vertex {
             None => return PropertyAccessResult::UnsupportedType,
         }
         PropertyAccessResult::Set
+    }
+}
+
+/// One row of the `vertex` element with all its numbers.
+struct Everything {
+    known: Vertex,
+    others: Vec<f32>,
+}
+
+impl Everything {
+    /// The numbers in the order of the file, but for the position.
+    fn names(element: &ElementDef) -> impl Iterator<Item = &str> {
+        let is_number = |property: &PropertyDef| matches!(property.data_type, PropertyType::Scalar(_));
+        let numbers = element.properties.iter().filter(move |(_, property)| is_number(property));
+        numbers.map(|(name, _)| name.as_str()).filter(|name| !Self::is_position(name))
+    }
+
+    fn is_position(name: &str) -> bool {
+        matches!(Field::named(name), Some(Field::Position(_)))
+    }
+}
+
+impl PropertyAccess for Everything {
+    fn new() -> Self {
+        Self { known: Vertex::default(), others: Vec::new() }
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let value = property.to_f32_lossy();
+        let known = self.known.set_property(name, property);
+        match value {
+            Some(value) if !Self::is_position(name) => self.others.push(value),
+            _ => return known,
+        }
+        match known {
+            PropertyAccessResult::Ignored => PropertyAccessResult::Set,
+            known => known,
+        }
     }
 }
 

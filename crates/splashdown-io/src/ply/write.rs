@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::attribute::Attribute;
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::particles::Particles;
@@ -63,6 +64,10 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     if !mesh.velocities.is_empty() {
         columns.push((bytes(&mesh.velocities), 12, "float vx vy vz"));
     }
+    let names: Vec<String> = mesh.attributes.iter().map(properties).collect();
+    for (attribute, names) in mesh.attributes.iter().zip(&names) {
+        columns.push((bytes(&attribute.values), 4 * attribute.components, names));
+    }
 
     begin(out)?;
     element(out, "vertex", mesh.vertices.len(), &columns)?;
@@ -80,6 +85,19 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
         out.write_all(&buffer)?;
     }
     Ok(())
+}
+
+/// A scalar is a property of its name, a vector `a` the properties `a_x a_y a_z`.
+fn properties(attribute: &Attribute) -> String {
+    let mut name = attribute.word();
+    // What the vertices have already.
+    if ["x", "y", "z", "nx", "ny", "nz", "vx", "vy", "vz"].contains(&name.as_str()) {
+        name.push('_');
+    }
+    match attribute.components {
+        3 => format!("float {name}_x {name}_y {name}_z"),
+        _ => format!("float {name}"),
+    }
 }
 
 fn invalid(error: IoError) -> io::Error {

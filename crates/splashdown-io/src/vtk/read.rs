@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::columns::{Column, Number, triples};
+use crate::columns::{Number, Wanted, triples};
 use crate::error::IoError;
 use crate::particles::Particles;
-use crate::read::content;
+use crate::read::{content, not_particles};
 
 /// Reads the points of a legacy VTK file of the kinds `POLYDATA` and `UNSTRUCTURED_GRID`: positions, and of the point
 /// arrays `velocity` (`v`), `density`, `pressure` and `id`. Cells and other arrays are passed over.
@@ -13,8 +13,12 @@ use crate::read::content;
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`], which names the offset.
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
-    let mut file = Cursor { bytes: &bytes, at: 0, binary: false };
+    let mut file = Cursor { bytes: &bytes, at: 0, binary: false, wanted };
     file.parse().map_err(|reason| {
         let place = file.at.min(bytes.len());
         IoError::malformed(path, "VTK", format!("{reason} (near byte {place} of {})", bytes.len()))
@@ -26,6 +30,7 @@ struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
     binary: bool,
+    wanted: Wanted,
 }
 
 /// Which elements the arrays that follow belong to, with their number.
@@ -135,12 +140,12 @@ impl Cursor<'_> {
         owner: Owner,
         particles: &mut Particles,
     ) -> Result<(), String> {
-        match (owner, Column::named(name, components)) {
-            (Owner::Points(points), Some(column)) => {
+        match owner {
+            Owner::Points(points) if self.wanted.has(name, components) => {
                 let values = self.numbers(points, components, kind)?;
-                column.append(particles, &values)
+                self.wanted.append(particles, name, components, &values)
             }
-            (Owner::Points(rows) | Owner::Others(rows), _) => self.skip(rows, components, kind),
+            Owner::Points(rows) | Owner::Others(rows) => self.skip(rows, components, kind),
         }
     }
 
@@ -150,7 +155,15 @@ impl Cursor<'_> {
         let (first, second) = (number(1)?, number(2)?);
         let before = self.at;
         let offsets = self.words().unwrap_or_default();
-        if offsets.first().is_some_and(|word| word == "OFFSETS") {
+        let is_new = offsets.first().is_some_and(|word| word == "OFFSETS");
+        // Triangles or quadrilaterals; the one cell of all points that some programs write has as many corners as there are points.
+        let (cells, corners) =
+            if is_new { (first.saturating_sub(1), second) } else { (first, second.saturating_sub(first)) };
+        let is_mesh = cells > 1 && [3, 4].iter().any(|n| cells.checked_mul(*n) == Some(corners));
+        if is_mesh || (cells > 0 && words.first().is_some_and(|word| word == "POLYGONS")) {
+            return Err(not_particles(cells));
+        }
+        if is_new {
             self.skip(first, 1, offsets.get(1).map_or("", String::as_str))?;
             let connectivity = self.words()?;
             return self.skip(second, 1, connectivity.get(1).map_or("", String::as_str));

@@ -30,7 +30,7 @@ pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoErro
 }
 
 /// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes. Normals and velocities that are
-/// present become the point arrays `normals` and `velocity`.
+/// present become the point arrays `normals` and `velocity`, attributes those of their names.
 ///
 /// # Errors
 /// Those of [`Mesh::check`]; [`IoError::Write`].
@@ -66,7 +66,15 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     writeln!(out, "POINT_DATA {}", mesh.vertices.len())?;
     // Not `NORMALS`, at which `meshio` gives up.
     vectors(out, "VECTORS normals", &mesh.normals)?;
-    vectors(out, "VECTORS velocity", &mesh.velocities)
+    vectors(out, "VECTORS velocity", &mesh.velocities)?;
+    for attribute in &mesh.attributes {
+        let name = attribute.word();
+        match attribute.values.as_chunks() {
+            (values, []) if attribute.components == 3 => vectors(out, &format!("VECTORS {name}"), values)?,
+            _ => scalars(out, &format!("{name} float"), bytemuck::cast_slice(&attribute.values))?,
+        }
+    }
+    Ok(())
 }
 
 fn invalid(error: IoError) -> io::Error {

@@ -5,10 +5,10 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::decode::{Appended, Encoding, Layout};
-use crate::columns::{Column, Number, triples};
+use crate::columns::{Number, Wanted, triples};
 use crate::error::IoError;
 use crate::particles::Particles;
-use crate::read::{MOST, content};
+use crate::read::{MOST, content, not_particles};
 
 /// Reads the points of a VTU or VTP file: positions, and of the point arrays `velocity` (`v`), `density`, `pressure`
 /// and `id`. Pieces follow one another; cells and other arrays are passed over.
@@ -16,15 +16,19 @@ use crate::read::{MOST, content};
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`]; [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+    read(path, Wanted::Known)
+}
+
+pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
-    let particles = parse(&bytes).map_err(|reason| IoError::malformed(path, "VTU", reason))?;
+    let particles = parse(&bytes, wanted).map_err(|reason| IoError::malformed(path, "VTU", reason))?;
     match particles.len() {
         given if given > MOST => Err(IoError::TooMany { what: "particles", given, limit: MOST }),
         _ => Ok(particles),
     }
 }
 
-fn parse(bytes: &[u8]) -> Result<Particles, String> {
+fn parse(bytes: &[u8], wanted: Wanted) -> Result<Particles, String> {
     let (xml, raw) = split(bytes)?;
     let options = ParsingOptions { nodes_limit: 1 << 16, ..ParsingOptions::default() };
     let document = Document::parse_with_options(&xml, options).map_err(|error| error.to_string())?;
@@ -63,7 +67,7 @@ fn parse(bytes: &[u8]) -> Result<Particles, String> {
     };
     let mut particles = Particles::default();
     for piece in root.descendants().filter(|node| node.has_tag_name("Piece")) {
-        Piece { piece, layout, appended: appended.as_ref() }.add_to(&mut particles)?;
+        Piece { piece, layout, appended: appended.as_ref(), wanted }.add_to(&mut particles)?;
     }
     Ok(particles)
 }
@@ -92,6 +96,7 @@ struct Piece<'a, 'x> {
     piece: Node<'a, 'x>,
     layout: Layout,
     appended: Option<&'a Appended<'a>>,
+    wanted: Wanted,
 }
 
 impl Piece<'_, '_> {
@@ -100,6 +105,10 @@ impl Piece<'_, '_> {
         let count: usize = given.parse().map_err(|_| format!("its piece has `{given}` points"))?;
         if count > MOST {
             return Err(format!("its piece has {count} points, at most {MOST} are read"));
+        }
+        let polygons = self.piece.attribute("NumberOfPolys").and_then(|given| given.parse().ok());
+        if let Some(polygons) = polygons.filter(|&polygons| polygons > 0) {
+            return Err(not_particles(polygons));
         }
         let arrays = |section: &'static str| {
             let sections = self.piece.children().filter(move |node| node.has_tag_name(section));
@@ -113,8 +122,9 @@ impl Piece<'_, '_> {
         for array in arrays("PointData") {
             let name = array.attribute("Name").unwrap_or_default();
             let components = array.attribute("NumberOfComponents").unwrap_or("1").parse().unwrap_or(0);
-            if let Some(column) = Column::named(name, components) {
-                column.append(particles, &self.values(array, count, components)?)?;
+            if self.wanted.has(name, components) {
+                let values = self.values(array, count, components)?;
+                self.wanted.append(particles, name, components, &values)?;
             }
         }
         Ok(())

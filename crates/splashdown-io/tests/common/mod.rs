@@ -53,6 +53,7 @@ pub fn particles(count: usize) -> Particles {
         velocities: (0..count).map(|n| std::array::from_fn(|axis| value(n, axis + 3) * 9.0)).collect(),
         densities: (0..count).map(|n| 1000.0 + value(n, 6)).collect(),
         pressures: (0..count).map(|n| 1e4 * value(n, 7)).collect(),
+        ..Particles::default()
     }
 }
 

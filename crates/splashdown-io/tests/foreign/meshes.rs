@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use splashdown_io::{Mesh, mesh, read_mesh};
+use splashdown_io::{Attribute, Mesh, mesh, read_mesh};
 
 use crate::common;
 use crate::python::{Found, Sums, close, read, same};
@@ -10,14 +10,29 @@ use crate::python::{Found, Sums, close, read, same};
 fn given() -> Mesh {
     let mut mesh = common::torus(0.4, 0.15, 24, 12);
     mesh.velocities = mesh.vertices.iter().map(|&[x, y, z]| [2.0 * z, 0.1 + x * y, -2.0 * x]).collect();
+    let (heights, places) = (mesh.vertices.iter().map(|vertex| vertex[1]), mesh.vertices.as_flattened());
+    mesh.attributes = vec![
+        Attribute {
+            name: "temperature".to_owned(),
+            components: 1,
+            values: heights.map(|y| 290.0 + y).collect(),
+        },
+        Attribute {
+            name: "force".to_owned(),
+            components: 3,
+            values: places.iter().map(|x| 3.0 * x - 0.1).collect(),
+        },
+    ];
     mesh
 }
 
-/// The same with one vertex and one velocity moved, and a triangle turned over.
+/// The same with one vertex and one velocity moved, other attributes, and a triangle turned over.
 fn changed(given: &Mesh) -> Mesh {
     let mut changed = given.clone();
     changed.vertices[20][0] += 1e-3;
     changed.velocities[20][2] += 0.1;
+    changed.attributes[0].values[20] += 1.0;
+    changed.attributes[1].values[20] += 1.0;
     changed.triangles[3].swap(0, 1);
     changed
 }
@@ -45,6 +60,8 @@ fn vtk_and_meshio_open_legacy_vtk() {
         ("positions", Sums::vectors(&mesh.vertices)),
         ("normals", Sums::vectors(&mesh.normals)),
         ("velocity", Sums::vectors(&mesh.velocities)),
+        ("temperature", Sums::numbers(&mesh.attributes[0].values)),
+        ("force", Sums::vectors(mesh.attributes[1].values.as_chunks().0)),
     ];
     if let Some(found) = found("vtk_opens_legacy_vtk", "vtk", "vtk") {
         check(&found, &vectors);
@@ -54,6 +71,26 @@ fn vtk_and_meshio_open_legacy_vtk() {
         check(&found, &vectors[..1]);
         check(&found, &vectors[2..]);
         check(&found, &[("cells", Sums::corners(&mesh.triangles, false))]);
+    }
+}
+
+#[test]
+fn meshio_opens_ply_with_attributes() {
+    let mesh = given();
+    let Some(found) = found("meshio_opens_ply_with_attributes", "meshio", "ply") else { return };
+    let axis = |vectors: &[[f32; 3]], axis: usize| -> Sums {
+        Sums::numbers(&vectors.iter().map(|vector| vector[axis]).collect::<Vec<_>>())
+    };
+    check(
+        &found,
+        &[
+            ("positions", Sums::vectors(&mesh.vertices)),
+            ("vz", axis(&mesh.velocities, 2)),
+            ("temperature", Sums::numbers(&mesh.attributes[0].values)),
+        ],
+    );
+    for (number, name) in ["force_x", "force_y", "force_z"].into_iter().enumerate() {
+        same(&found[0], name, &axis(mesh.attributes[1].values.as_chunks().0, number));
     }
 }
 

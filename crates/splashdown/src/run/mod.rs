@@ -16,7 +16,7 @@ use web_time::Instant;
 
 use crate::probes::FluidProbes;
 use crate::scene::{Domain, Motion, Scene};
-use crate::surface::{Surface, vertex_velocities};
+use crate::surface::{Surface, interpolate};
 use crate::{BodyMesh, BodyState, Foam, Simulation, SimulationError, Stats};
 
 /// Time between two [`Event::Progress`].
@@ -248,7 +248,7 @@ impl Run {
         let particles = Arc::new(self.simulation.particles()?);
         if let (Some(mesh), Some(surface), true) = (&mut mesh, &self.surface, self.vertex_velocities) {
             let (positions, velocities) = (&particles.positions, &particles.velocities);
-            mesh.velocities = vertex_velocities(&mesh.vertices, positions, velocities, surface.params())?;
+            mesh.velocities = interpolate(&mesh.vertices, positions, velocities, surface.params())?;
         }
         let volume = mesh.as_ref().map(Mesh::volume);
         if let Some(volume) = volume {

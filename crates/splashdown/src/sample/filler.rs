@@ -173,13 +173,7 @@ impl<'a> Filler<'a> {
     /// Everything that was put in, numbered from 0.
     pub fn finish(self) -> Particles {
         let ids = (0..self.positions.len() as u32).collect();
-        Particles {
-            ids,
-            positions: self.positions,
-            velocities: self.velocities,
-            densities: Vec::new(),
-            pressures: Vec::new(),
-        }
+        Particles { ids, positions: self.positions, velocities: self.velocities, ..Particles::default() }
     }
 }
 

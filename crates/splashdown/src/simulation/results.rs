@@ -161,5 +161,6 @@ fn in_order_of_id(ids: &[u32], positions: &[Vec4], velocities: &[Vec4], densitie
         velocities: order().map(|i| velocities[i].xyz().to_array()).collect(),
         densities: order().map(|i| densities[i].x).collect(),
         pressures: order().map(|i| densities[i].y).collect(),
+        ..Particles::default()
     }
 }

@@ -48,6 +48,10 @@ pub fn drop_blobs(mesh: &mut Mesh, volume: f64) -> usize {
         let mut keep = keep.iter();
         values.retain(|_| keep.next().is_some_and(|&keep| keep));
     }
+    for attribute in &mut mesh.attributes {
+        let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
+        attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
+    }
     count
 }
 
@@ -72,6 +76,7 @@ mod tests {
     use super::*;
     use crate::surface::{SurfaceParams, reconstruct};
     use splashdown_gpu::{CpuExecutor, Executor};
+    use splashdown_io::Attribute;
 
     #[test]
     fn crumbs_go_and_the_rest_stays_as_it_was() {
@@ -84,6 +89,11 @@ mod tests {
         let (alone, _) = reconstruct(&block, &params, &mut executor).unwrap();
         let (mut mesh, _) = reconstruct(&[&block[..], &lone].concat(), &params, &mut executor).unwrap();
         mesh.velocities = mesh.vertices.clone();
+        let heights = mesh.vertices.iter().map(|vertex| vertex[1]).collect();
+        let places = mesh.vertices.as_flattened().to_vec();
+        for (components, values) in [(1, heights), (3, places)] {
+            mesh.attributes.push(Attribute { name: "a".to_owned(), components, values });
+        }
         let particle = f64::from(spacing).powi(3);
         // A lone particle's ball is somewhat larger than its share of the bulk.
         assert_eq!(drop_blobs(&mut mesh, 0.1 * particle), 0);
@@ -91,6 +101,8 @@ mod tests {
         assert_eq!(drop_blobs(&mut mesh, 3.0 * particle), 2);
         assert_eq!(mesh.vertices.len(), alone.vertices.len());
         assert_eq!(mesh.velocities, mesh.vertices);
+        assert!(mesh.vertices.iter().map(|vertex| vertex[1]).eq(mesh.attributes[0].values.iter().copied()));
+        assert_eq!(mesh.attributes[1].values, mesh.vertices.as_flattened());
         let topology = mesh.topology().unwrap();
         assert!(topology.is_watertight() && topology.components == 1 && topology.unused_vertices == 0);
         assert!((mesh.volume() / alone.volume() - 1.0).abs() < 1e-3);

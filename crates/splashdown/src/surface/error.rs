@@ -19,6 +19,17 @@ pub enum SurfaceError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// No point of the field is as high as the level of the surface.
+    #[error(
+        "there is no surface at an iso_level of {given}: the field of these particles goes from 0 outside to {highest:.3} \
+         inside; choose one between, such as 0.6"
+    )]
+    NoSurface {
+        /// The level given.
+        given: f32,
+        /// The highest value at any node.
+        highest: f32,
+    },
     /// The search grid is finer than the kernel.
     #[error(
         "the neighbour grid's cells are {cell_size} m wide, the surface's support_radius is {support_radius} \

@@ -168,6 +168,13 @@ pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> R
 }
 
 impl Surface {
+    /// The highest value of the field at the nodes of the last extraction.
+    pub(super) fn highest(&self, executor: &mut Executor, stats: &SurfaceStats) -> Result<f32, SurfaceError> {
+        let nodes = stats.blocks as usize * NODES;
+        let values = block_on(executor.fetch_first(self.b.values, nodes))?;
+        Ok(values.into_iter().fold(0.0, f32::max))
+    }
+
     /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when
     /// needed.
     ///

@@ -41,6 +41,7 @@ mod blocks;
 mod error;
 mod field;
 mod gather;
+mod interpolate;
 mod march;
 mod mesh;
 mod modules;
@@ -52,16 +53,15 @@ mod spline;
 pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
-mod velocities;
 mod volume;
 
 pub use blobs::drop_blobs;
 pub use error::SurfaceError;
+pub use interpolate::interpolate;
 pub(crate) use mesh::forecast;
 pub use mesh::{Surface, SurfaceInput, SurfaceStats};
 pub use params::{Status, SurfaceParams};
 pub use reconstruct::reconstruct;
-pub use velocities::vertex_velocities;
 
 use splashdown_gpu::PassDesc;
 

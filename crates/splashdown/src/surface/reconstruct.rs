@@ -23,8 +23,8 @@ use crate::cells::Grid;
 /// ```
 ///
 /// # Errors
-/// [`SurfaceError`] if a parameter makes no sense, the points are too far apart for the cell size, or the
-/// device is too small.
+/// [`SurfaceError`] if a parameter makes no sense, there is no surface at the level that is asked for, the points are
+/// too far apart for the cell size, or the device is too small.
 pub fn reconstruct(
     positions: &[[f32; 3]],
     params: &SurfaceParams,
@@ -39,12 +39,16 @@ pub fn reconstruct(
     let mut input = upload(executor, &finite, params)?;
     let mut surface = Surface::new(executor, *params, input)?;
     let stats = surface.extract(executor)?;
+    let highest = if stats.triangles == 0 { Some(surface.highest(executor, &stats)?) } else { None };
     // Before the mesh is copied: the field is most of the memory.
     surface.release_field(executor)?;
     executor.resize(&mut input.positions, 0)?;
     executor.resize(&mut input.cell_start, 0)?;
     let mesh = surface.mesh(executor)?;
     surface.release(executor)?;
+    if let Some(highest) = highest {
+        return Err(SurfaceError::NoSurface { given: params.iso_level, highest });
+    }
     Ok((mesh, SurfaceStats { not_finite, ..stats }))
 }
 

@@ -1,0 +1,140 @@
+//! What else files have for each particle, and meshes that are no particles.
+
+mod common;
+
+use std::fs;
+
+use splashdown_io::{Attribute, Mesh, Particles, mesh, particles, read_all, read_particles};
+
+fn attribute<'a>(particles: &'a Particles, name: &str) -> &'a Attribute {
+    let names: Vec<_> = particles.attributes.iter().map(|attribute| &attribute.name).collect();
+    let found = particles.attributes.iter().find(|attribute| attribute.name == name);
+    found.unwrap_or_else(|| panic!("there is no `{name}` among {names:?}"))
+}
+
+#[test]
+fn every_format_gives_all_that_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = common::particles(1500);
+    for (ending, [velocity, density, pressure]) in [
+        ("ply", ["velocity", "density", "pressure"]),
+        ("vtk", ["velocity", "density", "pressure"]),
+        ("vtu", ["velocity", "density", "pressure"]),
+        ("bgeo", ["v", "density", "pressure"]),
+        ("npz", ["velocities", "densities", "pressures"]),
+    ] {
+        let path = folder.path().join(format!("all.{ending}"));
+        particles::write(&path, &given).unwrap();
+        let read = read_all(&path).unwrap();
+        assert_eq!(attribute(&read, velocity).values, given.velocities.as_flattened(), "{ending}");
+        assert!(attribute(&read, velocity).is_velocity());
+        assert_eq!(attribute(&read, density).values, given.densities, "{ending}");
+        assert_eq!(attribute(&read, pressure).values, given.pressures, "{ending}");
+        assert_eq!(read.attributes.iter().filter(|attribute| attribute.is_id()).count(), 1, "{ending}");
+        // All else is as without them.
+        let (bare, read) = (read_particles(&path).unwrap(), Particles { attributes: Vec::new(), ..read });
+        assert!(bare == read && bare == given, "{ending}");
+    }
+}
+
+#[test]
+fn attributes_of_any_name_and_type_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        read_all(&path).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let head =
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\nPOINT_DATA 2\n";
+    let read = write(
+        "a.vtk",
+        &format!(
+            "{head}SCALARS Temperature double 1\nLOOKUP_TABLE default\n1.5 2.5\nTENSORS stress float\n{}\n\
+             FIELD data 2\nforce 3 2 float\n1 2 3 4 5 6\nphase 1 2 int\n7 8\n",
+            "0 ".repeat(18)
+        ),
+    );
+    assert_eq!(attribute(&read, "Temperature").values, [1.5, 2.5]);
+    assert_eq!(attribute(&read, "force").components, 3);
+    assert_eq!(attribute(&read, "phase").values, [7.0, 8.0]);
+    assert_eq!(read.attributes.len(), 3);
+
+    let vertex = "property double x\nproperty double y\nproperty double z\nproperty uchar phase\n\
+                  property float f_x\nproperty float f_y\nproperty float f_z\nproperty list uchar int near\nproperty float h\n";
+    let read = write(
+        "a.ply",
+        &format!(
+            "ply\nformat ascii 1.0\nelement vertex 2\n{vertex}end_header\n0 0 0 7 1 2 3 2 9 9 0.5\n1 0 0 8 4 5 6 0 0.25\n"
+        ),
+    );
+    assert_eq!(attribute(&read, "phase").values, [7.0, 8.0]);
+    assert_eq!(attribute(&read, "f").values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    assert_eq!(attribute(&read, "h").values, [0.5, 0.25]);
+
+    // One that a piece lacks belongs to nobody.
+    let piece = |more: &str| {
+        format!(
+            "<Piece NumberOfPoints=\"1\"><PointData>{more}</PointData><Points><DataArray type=\"Float32\" \
+             NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray></Points></Piece>"
+        )
+    };
+    let array =
+        |name: &str| format!("<DataArray type=\"Int8\" Name=\"{name}\" format=\"ascii\">5</DataArray>");
+    let (first, second) = (piece(&(array("a") + &array("b"))), piece(&array("a")));
+    let read =
+        write("a.vtp", &format!("<VTKFile type=\"PolyData\"><PolyData>{first}{second}</PolyData></VTKFile>"));
+    assert_eq!(attribute(&read, "a").values, [5.0, 5.0]);
+    assert_eq!(read.attributes.len(), 1);
+}
+
+#[test]
+fn meshes_hold_attributes_and_are_no_particles() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut torus = common::torus(0.4, 0.15, 24, 12);
+    let heights: Vec<f32> = torus.vertices.iter().map(|vertex| vertex[1]).collect();
+    let attribute = |name: &str, components, values| Attribute { name: name.to_owned(), components, values };
+    torus.attributes.push(attribute("two words", 1, heights.clone()));
+    torus.attributes.push(attribute("place", 3, torus.vertices.as_flattened().to_vec()));
+    let path = |name: &str| folder.path().join(name);
+
+    // In PLY the attributes are the last columns of a row.
+    mesh::write(&path("mesh.ply"), &torus).unwrap();
+    let bytes = fs::read(path("mesh.ply")).unwrap();
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+    let header = String::from_utf8_lossy(&bytes[..start]);
+    assert!(header.contains("float two_words\nproperty float place_x\n"), "{header}");
+    let numbers: Vec<f32> = bytes[start..].chunks_exact(4).map(bytemuck::pod_read_unaligned).collect();
+    let row = 6 + 1 + 3;
+    for (vertex, height) in heights.iter().enumerate() {
+        assert_eq!(numbers[vertex * row + 6], *height);
+        assert_eq!(numbers[vertex * row + 7..vertex * row + 10], torus.vertices[vertex]);
+    }
+    // In VTK they follow their names, the highest byte first.
+    mesh::write(&path("mesh.vtk"), &torus).unwrap();
+    let bytes = fs::read(path("mesh.vtk")).unwrap();
+    let after = |words: &str| {
+        let at = bytes.windows(words.len()).position(|window| window == words.as_bytes());
+        let rest = &bytes[at.unwrap_or_else(|| panic!("no {words}")) + words.len()..];
+        rest.chunks_exact(4).map(|word| f32::from_be_bytes([word[0], word[1], word[2], word[3]]))
+    };
+    assert!(after("SCALARS two_words float 1\nLOOKUP_TABLE default\n").take(heights.len()).eq(heights));
+    let places = torus.vertices.as_flattened();
+    assert!(after("VECTORS place float\n").take(places.len()).eq(places.iter().copied()));
+
+    for name in ["mesh.ply", "mesh.vtk"] {
+        let message = read_particles(&path(name)).unwrap_err().to_string();
+        assert!(message.contains("it is a mesh of 576 faces"), "{message}");
+    }
+    let text = "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"/></PolyData></VTKFile>";
+    fs::write(path("mesh.vtp"), text).unwrap();
+    assert!(read_particles(&path("mesh.vtp")).unwrap_err().to_string().contains("mesh of 1 face,"));
+
+    // Of the wrong length, or neither numbers nor vectors.
+    for (components, values) in [(1, vec![0.0; 5]), (2, vec![0.0; 2 * torus.vertices.len()])] {
+        let wrong = Mesh { attributes: vec![attribute("odd", components, values)], ..torus.clone() };
+        let message = mesh::write(&path("wrong.ply"), &wrong).unwrap_err().to_string();
+        assert!(message.contains("`odd`"), "{message}");
+    }
+}
