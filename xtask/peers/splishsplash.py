@@ -1,9 +1,10 @@
 """Times steps of SPlisHSPlasH: its own dam break, with the block and the box twice as long.
 
-usage: splishsplash.py wcsph|dfsph DIVISOR STEPS
+usage: splishsplash.py wcsph|dfsph DIVISOR STEPS FOLDER
 
 The block has 40 particles a side (64,000), DIVISOR times fewer for a trial. WCSPH gets the stiffness, exponent and time
-step below; DFSPH is as in the scene. The number of threads comes from OMP_NUM_THREADS. Prints one line of JSON.
+step below; DFSPH is as in the scene. The folder is for the scene and for what it keeps beside it: the box's map. The
+number of threads comes from OMP_NUM_THREADS. Prints one line of JSON.
 """
 
 import ctypes
@@ -49,7 +50,7 @@ def scene(method, divisor, folder):
     # One corner of the box, less the distance of the scene's own from its walls.
     gap, [left, floor] = 0.05, [box["translation"][axis] - box["scale"][axis] / 2 for axis in (0, 1)]
     block["translation"] = [left + gap - block["start"][0], floor + gap - block["start"][1], 0]
-    path = os.path.join(folder, "scene.json")
+    path = os.path.join(folder, f"{method}_{divisor}.json")
     with open(path, "w") as file:
         json.dump(scene, file)
     return path
@@ -65,12 +66,11 @@ def neighbours(simulation):
 
 
 def main():
-    method, divisor, steps = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    method, divisor, steps, place = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
     with tempfile.TemporaryDirectory() as folder:
         base = sph.Exec.SimulatorBase()
         base.init(
-            sceneFile=scene(method, divisor, folder),
-            useCache=False,
+            sceneFile=scene(method, divisor, place),
             outputDir=os.path.join(folder, "out"),
             initialPause=False,
             useGui=False,

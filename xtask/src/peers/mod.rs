@@ -16,7 +16,7 @@ use crate::report::Page;
 use crate::{python, report, setup};
 
 /// How often each side is measured, in turn; the median counts.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 /// What both sides are started with.
 struct Sides {

@@ -15,7 +15,7 @@ use crate::report::Page;
 const BAR: f64 = 10.0;
 
 /// Steps of the peer in a round, after its warm-up.
-const STEPS: u32 = 60;
+const STEPS: u32 = 40;
 
 /// The peer's dam break: a block of 2 m in a box of 8 m, 6 m and 3 m, in particles 0.05 m apart, all `divisor` times shorter.
 fn scene(divisor: f64) -> String {
@@ -116,7 +116,7 @@ fn their_step(sides: &Sides, method: &str, divisor: u32) -> Result<String> {
     let mut script = command(&sides.python);
     script.arg(root().join("xtask/peers/splishsplash.py")).env("OMP_NUM_THREADS", sides.threads.to_string());
     let steps = if sides.quick { 10 } else { STEPS };
-    answer(script.args([method, &divisor.to_string(), &steps.to_string()]))
+    answer(script.args([method, &divisor.to_string(), &steps.to_string()]).arg(&sides.folder))
 }
 
 #[cfg(test)]
