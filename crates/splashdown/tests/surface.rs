@@ -188,15 +188,23 @@ proptest! {
 
     #[test]
     fn any_particles_give_a_closed_manifold_oriented_mesh(points in clouds(), params in parameters()) {
-        let (mesh, stats) = reconstruct(&points, &params, &mut cpu()).unwrap();
+        let (mesh, stats) = match reconstruct(&points, &params, &mut cpu()) {
+            // Coarse cells miss a lone particle, and not every cloud is as dense as the highest levels.
+            Err(SurfaceError::NoSurface { given, highest }) => {
+                prop_assert!(given == params.iso_level && (0.0..given).contains(&highest), "{highest}");
+                return Ok(());
+            }
+            outcome => outcome.unwrap(),
+        };
         mesh.check().unwrap();
+        prop_assert!(!mesh.is_empty());
         let topology = mesh.topology().unwrap();
         prop_assert!(topology.is_watertight(), "{topology}");
         prop_assert_eq!(topology.unused_vertices, 0);
         prop_assert_eq!(stats.triangles as usize, mesh.triangles.len());
         prop_assert!(mesh.vertices.iter().chain(&mesh.normals).flatten().all(|x| x.is_finite()));
         // Smoothing may turn a piece of two or three cells inside out, marching cubes never.
-        if params.smoothing_iterations == 0 && !mesh.is_empty() {
+        if params.smoothing_iterations == 0 {
             prop_assert!(mesh.volume() > 0.0);
         }
     }

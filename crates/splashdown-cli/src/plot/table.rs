@@ -23,6 +23,10 @@ pub struct Curve {
 /// If the file cannot be read, or is no table of numbers below names; the line is told.
 pub fn read(path: &Path) -> Result<Vec<Curve>, Failure> {
     let wrong = |reason: String| Failure::new(Exit::Scene, format!("`{}`: {reason}", path.display()));
+    if path.is_dir() {
+        let files = path.join("*.csv");
+        return Err(wrong(format!("it is a folder; name the tables in it, as in {}", files.display())));
+    }
     let bytes = std::fs::read(path).map_err(|error| wrong(error.to_string()))?;
     let text = String::from_utf8_lossy(&bytes);
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();

@@ -40,5 +40,8 @@ fn what_cannot_be_plotted_is_told() -> Outcome {
     ] {
         assert_refused(&place.splashdown(&["plot", table, "-o", out]).output()?, code, words);
     }
+    fs::create_dir(place.path("probes"))?;
+    let folder = place.splashdown(&["plot", "probes", "-o", "a.svg"]).output()?;
+    assert_refused(&folder, 3, &["folder", "*.csv"]);
     Ok(())
 }

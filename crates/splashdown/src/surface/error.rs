@@ -22,7 +22,7 @@ pub enum SurfaceError {
     /// No point of the field is as high as the level of the surface.
     #[error(
         "there is no surface at an iso_level of {given}: the field of these particles goes from 0 outside to {highest:.3} \
-         inside; choose one between, such as 0.6"
+         inside; choose one between (0.6 is usual), or smaller cells"
     )]
     NoSurface {
         /// The level given.
