@@ -48,10 +48,12 @@ fn two_runs_do_not_write_into_one_folder() -> Outcome {
     first.wait()?;
     assert_refused(&refused, 2, &["another run is writing into `out`", "--out"]);
     assert!(beside.status.success(), "{}", stderr(&beside));
+    // Half a file, as the killed one may have left it, goes with its frames.
+    let half = place.write("out/particles/.particles_0007.ply.1-2.partial", "ply")?;
     // What a killed run leaves holds nobody up, and a run that ends leaves nothing.
     let output = place.run_small(&[]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    assert!(!place.path("out/.lock").exists());
+    assert!(!place.path("out/.lock").exists() && !half.exists());
     Ok(())
 }
 

@@ -97,7 +97,8 @@ impl Session {
         if let Some(frame) = begins {
             teller.resumed(frame as usize + 1);
         }
-        if begins.is_some() {
+        // Where a run has been, what it left half-written is of no use to anybody.
+        if begins.is_some() || layout.report().exists() {
             checkpoints::remove_partial(layout.root());
         }
         let mut files = Files::start(layout.clone(), &scene, surface, begins)?;
