@@ -18,7 +18,10 @@ impl Page {
         let mut page = Self { text: String::new() };
         page.add(&format!("# {title}"));
         page.add(&format!("Written by `{}`, {}, on {}", command.trim(), date(), machine(binary)?));
-        page.add("Shared machines are noisy: trust ratios taken in one run, not single times.");
+        page.add(&format!(
+            "Shared machines are noisy: trust ratios taken in one run, not single times.{}",
+            load().map_or_else(String::new, |load| format!(" Load before the first measurement: {load}."))
+        ));
         Ok(page)
     }
 
@@ -59,6 +62,11 @@ fn civil(days: u64) -> [u64; 3] {
     let january = month >= 10;
     let number = if january { month - 9 } else { month + 3 };
     [year + era * 400 + u64::from(january), number, day - (153 * month + 2) / 5 + 1]
+}
+
+/// How many programs wanted to run on average over the last minute, where the system tells.
+fn load() -> Option<String> {
+    Some(fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.to_owned())
 }
 
 /// Threads that this machine runs at once.

@@ -101,7 +101,8 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
          here, cubic spline there), walls (integrals here, volume maps there; neither has boundary particles, so both visit fluid neighbours only), \
          viscosity, and how long the steps are: ours follow the speed of sound, DFSPH's are ten and more times longer and hold several \
          iterations each. A step of DFSPH is not to be compared with one of WCSPH; it is there to tell what a user of it waits for. \
-         Peak memory is that of the whole process, Python included.",
+         Peak memory is that of the whole process, Python included. \
+         On a busy machine the peer's threads wait for each other actively and lose more than ours do: measure on a quiet one.",
     );
     Ok(())
 }
