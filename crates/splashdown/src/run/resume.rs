@@ -70,7 +70,8 @@ impl Run {
         Ok(run)
     }
 
-    /// Everything that is needed to go on after the last [`Event::Frame`]; call it before asking for the next event.
+    /// Everything that is needed to go on after the last [`Event::Frame`](super::Event::Frame); call it before asking for
+    /// the next event.
     ///
     /// # Errors
     /// As [`Simulation::checkpoint`].

@@ -1,6 +1,6 @@
 //! Arithmetic on a register of numbers, as wide as the processor has them.
 //!
-//! *How it works.* A formula is written once over [`Lanes`]; a [`Leaf`] is compiled for every kind of register, and
+//! *How it works.* A formula is written once over [`Lanes`]; a `Leaf` is compiled for every kind of register, and
 //! the widest of this processor is chosen while running (`target-cpu=native` would add nothing).
 //!
 //! *Why not* plain loops that the compiler vectorises: whether it does changes with an unrelated line, by a factor of

@@ -88,7 +88,7 @@ impl Solver {
     }
 
     /// One step: the settling of the last one, sort, density and pressure, accelerations, motion. Before the first one of a
-    /// frame goes [`begin_frame`], behind the last one of a submission [`settle`]. Needs accelerations unless it
+    /// frame goes [`begin_frame`], behind the last one of a submission `settle`. Needs accelerations unless it
     /// [fuses](Self::fuses) and there are no things.
     pub fn step(&self, cells: &Cells, fields: &Fields, things: &Things<'_>, particles: u32) -> Recording {
         let Things { bodies, flow, probes, stirrer } = *things;
