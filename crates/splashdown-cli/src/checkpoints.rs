@@ -110,7 +110,7 @@ pub fn find(path: &Path) -> Result<Found, Failure> {
     }
     if !path.is_dir() {
         let message = format!(
-            "--resume: there is no `{}`; name the output folder of a run, or a file that ends in .{}",
+            "there is no `{}`; name the output folder of a run, or a file that ends in .{}",
             path.display(),
             Checkpoint::ENDING
         );
@@ -133,10 +133,10 @@ pub fn find(path: &Path) -> Result<Found, Failure> {
     }
     let reason = match (passed_over.as_slice(), any_in(path)) {
         ([], None) => "it holds none; `--checkpoint-every N` writes them, and so does Ctrl-C".to_owned(),
-        ([], Some(file)) => format!("no run wrote it; name a file, as in `--resume {}`", file.display()),
+        ([], Some(file)) => format!("no run wrote it; name a file, as in `{}`", file.display()),
         (reasons, _) => reasons.join("; "),
     };
-    Err(refuse(format!("--resume: no checkpoint in `{}` can be used: {reason}", path.display())))
+    Err(refuse(format!("no checkpoint in `{}` can be used: {reason}", path.display())))
 }
 
 fn read(path: &Path) -> Result<(Checkpoint, Wishes), CheckpointError> {

@@ -9,7 +9,8 @@ use super::DeviceArgument;
 /// Options of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArguments {
-    /// Scene file (TOML), the name of one that comes with the program, or a checkpoint to go on from
+    /// Scene file (TOML), the name of one that comes with the program, or what to go on from: a checkpoint, or the
+    /// output folder of a run
     #[arg(value_name = "SCENE", default_value = "dam-break")]
     pub scene: PathBuf,
     #[command(flatten)]

@@ -14,11 +14,12 @@ use crate::{checkpoints, scene_file};
 /// # Errors
 /// The scene's problems; no display or no driver.
 pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
-    let is_checkpoint = arguments.scene.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
-    let checkpoint = if is_checkpoint { Some(checkpoints::find(&arguments.scene)?.checkpoint) } else { None };
+    let path = &arguments.scene;
+    let is_checkpoint = path.is_dir() || path.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
+    let checkpoint = if is_checkpoint { Some(checkpoints::find(path)?.checkpoint) } else { None };
     let scene = match &checkpoint {
         Some(checkpoint) => checkpoint.scene()?,
-        None => scene_file::load(&arguments.scene)?,
+        None => scene_file::load(path)?,
     };
     // The CPU cannot show anything: something has to draw.
     let (device, simulate) = match &arguments.device.device {

@@ -75,7 +75,7 @@ fn the_folder_of_the_checkpoints_and_a_file_in_it_name_the_run_too() -> Outcome 
     fs::create_dir(place.path("kept"))?;
     fs::copy(place.path("out/checkpoints/checkpoint_0006.splashdown"), place.path("kept/mine.splashdown"))?;
     let output = place.splashdown(&["run", "--resume", "kept"]).output()?;
-    assert_refused(&output, 5, &["--resume kept/mine.splashdown"]);
+    assert_refused(&output, 5, &["as in `kept/mine.splashdown`"]);
     Ok(())
 }
 
