@@ -1,6 +1,6 @@
 // The acceleration of a particle by its neighbours, the walls and what pulls at everything; see passes/momentum. Needs
-// `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`, `densities`, and a function
-// `tension_between`: what surface tension does between particles i and j, d apart, or nothing.
+// `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`, `densities`; a constant `HAS_TENSION`; and
+// a function `tension_between`: what surface tension does between particles i and j, d apart.
 fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f32> {
     let rho = own.x;
     let pressure = own.y;
@@ -17,6 +17,7 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
     let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
+    let tension = HAS_TENSION && params.surface_tension > 0.0;
 
     var a = vec3(0.0);
     for (var row = 0u; row < 9u; row++) {
@@ -33,7 +34,9 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
             let vx = dot(v - sorted_velocities[j].xyz, d);
             let rub = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
             a += (g * (rub - mass * (specific + other.y / (other.x * other.x)))) * d;
-            a += tension_between(i, j, d, q, rho, other.x);
+            if (tension) {
+                a += tension_between(i, j, d, q, rho, other.x);
+            }
         }
     }
 

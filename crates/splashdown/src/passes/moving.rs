@@ -1,20 +1,78 @@
 //! The motion of particles on the CPU, for all passes that move some.
 
-use std::sync::atomic::AtomicU32;
-use std::sync::atomic::Ordering::Relaxed;
-
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
-use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, Tally};
+use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
 use crate::cells::Grid;
+use crate::cells::census::{self, Enroller};
 
 /// The WGSL side.
 pub const WGSL: WgslModule = WgslModule { name: "sph/moving", source: include_str!("moving.wgsl") };
 
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+/// The particles as a step's sort left them: positions, velocities, densities.
+#[derive(Clone, Copy)]
+pub(crate) struct Sorted<'a> {
+    pub positions: &'a [Vec4],
+    pub velocities: &'a [Vec4],
+    pub densities: &'a [Vec2],
+}
+
+/// Where they go.
+pub(crate) struct Resting<'a> {
+    pub positions: &'a mut [Vec4],
+    pub velocities: &'a mut [Vec4],
+    pub tally: &'a mut [u32],
+    pub census: &'a mut [u32],
+}
+
+/// Moves all particles, and counts them for the next step if `counts`. The acceleration of a particle is that of its number, and
+/// of what stands at its place in the resting velocities.
+pub(crate) fn advance_all(
+    (params, grid, state): (&Params, &Grid, &StepState),
+    sorted: Sorted<'_>,
+    resting: Resting<'_>,
+    counts: bool,
+    acceleration: impl Fn(usize, Vec4) -> Vec3 + Sync,
+) {
+    let n = state.run_count as usize;
+    // After the last step of a frame there is no next one to count for.
+    let counting = counts && !state.is_last_step();
+    let (counts, cells) = census::split(grid, resting.census);
+    let found: Vec<Found> = sorted.positions[..n]
+        .par_chunks(CHUNK)
+        .zip(sorted.velocities[..n].par_chunks(CHUNK))
+        .zip(sorted.densities[..n].par_chunks(CHUNK))
+        .zip(resting.positions[..n].par_chunks_mut(CHUNK))
+        .zip(resting.velocities[..n].par_chunks_mut(CHUNK))
+        .zip(cells[..n].par_chunks_mut(CHUNK))
+        .enumerate()
+        .map(|(chunk, (((((p, v), density), new_p), new_v), cells))| {
+            let mut found = Found::default();
+            let mut enroller = Enroller::new(counts);
+            for k in 0..p.len() {
+                let a = acceleration(chunk * CHUNK + k, new_v[k]);
+                let particle = (p[k], v[k], density[k].x, a);
+                let moved = advance(params, grid, state.dt, particle, &mut found);
+                (new_p[k], new_v[k]) = (moved.position, moved.velocity);
+                if counting {
+                    cells[k] = moved.cell;
+                    enroller.add(moved.cell);
+                }
+            }
+            found
+        })
+        .collect();
+    Found::tell(&found, resting.tally);
+}
+
 /// What a group of particles adds to the tally.
 #[derive(Default)]
-pub(crate) struct Found {
+struct Found {
     escaped: u32,
     non_finite: u32,
     corrections: u32,
@@ -25,7 +83,7 @@ pub(crate) struct Found {
 
 impl Found {
     /// Puts what all groups found into the tally, and that particles have moved.
-    pub fn tell(all: &[Self], tally: &mut [u32]) {
+    fn tell(all: &[Self], tally: &mut [u32]) {
         for found in all {
             tally[Tally::ESCAPED] += found.escaped;
             tally[Tally::NON_FINITE] += found.non_finite;
@@ -36,46 +94,20 @@ impl Found {
                 *word = (*word).max(value.to_bits());
             }
         }
-        Self::tell_moved(tally);
-    }
-
-    /// Puts into the tally that particles have moved.
-    pub fn tell_moved(tally: &mut [u32]) {
         tally[Tally::MOVED] = 1;
-    }
-
-    /// Puts what a particle found into the tally, beside other threads: a maximum is only written where it rises, which
-    /// soon it seldom does.
-    #[inline]
-    pub fn tell_at_once(&self, tally: &[AtomicU32]) {
-        for (k, value) in self.highest.iter().enumerate() {
-            let word = &tally[Tally::MAX_SPEED + k];
-            if value.to_bits() > word.load(Relaxed) {
-                word.fetch_max(value.to_bits(), Relaxed);
-            }
-        }
-        let counts = [
-            (Tally::ESCAPED, self.escaped),
-            (Tally::NON_FINITE, self.non_finite),
-            (Tally::CORRECTIONS, self.corrections),
-            (Tally::LIMITED, self.limited),
-        ];
-        for (word, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
-            tally[word].fetch_add(count, Relaxed);
-        }
     }
 }
 
 /// What a particle is after a step.
-pub(crate) struct Moved {
-    pub position: Vec4,
-    pub velocity: Vec4,
-    pub cell: u32,
+struct Moved {
+    position: Vec4,
+    velocity: Vec4,
+    cell: u32,
 }
 
 /// Moves a particle, given its position, velocity, density in kg/m^3 and acceleration.
 #[inline]
-pub(crate) fn advance(
+fn advance(
     params: &Params,
     grid: &Grid,
     dt: f32,

@@ -21,6 +21,8 @@
 @group(0) @binding(11) var<storage, read_write> census: array<atomic<u32>>;
 
 // Surface tension needs one buffer more than there may be; scenes with it go the other way.
+const HAS_TENSION: bool = false;
+
 fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {
     return vec3(0.0);
 }
