@@ -43,6 +43,9 @@ pub struct BenchArguments {
     /// Do not split the time by pass
     #[arg(long)]
     pub no_passes: bool,
+    /// Run shaders without checks: what do the checks cost?
+    #[arg(long)]
+    pub unchecked_shaders: bool,
     /// Print one JSON object per number of particles
     #[arg(long)]
     pub json: bool,

@@ -81,7 +81,10 @@ pub struct Row {
 /// # Errors
 /// Those of the simulation.
 pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Result<Row, Failure> {
-    let mut simulation = Simulation::new(scene, &arguments.device.device)?;
+    let device = &arguments.device.device;
+    let unchecked = arguments.unchecked_shaders;
+    let executor = if unchecked { device.unchecked_executor()? } else { device.executor()? };
+    let mut simulation = Simulation::with_executor(scene, executor)?;
     let (each, _) = seconds_per_step(&mut simulation, WARM_UP)?;
     let steps = arguments.steps.unwrap_or_else(|| {
         let fitting = BUDGET.as_secs_f64() / ROUNDS as f64 / each.max(1e-9);
@@ -109,7 +112,10 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     let support_radius = simulation.params().support_radius;
     let positions = simulation.particles()?.positions;
     Ok(Row {
-        device: simulation.device_name(),
+        device: match simulation.gpu() {
+            Some(gpu) if !gpu.checks_shaders() => format!("{}, shaders unchecked", gpu.name()),
+            _ => simulation.device_name(),
+        },
         solver: scene.solver.method.to_string(),
         particles: count,
         threads: rayon::current_num_threads(),
