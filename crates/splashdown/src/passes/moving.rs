@@ -1,6 +1,6 @@
 //! The motion of particles on the CPU, for all passes that move some.
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{BVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
@@ -40,6 +40,7 @@ pub(crate) fn advance_all(
     acceleration: impl Fn(usize, Vec4) -> Vec3 + Sync,
 ) {
     let n = state.run_count as usize;
+    let mover = Mover::new(params, grid, state.dt);
     // After the last step of a frame there is no next one to count for.
     let counting = counts && !state.is_last_step();
     let (counts, cells) = census::split(grid, resting.census);
@@ -57,7 +58,7 @@ pub(crate) fn advance_all(
             for k in 0..p.len() {
                 let a = acceleration(chunk * CHUNK + k, new_v[k]);
                 let particle = (p[k], v[k], density[k].x, a);
-                let moved = advance(params, grid, state.dt, particle, &mut found);
+                let moved = mover.advance(particle, &mut found);
                 (new_p[k], new_v[k]) = (moved.position, moved.velocity);
                 if counting {
                     cells[k] = moved.cell;
@@ -67,7 +68,7 @@ pub(crate) fn advance_all(
             found
         })
         .collect();
-    Found::tell(&found, resting.tally);
+    Found::tell(&found, params, resting.tally);
 }
 
 /// What a group of particles adds to the tally.
@@ -77,19 +78,22 @@ struct Found {
     non_finite: u32,
     corrections: u32,
     limited: u32,
-    /// Speed, acceleration, excess of density.
+    /// Squares of speed and acceleration; density.
     highest: [f32; 3],
 }
 
 impl Found {
     /// Puts what all groups found into the tally, and that particles have moved.
-    fn tell(all: &[Self], tally: &mut [u32]) {
+    fn tell(all: &[Self], params: &Params, tally: &mut [u32]) {
         for found in all {
             tally[Tally::ESCAPED] += found.escaped;
             tally[Tally::NON_FINITE] += found.non_finite;
             tally[Tally::CORRECTIONS] += found.corrections;
             tally[Tally::LIMITED] += found.limited;
-            for (k, value) in found.highest.iter().enumerate() {
+            // Roots and quotients rise with what is under them, so that they are taken of the highest alone.
+            let [speed2, acceleration2, density] = found.highest;
+            let excess = (density / params.rest_density - 1.0).max(0.0);
+            for (k, value) in [speed2.sqrt(), acceleration2.sqrt(), excess].into_iter().enumerate() {
                 let word = &mut tally[Tally::MAX_SPEED + k];
                 *word = (*word).max(value.to_bits());
             }
@@ -105,60 +109,78 @@ struct Moved {
     cell: u32,
 }
 
-/// Moves a particle, given its position, velocity, density in kg/m^3 and acceleration.
-#[inline]
-fn advance(
-    params: &Params,
-    grid: &Grid,
+/// The part of a spacing that a step covers at most, and the part that closed sides keep free.
+const LONGEST: f32 = 0.5;
+const FREE: f32 = 0.25;
+
+/// Moves particles by one step.
+struct Mover<'a> {
+    params: &'a Params,
+    grid: &'a Grid,
     dt: f32,
-    (p, old, rho, a): (Vec4, Vec4, f32, Vec3),
-    found: &mut Found,
-) -> Moved {
-    if p.w != 0.0 {
-        return Moved { position: p, velocity: old, cell: grid.cell_count };
-    }
-    let mut v = old.xyz() + dt * a;
-    let (step, most) = (v.length() * dt, 0.5 * params.particle_spacing);
-    if step > most {
-        v *= most / step;
-        found.limited += 1;
-    }
-    let near = 0.25 * params.particle_spacing;
-    let is_closed = |bit: usize| params.closed >> bit & 1 == 1;
-    for axis in 0..3 {
-        if is_closed(2 * axis) {
-            v[axis] = v[axis].max(-(p[axis] - params.domain_min[axis] - near).max(0.0) / dt);
-        }
-        if is_closed(2 * axis + 1) {
-            v[axis] = v[axis].min((params.domain_max[axis] - p[axis] - near).max(0.0) / dt);
-        }
-    }
-    let mut x = p.xyz() + dt * v;
-    // `max` and `min` take the other operand of a NaN, so the sum of everything is asked, not only the result.
-    if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
-        found.non_finite += 1;
-        return Moved {
-            position: p.xyz().extend(DEAD_NON_FINITE),
-            velocity: Vec4::new(0.0, 0.0, 0.0, params.rest_density),
-            cell: grid.cell_count,
+    /// The domain, without bounds where it is open.
+    low: Vec3,
+    high: Vec3,
+    /// The box from which no side is met in one step.
+    inner: [Vec3; 2],
+}
+
+impl<'a> Mover<'a> {
+    fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
+        let closed = |side: u32| {
+            BVec3::from_array([0, 1, 2].map(|axis: u32| (params.closed >> (2 * axis + side)) & 1 == 1))
         };
+        let low = Vec3::select(closed(0), params.domain_min, Vec3::NEG_INFINITY);
+        let high = Vec3::select(closed(1), params.domain_max, Vec3::INFINITY);
+        let margin = 1.01 * (LONGEST + FREE) * params.particle_spacing;
+        let inner = [params.domain_min + margin, params.domain_max - margin];
+        Self { params, grid, dt, low, high, inner }
     }
-    for axis in 0..3 {
-        let (low, high) = (params.domain_min[axis], params.domain_max[axis]);
-        if (is_closed(2 * axis) && x[axis] < low) || (is_closed(2 * axis + 1) && x[axis] > high) {
-            x[axis] = x[axis].clamp(low, high);
-            v[axis] = 0.0;
-            found.corrections += 1;
+
+    /// Moves a particle, given its position, velocity, density in kg/m^3 and acceleration.
+    #[inline]
+    fn advance(&self, (p, old, rho, a): (Vec4, Vec4, f32, Vec3), found: &mut Found) -> Moved {
+        let Self { params, grid, dt, low, high, inner } = *self;
+        if p.w != 0.0 {
+            return Moved { position: p, velocity: old, cell: grid.cell_count };
         }
+        let mut v = old.xyz() + dt * a;
+        let (step, most) = (v.length() * dt, LONGEST * params.particle_spacing);
+        if step > most {
+            v *= most / step;
+            found.limited += 1;
+        }
+        let p = p.xyz();
+        let is_inner = p.cmpgt(inner[0]).all() && p.cmplt(inner[1]).all();
+        if !is_inner {
+            let free = Vec3::splat(FREE * params.particle_spacing);
+            v = v.max(-(p - low - free).max(Vec3::ZERO) / dt).min((high - p - free).max(Vec3::ZERO) / dt);
+        }
+        let mut x = p + dt * v;
+        // `max` and `min` take the other operand of a NaN, so the sum of everything is asked, not only the result.
+        if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
+            found.non_finite += 1;
+            return Moved {
+                position: p.extend(DEAD_NON_FINITE),
+                velocity: Vec4::new(0.0, 0.0, 0.0, params.rest_density),
+                cell: grid.cell_count,
+            };
+        }
+        let beyond = x.cmplt(low) | x.cmpgt(high);
+        if !is_inner && beyond.any() {
+            x = x.clamp(low, high);
+            v = Vec3::select(beyond, Vec3::ZERO, v);
+            found.corrections += beyond.bitmask().count_ones();
+        }
+        let values = [v.length_squared(), a.length_squared(), rho];
+        for (highest, value) in found.highest.iter_mut().zip(values) {
+            *highest = highest.max(value);
+        }
+        let velocity = v.extend(rho);
+        if !is_inner && params.is_outside(x) {
+            found.escaped += 1;
+            return Moved { position: x.extend(DEAD_ESCAPED), velocity, cell: grid.cell_count };
+        }
+        Moved { position: x.extend(0.0), velocity, cell: grid.cell_of(x) }
     }
-    let values = [v.length(), a.length(), (rho / params.rest_density - 1.0).max(0.0)];
-    for (highest, value) in found.highest.iter_mut().zip(values) {
-        *highest = highest.max(value);
-    }
-    let velocity = v.extend(rho);
-    if params.is_outside(x) {
-        found.escaped += 1;
-        return Moved { position: x.extend(DEAD_ESCAPED), velocity, cell: grid.cell_count };
-    }
-    Moved { position: x.extend(0.0), velocity, cell: grid.cell_of(x) }
 }
