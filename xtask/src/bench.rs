@@ -11,7 +11,8 @@ use crate::{peers, report};
 /// A GPU's sizes, where there is one.
 const GPU_SIZES: &str = "64K,256K,1M,4M,10M";
 
-/// The word `bench`. The tables come from `splashdown bench`; this only chooses what to measure and writes the headings.
+/// The word `bench`. The tables come from `splashdown bench`; this only chooses what to measure and writes the
+/// headings.
 pub fn run(arguments: &[String]) -> Result<()> {
     let quick = match arguments {
         [] => false,

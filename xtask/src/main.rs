@@ -1,5 +1,5 @@
-//! Every habit of this repository as one word: `cargo xtask WORD`. Nothing but the standard library and `anyhow`, so that
-//! it builds in a second on a machine that has only Rust.
+//! Every habit of this repository as one word: `cargo xtask WORD`. Nothing but the standard library and
+//! `anyhow`, so that it builds in a second on a machine that has only Rust.
 
 mod bench;
 mod demo;

@@ -1,4 +1,5 @@
-//! Starting other programs: always from the repository's root, always with a runtime folder that Vulkan's loader accepts.
+//! Starting other programs: always from the repository's root, always with a runtime folder that Vulkan's
+//! loader accepts.
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -13,8 +14,8 @@ pub fn say(text: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout().lock(), "{}", text.as_ref());
 }
 
-/// The folder that holds the workspace. Cargo names it to what it runs; what it named when this was built may be another
-/// clone, if they share a target folder.
+/// The folder that holds the workspace. Cargo names it to what it runs; what it named when this was built may
+/// be another clone, if they share a target folder.
 pub fn root() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let find = || {

@@ -1,5 +1,5 @@
-//! The Python packages with which tests open files: an environment of their own in the target folder, so that nothing of the
-//! user's is touched.
+//! The Python packages with which tests open files: an environment of their own in the target folder, so that
+//! nothing of the user's is touched.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,8 @@ use crate::process::{self, command, root, say, target};
 /// The lists of packages, the needed one first; each is one test of `splashdown-io`'s `foreign` less if it is missing.
 const LISTS: [&str; 2] = ["requirements.txt", "blender.txt"];
 
-/// Makes the environment and installs what is not there yet. Where that is not possible the tests are skipped, and say so.
+/// Makes the environment and installs what is not there yet. Where that is not possible the tests are skipped,
+/// and say so.
 pub fn ensure() {
     let folder = target().join("python");
     for list in LISTS {
@@ -24,7 +25,8 @@ pub fn ensure() {
     }
 }
 
-/// Makes an environment in a folder, installs a list of packages into it where that has not been done, and returns its interpreter.
+/// Makes an environment in a folder, installs a list of packages into it where that has not been done, and
+/// returns its interpreter.
 ///
 /// # Errors
 /// If Python or a package cannot be had.

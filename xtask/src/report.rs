@@ -51,8 +51,8 @@ fn date() -> String {
     format!("{year}-{month:02}-{day:02}")
 }
 
-/// Year, month and day of the days since 1970-01-01 (Hinnant, "chrono-Compatible Low-Level Date Algorithms", 2014). Years
-/// begin in March here, so that the leap day is their last.
+/// Year, month and day of the days since 1970-01-01 (Hinnant, "chrono-Compatible Low-Level Date Algorithms",
+/// 2014). Years begin in March here, so that the leap day is their last.
 fn civil(days: u64) -> [u64; 3] {
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);

@@ -1,5 +1,5 @@
-//! The checks against measurements at full resolution: the same tests as in `cargo xtask test`, which read a variable and
-//! then take the particle spacing and the duration of the measurement instead of the small ones.
+//! The checks against measurements at full resolution: the same tests as in `cargo xtask test`, which read a
+//! variable and then take the particle spacing and the duration of the measurement instead of the small ones.
 
 use std::path::Path;
 

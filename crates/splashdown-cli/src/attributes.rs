@@ -26,8 +26,8 @@ pub fn check_format(wanted: &[String], out: &Path, ending: &str) -> Result<(), F
     Err(Failure::new(Exit::Usage, message))
 }
 
-/// The attributes of a file that are wanted, each once. `all` leaves out ids, whose means say nothing, and velocities, which vertices
-/// have anyway.
+/// The attributes of a file that are wanted, each once. `all` leaves out ids, whose means say nothing, and
+/// velocities, which vertices have anyway.
 ///
 /// # Errors
 /// [`Exit::Usage`] names what the file has instead.

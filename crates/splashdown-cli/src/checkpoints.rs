@@ -14,7 +14,8 @@ use crate::wishes::Wishes;
 /// How many stay on the disk: one more than needed, should the newest be damaged from outside.
 const KEPT: usize = 2;
 
-/// Takes checkpoints and writes each once the files of all frames up to it are complete: whoever goes on from it has them.
+/// Takes checkpoints and writes each once the files of all frames up to it are complete: whoever goes on from
+/// it has them.
 #[derive(Debug)]
 pub struct Checkpoints {
     layout: Layout,
@@ -56,7 +57,8 @@ impl Checkpoints {
     /// The writer's first failure.
     pub fn write(&mut self, complete: u32, writer: &FrameWriter) -> Result<(), Failure> {
         while let Some((frame, checkpoint)) = self.taken.pop_front_if(|(frame, _)| *frame <= complete) {
-            // Before, so that there are never more than are promised. The one that stays is whole, whatever becomes of this one.
+            // Before, so that there are never more than are promised. The one that stays is whole, whatever
+            // becomes of this one.
             self.layout.keep_checkpoints(KEPT - 1);
             writer.submit(vec![Job::Bytes(self.layout.checkpoint(frame), checkpoint.to_bytes()?)])?;
         }

@@ -1,5 +1,5 @@
-//! Where words go: results to stdout, everything else to stderr. A reader that closes the pipe early (`| head`) ends the
-//! words, not the work: the files are what a run is for.
+//! Where words go: results to stdout, everything else to stderr. A reader that closes the pipe early (`| head`)
+//! ends the words, not the work: the files are what a run is for.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};

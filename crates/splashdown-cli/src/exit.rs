@@ -1,4 +1,5 @@
-//! How the program ends: one error message and one exit code. `splashdown --help` and the README list the codes from here.
+//! How the program ends: one error message and one exit code. `splashdown --help` and the README list the codes
+//! from here.
 
 use std::fmt;
 use std::process::ExitCode;

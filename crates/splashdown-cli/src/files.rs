@@ -1,5 +1,5 @@
-//! Frames on their way to the disk: the writer works beside the simulation, and a frame is announced when all of its files
-//! are complete.
+//! Frames on their way to the disk: the writer works beside the simulation, and a frame is announced when all
+//! of its files are complete.
 
 use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;

@@ -208,8 +208,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Where an earlier run left its report, the files that a run writes are removed, and only those: frames of two runs in
-    /// one series would be read as one. Returns their number.
+    /// Where an earlier run left its report, the files that a run writes are removed, and only those: frames of
+    /// two runs in one series would be read as one. Returns their number.
     pub fn remove_earlier(&self) -> usize {
         if !self.report().exists() {
             return 0;

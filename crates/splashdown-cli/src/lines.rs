@@ -7,7 +7,8 @@ use splashdown::{Progress, Started, Stats, Summary};
 use crate::exit::Failure;
 use crate::files::CompleteFrame;
 
-/// One line. The first eleven keys are always there, null where nothing is known; the others only where they mean something.
+/// One line. The first eleven keys are always there, null where nothing is known; the others only where they
+/// mean something.
 #[derive(Debug, Default, Serialize)]
 pub struct Line {
     /// started, progress, frame, warning, finished, interrupted or error.

@@ -66,8 +66,8 @@ fn all_said(code: ExitCode) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Mesa prints "error: XDG_RUNTIME_DIR is invalid or not set" whenever adapters are listed on a machine without a desktop.
-/// It is harmless, looks like an error of this program, and any folder in that variable silences it.
+/// Mesa prints "error: XDG_RUNTIME_DIR is invalid or not set" whenever adapters are listed on a machine without
+/// a desktop. It is harmless, looks like an error of this program, and any folder in that variable silences it.
 fn quieten_drivers() {
     const VARIABLE: &str = "XDG_RUNTIME_DIR";
     if cfg!(target_os = "linux") && std::env::var_os(VARIABLE).is_none() {

@@ -7,7 +7,8 @@ use splashdown_gpu::list_adapters;
 use crate::exit::{Exit, Failure};
 use crate::human;
 
-/// Refuses a scene that would make the system run out of memory on the CPU; a GPU's own limits are the library's affair.
+/// Refuses a scene that would make the system run out of memory on the CPU; a GPU's own limits are the
+/// library's affair.
 ///
 /// # Errors
 /// [`Exit::Device`], with what is needed and what there is.

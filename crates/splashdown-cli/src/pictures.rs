@@ -48,7 +48,8 @@ struct Drawn {
     bodies: Arc<[BodyState]>,
 }
 
-/// Opens something to draw with: the simulation's own GPU, else the best adapter there is, a software driver among them.
+/// Opens something to draw with: the simulation's own GPU, else the best adapter there is, a software driver
+/// among them.
 ///
 /// # Errors
 /// No driver, with what to install.

@@ -31,7 +31,8 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A bar, plain lines, or nothing if quiet. Programs that read JSON get plain lines only where they asked for words.
+    /// A bar, plain lines, or nothing if quiet. Programs that read JSON get plain lines only where they asked
+    /// for words.
     pub fn new(verbosity: Verbosity, json: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let quiet = verbosity == Verbosity::Quiet;

@@ -1,4 +1,5 @@
-//! Series of files on the command line: which files a pattern or a folder stands for, and how what is made of them is named.
+//! Series of files on the command line: which files a pattern or a folder stands for, and how what is made of
+//! them is named.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -39,8 +40,9 @@ pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Failu
     Ok(files)
 }
 
-/// Names what is made of each of the files: `out` itself for one file; for several `out` with each file's number at the place of its
-/// star or before its ending. A folder, which for several files any name without star and ending is, gets files `surface_NUMBER.ply`.
+/// Names what is made of each of the files: `out` itself for one file; for several `out` with each file's
+/// number at the place of its star or before its ending. A folder, which for several files any name without
+/// star and ending is, gets files `surface_NUMBER.ply`.
 ///
 /// # Errors
 /// If a file would be read and written, or a star is in the name of a folder.

@@ -9,8 +9,9 @@ use splashdown::{Simulation, SimulationError};
 /// A power of two, so that the lattice's coordinates are exact and counts come out as asked for.
 const SPACING: f64 = 1.0 / 64.0;
 
-/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width. Only the
-/// size grows with the number, never the density of neighbours, so the cost per particle can be compared.
+/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width.
+/// Only the size grows with the number, never the density of neighbours, so the cost per particle can be
+/// compared.
 pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
     let side = (f64::from(particles) / 2.0).cbrt().round().max(1.0);
     let depth = (f64::from(particles) / (side * side)).round().max(1.0);

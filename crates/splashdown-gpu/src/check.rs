@@ -1,9 +1,8 @@
 //! The gate: compares a pass's declaration with its WGSL, without a GPU.
 //!
-//! It parses and validates the WGSL with `naga` and compares entry point, workgroup size, override constants and, for
-//! every binding, number, name, access, element type as spelled, size, and a struct's members with their offsets, sizes and
-//! scalars.
-//! Its own tests hold one mutation for each of these, which it must catch.
+//! It parses and validates the WGSL with `naga` and compares entry point, workgroup size, override constants
+//! and, for every binding, number, name, access, element type as spelled, size, and a struct's members with
+//! their offsets, sizes and scalars. Its own tests hold one mutation for each of these, which it must catch.
 
 use naga::proc::Layouter;
 use naga::{AddressSpace, Handle, Module, StorageAccess, StructMember, Type, TypeInner};

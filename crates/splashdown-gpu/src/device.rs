@@ -172,8 +172,8 @@ impl Gpu {
         })
     }
 
-    /// What to ask of an adapter: its own limits, not WebGPU's smallest, so that a buffer may be as large as the memory allows;
-    /// and clocks, where it has them.
+    /// What to ask of an adapter: its own limits, not WebGPU's smallest, so that a buffer may be as large as
+    /// the memory allows; and clocks, where it has them.
     pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("splashdown"),
@@ -208,11 +208,13 @@ impl Gpu {
         Self { limits: device.limits(), device, queue, info, checks_shaders: true, trouble }
     }
 
-    /// The same device without the checks that keep shaders inside their buffers and out of endless loops. The passes stay inside
-    /// by themselves, which the tests show under the checks; so this is for measuring what the checks cost. A browser has its
-    /// own, which stay.
+    /// The same device without the checks that keep shaders inside their buffers and out of endless loops: for
+    /// measuring what the checks cost. A browser has its own, which stay.
+    ///
+    /// # Safety
+    /// Every pass that runs on it, with whatever its buffers hold, must stay inside its buffers and end by itself.
     #[must_use]
-    pub fn without_shader_checks(self) -> Self {
+    pub unsafe fn without_shader_checks(self) -> Self {
         Self { checks_shaders: false, ..self }
     }
 

@@ -70,9 +70,9 @@ pub fn noise(i: u32) -> u32 {
     (word >> 22) ^ word
 }
 
-/// What is wrong with a crate's passes: everything the [gate](check::check) reports, labels given twice, and every `.wgsl`
-/// file below `source_folder` (`concat!(env!("CARGO_MANIFEST_DIR"), "/src")`) that is neither the text of a pass nor
-/// one of its imports.
+/// What is wrong with a crate's passes: everything the [gate](check::check) reports, labels given twice, and
+/// every `.wgsl` file below `source_folder` (`concat!(env!("CARGO_MANIFEST_DIR"), "/src")`) that is neither the
+/// text of a pass nor one of its imports.
 ///
 /// # Panics
 /// If a folder or file cannot be read.

@@ -6,8 +6,8 @@ use std::task::{Context, Poll, Waker};
 
 /// Runs a future to its end.
 ///
-/// Outside of a web page a future of this project waits for the device whenever it is polled, so that this is the same as
-/// calling a function that blocks.
+/// Outside of a web page a future of this project waits for the device whenever it is polled, so that this is
+/// the same as calling a function that blocks.
 ///
 /// # Panics
 /// On a web page, if the future has to wait for the browser: nothing can block there. Work on the CPU never has to.

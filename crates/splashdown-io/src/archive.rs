@@ -1,8 +1,8 @@
 //! Named texts, bytes and arrays in one file: a ZIP archive whose arrays are NPY files, so that `numpy.load` opens it.
 //!
-//! *Why a ZIP:* every entry carries a checksum, the list of entries comes last, so a file that was cut short is known as
-//! such, and anyone can look inside. Entries are stored, not packed: positions hardly shrink, and packing them takes longer than
-//! writing them.
+//! *Why a ZIP:* every entry carries a checksum, the list of entries comes last, so a file that was cut short is
+//! known as such, and anyone can look inside. Entries are stored, not packed: positions hardly shrink, and
+//! packing them takes longer than writing them.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -43,8 +43,8 @@ impl CsvLog {
         Ok(log)
     }
 
-    /// Goes on with a file that held `bytes` bytes at a moment to return to: what came later is cut off. A file that is gone or
-    /// shorter begins anew.
+    /// Goes on with a file that held `bytes` bytes at a moment to return to: what came later is cut off. A file
+    /// that is gone or shorter begins anew.
     ///
     /// # Errors
     /// [`IoError::Write`].

@@ -42,8 +42,8 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Tells whether normals, velocities and attributes are absent or one per vertex, whether every index is in range, and whether a file can
-    /// count it all.
+    /// Tells whether normals, velocities and attributes are absent or one per vertex, whether every index is in
+    /// range, and whether a file can count it all.
     ///
     /// # Errors
     /// [`IoError::Length`], [`IoError::IndexOutOfRange`] with the first such triangle, or [`IoError::TooMany`].

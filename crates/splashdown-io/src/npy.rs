@@ -1,7 +1,7 @@
 //! NPY, numpy's array file: a reader and a writer, and what NPZ needs of both.
 //!
-//! *Why own code:* the crates read every type and shape through traits and `ndarray`; numbers in rows are a header and a
-//! cast. Format: numpy.lib.format, versions 1 to 3.
+//! *Why own code:* the crates read every type and shape through traits and `ndarray`; numbers in rows are a
+//! header and a cast. Format: numpy.lib.format, versions 1 to 3.
 
 use std::fs;
 use std::path::Path;

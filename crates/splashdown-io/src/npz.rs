@@ -17,7 +17,8 @@ use crate::npy::{self, Layout};
 use crate::particles::Particles;
 use crate::read::{MOST, regular};
 
-/// Names under which positions are found, the first one that is there; the last is numpy's own for an array without one.
+/// Names under which positions are found, the first one that is there; the last is numpy's own for an array
+/// without one.
 const POSITIONS: [&str; 7] = ["positions", "position", "points", "particles", "pos", "x", "arr_0"];
 
 /// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
@@ -54,9 +55,9 @@ pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoErro
     })
 }
 
-/// Reads particles: the first array that is named `positions`, `position`, `points`, `particles`, `pos`, `x` or `arr_0`, and
-/// where they are there `velocities` (`velocity`, `v`), `densities`, `pressures` and `ids`, of any type of numbers. Other arrays are
-/// passed over.
+/// Reads particles: the first array that is named `positions`, `position`, `points`, `particles`, `pos`, `x` or
+/// `arr_0`, and where they are there `velocities` (`velocity`, `v`), `densities`, `pressures` and `ids`, of any
+/// type of numbers. Other arrays are passed over.
 ///
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`], which names the array; [`IoError::TooMany`].

@@ -23,7 +23,8 @@ pub struct Particles {
     pub densities: Vec<f32>,
     /// Pressures in Pa.
     pub pressures: Vec<f32>,
-    /// Everything that a file has for each particle, where it was asked for ([`read_all`](crate::read_all)). The writers pass over it.
+    /// Everything that a file has for each particle, where it was asked for ([`read_all`](crate::read_all)).
+    /// The writers pass over it.
     pub attributes: Vec<Attribute>,
 }
 

@@ -17,8 +17,8 @@ pub const MESH_FORMATS_READ: &[&str] = &[".obj", ".stl", ".ply", ".gltf", ".glb"
 /// File name endings that [`read_particles`] understands.
 pub const PARTICLE_FORMATS_READ: &[&str] = &[".ply", ".npy", ".npz", ".vtk", ".vtu", ".vtp", ".bgeo", ".xyz"];
 
-/// The most particles, or triangles or vertices of one mesh, that are read: some gigabytes. A small file can name a large mesh many
-/// times (glTF), and must not take all memory.
+/// The most particles, or triangles or vertices of one mesh, that are read: some gigabytes. A small file can
+/// name a large mesh many times (glTF), and must not take all memory.
 pub(crate) const MOST: usize = 1 << 27;
 
 /// The readers of one format.
@@ -71,9 +71,9 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     read(path, Wanted::Known)
 }
 
-/// As [`read_particles`], with everything that the file has for each particle in [`Particles::attributes`], velocities and densities
-/// too, by their names in the file: one number or three of whatever type. Properties `a_x a_y a_z` of a PLY file are one vector `a`,
-/// and `vx vy vz` is `velocity`.
+/// As [`read_particles`], with everything that the file has for each particle in [`Particles::attributes`],
+/// velocities and densities too, by their names in the file: one number or three of whatever type. Properties
+/// `a_x a_y a_z` of a PLY file are one vector `a`, and `vx vy vz` is `velocity`.
 ///
 /// # Errors
 /// As [`read_particles`].

@@ -1,8 +1,9 @@
 //! XYZ, the plainest list of points: a reader.
 //!
-//! Three things go by that ending: text with a point per line (and perhaps other columns behind it), the chemists' text,
-//! which has a count, a line of words, and an element's name before every point, and raw little-endian float32, three
-//! for each point, which `splashsurf` reads. A file that holds a byte no text has is of the last kind.
+//! Three things go by that ending: text with a point per line (and perhaps other columns behind it), the
+//! chemists' text, which has a count, a line of words, and an element's name before every point, and raw
+//! little-endian float32, three for each point, which `splashsurf` reads. A file that holds a byte no text has
+//! is of the last kind.
 
 use std::path::Path;
 

@@ -9,8 +9,8 @@ use wgpu::{Buffer, BufferUsages, Device};
 /// Particles on the GPU. All three buffers need [`BufferUsages::STORAGE`].
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleBuffers<'a> {
-    /// `vec4<f32>` per particle: position in metres; w is 0, or anything else for a particle that is not in play. Neither
-    /// those nor particles that are not finite are drawn.
+    /// `vec4<f32>` per particle: position in metres; w is 0, or anything else for a particle that is not in
+    /// play. Neither those nor particles that are not finite are drawn.
     pub positions: &'a Buffer,
     /// `vec4<f32>` per particle: velocity in m/s, w ignored.
     pub velocities: &'a Buffer,
@@ -23,8 +23,9 @@ pub struct ParticleBuffers<'a> {
 /// Foam, spray and bubbles on the GPU.
 #[derive(Clone, Copy, Debug)]
 pub struct FoamBuffers<'a> {
-    /// 32 bytes per particle: its position in metres (three `f32`), how long it still lives in seconds (`f32`), its velocity in m/s (three
-    /// `f32`), and any number times four plus its kind (`u32`): 0 spray, 1 foam, 2 a bubble. Needs [`BufferUsages::STORAGE`].
+    /// 32 bytes per particle: its position in metres (three `f32`), how long it still lives in seconds (`f32`),
+    /// its velocity in m/s (three `f32`), and any number times four plus its kind (`u32`): 0 spray, 1 foam, 2 a
+    /// bubble. Needs [`BufferUsages::STORAGE`].
     pub particles: &'a Buffer,
     /// How many particles to draw.
     pub count: u32,
@@ -69,7 +70,8 @@ pub enum Draw<'a> {
         index_count: u32,
     },
     /// Five `u32` at this byte offset of a buffer with [`BufferUsages::INDIRECT`], as in
-    /// [`wgpu::util::DrawIndexedIndirectArgs`]: index count, instances (1), first index, base vertex, first instance (0).
+    /// [`wgpu::util::DrawIndexedIndirectArgs`]: index count, instances (1), first index, base vertex, first
+    /// instance (0).
     Indirect(&'a Buffer, u64),
 }
 
@@ -201,8 +203,9 @@ pub struct UploadedFoam {
 }
 
 impl UploadedFoam {
-    /// Copies host slices to the GPU: places in metres, how long each still lives in seconds (an empty slice: for long), numbers by which particles differ a
-    /// little in size (an empty slice: their places in the list), kinds (0 spray, 1 foam, 2 bubble).
+    /// Copies host slices to the GPU: places in metres, how long each still lives in seconds (an empty slice:
+    /// for long), numbers by which particles differ a little in size (an empty slice: their places in the
+    /// list), kinds (0 spray, 1 foam, 2 bubble).
     ///
     /// # Errors
     /// [`RenderError::Length`] if a slice differs in length from `positions`, where it may not be empty or is not.

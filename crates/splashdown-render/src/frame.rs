@@ -83,7 +83,8 @@ pub struct DrawnSurface<'a> {
 
 /// What of a surface is drawn.
 ///
-/// Lines need buffers of vertices and indices with [`wgpu::BufferUsages::STORAGE`], and draw arguments whose base vertex is 0.
+/// Lines need buffers of vertices and indices with [`wgpu::BufferUsages::STORAGE`], and draw arguments whose
+/// base vertex is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SurfaceStyle {
     /// The liquid.
@@ -112,7 +113,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// A sun that stands high on the left behind the box, seen from the +z side, so that water glitters towards the camera.
+    /// A sun that stands high on the left behind the box, seen from the +z side, so that water glitters towards
+    /// the camera.
     pub const SUN: [f32; 3] = [-0.55, 0.85, -0.35];
 
     /// Refuses numbers that would draw nonsense, and works out what the shaders read.

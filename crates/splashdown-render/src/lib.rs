@@ -34,9 +34,10 @@
 //! [`UploadedParticles`] and [`UploadedSurface`] put host slices into such buffers. [`Renderer::draw`] records into the
 //! caller's encoder and texture, for windows; [`Offscreen`] reads pictures back.
 //!
-//! The fluid can be seen as spheres coloured by a quantity ([`DrawnParticles`]), as liquid from a mesh, with or without its
-//! lines ([`DrawnSurface`]), as liquid straight from the particles ([`DrawnLiquidParticles`]), and as a plane of colours
-//! ([`DrawnSlice`]); foam, spray and bubbles go with all of them ([`DrawnFoam`]). `examples/ways.rs` draws all of them side by side and compares their times.
+//! The fluid can be seen as spheres coloured by a quantity ([`DrawnParticles`]), as liquid from a mesh, with or
+//! without its lines ([`DrawnSurface`]), as liquid straight from the particles ([`DrawnLiquidParticles`]), and
+//! as a plane of colours ([`DrawnSlice`]); foam, spray and bubbles go with all of them ([`DrawnFoam`]).
+//! `examples/ways.rs` draws all of them side by side and compares their times.
 //!
 //! Each thing drawn is a folder with its Rust and its WGSL, which opens with how it works and why not otherwise. Only
 //! what WebGPU guarantees is asked for: at most 3 storage buffers per stage, 16-bit floats to blend into, 4 samples.

@@ -5,17 +5,18 @@ use crate::globals::Globals;
 
 /// Optical properties of a liquid in a picture.
 ///
-/// Real water is nearly colourless over a metre: it absorbs 0.3 of the red and next to nothing of the blue light (Pope
-/// and Fry 1997). Pictures of tanks have always been tinted more than that, and so the constructors take the `size` over
-/// which the colour should show: the height or half the width of the box is a good choice.
+/// Real water is nearly colourless over a metre: it absorbs 0.3 of the red and next to nothing of the blue
+/// light (Pope and Fry 1997). Pictures of tanks have always been tinted more than that, and so the constructors
+/// take the `size` over which the colour should show: the height or half the width of the box is a good choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Liquid {
     /// Share of the light lost per metre, for red, green and blue (Beer and Lambert: `exp(-absorption * path)`).
     pub absorption: [f32; 3],
     /// Per metre, how quickly what lies behind gives way to the liquid's own colour.
     pub scattering: f32,
-    /// Share of the liquid's own colour even in the thinnest places. 0 is what Beer and Lambert say; a little more keeps
-    /// drops and the tank's edges visible, where light really runs a longer way by reflection inside.
+    /// Share of the liquid's own colour even in the thinnest places. 0 is what Beer and Lambert say; a little
+    /// more keeps drops and the tank's edges visible, where light really runs a longer way by reflection
+    /// inside.
     pub film: f32,
     /// The liquid's own colour where it is deep, linear RGB.
     pub colour: [f32; 3],

@@ -50,8 +50,8 @@ impl Offscreen {
     /// A target of `size` pixels.
     ///
     /// # Errors
-    /// [`RenderError::PictureSize`] if a side is 0 or beyond the device's limit, [`RenderError::DeviceLost`] if there is no
-    /// memory for it.
+    /// [`RenderError::PictureSize`] if a side is 0 or beyond the device's limit, [`RenderError::DeviceLost`] if
+    /// there is no memory for it.
     pub fn new(device: &Device, queue: &Queue, size: [u32; 2]) -> Result<Offscreen, RenderError> {
         static IDENTITIES: AtomicU64 = AtomicU64::new(0);
         check_size(device, size)?;
@@ -100,8 +100,9 @@ impl Offscreen {
     /// Starts a picture and returns at once.
     ///
     /// # Errors
-    /// [`RenderError::FramesInFlight`] if a picture has to be collected first, [`RenderError::Format`] if the renderer
-    /// was made for another format, [`RenderError::DeviceLost`] if the device is gone or out of memory, and those of [`Renderer::draw`].
+    /// [`RenderError::FramesInFlight`] if a picture has to be collected first, [`RenderError::Format`] if the
+    /// renderer was made for another format, [`RenderError::DeviceLost`] if the device is gone or out of
+    /// memory, and those of [`Renderer::draw`].
     pub fn submit(&mut self, renderer: &mut Renderer, frame: &Frame<'_>) -> Result<Ticket, RenderError> {
         if renderer.format() != Offscreen::FORMAT {
             return Err(RenderError::Format { renderer: renderer.format(), target: Offscreen::FORMAT });

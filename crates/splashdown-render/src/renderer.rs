@@ -107,10 +107,11 @@ impl Renderer {
         self.timer.is_some()
     }
 
-    /// Times of the passes of a picture in their order, of the latest one whose times have come back; empty before that, and
-    /// without [`Renderer::set_timing`].
+    /// Times of the passes of a picture in their order, of the latest one whose times have come back; empty
+    /// before that, and without [`Renderer::set_timing`].
     ///
-    /// Nobody waits for them: they come some pictures late, and only if the device is polled, which every submission does.
+    /// Nobody waits for them: they come some pictures late, and only if the device is polled, which every
+    /// submission does.
     pub fn pass_times(&mut self) -> &[PassTime] {
         self.timer.as_mut().map(Timer::latest).unwrap_or_default()
     }
@@ -118,13 +119,14 @@ impl Renderer {
     /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of this renderer's format
     /// with the usage [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
     ///
-    /// The encoder must be submitted to the queue this renderer was made with. Pictures of several targets may be recorded
-    /// before any is submitted.
+    /// The encoder must be submitted to the queue this renderer was made with. Pictures of several targets may
+    /// be recorded before any is submitted.
     ///
     /// # Errors
     /// [`RenderError::PictureSize`] for an empty or too large picture, and [`RenderError::Camera`],
     /// [`RenderError::Value`], [`RenderError::TwoLiquids`], [`RenderError::BufferTooShort`],
-    /// [`RenderError::BufferTooLong`] or [`RenderError::BufferUsage`] if the frame cannot be drawn. Nothing is recorded then.
+    /// [`RenderError::BufferTooLong`] or [`RenderError::BufferUsage`] if the frame cannot be drawn. Nothing is
+    /// recorded then.
     pub fn draw(
         &mut self,
         encoder: &mut CommandEncoder,

@@ -24,8 +24,8 @@ impl PlacedBody {
     /// A quiet warm grey, linear.
     pub const COLOUR: [f32; 3] = [0.46, 0.43, 0.38];
 
-    /// From a mesh in m, in its own frame, and a linear colour. Faces that meet in less than 35 degrees are shaded as one round
-    /// piece.
+    /// From a mesh in m, in its own frame, and a linear colour. Faces that meet in less than 35 degrees are
+    /// shaded as one round piece.
     ///
     /// # Errors
     /// [`RenderError::Index`] if a triangle names a vertex that does not exist.

@@ -1,9 +1,10 @@
 //! How long each pass of a picture took on the GPU.
 //!
 //! # How it works
-//! Every pass writes a timestamp at its beginning and at its end. Behind the last pass they are copied into a buffer that is mapped
-//! once the caller has submitted the picture; a later picture finds it ready and reads it. Nobody ever waits, so times
-//! come some pictures late. While all buffers are under way, pictures go without being measured.
+//! Every pass writes a timestamp at its beginning and at its end. Behind the last pass they are copied into a
+//! buffer that is mapped once the caller has submitted the picture; a later picture finds it ready and reads
+//! it. Nobody ever waits, so times come some pictures late. While all buffers are under way, pictures go
+//! without being measured.
 //!
 //! # Why not the other way
 //! Waiting for each picture would be simpler and would let the device run dry between pictures, which changes what is

@@ -56,8 +56,8 @@ fn a_block_covers_its_square() {
     let Some(mut studio) = common::studio() else { return };
     let empty = studio.draw(SIZE, &frame());
     let picture = liquid(&mut studio, &block([0.0; 3], [12, 12, 3], 2.0 * RADIUS), ink(), frame());
-    // Spheres of 1.7 radii on a lattice reach 1.597 radii on average beyond the outermost centres, and the outline where
-    // 0.66 of the surroundings are liquid lies 0.412 deviations of 0.6 * 1.7 radii further in.
+    // Spheres of 1.7 radii on a lattice reach 1.597 radii on average beyond the outermost centres, and the
+    // outline where 0.66 of the surroundings are liquid lies 0.412 deviations of 0.6 * 1.7 radii further in.
     let half_side = (11.0 + 1.597 - 0.412 * 0.6 * 1.7) * RADIUS;
     let front = DISTANCE - 2.0 * RADIUS;
     let pixels = 2.0 * half_side / front / 20f32.to_radians().tan() * 80.0;

@@ -20,7 +20,8 @@ fn frame() -> Frame<'static> {
     Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
 }
 
-/// A cube of particles around the origin whose pressure rises by 1000 Pa per metre upwards, at a density of 1000 kg/m^3.
+/// A cube of particles around the origin whose pressure rises by 1000 Pa per metre upwards, at a density of
+/// 1000 kg/m^3.
 fn block(studio: &Studio) -> UploadedParticles {
     let along = |index: usize| SPACING * (index as f32 - 0.5 * (COUNT - 1) as f32);
     let positions: Vec<[f32; 3]> =

@@ -48,7 +48,8 @@ impl Orbit {
         Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, angle)
     }
 
-    /// A picture narrower than those that scenes are made for sees as much of the width, and so more of the height. In degrees.
+    /// A picture narrower than those that scenes are made for sees as much of the width, and so more of the
+    /// height. In degrees.
     fn vertical_angle(&self, aspect_ratio: f32) -> f32 {
         let wider = (USUAL_ASPECT / aspect_ratio.clamp(0.1, 10.0)).max(1.0);
         (2.0 * (self.half_height() * wider).atan().to_degrees()).min(150.0)
@@ -71,7 +72,8 @@ impl Orbit {
         self.elevation = (self.elevation + ORBIT * drag.y).clamp(-89.0, 89.0);
     }
 
-    /// Slides with the mouse: what is under it in the target's distance stays under it. `size` is the picture's, in points.
+    /// Slides with the mouse: what is under it in the target's distance stays under it. `size` is the
+    /// picture's, in points.
     pub fn pan(&mut self, drag: Vec2, size: Vec2) {
         let [right, up, _] = self.axes();
         let scale = self.metres_per_point(size);

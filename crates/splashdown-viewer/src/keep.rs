@@ -1,5 +1,5 @@
-//! Where files of the program go: on a desktop into the current folder, without writing over anything; on a web page to the
-//! downloads.
+//! Where files of the program go: on a desktop into the current folder, without writing over anything; on a web
+//! page to the downloads.
 
 use splashdown_io::{Mesh, ply};
 

@@ -4,9 +4,10 @@
 //! panels (egui)  --Action-->  app  --Command-->  engine (thread or task)  --Snapshot-->  picture (splashdown-render)
 //! ```
 //!
-//! Data flows in a circle of four parts, each of which knows only the next: panels change [`state::State`] and say what they want
-//! done; the app does it; the engine simulates beside the window and hands out copies of what is to be seen; the picture draws
-//! the newest copy. So the window stays quick however slow the simulation is.
+//! Data flows in a circle of four parts, each of which knows only the next: panels change [`state::State`] and
+//! say what they want done; the app does it; the engine simulates beside the window and hands out copies of
+//! what is to be seen; the picture draws the newest copy. So the window stays quick however slow the simulation
+//! is.
 
 mod app;
 pub mod camera;

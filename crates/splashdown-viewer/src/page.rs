@@ -65,8 +65,9 @@ pub(crate) fn share(text: &str) -> String {
     address
 }
 
-/// Starts the program on a canvas, again if need be: after the device was lost it goes on with the fluid as it was some seconds
-/// before. `scene` is the name of a scene that comes with the program, or the text of a scene file.
+/// Starts the program on a canvas, again if need be: after the device was lost it goes on with the fluid as it
+/// was some seconds before. `scene` is the name of a scene that comes with the program, or the text of a scene
+/// file.
 ///
 /// # Errors
 /// What is wrong with the scene, or why there is no device, as words.
@@ -119,8 +120,8 @@ fn open(scene: &str) -> Result<Scene, String> {
     Scene::parse(text, name).map_err(|error| error.to_string())
 }
 
-/// Compiles every pass of the program on this browser's device. JSON: how many there are, and what the browser says of those
-/// that it refuses. With `broken`, one more is compiled that no device can accept.
+/// Compiles every pass of the program on this browser's device. JSON: how many there are, and what the browser
+/// says of those that it refuses. With `broken`, one more is compiled that no device can accept.
 ///
 /// # Errors
 /// Why there is no device, as words.

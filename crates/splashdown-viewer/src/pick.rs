@@ -6,8 +6,8 @@ use splashdown::scene::Motion;
 
 use crate::engine::{Grip, Opened};
 
-/// The free body that a ray (a point in m and a unit vector) meets before any other body, held where it meets it; and the distance
-/// from the ray's start in m.
+/// The free body that a ray (a point in m and a unit vector) meets before any other body, held where it meets
+/// it; and the distance from the ray's start in m.
 pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, Vec3)) -> Option<(Grip, f32)> {
     let mut nearest: Option<(usize, f32)> = None;
     for (number, (body, state)) in opened.bodies.iter().zip(states).enumerate() {

@@ -149,7 +149,8 @@ impl Picture {
         self.target.as_ref().map(|target| (target.texture.clone(), target.size))
     }
 
-    /// The picture drawn last: 8-bit RGBA rows from the top; `None` before the first, or if the device is lost. Waits for the device.
+    /// The picture drawn last: 8-bit RGBA rows from the top; `None` before the first, or if the device is lost.
+    /// Waits for the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self) -> Option<Vec<u8>> {
         let (texture, size) = self.texture_drawn()?;

@@ -1,4 +1,5 @@
-//! Keeping what is seen as a sequence of pictures and a film: one picture per frame of the scene, however long it takes.
+//! Keeping what is seen as a sequence of pictures and a film: one picture per frame of the scene, however long
+//! it takes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

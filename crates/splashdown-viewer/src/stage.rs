@@ -29,8 +29,8 @@ pub fn liquid(scene: &Scene) -> Liquid {
     Liquid::from_name(&scene.fluid.material.name, tint).unwrap_or_else(|| Liquid::water(tint))
 }
 
-/// Colours by this quantity over the range of the scene, if it is the scene's own quantity and has one, or over the one to
-/// expect: the same in every frame, so that a film does not flicker.
+/// Colours by this quantity over the range of the scene, if it is the scene's own quantity and has one, or over
+/// the one to expect: the same in every frame, so that a film does not flicker.
 pub fn colouring(scene: &Scene, colour_by: ColourBy) -> Colouring {
     let derived = Derived::new(scene);
     let density = scene.fluid.material.rest_density;

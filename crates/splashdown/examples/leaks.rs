@@ -1,7 +1,9 @@
-//! Counts what must never happen, over ten seconds of every scene that comes with the program: particles inside a body or
-//! outside a closed side, and particles that had to be put back (allowed in the first second, while a scene settles).
+//! Counts what must never happen, over ten seconds of every scene that comes with the program: particles inside
+//! a body or outside a closed side, and particles that had to be put back (allowed in the first second, while a
+//! scene settles).
 //!
-//! `cargo run --release -p splashdown --example leaks -- [SCENE ...] [--device cpu|gpu|NAME] [--seconds S] [--spacing-factor F]`
+//! `cargo run --release -p splashdown --example leaks -- [SCENE ...] [--device cpu|gpu|NAME] [--seconds S]
+//! [--spacing-factor F]`
 //!
 //! A factor of 2 makes the particles twice as large and the study thirty times as short. The exit code is 1 if anything
 //! leaked.

@@ -1,7 +1,8 @@
 //! Steps a scene and prints its account and the time of every pass:
 //! `cargo run --release -p splashdown --example step -- SCENE [DEVICE] [FRAMES] [unchecked] [apart]`
 //!
-//! `unchecked` runs shaders without checks; `apart` has a hand that does nothing, so that forces and motion are two passes.
+//! `unchecked` runs shaders without checks; `apart` has a hand that does nothing, so that forces and motion are
+//! two passes.
 
 use glam::Vec3;
 use splashdown::{Device, Hand, Simulation, scene::Scene};
@@ -14,7 +15,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frames: u32 = arguments.next().map_or(Ok(3), |text| text.parse())?;
     let ways: Vec<String> = arguments.collect();
     let has = |way: &str| ways.iter().any(|given| given == way);
-    let executor = if has("unchecked") { device.unchecked_executor()? } else { device.executor()? };
+    // SAFETY: nobody but the simulation uses the executor.
+    let executor =
+        if has("unchecked") { unsafe { device.unchecked_executor()? } } else { device.executor()? };
     let mut simulation = Simulation::with_executor(&scene, executor)?;
     if has("apart") {
         simulation.set_hand(Some(Hand::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0)))?;

@@ -1,12 +1,14 @@
 //! Checkpoints: a simulation in a file, from which it goes on as if it had not stopped.
 //!
-//! *What is in it.* Everything that a step reads and no scene can tell: the resting arrays of the particles, the state on the
-//! device, the counters, the bodies with the world in which they collide, what emitters and probes remember, and the scene's
-//! text. What follows from the scene (grids, maps, constants) is made anew, and compared where a changed file could slip in.
-//! Going on from it gives the same bits as not stopping, on the CPU and on one adapter.
+//! *What is in it.* Everything that a step reads and no scene can tell: the resting arrays of the particles,
+//! the state on the device, the counters, the bodies with the world in which they collide, what emitters and
+//! probes remember, and the scene's text. What follows from the scene (grids, maps, constants) is made anew,
+//! and compared where a changed file could slip in. Going on from it gives the same bits as not stopping, on
+//! the CPU and on one adapter.
 //!
-//! *The file* is a ZIP of NPY arrays ([`Archive`]): `numpy.load` opens it. `positions` (N, 4) in m, the fourth zero for the
-//! living; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,); `scene.toml` the scene; `about.json` for people.
+//! *The file* is a ZIP of NPY arrays ([`Archive`]): `numpy.load` opens it. `positions` (N, 4) in m, the fourth
+//! zero for the living; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,); `scene.toml` the
+//! scene; `about.json` for people.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +20,7 @@ use crate::foam::{Diffuse, FoamState, KeptFoam};
 use crate::scene::{Scene, SceneErrors};
 
 /// The number of the format that is written and read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Words of a diffuse particle.
 const FOAM_COLUMNS: usize = size_of::<Diffuse>() / 4;
 
@@ -204,7 +206,8 @@ impl Checkpoint {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`CheckpointError::Io`] where it cannot be read; else [`CheckpointError`]: none, cut short, damaged, or of another version.
+    /// [`CheckpointError::Io`] where it cannot be read; else [`CheckpointError`]: none, cut short, damaged, or
+    /// of another version.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
         let named = |reason: String| CheckpointError::Malformed(format!("`{}`: {reason}", path.display()));
         let archive = Archive::read(path).map_err(|error| match error {
@@ -272,7 +275,8 @@ impl Checkpoint {
         Ok(self.host()?.stats.time)
     }
 
-    /// What it was made on: an adapter's name, or `CPU`; the same bits follow there. `None` where an earlier version did not say.
+    /// What it was made on: an adapter's name, or `CPU`; the same bits follow there. `None` where an earlier
+    /// version did not say.
     ///
     /// # Errors
     /// [`CheckpointError::Malformed`].

@@ -53,19 +53,24 @@ impl Device {
         self.open(true)
     }
 
-    /// As [`executor`](Self::executor), [without the checks](Gpu::without_shader_checks) that keep shaders inside their
-    /// buffers: to measure what they cost.
+    /// As [`executor`](Self::executor), without the checks that keep shaders inside their buffers: to measure what they
+    /// cost.
+    ///
+    /// # Safety
+    /// Only passes of this library may run on it, over buffers that only they have written: see
+    /// [`Gpu::without_shader_checks`].
     ///
     /// # Errors
     /// As [`executor`](Self::executor).
-    pub fn unchecked_executor(&self) -> Result<Executor, GpuError> {
+    pub unsafe fn unchecked_executor(&self) -> Result<Executor, GpuError> {
         self.open(false)
     }
 
     fn open(&self, checks_shaders: bool) -> Result<Executor, GpuError> {
         let gpu = |request: &DeviceRequest| {
             let gpu = Gpu::open(request)?;
-            let gpu = if checks_shaders { gpu } else { gpu.without_shader_checks() };
+            // SAFETY: who asks for it has promised so to `unchecked_executor`.
+            let gpu = if checks_shaders { gpu } else { unsafe { gpu.without_shader_checks() } };
             Ok(Executor::from(GpuExecutor::new(Arc::new(gpu))))
         };
         match self {

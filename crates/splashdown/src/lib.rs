@@ -12,8 +12,8 @@
 //!
 //! Whole runs, with the surface of every frame, come as one stream of events: [`Run`].
 //!
-//! A step is a list of passes ([`solver`]), each of which is one folder ([`mod@passes`]) with its equation, its WGSL and its
-//! Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
+//! A step is a list of passes ([`solver`]), each of which is one folder ([`mod@passes`]) with its equation, its
+//! WGSL and its Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
 
 pub mod bodies;
 pub mod boundary;

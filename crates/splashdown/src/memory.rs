@@ -10,8 +10,8 @@ use crate::{SimulationError, bodies, foam};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
-/// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): two positions, two
-/// velocities, two ids, density and pressure, cell, slot.
+/// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): two
+/// positions, two velocities, two ids, density and pressure, cell, slot.
 const PER_PARTICLE: u64 = 4 * 16 + 2 * 4 + 8 + 4 + 8;
 /// Bytes per particle of what only some scenes need: an acceleration, a normal, a pair for the bitonic sort.
 const ACCELERATION: u64 = 16;
@@ -25,8 +25,9 @@ pub fn largest_particle_count(largest_buffer: u64) -> u64 {
     (largest_buffer / LARGEST_PER_PARTICLE).min(u64::from(u32::MAX) - 1)
 }
 
-/// Refuses a number of particles that a device cannot hold, and says how many and which spacing it can. A device binds every buffer as a whole:
-/// they are not split, because each pass would then have to find a neighbour's half first.
+/// Refuses a number of particles that a device cannot hold, and says how many and which spacing it can. A
+/// device binds every buffer as a whole: they are not split, because each pass would then have to find a
+/// neighbour's half first.
 ///
 /// # Errors
 /// [`SimulationError::TooMany`].
@@ -52,8 +53,9 @@ pub fn check_particles(
     })
 }
 
-/// Bytes in the buffers of a scene's simulation and, where the scene asks for them, of its surface and its foam. Particles inside bodies, which a
-/// simulation leaves out, are counted: to know them takes loading the bodies ([`memory_forecast_of`]).
+/// Bytes in the buffers of a scene's simulation and, where the scene asks for them, of its surface and its
+/// foam. Particles inside bodies, which a simulation leaves out, are counted: to know them takes loading the
+/// bodies ([`memory_forecast_of`]).
 ///
 /// A splash with more surface than most makes the surface's buffers grow beyond this.
 pub fn memory_forecast(scene: &Scene) -> u64 {
@@ -169,7 +171,8 @@ mod tests {
                 // Whether a mesh is a sheet, whose grid is a little larger, is known only when it has been looked at.
                 let part = if scene.bodies.is_empty() { 100 } else { 25 };
                 assert!(difference < taken / part + 50_000, "{name}: {forecast} forecast, {taken} taken");
-                // Controls: the surface matters (beside maps of bodies less so), and a scene without one takes what the motion takes.
+                // Controls: the surface matters (beside maps of bodies less so), and a scene without one takes
+                // what the motion takes.
                 assert!(
                     without_surface < forecast / 2 || !scene.bodies.is_empty(),
                     "{name}: {without_surface} of {forecast}"

@@ -29,7 +29,8 @@ pub struct Stats {
     pub non_finite_id: u32,
     /// How often a particle had to be put back through a closed wall or out of a body, in all. Zero in a sound run.
     pub wall_corrections: u32,
-    /// Particles inside a body, by the host's own look-up at the end of a frame of a [`Run`](crate::Run); zero in a sound run.
+    /// Particles inside a body, by the host's own look-up at the end of a frame of a [`Run`](crate::Run); zero
+    /// in a sound run.
     pub inside_bodies: u32,
     /// How often a velocity had to be limited to half a spacing per step, in all. Zero in a sound run.
     pub speed_limits: u32,

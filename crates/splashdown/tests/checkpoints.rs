@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Free bodies that bounce off one another and the box, a turning one, a tap, a sink and probes: all that remembers something.
+/// Free bodies that bounce off one another and the box, a turning one, a tap, a sink and probes: all that
+/// remembers something.
 const EVERYTHING: &str = r#"
 [scene]
 name = "everything"
@@ -165,7 +166,7 @@ fn what_is_no_checkpoint_is_refused_with_a_reason() -> Outcome {
 
     // Files that are checkpoints, of something else.
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
-    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 1", "\"version\": 7"));
+    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 2", "\"version\": 7"));
     assert!(refused(&other.to_bytes()?).contains("format 7"));
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
     other.set_text(

@@ -85,7 +85,8 @@ fn sort(executor: &mut Executor, points: &[Vec3], way: Sort) -> Sorted {
     let state = StepState { run_count: n as u32, ..bytemuck::Zeroable::zeroed() };
     executor.write(fields.state, &[state]).unwrap();
     let mut recording = Recording::new("sort");
-    cells.record(&mut recording, &fields);
+    cells.record_first_count(&mut recording, &fields);
+    cells.record_sort(&mut recording, &fields, fields.sorted_ids);
     executor.run(&recording).unwrap();
     Sorted {
         cell_start: executor.read(cells.cell_start).unwrap(),

@@ -1,5 +1,5 @@
-//! `cargo xtask bench --peers`: the same work done by this program and by what people use, one after the other on the same
-//! machine with the same number of threads, several times. The peers come from Python's registry.
+//! `cargo xtask bench --peers`: the same work done by this program and by what people use, one after the other
+//! on the same machine with the same number of threads, several times. The peers come from Python's registry.
 
 mod numbers;
 mod steps;

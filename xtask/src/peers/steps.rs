@@ -17,7 +17,8 @@ const BAR: f64 = 10.0;
 /// Steps of the peer in a round, after its warm-up.
 const STEPS: u32 = 40;
 
-/// The peer's dam break: a block of 2 m in a box of 8 m, 6 m and 3 m, in particles 0.05 m apart, all `divisor` times shorter.
+/// The peer's dam break: a block of 2 m in a box of 8 m, 6 m and 3 m, in particles 0.05 m apart, all `divisor`
+/// times shorter.
 fn scene(divisor: f64) -> String {
     let [width, height, depth, side] = [8.0, 6.0, 3.0, 2.0].map(|length| length / divisor);
     let z = (depth - side) / 2.0;

@@ -52,8 +52,8 @@ pub struct RunArguments {
     /// Folder for the results [default: out/ and the scene's name]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor` [default: auto, or what
-    /// the run that goes on was given]
+    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor`
+    /// [default: auto, or what the run that goes on was given]
     #[arg(short, long, value_name = "auto|gpu|cpu|NAME", value_parser = clap::value_parser!(Device))]
     pub device: Option<Device>,
     /// Number of frames after the initial one [default: the scene's]

@@ -53,7 +53,8 @@ pub struct SurfaceArguments {
     /// Leave out separate pieces smaller than this many particles in the bulk; lone particles count 1 to 2
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = particles_of_a_blob)]
     pub min_blob: f64,
-    /// Give the vertices this attribute of the particles too, by its name in the file, or `all`; may be repeated (PLY, VTK)
+    /// Give the vertices this attribute of the particles too, by its name in the file, or `all`; may be
+    /// repeated (PLY, VTK)
     #[arg(short, long, value_name = "NAME|all")]
     pub attribute: Vec<String>,
     #[command(flatten)]

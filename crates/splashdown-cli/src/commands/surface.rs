@@ -79,7 +79,14 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let (mut open, mut last) = (Vec::new(), None);
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
-        let topology = one(step, &params, arguments, &mut executor, place)?;
+        let topology = match one(step, &params, arguments, &mut executor, place) {
+            // In a sequence the others are worth having.
+            Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
+                open.push(failure.message);
+                continue;
+            }
+            result => result?,
+        };
         if !topology.is_watertight() {
             open.push(format!("`{}` is {topology}", step.output.display()));
         }

@@ -1,8 +1,9 @@
 //! `splashdown surface` against splashsurf, program against program, with equal parameters.
 //!
-//! Smoothed meshes are not quite the same: splashsurf 0.14 mixes the mean of the neighbours with where the vertex was a round
-//! before (its buffers are swapped first), the paper that both follow with where it is. After 10 rounds the volumes of this small block
-//! differ by half a per cent; of 64,000 particles in mid-splash by a fifth after 20.
+//! Smoothed meshes are not quite the same: splashsurf 0.14 mixes the mean of the neighbours with where the
+//! vertex was a round before (its buffers are swapped first), the paper that both follow with where it is.
+//! After 10 rounds the volumes of this small block differ by half a per cent; of 64,000 particles in mid-splash
+//! by a fifth after 20.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

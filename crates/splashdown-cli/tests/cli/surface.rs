@@ -100,7 +100,8 @@ fn what_particles_carry_comes_to_the_vertices() -> Outcome {
     assert_eq!(names[6..], ["temperature", "force_x", "force_y", "force_z"]);
     let mut off = 0.0_f32;
     for row in &rows {
-        // A number that is the same everywhere stays so; one with a slope of 100 is off by the way to the particles around.
+        // A number that is the same everywhere stays so; one with a slope of 100 is off by the way to the
+        // particles around.
         let force = [row[7] - 1.0, row[8] + 2.0, row[9] - 0.5];
         assert!(force.iter().all(|off| off.abs() < 1e-5), "{row:?}");
         off = off.max((row[6] - 290.0 - 100.0 * row[0]).abs());

@@ -1,4 +1,5 @@
-//! The words that neither simulate nor draw: help, scenes, check, doctor, completions, and what the README says of them.
+//! The words that neither simulate nor draw: help, scenes, check, doctor, completions, and what the README says
+//! of them.
 
 use crate::place::{Outcome, Place, SMALL, splashdown, stderr, stdout};
 use serde_json::Value;

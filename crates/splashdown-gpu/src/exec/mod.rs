@@ -57,8 +57,8 @@ pub async fn refused_passes(gpu: &crate::Gpu, passes: &[&'static crate::PassDesc
 }
 
 impl Executor {
-    /// An executor without buffers on the same device. It takes over the compiled passes; this one compiles again what it
-    /// needs again.
+    /// An executor without buffers on the same device. It takes over the compiled passes; this one compiles
+    /// again what it needs again.
     pub fn successor(&mut self) -> Self {
         match self {
             Self::Cpu(_) => Self::Cpu(CpuExecutor::new()),
@@ -85,7 +85,8 @@ impl Executor {
         Ok(buffer)
     }
 
-    /// Makes a storage buffer with this content that passes may bind as a uniform too. For what is small: at most 64 KiB.
+    /// Makes a storage buffer with this content that passes may bind as a uniform too. For what is small: at
+    /// most 64 KiB.
     ///
     /// # Errors
     /// As [`create`](Self::create).

@@ -49,8 +49,7 @@ impl Pipeline {
         let module = if gpu.checks_shaders() {
             device.create_shader_module(descriptor)
         } else {
-            // SAFETY: the passes index within the buffers that the table has compared with their declarations, and their loops
-            // end; the tests run them under the checks. Whoever opened the device asked for this.
+            // SAFETY: whoever took the checks off the device has promised that its passes do without.
             unsafe { device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
         };
         let entries: Vec<_> = pass

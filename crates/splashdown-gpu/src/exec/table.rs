@@ -34,8 +34,8 @@ impl Meta {
         self.size as u64 * self.len.max(1) as u64
     }
 
-    /// Refuses more elements than 32-bit numbers can tell apart, which passes have no others than, and more bytes than a
-    /// uniform may have.
+    /// Refuses more elements than 32-bit numbers can tell apart, which passes have no others than, and more
+    /// bytes than a uniform may have.
     pub fn check_len(&self) -> Result<(), GpuError> {
         let fits = match self.kind {
             Kind::Storage => u64::from(u32::MAX),

@@ -1,12 +1,13 @@
-//! What a device can do at best: how fast it copies, how fast it multiplies and adds, and what a dispatch costs that waits for the one
-//! before it.
+//! What a device can do at best: how fast it copies, how fast it multiplies and adds, and what a dispatch costs
+//! that waits for the one before it.
 //!
-//! A claim about speed is a ratio to these, measured in the same process on the same device, so that it holds on any machine.
+//! A claim about speed is a ratio to these, measured in the same process on the same device, so that it holds
+//! on any machine.
 //!
-//! *How it works.* Three passes without any purpose of their own. `copy` moves 32 MiB from one buffer to another, more than caches
-//! hold. `madd` runs eight independent chains of fused multiplications and additions per lane, enough to hide their latency. `nothing` is
-//! one workgroup that adds to a counter, many times in one submission, each after the one before. The best of several rounds counts: a floor is
-//! what is possible.
+//! *How it works.* Three passes without any purpose of their own. `copy` moves 32 MiB from one buffer to
+//! another, more than caches hold. `madd` runs eight independent chains of fused multiplications and additions
+//! per lane, enough to hide their latency. `nothing` is one workgroup that adds to a counter, many times in one
+//! submission, each after the one before. The best of several rounds counts: a floor is what is possible.
 
 mod cpu;
 
@@ -105,7 +106,8 @@ impl Floors {
         })
     }
 
-    /// The shortest time in s for work of so many bytes, operations and dependent dispatches, where bytes and operations overlap.
+    /// The shortest time in s for work of so many bytes, operations and dependent dispatches, where bytes and
+    /// operations overlap.
     pub fn seconds(&self, bytes: f64, operations: f64, dispatches: f64) -> f64 {
         (bytes / self.bytes_per_second).max(operations / self.flops) + dispatches * self.dispatch
     }

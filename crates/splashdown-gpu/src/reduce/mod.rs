@@ -6,8 +6,9 @@
 //! at most 4,096 values. Both are the same pass with different numbers. Inside a workgroup each invocation joins every
 //! 256th value, sixteen invocations join sixteen of those each, and one joins the sixteen: two barriers.
 //!
-//! The order depends on nothing but the number of values, and it is the same in the pass's CPU side, so that a sum has the
-//! same bits on every run, on every number of threads and, where the device rounds as IEEE 754 says, on both executors.
+//! The order depends on nothing but the number of values, and it is the same in the pass's CPU side, so that a
+//! sum has the same bits on every run, on every number of threads and, where the device rounds as IEEE 754
+//! says, on both executors.
 //!
 //! # Why not the other way
 //!

@@ -2,22 +2,23 @@
 //!
 //! # How it works
 //!
-//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 4,096 counts. Then each workgroup adds up the
-//! sums of the blocks before its own by itself, all of its invocations together, and scans its block on top of that.
-//! Up to 4,096 blocks (16.8 million counts) these are at most sixteen more reads per invocation, of words that all
-//! workgroups share; a dispatch of its own, between the two, costs more. Past that it is three dispatches: one workgroup
-//! scans the sums in the middle. It loops over them, 4,096 a round, so there is no length at which a further level would be
-//! needed: the longest buffer a device binds (2^30 counts) takes 64 rounds. Short inputs take that middle pass alone.
+//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 4,096 counts. Then each workgroup
+//! adds up the sums of the blocks before its own by itself, all of its invocations together, and scans its
+//! block on top of that. Up to 4,096 blocks (16.8 million counts) these are at most sixteen more reads per
+//! invocation, of words that all workgroups share; a dispatch of its own, between the two, costs more. Past
+//! that it is three dispatches: one workgroup scans the sums in the middle. It loops over them, 4,096 a round,
+//! so there is no length at which a further level would be needed: the longest buffer a device binds (2^30
+//! counts) takes 64 rounds. Short inputs take that middle pass alone.
 //!
 //! Inside a workgroup each invocation sums sixteen counts in registers, and sixteen invocations join the 256 sums: two
 //! barriers a round where the usual tree has sixteen.
 //!
 //! # What it costs
 //!
-//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 counts take 0.04 ms by the CPU side
-//! and 0.28 ms on software Vulkan (lavapipe of Mesa 22.3.6), a million counts 0.3 ms and 2.9 ms. One workgroup
-//! alone is as fast as blocks there up to 16,384 counts (0.14 ms); a graphics card likes blocks earlier, but has
-//! little to lose at such lengths.
+//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 counts take 0.04 ms by
+//! the CPU side and 0.28 ms on software Vulkan (lavapipe of Mesa 22.3.6), a million counts 0.3 ms and 2.9 ms.
+//! One workgroup alone is as fast as blocks there up to 16,384 counts (0.14 ms); a graphics card likes blocks
+//! earlier, but has little to lose at such lengths.
 //!
 //! # Why not the other way
 //!

@@ -2,22 +2,23 @@
 //!
 //! # How it works
 //!
-//! Batcher's network (K. E. Batcher, *Sorting networks and their applications*, AFIPS 1968) in the form whose comparisons
-//! all point the same way: a merge first compares mirrored places of two sorted halves (a *flip*), then places half a
-//! span apart, a quarter, and so on. Since the smaller of two always goes to the front, padding of
-//! `u32::MAX` up to the next power of two never moves, and need not be there: comparisons with it are left out. So any
-//! length is sorted in place.
+//! Batcher's network (K. E. Batcher, *Sorting networks and their applications*, AFIPS 1968) in the form whose
+//! comparisons all point the same way: a merge first compares mirrored places of two sorted halves (a *flip*),
+//! then places half a span apart, a quarter, and so on. Since the smaller of two always goes to the front,
+//! padding of `u32::MAX` up to the next power of two never moves, and need not be there: comparisons with it
+//! are left out. So any length is sorted in place.
 //!
-//! Everything inside blocks of 512 happens in workgroup memory; only longer spans take a dispatch per step: 36 dispatches
-//! for 65,536 pairs, 78 for a million.
+//! Everything inside blocks of 512 happens in workgroup memory; only longer spans take a dispatch per step: 36
+//! dispatches for 65,536 pairs, 78 for a million.
 //!
 //! Pairs are ordered by key, then by value. If the values differ (numbers of particles do), the order is total and the
 //! result repeats bit by bit.
 //!
 //! # What it costs
 //!
-//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 pairs take 4 ms by the CPU side and
-//! 27 ms on software Vulkan (lavapipe of Mesa 22.3.6), where the scan of a counting sort takes 0.3 ms.
+//! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 pairs take 4 ms by the
+//! CPU side and 27 ms on software Vulkan (lavapipe of Mesa 22.3.6), where the scan of a counting sort takes 0.3
+//! ms.
 //!
 //! # Why not the other way
 //!

@@ -14,7 +14,8 @@ pub struct WgslModule {
 /// `linear_index` and `linear_group`: one-dimensional numbers in a two-dimensional dispatch.
 pub const INDEX: WgslModule = WgslModule { name: "gpu/index", source: include_str!("index.wgsl") };
 
-/// `workgroup_prefix`: prefix sums over the 256 invocations of a workgroup with two barriers. It declares workgroup memory.
+/// `workgroup_prefix`: prefix sums over the 256 invocations of a workgroup with two barriers. It declares
+/// workgroup memory.
 pub const WORKGROUP_PREFIX: WgslModule =
     WgslModule { name: "gpu/workgroup_prefix", source: include_str!("workgroup_prefix.wgsl") };
 

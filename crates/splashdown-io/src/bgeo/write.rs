@@ -21,8 +21,8 @@ struct Attribute<'a> {
 
 /// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
 ///
-/// Attributes that are present become `v` (Houdini's name of the velocity, by which it blurs motion), `density`, `pressure`
-/// and `id`.
+/// Attributes that are present become `v` (Houdini's name of the velocity, by which it blurs motion),
+/// `density`, `pressure` and `id`.
 ///
 /// # Errors
 /// Those of [`Particles::check`]; [`IoError::Write`].
@@ -47,8 +47,8 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     attributes.retain(|attribute| !attribute.words.is_empty());
 
     out.write_all(b"BgeoV")?;
-    // Version; points, primitives, groups of both; attributes of points, vertices, primitives and the whole. The check has
-    // bounded the number of particles.
+    // Version; points, primitives, groups of both; attributes of points, vertices, primitives and the whole.
+    // The check has bounded the number of particles.
     for word in [5, particles.len() as i32, 0, 0, 0, attributes.len() as i32, 0, 0, 0] {
         out.write_all(&word.to_be_bytes())?;
     }

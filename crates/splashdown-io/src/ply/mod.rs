@@ -7,9 +7,9 @@
 //! knows no `nan`). What stays here is the meaning of the properties and the refusal of headers that promise more
 //! than the file holds.
 //!
-//! Columns written: `x y z vx vy vz density pressure` (float), `id` (uint) for particles, those that are present;
-//! `x y z nx ny nz vx vy vz` (float) and `vertex_indices` (list uchar int) for meshes. Blender, MeshLab, ParaView and Houdini
-//! open these.
+//! Columns written: `x y z vx vy vz density pressure` (float), `id` (uint) for particles, those that are
+//! present; `x y z nx ny nz vx vy vz` (float) and `vertex_indices` (list uchar int) for meshes. Blender,
+//! MeshLab, ParaView and Houdini open these.
 
 mod read;
 mod write;

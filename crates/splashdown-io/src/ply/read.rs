@@ -87,7 +87,8 @@ fn vectors(mut columns: Vec<Attribute>) -> Vec<Attribute> {
 
 /// Reads a mesh from the `vertex` and `face` elements of a PLY file.
 ///
-/// Normals are taken where `nx ny nz` are present, velocities where `vx vy vz` are. Polygons are cut into fans of triangles.
+/// Normals are taken where `nx ny nz` are present, velocities where `vx vy vz` are. Polygons are cut into fans
+/// of triangles.
 ///
 /// # Errors
 /// [`IoError::Read`] or [`IoError::Malformed`]; also a face with fewer than three corners or one that names a vertex

@@ -1,16 +1,18 @@
-//! USD, the scene format of film and animation, as text (`.usda`): a whole run in one file, with the frames as time samples.
+//! USD, the scene format of film and animation, as text (`.usda`): a whole run in one file, with the frames as
+//! time samples.
 //!
 //! Blender, Houdini, Maya, `usdview` and Omniverse open it; [`MeshSeries`] is the animated surface, [`PointSeries`] the
 //! particles. Velocities are the attribute `velocities`, by which these programs blur motion.
 //!
-//! *How it works.* In such a file all frames of one attribute stand before the next attribute, so nothing can be appended
-//! to it. Each attribute has a hidden file of its own beside the final one (`spool`), to which a frame is appended, and
-//! [`MeshSeries::finish`] puts them together. A run that is killed leaves no USD file, one that ends by itself or by
-//! Ctrl-C leaves a whole one.
+//! *How it works.* In such a file all frames of one attribute stand before the next attribute, so nothing can
+//! be appended to it. Each attribute has a hidden file of its own beside the final one (`spool`), to which a
+//! frame is appended, and [`MeshSeries::finish`] puts them together. A run that is killed leaves no USD file,
+//! one that ends by itself or by Ctrl-C leaves a whole one.
 //!
-//! *Why own code:* text of five kinds of lines. The crate `openusd` 0.8 is young and wants a newer compiler; the C++ library
-//! takes an hour to build. `tests/foreign.rs` opens the files with Pixar's own library. *Why text:* the binary form (`usdc`)
-//! is described nowhere but in that library's source; it would take about a third of the room.
+//! *Why own code:* text of five kinds of lines. The crate `openusd` 0.8 is young and wants a newer compiler;
+//! the C++ library takes an hour to build. `tests/foreign.rs` opens the files with Pixar's own library. *Why
+//! text:* the binary form (`usdc`) is described nowhere but in that library's source; it would take about a
+//! third of the room.
 
 mod spool;
 mod text;
@@ -83,8 +85,8 @@ impl MeshSeries {
         })
     }
 
-    /// Puts the file together; returns its path and size in bytes, or `None` where no frame was pushed. A second call does
-    /// nothing and returns `None`.
+    /// Puts the file together; returns its path and size in bytes, or `None` where no frame was pushed. A
+    /// second call does nothing and returns `None`.
     ///
     /// # Errors
     /// [`IoError::Write`].

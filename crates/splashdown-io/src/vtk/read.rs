@@ -156,7 +156,8 @@ impl Cursor<'_> {
         let before = self.at;
         let offsets = self.words().unwrap_or_default();
         let is_new = offsets.first().is_some_and(|word| word == "OFFSETS");
-        // Triangles or quadrilaterals; the one cell of all points that some programs write has as many corners as there are points.
+        // Triangles or quadrilaterals; the one cell of all points that some programs write has as many corners
+        // as there are points.
         let (cells, corners) =
             if is_new { (first.saturating_sub(1), second) } else { (first, second.saturating_sub(first)) };
         let is_mesh = cells > 1 && [3, 4].iter().any(|n| cells.checked_mul(*n) == Some(corners));

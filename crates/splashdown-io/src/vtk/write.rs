@@ -19,8 +19,8 @@ const VTK_TRIANGLE: u32 = 5;
 
 /// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
 ///
-/// Each particle is a cell, as in a VTU file; attributes that are present become the point arrays `velocity`, `density`,
-/// `pressure` and `id`.
+/// Each particle is a cell, as in a VTU file; attributes that are present become the point arrays `velocity`,
+/// `density`, `pressure` and `id`.
 ///
 /// # Errors
 /// Those of [`Particles::check`]; [`IoError::Write`].

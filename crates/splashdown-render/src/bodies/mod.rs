@@ -1,10 +1,11 @@
 //! Solids that the liquid meets.
 //!
 //! # How it works
-//! The meshes of all solids come as one mesh in world space, with a colour per vertex. They are drawn into the picture before
-//! particles and liquid, so that the liquid's shader finds them behind itself and bends and tints them, and their depth hides
-//! what lies behind. For the tint the thickness of liquid must end at the solid: its distance is drawn into a texture of
-//! its own, the least one kept, and the thickness pass cuts every distance off there.
+//! The meshes of all solids come as one mesh in world space, with a colour per vertex. They are drawn into the
+//! picture before particles and liquid, so that the liquid's shader finds them behind itself and bends and
+//! tints them, and their depth hides what lies behind. For the tint the thickness of liquid must end at the
+//! solid: its distance is drawn into a texture of its own, the least one kept, and the thickness pass cuts
+//! every distance off there.
 //!
 //! # Why not the other way
 //! Transforming on the GPU would save an upload of some thousand vertices per frame and need a draw per solid.

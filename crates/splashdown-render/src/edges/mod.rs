@@ -1,10 +1,11 @@
 //! The box as thin lines.
 //!
 //! # How it works
-//! Each edge is a quad that the vertex shader widens on the screen to a constant number of pixels, with one more pixel
-//! on each side over which it fades; so lines are smooth with and without multisampling. Edges that fluid in the box can
-//! hide, those whose two walls turn their inside to the eye, are drawn before the fluid and are then mirrored and bent
-//! by it like the floor; all others lie on the convex box's near side and are drawn last. So every edge is drawn once.
+//! Each edge is a quad that the vertex shader widens on the screen to a constant number of pixels, with one
+//! more pixel on each side over which it fades; so lines are smooth with and without multisampling. Edges that
+//! fluid in the box can hide, those whose two walls turn their inside to the eye, are drawn before the fluid
+//! and are then mirrored and bent by it like the floor; all others lie on the convex box's near side and are
+//! drawn last. So every edge is drawn once.
 //!
 //! # Why not the other way
 //! Line primitives are one pixel wide everywhere on WebGPU. Drawing all edges before and again after the fluid would

@@ -1,16 +1,18 @@
 //! Foam, spray and bubbles.
 //!
 //! # How it works
-//! Every diffuse particle is a soft white disc that faces the eye, laid over the picture. All are nearly equally white, so that
-//! their order hardly matters and nothing is sorted. Depth is tested and not written. Where there is liquid, bubbles are drawn before it, into
-//! the picture that it is looked through: so they are bent, tinted and hidden as all else under water. Foam and spray come after it.
+//! Every diffuse particle is a soft white disc that faces the eye, laid over the picture. All are nearly
+//! equally white, so that their order hardly matters and nothing is sorted. Depth is tested and not written.
+//! Where there is liquid, bubbles are drawn before it, into the picture that it is looked through: so they are
+//! bent, tinted and hidden as all else under water. Foam and spray come after it.
 //!
-//! Foam lies in the surface, which would cut each disc in two; its depth is a little nearer than its place. Discs that would be smaller
-//! than a pixel are drawn as large as one and as much fainter.
+//! Foam lies in the surface, which would cut each disc in two; its depth is a little nearer than its place.
+//! Discs that would be smaller than a pixel are drawn as large as one and as much fainter.
 //!
 //! # Why not the other way
-//! A volume of foam's density that rays are marched through (Ihmsen et al. 2012 draw so, off line) has self-shadowing, for the cost of all
-//! else in the picture together. Additive discs would be brighter than any white.
+//! A volume of foam's density that rays are marched through (Ihmsen et al. 2012 draw so, off line) has
+//! self-shadowing, for the cost of all else in the picture together. Additive discs would be brighter than any
+//! white.
 //!
 //! # Things we might try
 //! Shadows of foam on the floor; a mirror image of spray in the water.

@@ -1,30 +1,34 @@
 //! Particles as spheres.
 //!
 //! # How it works
-//! Every particle is a quad, six vertices that pull their particle from the storage buffers, facing the eye in the plane
-//! through the sphere's centre. With the centre at distance d, the cone that touches the sphere of radius r cuts this
-//! plane in a circle of radius R, R^2 = d^2 r^2 / (d^2 - r^2). The vertex shader hands on q, the place in the plane in
-//! units of R. The ray D to that place meets the sphere at s D with |s D - c| = r; as D = c + R q with c and q
-//! perpendicular, the discriminant d^4 - |D|^2 (d^2 - r^2) is just d^2 r^2 (1 - |q|^2), so
+//! Every particle is a quad, six vertices that pull their particle from the storage buffers, facing the eye in
+//! the plane through the sphere's centre. With the centre at distance d, the cone that touches the sphere of
+//! radius r cuts this plane in a circle of radius R, R^2 = d^2 r^2 / (d^2 - r^2). The vertex shader hands on q,
+//! the place in the plane in units of R. The ray D to that place meets the sphere at s D with |s D - c| = r; as
+//! D = c + R q with c and q perpendicular, the discriminant d^4 - |D|^2 (d^2 - r^2) is just d^2 r^2 (1 -
+//! |q|^2), so
 //!
 //! ```text
 //! s = d (d - r sqrt(1 - |q|^2)) / |D|^2
 //! ```
 //!
-//! without the cancellation that makes small far spheres flicker. The outline is |q| = 1; the shader
-//! tests it at each of the pixel's samples and hands on their mask, so spheres need no sorting. Depth is that of the hit.
+//! without the cancellation that makes small far spheres flicker. The outline is |q| = 1; the shader tests it
+//! at each of the pixel's samples and hands on their mask, so spheres need no sorting. Depth is that of the
+//! hit.
 //!
 //! The number that a particle is coloured by is worked out in the vertex shader and looked up in a texture of 256
 //! colours, which also fills the colour bar.
 //!
-//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores draws 64,000 of them, a good five pixels across, with background,
-//! shadow and four samples at 1280 x 720 in 0.19 s, of which the vertices take a third; 105,000 in 0.27 s.
+//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores draws 64,000 of them, a good five pixels across, with
+//! background, shadow and four samples at 1280 x 720 in 0.19 s, of which the vertices take a third; 105,000 in
+//! 0.27 s.
 //!
 //! # Why not the other way
-//! Instanced quads: software drivers treat each instance as a draw of its own, and four vertices fill no vector unit.
-//! Alpha to coverage: lavapipe (Mesa 22.3) writes the depth of samples that it leaves out, and the floor shines through
-//! every outline; it also cannot say which samples. A fragment per sample: smooth seams between spheres too, for four times the work.
-//! Icospheres: a hundred times the vertices for a rounder interior that nobody sees.
+//! Instanced quads: software drivers treat each instance as a draw of its own, and four vertices fill no vector
+//! unit. Alpha to coverage: lavapipe (Mesa 22.3) writes the depth of samples that it leaves out, and the floor
+//! shines through every outline; it also cannot say which samples. A fragment per sample: smooth seams between
+//! spheres too, for four times the work. Icospheres: a hundred times the vertices for a rounder interior that
+//! nobody sees.
 //!
 //! # Things we might try
 //! Ambient occlusion from the cells of the neighbour search; a triangle instead of the quad (half the vertices, 1.3

@@ -64,7 +64,8 @@ fn fragment_main(in: Varying) -> Output {
     let to_eye = -in.centre.xyz / distance;
     let sun = max(dot(normal, globals.sun), 0.0);
     let facing = max(dot(normal, to_eye), 0.0);
-    // Sky from above, a little light from the floor, the sun; darker towards the outline, so that neighbours stand apart.
+    // Sky from above, a little light from the floor, the sun; darker towards the outline, so that neighbours
+    // stand apart.
     let light = (0.68 + 0.20 * normal.y + 0.30 * sun) * (0.48 + 0.52 * facing);
     // Blinn's highlight with exponent 32, by squaring.
     let half_way = globals.sun + to_eye;

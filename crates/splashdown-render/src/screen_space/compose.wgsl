@@ -3,8 +3,8 @@
 @group(2) @binding(3) var distances: texture_2d<f32>;      // distance along the view's direction, share of liquid around
 
 const NOTHING = 1e30;
-// Share of liquid around a pixel at the outline, and the deviation of the average, in radii of the splats. A straight edge has
-// a share of 0.5; the middle of a single drop has 0.75.
+// Share of liquid around a pixel at the outline, and the deviation of the average, in radii of the splats. A
+// straight edge has a share of 0.5; the middle of a single drop has 0.75.
 const OUTLINE = 0.66;
 const SHARE_DEVIATION = 0.6;
 
@@ -28,8 +28,9 @@ fn place(texel: vec2i, distance: f32) -> vec3f {
     return view_ray(vec2f(texel) + 0.5) * distance;
 }
 
-// The surface's slope along an axis of the picture, from the differences to both sides. Over an edge one of them is large and
-// wrong, so each counts the less the larger it is; a switch from one to the other would leave dotted rims.
+// The surface's slope along an axis of the picture, from the differences to both sides. Over an edge one of
+// them is large and wrong, so each counts the less the larger it is; a switch from one to the other would leave
+// dotted rims.
 fn slope(texel: vec2i, axis: vec2i, here: vec3f) -> vec3f {
     let ahead = sample_distance(texel + axis);
     let behind = sample_distance(texel - axis);
@@ -61,8 +62,8 @@ fn fragment_main(@builtin(position) position: vec4f) -> Output {
     if distance >= NOTHING {
         discard;
     }
-    // The outline is where the share of liquid around falls below a bound. That trims the spheres' bumps; and as the share
-    // falls over known pixels, it also says how much of the pixel is inside.
+    // The outline is where the share of liquid around falls below a bound. That trims the spheres' bumps; and
+    // as the share falls over known pixels, it also says how much of the pixel is inside.
     let deviation = max(SHARE_DEVIATION * globals.splat_radius / (distance * globals.pixel_angle), 0.6);
     let covered = clamp((own.g - OUTLINE) * 2.5 * deviation + 0.5, 0.0, 1.0);
     if covered == 0.0 {

@@ -1,29 +1,32 @@
 //! The liquid straight from its particles, without a mesh.
 //!
 //! # How it works
-//! *Splat*: every particle is a sphere a little larger than its share of space, so that neighbours merge; the nearest one in
-//! each pixel leaves its distance. *Smooth*: the narrow-range filter (Truong and Yuksel 2018) turns the heap of spheres
-//! into a surface. It averages with a Gaussian whose width in pixels follows the distance, along one axis and then the
-//! other, twice over, and at last in a small square against the streaks that this leaves. Samples in front of a narrow
-//! range around the middle are left out together with their mirror image, so that near liquid has no halo in the far;
-//! samples behind it count as lying just behind the middle, which rounds the rim; and the range grows with every sample inside
-//! it, so that slopes stay. *Amount*: every particle adds its volume over a soft disc, in half resolution. *Compose*:
-//! normals from the distances' differences, the smaller one at edges; then the light of `shared/liquid.wgsl`, which the
-//! mesh has too.
+//! *Splat*: every particle is a sphere a little larger than its share of space, so that neighbours merge; the
+//! nearest one in each pixel leaves its distance. *Smooth*: the narrow-range filter (Truong and Yuksel 2018)
+//! turns the heap of spheres into a surface. It averages with a Gaussian whose width in pixels follows the
+//! distance, along one axis and then the other, twice over, and at last in a small square against the streaks
+//! that this leaves. Samples in front of a narrow range around the middle are left out together with their
+//! mirror image, so that near liquid has no halo in the far; samples behind it count as lying just behind the
+//! middle, which rounds the rim; and the range grows with every sample inside it, so that slopes stay.
+//! *Amount*: every particle adds its volume over a soft disc, in half resolution. *Compose*: normals from the
+//! distances' differences, the smaller one at edges; then the light of `shared/liquid.wgsl`, which the mesh has
+//! too.
 //!
-//! Distances are drawn with a margin around the picture: smoothing that knows nothing of what lies beyond the border would bend the
-//! surface there.
+//! Distances are drawn with a margin around the picture: smoothing that knows nothing of what lies beyond the
+//! border would bend the surface there.
 //!
-//! The outline of a heap of spheres is bumpy, and no filter of distances mends it. So the first round of smoothing also
-//! averages the share of pixels that have liquid, and the outline is drawn where that falls below a bound: bumps are cut off, and the same
-//! number says how much of a pixel is inside. Depth is that of the smoothed surface, so solids and the box's lines cut it as they do the mesh.
+//! The outline of a heap of spheres is bumpy, and no filter of distances mends it. So the first round of
+//! smoothing also averages the share of pixels that have liquid, and the outline is drawn where that falls
+//! below a bound: bumps are cut off, and the same number says how much of a pixel is inside. Depth is that of
+//! the smoothed surface, so solids and the box's lines cut it as they do the mesh.
 //!
-//! 16-bit floats hold the amount to a thousandth; where more than a thousand particles lie behind each other, the sum stops
-//! growing, long after the liquid has become opaque.
+//! 16-bit floats hold the amount to a thousandth; where more than a thousand particles lie behind each other,
+//! the sum stops growing, long after the liquid has become opaque.
 //!
-//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores, 63,000 particles, 1280 x 720, four samples, all in one run of `examples/ways.rs`:
-//! 1.4 times as long as the same particles as spheres, 1.2 times a mesh of 298,000 triangles; a quarter each for amount, splats and
-//! smoothing. With one sample, where spheres need half the time, 2.7 and 2.4 times.
+//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores, 63,000 particles, 1280 x 720, four samples, all in one
+//! run of `examples/ways.rs`: 1.4 times as long as the same particles as spheres, 1.2 times a mesh of 298,000
+//! triangles; a quarter each for amount, splats and smoothing. With one sample, where spheres need half the
+//! time, 2.7 and 2.4 times.
 //!
 //! # Why not the other way
 //! Curvature flow (van der Laan et al. 2009) needs some fifty passes for the same smoothness. A bilateral filter keeps
@@ -65,8 +68,8 @@ const NOTHING: Color = Color { r: 1e30, ..Color::TRANSPARENT };
 /// Reach of the two rounds of smoothing, in radii of the splats. The second one removes what the first leaves where its
 /// samples stand apart.
 const REACH: [f64; 2] = [1.9, 0.9];
-/// Radius of the splats, in particle radii. Spheres on a lattice close the gaps between four of them from 1.42 on; larger ones
-/// have a smoother outline, of which compose.wgsl cuts off what is too much.
+/// Radius of the splats, in particle radii. Spheres on a lattice close the gaps between four of them from 1.42
+/// on; larger ones have a smoother outline, of which compose.wgsl cuts off what is too much.
 const SPLAT_REACH: f32 = 1.7;
 /// Radius of the discs that the amount is spread over, in particle radii.
 const AMOUNT_REACH: f32 = 3.0;

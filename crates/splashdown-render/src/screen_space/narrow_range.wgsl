@@ -8,8 +8,9 @@
 
 // Where there is no liquid.
 const NOTHING = 1e30;
-// Range of the filter, and how far behind the middle a sample beyond the range is taken to be, in radii of the splats. The
-// authors' range is 10.5; less of it keeps milky rims off liquid that has other liquid not far behind it.
+// Range of the filter, and how far behind the middle a sample beyond the range is taken to be, in radii of the
+// splats. The authors' range is 10.5; less of it keeps milky rims off liquid that has other liquid not far
+// behind it.
 const RANGE = 4.0;
 const PUSH = 1.0;
 
@@ -31,8 +32,8 @@ fn load(texel: vec2i) -> vec2f {
     return textureLoad(distances, clamp(texel, vec2i(0), last), 0).rg;
 }
 
-// As a sample of the filter: outside of the texture it counts as liquid in front, so that its mirror image is left out too
-// and the surface goes on as it comes.
+// As a sample of the filter: outside of the texture it counts as liquid in front, so that its mirror image is
+// left out too and the surface goes on as it comes.
 fn sample_distance(texel: vec2i) -> f32 {
     let size = vec2i(textureDimensions(distances));
     if any(texel < vec2i(0)) || any(texel >= size) {
@@ -41,8 +42,8 @@ fn sample_distance(texel: vec2i) -> f32 {
     return textureLoad(distances, texel, 0).r;
 }
 
-// Adds two samples that lie opposite to each other; from the inside outward, because the range widens with what it holds.
-// Where one of them is in front, both are left out: with one alone the surface would tilt.
+// Adds two samples that lie opposite to each other; from the inside outward, because the range widens with what
+// it holds. Where one of them is in front, both are left out: with one alone the surface would tilt.
 fn filter_add(state: ptr<function, Filter>, a: f32, b: f32, weight: f32) {
     let nearest = (*state).nearest;
     let farthest = (*state).farthest;

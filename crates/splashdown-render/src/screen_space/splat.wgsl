@@ -1,4 +1,5 @@
-// The nearest sphere in each pixel: its distance along the view's direction, and a 1 for liquid. Needs globals.wgsl, sphere.wgsl.
+// The nearest sphere in each pixel: its distance along the view's direction, and a 1 for liquid. Needs
+// globals.wgsl, sphere.wgsl.
 
 @group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
 

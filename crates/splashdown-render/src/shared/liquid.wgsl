@@ -1,5 +1,5 @@
-// How a liquid looks where the eye meets it: Fresnel between a mirrored and a refracted world. The mesh and the screen-space
-// fluid share it. Needs globals.wgsl, environment.wgsl.
+// How a liquid looks where the eye meets it: Fresnel between a mirrored and a refracted world. The mesh and the
+// screen-space fluid share it. Needs globals.wgsl, environment.wgsl.
 
 @group(2) @binding(0) var scene_colour: texture_2d<f32>;   // the picture without the liquid
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // metres of liquid along the view ray

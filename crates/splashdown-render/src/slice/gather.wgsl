@@ -1,5 +1,5 @@
-// Sums of W and W q over the particles around a plane, by blending: each particle is the disc in which the plane cuts its
-// kernel. Needs globals.wgsl, quantity.wgsl.
+// Sums of W and W q over the particles around a plane, by blending: each particle is the disc in which the
+// plane cuts its kernel. Needs globals.wgsl, quantity.wgsl.
 
 @group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
 @group(1) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored

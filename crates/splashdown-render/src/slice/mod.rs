@@ -1,16 +1,19 @@
 //! A plane through the fluid, coloured by density, speed or pressure.
 //!
 //! # How it works
-//! Every particle nearer to the plane than the support radius is drawn as the disc in which the plane cuts its kernel; blending
-//! adds up the kernel's weights and the weighted quantity, in the picture's own pixels. Their quotient is the
-//! quantity's mean (Shepard 1968), which is a colour of the map. The weights alone, against what they are inside the
-//! fluid, say where the fluid ends: there the plane is left out. The plane has depth, so solids and particles cut it.
+//! Every particle nearer to the plane than the support radius is drawn as the disc in which the plane cuts its
+//! kernel; blending adds up the kernel's weights and the weighted quantity, in the picture's own pixels. Their
+//! quotient is the quantity's mean (Shepard 1968), which is a colour of the map. The weights alone, against
+//! what they are inside the fluid, say where the fluid ends: there the plane is left out. The plane has depth,
+//! so solids and particles cut it.
 //!
-//! It costs next to nothing beside the background: a fifth of drawing all particles as spheres (see `examples/ways.rs`).
+//! It costs next to nothing beside the background: a fifth of drawing all particles as spheres (see
+//! `examples/ways.rs`).
 //!
 //! # Why not the other way
-//! The sum of m W alone would be the density once more, with dips along walls and surface that are none of the fluid's; the quotient shows what
-//! the solver has. A texture fixed to the plane would be blurred from near and wasteful from far.
+//! The sum of m W alone would be the density once more, with dips along walls and surface that are none of the
+//! fluid's; the quotient shows what the solver has. A texture fixed to the plane would be blurred from near and
+//! wasteful from far.
 //!
 //! # Things we might try
 //! Arrows or streaks for velocity; planes of any direction.

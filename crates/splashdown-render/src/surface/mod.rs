@@ -7,16 +7,18 @@
 //! Beer and Lambert, and the liquid's own colour comes in with depth. *Fresnel*: the exact formula for a dielectric,
 //! unpolarised, says how much of each. A rough glint of the sun (GGX, Walter et al. 2007) is added.
 //!
-//! The liquid on the view ray is summed beforehand in half the resolution: back faces add their distance from the eye,
-//! front faces subtract it, in any order, by blending. In a closed mesh a constant cancels, so the distance of the box's
-//! middle is taken off first, and 16-bit floats are exact to about a millimetre over a metre.
+//! The liquid on the view ray is summed beforehand in half the resolution: back faces add their distance from
+//! the eye, front faces subtract it, in any order, by blending. In a closed mesh a constant cancels, so the
+//! distance of the box's middle is taken off first, and 16-bit floats are exact to about a millimetre over a
+//! metre.
 //!
-//! *Lines*: the edges of the triangles, for those who want to see the mesh. WebGPU fills triangles and nothing else, so the vertex shader
-//! pulls each corner by its index and hands on which corner it is; the weights of the corners, over their slope on the screen, are
-//! the pixels to the three edges. Small triangles get fainter lines, or a fine mesh would be black.
+//! *Lines*: the edges of the triangles, for those who want to see the mesh. WebGPU fills triangles and nothing
+//! else, so the vertex shader pulls each corner by its index and hands on which corner it is; the weights of
+//! the corners, over their slope on the screen, are the pixels to the three edges. Small triangles get fainter
+//! lines, or a fine mesh would be black.
 //!
-//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores draws 298,000 triangles with background, shadow and four samples
-//! at 1280 x 720 in 0.26 s, the empty box in 0.03 s.
+//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores draws 298,000 triangles with background, shadow and
+//! four samples at 1280 x 720 in 0.26 s, the empty box in 0.03 s.
 //!
 //! # Why not the other way
 //! Ray tracing the mesh would be right for drops in front of drops, and too slow without a GPU. Depth peeling needs a
@@ -149,8 +151,8 @@ impl Surface {
         pass.set_bind_group(2, &group, &[]);
         match drawn.buffers.draw {
             Draw::Direct { index_count } => pass.draw(0..index_count, 0..1),
-            // Arguments of an indexed draw read as those of a plain one: the indices count vertices, one instance, from the
-            // first index on, and the base vertex, 0, is the first instance.
+            // Arguments of an indexed draw read as those of a plain one: the indices count vertices, one
+            // instance, from the first index on, and the base vertex, 0, is the first instance.
             Draw::Indirect(arguments, offset) => pass.draw_indirect(arguments, offset),
         }
     }

@@ -35,7 +35,8 @@ impl Viewer {
         });
     }
 
-    /// Draws with all pixels what is shown with fewer while the water moves. The next picture of the window is drawn anew.
+    /// Draws with all pixels what is shown with fewer while the water moves. The next picture of the window is
+    /// drawn anew.
     fn draw_in_full(&mut self) {
         let Some(drawn) = self.drawn.take() else { return };
         let aspect = self.size[0] as f32 / self.size[1] as f32;

@@ -142,8 +142,8 @@ impl Viewer {
         }
     }
 
-    /// Something to go on from, now and then: devices are lost by drivers that are updated, machines that sleep, and browsers that want
-    /// the memory.
+    /// Something to go on from, now and then: devices are lost by drivers that are updated, machines that
+    /// sleep, and browsers that want the memory.
     fn ask_for_a_rescue(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         if self.state.playing && now - self.seen.rescue_asked > RESCUE {

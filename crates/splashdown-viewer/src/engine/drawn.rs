@@ -1,5 +1,5 @@
-//! Buffers that are drawn. Particles are copies: the window may draw one moment while the next is computed. The surface is drawn where it
-//! was made, as many triangles as the device has counted.
+//! Buffers that are drawn. Particles are copies: the window may draw one moment while the next is computed. The
+//! surface is drawn where it was made, as many triangles as the device has counted.
 
 use std::sync::Arc;
 
@@ -78,7 +78,8 @@ impl Copies {
         Self { gpu, pool: Vec::new() }
     }
 
-    /// Copies the particles as they are after all work submitted so far, the surface extracted last, and so many particles of foam.
+    /// Copies the particles as they are after all work submitted so far, the surface extracted last, and so
+    /// many particles of foam.
     pub fn take(
         &mut self,
         simulation: &mut Simulation,
@@ -148,8 +149,8 @@ impl Copies {
     }
 }
 
-/// The simulation's own surface, if the device that draws has it. It changes as a whole, by one submission: what is drawn is always
-/// one surface, be it a newer one than that of the snapshot.
+/// The simulation's own surface, if the device that draws has it. It changes as a whole, by one submission:
+/// what is drawn is always one surface, be it a newer one than that of the snapshot.
 fn shared(executor: &Executor, surface: &Surface, stats: SurfaceStats) -> Option<DrawnMesh> {
     let buffer = |id| executor.wgpu_buffer(id).cloned();
     Some(DrawnMesh {

@@ -1,7 +1,7 @@
 //! The simulation beside the window: commands go in, snapshots come out, and neither waits for the other.
 //!
-//! On a desktop the engine works on a thread of its own, on a web page as a task between two pictures. Both run the same code
-//! (`work`); what differs is here and in `inbox.rs`.
+//! On a desktop the engine works on a thread of its own, on a web page as a task between two pictures. Both run
+//! the same code (`work`); what differs is here and in `inbox.rs`.
 
 mod command;
 mod drawn;
@@ -40,8 +40,8 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Starts the engine. `gpu` draws; it also simulates, unless `simulate` says that the CPU does. `repaint` is called when
-    /// there is something new to show.
+    /// Starts the engine. `gpu` draws; it also simulates, unless `simulate` says that the CPU does. `repaint`
+    /// is called when there is something new to show.
     pub fn start(gpu: Arc<Gpu>, simulate: Simulate, repaint: impl Fn() + Send + 'static) -> Self {
         let inbox = Arc::new(Inbox::default());
         let outbox = Arc::new(Mutex::new(Outbox::default()));

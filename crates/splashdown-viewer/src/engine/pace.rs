@@ -1,5 +1,5 @@
-//! How much to simulate next, so that the fluid keeps up with the clock where the machine can, and the window with the user where it
-//! cannot.
+//! How much to simulate next, so that the fluid keeps up with the clock where the machine can, and the window
+//! with the user where it cannot.
 
 use std::time::Duration;
 
@@ -77,8 +77,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Simulated seconds after this many wall seconds, and the longest tick, on a machine with this cost, and this much to do
-    /// between two ticks.
+    /// Simulated seconds after this many wall seconds, and the longest tick, on a machine with this cost, and
+    /// this much to do between two ticks.
     fn run(scale: f64, cost: f64, between: f64, seconds: f64) -> (f64, f64) {
         let mut pace = Pace::new();
         pace.set_scale(scale);

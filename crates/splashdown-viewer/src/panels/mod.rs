@@ -18,8 +18,8 @@ pub use viewport::Viewport;
 /// Windows narrower than this, in points, begin without controls.
 const NARROW: f32 = 700.0;
 
-/// All of the window. `picture` is the texture to show in the middle; the size that the next one should have comes back with what
-/// is to be done.
+/// All of the window. `picture` is the texture to show in the middle; the size that the next one should have
+/// comes back with what is to be done.
 pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
     let mut actions = Vec::new();
     help::keys(ui.ctx(), state, &mut actions);

@@ -126,8 +126,8 @@ fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Ac
     }
 }
 
-/// The box follows the mouse by a critically damped spring, and its fluid feels the acceleration. It comes to rest where it
-/// was, so that in the end nothing has pushed the fluid anywhere.
+/// The box follows the mouse by a critically damped spring, and its fluid feels the acceleration. It comes to
+/// rest where it was, so that in the end nothing has pushed the fluid anywhere.
 fn shake(ui: &Ui, held: bool, state: &mut State, actions: &mut Vec<Action>) {
     let Some(shaking) = &mut state.shaking else { return };
     if !held {

@@ -5,7 +5,8 @@ use crate::boundary::KernelPair;
 use crate::scene::{Domain, MeshSource};
 use crate::solid::{self, Solid, SolidKind, SolidSettings};
 
-/// The solid of a mesh, in the mesh's frame, with distances but without shares of the kernel. `owner` is what the mesh is for.
+/// The solid of a mesh, in the mesh's frame, with distances but without shares of the kernel. `owner` is what
+/// the mesh is for.
 ///
 /// # Errors
 /// [`BodyError`] of the file, the size or the shape; [`BodyError::Open`] for a sheet without an inside.

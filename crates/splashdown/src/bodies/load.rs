@@ -226,8 +226,8 @@ fn load_one(
     Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour, density })
 }
 
-/// Puts a free body, with this inertia about its centre of mass, on a hinge: it turns about the hinge's point, and only about
-/// the axis, because its inverse inertia knows no other.
+/// Puts a free body, with this inertia about its centre of mass, on a hinge: it turns about the hinge's point,
+/// and only about the axis, because its inverse inertia knows no other.
 fn hang(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
     let rotation = state.rotation();
     let arm = rotation.conjugate() * (state.position - hinge.point);
@@ -250,8 +250,8 @@ fn parts(m: Mat3) -> (Vec3, Vec3) {
     (Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z), Vec3::new(m.y_axis.x, m.z_axis.x, m.z_axis.y))
 }
 
-/// Bytes of the maps and contacts that a scene's bodies take on a device; a mesh that cannot be read counts nothing here and is
-/// refused when it is loaded.
+/// Bytes of the maps and contacts that a scene's bodies take on a device; a mesh that cannot be read counts
+/// nothing here and is refused when it is loaded.
 pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
     if scene.bodies.is_empty() {
         return 0;
@@ -322,8 +322,9 @@ fn unit_word(scale: f32) -> String {
     word.map_or_else(|| format!("units of {scale} m"), |(_, word)| (*word).to_owned())
 }
 
-/// Boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W (Akinci et al. 2012),
-/// scaled once so that half a spacing off the surface the density is what a plane wall's is.
+/// Boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W
+/// (Akinci et al. 2012), scaled once so that half a spacing off the surface the density is what a plane wall's
+/// is.
 fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Vec<Vec4> {
     let (spacing, support) = (params.particle_spacing, params.support_radius);
     let shell = solid.kind == SolidKind::Shell;

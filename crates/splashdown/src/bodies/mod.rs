@@ -1,9 +1,10 @@
 //! Bodies that the fluid meets: meshes that stand, move as written, or are carried.
 //!
-//! *How it works.* A body's solid ([`crate::solid`]) is a grid of distances in the frame of its mesh. In every step each particle near a
-//! body looks its place up (`contacts`), the body takes part in the density (`share`) and in the forces (`push`), the
-//! reactions are summed on the device, and the body moves (`motion`), all without asking the host. Between batches of steps
-//! the host lets bodies that touch one another or the box collide (`rigid`).
+//! *How it works.* A body's solid ([`crate::solid`]) is a grid of distances in the frame of its mesh. In every
+//! step each particle near a body looks its place up (`contacts`), the body takes part in the density (`share`)
+//! and in the forces (`push`), the reactions are summed on the device, and the body moves (`motion`), all
+//! without asking the host. Between batches of steps the host lets bodies that touch one another or the box
+//! collide (`rigid`).
 
 mod closed;
 mod contacts;
@@ -422,7 +423,8 @@ impl Bodies {
         Ok(executor.fetch(self.bodies).await?.iter().map(state_of).collect())
     }
 
-    /// How far a point is from the nearest body's surface in m, negative inside, and that body's name; by the host's own look-up.
+    /// How far a point is from the nearest body's surface in m, negative inside, and that body's name; by the
+    /// host's own look-up.
     pub fn nearest(&self, states: &[BodyState], x: Vec3) -> Option<(f32, &str)> {
         let distances = self.fields.iter().zip(states).zip(&self.meshes).map(|((field, state), mesh)| {
             (field.distance(state.orientation.conjugate() * (x - state.position)), mesh.name.as_str())

@@ -1,14 +1,16 @@
 //! Collisions of bodies with one another and with the box, by `rapier3d`.
 //!
-//! *How it works.* The device moves every body in every step, collisions left out. After a batch of steps the host makes rapier's
-//! bodies go the same way, from where they were before the batch with the mean velocity that leads to where the device
-//! has them. Without a contact rapier arrives at the same place and its answer is dropped, so that free bodies are
-//! untouched. With one, its places are taken, and what the contact changed of the mean velocity is added to the device's.
+//! *How it works.* The device moves every body in every step, collisions left out. After a batch of steps the
+//! host makes rapier's bodies go the same way, from where they were before the batch with the mean velocity
+//! that leads to where the device has them. Without a contact rapier arrives at the same place and its answer
+//! is dropped, so that free bodies are untouched. With one, its places are taken, and what the contact changed
+//! of the mean velocity is added to the device's.
 //!
-//! *Why not* rapier for all motion: the fluid's force changes in every step, and a host in every step is what the house avoids.
+//! *Why not* rapier for all motion: the fluid's force changes in every step, and a host in every step is what
+//! the house avoids.
 //!
-//! Dynamic bodies collide as their convex hull where that is nearly their volume, else as a convex decomposition; what does not
-//! answer to forces as its triangles.
+//! Dynamic bodies collide as their convex hull where that is nearly their volume, else as a convex
+//! decomposition; what does not answer to forces as its triangles.
 
 use glam::{Quat, Vec3, Vec4};
 use rapier3d::prelude::{
@@ -172,8 +174,9 @@ fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<Shar
     if parts.is_empty() { Some(hull) } else { Some(SharedShape::compound(parts)) }
 }
 
-/// The convex hull of the points that are farthest in some evenly spread directions. Of all points of a fine mesh parry makes hulls
-/// whose slivers its contacts trip over; and a contact need not know a ball from one with a hundred facets.
+/// The convex hull of the points that are farthest in some evenly spread directions. Of all points of a fine
+/// mesh parry makes hulls whose slivers its contacts trip over; and a contact need not know a ball from one
+/// with a hundred facets.
 fn hull(points: &[Vector]) -> Option<SharedShape> {
     const DIRECTIONS: u32 = 256;
     let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());

@@ -55,8 +55,8 @@ gpu_struct! {
         torque: Vec3,
         /// Nodes of its grid along z.
         nodes_z: u32,
-        /// Where its cells of boundary particles begin in the maps: as many as there are cells of the size of the support
-        /// radius over the grid, x fastest.
+        /// Where its cells of boundary particles begin in the maps: as many as there are cells of the size of
+        /// the support radius over the grid, x fastest.
         first_sample_cell: u32,
         /// Cells of boundary particles along x.
         samples_x: u32,
@@ -70,8 +70,8 @@ gpu_struct! {
         script: u32,
         /// Nothing; WGSL wants a multiple of sixteen bytes.
         unused: [f32; 2],
-        /// Of a body on a hinge, where `center` is: its mass times the arm from there to the centre of mass, in the mesh's
-        /// frame, in kg m.
+        /// Of a body on a hinge, where `center` is: its mass times the arm from there to the centre of mass, in
+        /// the mesh's frame, in kg m.
         moment: Vec3,
         /// Nothing.
         unused_2: f32,
@@ -155,8 +155,8 @@ impl Body {
         self.velocity + self.angular_velocity.cross(x - self.position)
     }
 
-    /// Takes the velocity that brings the point `anchor` of its own frame towards `target` (m) at `rate` times its distance per
-    /// second, by an impulse at that point.
+    /// Takes the velocity that brings the point `anchor` of its own frame towards `target` (m) at `rate` times
+    /// its distance per second, by an impulse at that point.
     pub fn pull(&mut self, anchor: Vec3, target: Vec3, rate: f32) {
         let q = self.rotation();
         let arm = q * (anchor - self.center);

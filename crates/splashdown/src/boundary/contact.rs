@@ -6,18 +6,20 @@ use super::WallTerms;
 use crate::passes::Params;
 
 impl WallTerms {
-    /// The acceleration in m/s^2, body forces left out, of a particle with velocity `v` on which its neighbours act with
-    /// `fluid`, and whose pressure pushes with `push` (2 p / rho: its own and its image's) against a G of one metre:
+    /// The acceleration in m/s^2, body forces left out, of a particle with velocity `v` on which its neighbours
+    /// act with `fluid`, and whose pressure pushes with `push` (2 p / rho: its own and its image's) against a G
+    /// of one metre:
     ///
-    /// * across a wall the pressure pushes with -push G and, while it does, goes on growing hydrostatically in the solid:
-    ///   -(D + A d / H) body, the half-space integral of a linear pressure;
-    /// * along a wall everything goes on in the solid as it is in the fluid, and neighbours fill only 1 - D of the kernel:
-    ///   their sum is divided by the 1 - D of the other axes' walls. Without it the fluid at side walls sinks;
-    /// * the speed towards a wall is damped, k = c0 H B with B = 7 (1-q)^5 (1+2q) / H^2 (the Morris operator over a
-    ///   solid at rest), where the density is summed. The image's pressure does work that the density, which knows of one
-    ///   G only, does not account for, so water in a tank would boil at 7 % of sqrt(g depth) for ever, whatever the time
-    ///   step. Only towards the wall: damped both ways, a collapsing column leaves a film standing on it. The
-    ///   continuity equation counts the image too and needs no damping;
+    /// * across a wall the pressure pushes with -push G and, while it does, goes on growing hydrostatically in
+    ///   the solid: -(D + A d / H) body, the half-space integral of a linear pressure;
+    /// * along a wall everything goes on in the solid as it is in the fluid, and neighbours fill only 1 - D of
+    ///   the kernel: their sum is divided by the 1 - D of the other axes' walls. Without it the fluid at side
+    ///   walls sinks;
+    /// * the speed towards a wall is damped, k = c0 H B with B = 7 (1-q)^5 (1+2q) / H^2 (the Morris operator
+    ///   over a solid at rest), where the density is summed. The image's pressure does work that the density,
+    ///   which knows of one G only, does not account for, so water in a tank would boil at 7 % of sqrt(g depth)
+    ///   for ever, whatever the time step. Only towards the wall: damped both ways, a collapsing column leaves
+    ///   a film standing on it. The continuity equation counts the image too and needs no damping;
     /// * friction along it, k = 2 nu A / (H d), the closed form for a velocity that goes linearly through the wall.
     ///
     /// The last two are implicit, k / (1 + k dt), and so stable for any k.

@@ -4,7 +4,7 @@ mod contact;
 mod near;
 mod walls;
 
-pub(crate) use near::NearWalls;
+pub(crate) use near::{NearWalls, closed_bounds};
 pub use walls::{KernelPair, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};
 
 use splashdown_gpu::WgslModule;

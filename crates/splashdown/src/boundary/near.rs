@@ -4,6 +4,14 @@ use glam::{BVec3, Vec3, Vec4};
 
 use super::{WallTerms, Walls};
 
+/// The corners of a box, infinitely far where a side is open; `closed` has bit 2 * axis + side set for every
+/// closed one.
+pub(crate) fn closed_bounds(min: Vec3, max: Vec3, closed: u32) -> [Vec3; 2] {
+    let closed =
+        |side: u32| BVec3::from_array([0, 1, 2].map(|axis: u32| (closed >> (2 * axis + side)) & 1 == 1));
+    [Vec3::select(closed(0), min, Vec3::NEG_INFINITY), Vec3::select(closed(1), max, Vec3::INFINITY)]
+}
+
 /// Walls with their table, and the box in which no wall is within the support.
 pub(crate) struct NearWalls<'a> {
     walls: Walls,
@@ -14,11 +22,8 @@ pub(crate) struct NearWalls<'a> {
 
 impl<'a> NearWalls<'a> {
     pub fn new(walls: Walls, table: &'a [Vec4]) -> Self {
-        let closed = |side: u32| {
-            BVec3::from_array([0, 1, 2].map(|axis: u32| (walls.closed >> (2 * axis + side)) & 1 == 1))
-        };
-        let low = Vec3::select(closed(0), walls.min + walls.support_radius, Vec3::NEG_INFINITY);
-        let high = Vec3::select(closed(1), walls.max - walls.support_radius, Vec3::INFINITY);
+        let [low, high] = closed_bounds(walls.min, walls.max, walls.closed);
+        let (low, high) = (low + walls.support_radius, high - walls.support_radius);
         Self { walls, table, low, high }
     }
 

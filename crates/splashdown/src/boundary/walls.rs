@@ -127,8 +127,8 @@ fn spiky(q: f32) -> (f32, f32) {
 
 /// Integrates the overlap of two half-spaces at right angles; takes some milliseconds.
 ///
-/// Nodes of (D12 of the density's kernel, D12 and E12 of the gradient's, 0), with E12 = -dD12/da, over (a, b) in [0, 1]^2;
-/// entry b * 33 + a.
+/// Nodes of (D12 of the density's kernel, D12 and E12 of the gradient's, 0), with E12 = -dD12/da, over (a, b)
+/// in [0, 1]^2; entry b * 33 + a.
 pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
     // The kernel integrated along the edge leaves a function of the distance from the edge, once per kernel.
     const FINE: usize = 512;
@@ -175,14 +175,15 @@ fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
     low * (1.0 - fy) + high * fy
 }
 
-/// How far behind a closed side its solid begins as far as the density is concerned, in spacings: so that a lattice that
-/// keeps half a spacing from the side has exactly the rest density.
+/// How far behind a closed side its solid begins as far as the density is concerned, in spacings: so that a
+/// lattice that keeps half a spacing from the side has exactly the rest density.
 ///
-/// A lattice is not the continuum that the integral stands for: with the integral right at the side, the first layer is
-/// 5 % too dense (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at rest begins with
-/// a burst. With the offset, which solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the half-space) once, all
-/// three are right to within 0.3 %: the same wall as if the lattice went on behind it. The lattice's gradient, in turn, is
-/// that of the integral right at the side (within 3 %; with the offset it would be 16 % too weak), so slopes go without.
+/// A lattice is not the continuum that the integral stands for: with the integral right at the side, the first
+/// layer is 5 % too dense (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at
+/// rest begins with a burst. With the offset, which solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the
+/// half-space) once, all three are right to within 0.3 %: the same wall as if the lattice went on behind it.
+/// The lattice's gradient, in turn, is that of the integral right at the side (within 3 %; with the offset it
+/// would be 16 % too weak), so slopes go without.
 pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     let ratio = f64::from(support_ratio);
     let (mut whole, mut behind) = (0.0, 0.0);
@@ -334,8 +335,8 @@ impl Walls {
 
 /// D123, the overlap of three solids, from those of each plane and of the pairs 12, 13 and 23.
 ///
-/// Where a plane or a pair hardly reaches in, there is none: there the closed forms are differences that may round to zero,
-/// and the table's straight lines may be above what they interpolate.
+/// Where a plane or a pair hardly reaches in, there is none: there the closed forms are differences that may
+/// round to zero, and the table's straight lines may be above what they interpolate.
 fn corner(d: [f32; 3], pairs: [f32; 3]) -> f32 {
     if d.iter().any(|&d| d <= 1e-5) || pairs.iter().any(|&d| d <= 1e-9) {
         return 0.0;

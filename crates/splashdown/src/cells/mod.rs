@@ -1,11 +1,11 @@
 //! Neighbour search: particles sorted by the cells of a uniform grid.
 //!
-//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, prefix sum, scatter their numbers;
-//! then copy them, each cell's few in order of id, so that the result does not depend on the order of the invocations. The
-//! pass that moves particles counts them for the next step's sort; only where nothing moved before does a pass of its own. x
-//! runs fastest
-//! in the numbers of the cells, so that the 27 cells round a particle are nine contiguous runs of particles
-//! (Dominguez et al. 2011). The thesis's bitonic sort is there as a second way with the same result.
+//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, prefix sum, scatter their
+//! numbers; then copy them, each cell's few in order of id, so that the result does not depend on the order of
+//! the invocations. The pass that moves particles counts them for the next step's sort; only where nothing
+//! moved before does a pass of its own. x runs fastest in the numbers of the cells, so that the 27 cells round
+//! a particle are nine contiguous runs of particles (Dominguez et al. 2011). The thesis's bitonic sort is there
+//! as a second way with the same result.
 //!
 //! *Why not* a hash: the domain is a box, and its dense grid is one look-up. *Why not* a radix sort: a counting sort is
 //! one, of a single digit.
@@ -83,12 +83,6 @@ impl Cells {
         })
     }
 
-    /// Appends the sort of the resting arrays into the sorted ones, without a step: nobody has counted before.
-    pub fn record(&self, recording: &mut Recording, fields: &Fields) {
-        self.record_first_count(recording, fields);
-        self.record_sort(recording, fields, fields.sorted_ids);
-    }
-
     /// Appends the count that the first sort of a frame needs.
     pub fn record_first_count(&self, recording: &mut Recording, fields: &Fields) {
         // A frame that was given up leaves a count that nobody has used.
@@ -110,8 +104,8 @@ impl Cells {
         recording.dispatch(&count::COUNT, self.all(), &buffers);
     }
 
-    /// Appends the sort of the resting arrays, whose particles have been counted, into the sorted ones, ids into `sorted_ids`;
-    /// and the settling of the step before, if there is one.
+    /// Appends the sort of the resting arrays, whose particles have been counted, into the sorted ones, ids
+    /// into `sorted_ids`; and the settling of the step before, if there is one.
     pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
         let (state, grid, ids) = (fields.state.id(), self.grid_uniform.id(), fields.ids.id());
         let (census, cell_start, slots) = (self.census.id(), self.cell_start.id(), self.slots.id());

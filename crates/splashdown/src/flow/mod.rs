@@ -1,10 +1,11 @@
 //! Emitters and sinks: fluid that comes and goes while a simulation runs.
 //!
-//! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet born is dead from the
-//! start, and the sort keeps the dead behind the living. An emitter's nozzle is a short pipe that ends at its outlet. At its back
-//! face layers of particles are born on a lattice (`plan`, `emit`), and travel to the outlet as one piston (`drive`), so that
-//! fluid leaves at rest density and with the right speed. The columns of a falling jet are staggered, or gravity, which stretches it, would
-//! draw it out into discs. A sink marks what is in it as dead (`drain`); its places are used again.
+//! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet
+//! born is dead from the start, and the sort keeps the dead behind the living. An emitter's nozzle is a short
+//! pipe that ends at its outlet. At its back face layers of particles are born on a lattice (`plan`, `emit`),
+//! and travel to the outlet as one piston (`drive`), so that fluid leaves at rest density and with the right
+//! speed. The columns of a falling jet are staggered, or gravity, which stretches it, would draw it out into
+//! discs. A sink marks what is in it as dead (`drain`); its places are used again.
 
 mod drain;
 mod drive;

@@ -17,8 +17,9 @@ pub fn axes(direction: Vec3) -> (Vec3, Vec3) {
     (across, direction.cross(across))
 }
 
-/// A layer: points in m along [`axes`], on a square lattice of `spacing` that keeps half a spacing off the rim. Of the lattice with a
-/// point in the middle and that with a square there, the one whose points make up the outlet's area better is taken.
+/// A layer: points in m along [`axes`], on a square lattice of `spacing` that keeps half a spacing off the rim.
+/// Of the lattice with a point in the middle and that with a square there, the one whose points make up the
+/// outlet's area better is taken.
 pub fn disc_layer(radius: f32, spacing: f32) -> Vec<Vec2> {
     let reach = (radius / spacing).ceil() as i32 + 1;
     let area = std::f32::consts::PI * radius * radius / (spacing * spacing);
@@ -40,9 +41,9 @@ pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Vec<Vec2> {
     (0..m).flat_map(|j| (0..n).map(move |i| Vec2::new(place(i, n), place(j, m)))).collect()
 }
 
-/// A layer with its points shifted forward, each by its own share of `depth` (m): columns of fluid keep their distances, and a jet that
-/// gravity stretches comes apart evenly instead of into a pile of discs. The shares are those of Roberts' sequence R2 on the
-/// lattice, which puts neighbours far apart from each other.
+/// A layer with its points shifted forward, each by its own share of `depth` (m): columns of fluid keep their
+/// distances, and a jet that gravity stretches comes apart evenly instead of into a pile of discs. The shares
+/// are those of Roberts' sequence R2 on the lattice, which puts neighbours far apart from each other.
 pub fn staggered(layer: &[Vec2], spacing: f32, depth: f32) -> Vec<Vec4> {
     const PLASTIC: f32 = 1.324_718;
     let share = |q: &Vec2| {
@@ -52,14 +53,15 @@ pub fn staggered(layer: &[Vec2], spacing: f32, depth: f32) -> Vec<Vec4> {
     layer.iter().map(|q| q.extend(depth * share(q)).extend(0.0)).collect()
 }
 
-/// How deep a layer is staggered, in m: a spacing for a jet straight down, nothing for one that gravity does not stretch, whose layers
-/// may have to press into standing fluid as one.
+/// How deep a layer is staggered, in m: a spacing for a jet straight down, nothing for one that gravity does
+/// not stretch, whose layers may have to press into standing fluid as one.
 pub fn stagger(direction: Vec3, gravity: Vec3, spacing: f32) -> f32 {
     spacing * direction.dot(gravity.normalize_or_zero()).clamp(0.0, 1.0)
 }
 
-/// Points of the mesh's cross-section at the outlet that keep half a spacing off its rim, on a square lattice along [`axes`] round
-/// `position`: of the four lattices that have a point or a square's side or middle there, the one that makes up the area best.
+/// Points of the mesh's cross-section at the outlet that keep half a spacing off its rim, on a square lattice
+/// along [`axes`] round `position`: of the four lattices that have a point or a square's side or middle there,
+/// the one that makes up the area best.
 fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Vec<Vec2> {
     const FINER: i32 = 4;
     let (across, up) = axes(emitter.direction);
@@ -153,7 +155,8 @@ pub(crate) fn nozzle_in(
     Ok((nozzle, layer))
 }
 
-/// How far a nozzle must stick out so that its back face is inside the domain, in m: an outlet in a wall has its nozzle before the wall.
+/// How far a nozzle must stick out so that its back face is inside the domain, in m: an outlet in a wall has
+/// its nozzle before the wall.
 fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], length: f32, spacing: f32) -> f32 {
     let (across, up) = axes(emitter.direction);
     let (low, high) = (domain.min + 0.5 * spacing, domain.max - 0.5 * spacing);
@@ -167,8 +170,8 @@ fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], lengt
     (0..=steps).map(|k| 0.25 * spacing * k as f32).find(|&shift| fits(shift)).unwrap_or(0.0)
 }
 
-/// What a scene's emitters will bring until its end: how many particles, and how many of them are there on average over the scene's
-/// time, as fluid that is not held up and not drained.
+/// What a scene's emitters will bring until its end: how many particles, and how many of them are there on
+/// average over the scene's time, as fluid that is not held up and not drained.
 ///
 /// # Errors
 /// As [`nozzle`].

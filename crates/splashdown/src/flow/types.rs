@@ -58,8 +58,8 @@ gpu_struct! {
 }
 
 impl Nozzle {
-    /// True if a point in m lies in the pipe, a quarter of a spacing behind its back face included: rounding must not leave a layer out
-    /// that was born right there.
+    /// True if a point in m lies in the pipe, a quarter of a spacing behind its back face included: rounding
+    /// must not leave a layer out that was born right there.
     #[inline]
     pub fn holds(&self, x: Vec3, particle_spacing: f32) -> bool {
         let o = x - self.back;

@@ -1,7 +1,7 @@
 //! A hand in the water: whoever watches a simulation can stir it.
 //!
-//! The hand is a soft rod along a line, usually the line of sight through the mouse, that carries fluid along with it. What it does
-//! is no physics of water; a run from the command line has no hand.
+//! The hand is a soft rod along a line, usually the line of sight through the mouse, that carries fluid along
+//! with it. What it does is no physics of water; a run from the command line has no hand.
 
 pub mod stir;
 
@@ -17,7 +17,8 @@ use crate::fields::Fields;
 pub(crate) const HAND: WgslModule = WgslModule { name: "sph/hand", source: include_str!("hand.wgsl") };
 
 gpu_struct! {
-    /// A rod that carries fluid along: a = rate w (velocity - v) across it, w = (1 - (d / radius)^2)^2 at a distance d from its axis.
+    /// A rod that carries fluid along: a = rate w (velocity - v) across it, w = (1 - (d / radius)^2)^2 at a
+    /// distance d from its axis.
     pub struct Hand {
         /// A point on the rod's axis in m.
         origin: Vec3,

@@ -1,9 +1,9 @@
 //! The passes of a step, one folder each: equation and declaration (`mod.rs`), WGSL, and the CPU's way (`cpu.rs`).
 //!
 //! Particles rest in arrays "A" (`positions`, `velocities`, `ids`). A step sorts them by cell into arrays "B"
-//! (`sorted_*`), computes from B, and integrates back into A, so that a step needs no swap of buffers and one that
-//! has nothing to do leaves A untouched. The pass that moves particles counts them for the next step's sort, and that sort
-//! settles the step before it.
+//! (`sorted_*`), computes from B, and integrates back into A, so that a step needs no swap of buffers and one
+//! that has nothing to do leaves A untouched. The pass that moves particles counts them for the next step's
+//! sort, and that sort settles the step before it.
 
 pub mod begin;
 pub mod continuity;

@@ -1,10 +1,11 @@
 //! The motion of particles on the CPU, for all passes that move some.
 
-use glam::{BVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
 use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
+use crate::boundary::closed_bounds;
 use crate::cells::Grid;
 use crate::cells::census::{self, Enroller};
 
@@ -16,7 +17,7 @@ const CHUNK: usize = 4096;
 
 /// The particles as a step's sort left them: positions, velocities, densities.
 #[derive(Clone, Copy)]
-pub(crate) struct Sorted<'a> {
+pub(crate) struct Before<'a> {
     pub positions: &'a [Vec4],
     pub velocities: &'a [Vec4],
     pub densities: &'a [Vec2],
@@ -30,11 +31,11 @@ pub(crate) struct Resting<'a> {
     pub census: &'a mut [u32],
 }
 
-/// Moves all particles, and counts them for the next step if `counts`. The acceleration of a particle is that of its number, and
-/// of what stands at its place in the resting velocities.
+/// Moves all particles, and counts them for the next step if `counts`. The acceleration of a particle is that
+/// of its number, and of what stands at its place in the resting velocities.
 pub(crate) fn advance_all(
     (params, grid, state): (&Params, &Grid, &StepState),
-    sorted: Sorted<'_>,
+    sorted: Before<'_>,
     resting: Resting<'_>,
     counts: bool,
     acceleration: impl Fn(usize, Vec4) -> Vec3 + Sync,
@@ -127,11 +128,7 @@ struct Mover<'a> {
 
 impl<'a> Mover<'a> {
     fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
-        let closed = |side: u32| {
-            BVec3::from_array([0, 1, 2].map(|axis: u32| (params.closed >> (2 * axis + side)) & 1 == 1))
-        };
-        let low = Vec3::select(closed(0), params.domain_min, Vec3::NEG_INFINITY);
-        let high = Vec3::select(closed(1), params.domain_max, Vec3::INFINITY);
+        let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
         let margin = 1.01 * (LONGEST + FREE) * params.particle_spacing;
         let inner = [params.domain_min + margin, params.domain_max - margin];
         Self { params, grid, dt, low, high, inner }

@@ -1,6 +1,6 @@
 #import sph/census
-// The motion of one particle; needs `params`, `grid`, `state`, `positions`, `velocities`, `census` and `tally`, the last
-// two atomic. See passes/integrate.
+// The motion of one particle; needs `params`, `grid`, `state`, `positions`, `velocities`, `census` and `tally`,
+// the last two atomic. See passes/integrate.
 
 // Maxima of the workgroup by their bits: speed, acceleration, excess of density.
 var<workgroup> highest: array<atomic<u32>, 3>;

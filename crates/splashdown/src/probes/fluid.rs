@@ -1,7 +1,8 @@
 //! What is measured of all the fluid, or of what is in a box: volume, energies, momentum.
 //!
-//! These are sums over particles that the host has at the end of every frame anyway, in double precision, and read once a frame:
-//! nobody needs the energy of a step, and a sum over all particles in every step would cost the device more than all gauges together.
+//! These are sums over particles that the host has at the end of every frame anyway, in double precision, and
+//! read once a frame: nobody needs the energy of a step, and a sum over all particles in every step would cost
+//! the device more than all gauges together.
 
 use glam::DVec3;
 use splashdown_io::Particles;

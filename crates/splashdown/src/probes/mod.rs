@@ -1,8 +1,9 @@
 //! Probes: what is measured while a simulation runs, as gauges in a laboratory do.
 //!
-//! *How it works.* In every step the device reads each probe (`gather`, `crossings`), adds the reading to an account, and
-//! writes a row, the mean since the row before, when one is due (`log`). The host fetches the rows once a frame. A particle counts as
-//! spacing^3 of fluid, as everywhere; its mass is less than that of so much fluid by what the kernel's sum over a lattice is off.
+//! *How it works.* In every step the device reads each probe (`gather`, `crossings`), adds the reading to an
+//! account, and writes a row, the mean since the row before, when one is due (`log`). The host fetches the rows
+//! once a frame. A particle counts as spacing^3 of fluid, as everywhere; its mass is less than that of so much
+//! fluid by what the kernel's sum over a lattice is off.
 
 mod crossings;
 mod fluid;

@@ -25,8 +25,8 @@ const MOST_FRAMES: u32 = 100_000_000;
 const ACCOUNT: &str = "run.bin";
 
 impl Run {
-    /// Goes on from a checkpoint, whose scene this is: frames that came before are not told again. A checkpoint that was not made at the end
-    /// of a frame goes on with what is left of the frame that it was made in.
+    /// Goes on from a checkpoint, whose scene this is: frames that came before are not told again. A checkpoint
+    /// that was not made at the end of a frame goes on with what is left of the frame that it was made in.
     ///
     /// # Errors
     /// As [`Simulation::resume`].
@@ -70,8 +70,8 @@ impl Run {
         Ok(run)
     }
 
-    /// Everything that is needed to go on after the last [`Event::Frame`](super::Event::Frame); call it before asking for
-    /// the next event.
+    /// Everything that is needed to go on after the last [`Event::Frame`](super::Event::Frame); call it before
+    /// asking for the next event.
     ///
     /// # Errors
     /// As [`Simulation::checkpoint`].

@@ -101,8 +101,8 @@ impl<'a> Filler<'a> {
         self.add(points.into_iter().map(|x| (x, velocity)))
     }
 
-    /// Points of the lattice inside a solid: that of a box round it, so that what is flush with walls, or has whole spacings as its
-    /// size, comes out as a block does.
+    /// Points of the lattice inside a solid: that of a box round it, so that what is flush with walls, or has
+    /// whole spacings as its size, comes out as a block does.
     fn lattice(&self, solid: &Solid, filled: &FluidMesh, low: Vec3, high: Vec3) -> Vec<[f32; 3]> {
         let box_round = lattice::axes(self.domain, f64::from(self.spacing), low, high);
         let origin = Vec3::from(box_round.map(|(first, _)| first as f32));

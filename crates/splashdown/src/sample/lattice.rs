@@ -6,8 +6,8 @@ use crate::scene::{Domain, Fluid, Shape};
 
 /// How near a block's face must be to a wall to touch it, in spacings: positions in f32 are not exact.
 const TOUCH: f64 = 0.02;
-/// A particle this near to an earlier block, in spacings, would be pressed against that block's particles. Those stand half a spacing
-/// inside, so three quarters of a spacing is the smallest distance that remains.
+/// A particle this near to an earlier block, in spacings, would be pressed against that block's particles.
+/// Those stand half a spacing inside, so three quarters of a spacing is the smallest distance that remains.
 const CROWDED: f64 = 0.25;
 
 /// A shape in f64.
@@ -146,7 +146,8 @@ impl Sampler {
     }
 }
 
-/// First coordinate (m) and number of the particles of a box along an axis: on the walls that it touches, else in its middle.
+/// First coordinate (m) and number of the particles of a box along an axis: on the walls that it touches, else
+/// in its middle.
 fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) -> (f64, u64) {
     let length = (high - low) / spacing;
     let closed = domain.closed[axis];

@@ -1,10 +1,11 @@
 //! From the blocks, meshes and files of a scene to particles.
 //!
-//! A box of whole spacings gets `size / particle_spacing` particles along each axis, the outermost half a spacing inside its
-//! faces: water that stands on a floor starts half a spacing above it, where the wall's kernel integral expects it
-//! (`boundary`). A ball gets those particles of a lattice around its centre that lie inside; a closed mesh those of the lattice that
-//! the box round it would have, so that it keeps its volume. The particles of a file stay where they are. Where sources overlap, the
-//! one written first keeps the room: blocks, then meshes, then files. The order is theirs, x fastest, then y, then z; ids count from 0.
+//! A box of whole spacings gets `size / particle_spacing` particles along each axis, the outermost half a
+//! spacing inside its faces: water that stands on a floor starts half a spacing above it, where the wall's
+//! kernel integral expects it (`boundary`). A ball gets those particles of a lattice around its centre that lie
+//! inside; a closed mesh those of the lattice that the box round it would have, so that it keeps its volume.
+//! The particles of a file stay where they are. Where sources overlap, the one written first keeps the room:
+//! blocks, then meshes, then files. The order is theirs, x fastest, then y, then z; ids count from 0.
 
 mod filler;
 mod lattice;
@@ -29,13 +30,14 @@ pub const MAX_PARTICLES: u64 = 1 << 26;
 
 /// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
 ///
-/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a wall. An
-/// integrated density feels no gap either: what is left empty here stays empty, and a body would displace its volume and
-/// half a spacing all around it (a fifth of a ball of 12 spacings). Centres of particles outside fill the room outside.
+/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a
+/// wall. An integrated density feels no gap either: what is left empty here stays empty, and a body would
+/// displace its volume and half a spacing all around it (a fifth of a ball of 12 spacings). Centres of
+/// particles outside fill the room outside.
 const CLEARANCE: [f32; 2] = [0.49, 0.05];
 
-/// Why a scene could not be filled with particles. [`Scene::load`] reports most of these earlier, with the file's line; a
-/// scene built in code meets them here.
+/// Why a scene could not be filled with particles. [`Scene::load`] reports most of these earlier, with the
+/// file's line; a scene built in code meets them here.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SampleError {
@@ -129,8 +131,8 @@ impl From<BodyError> for SampleError {
     }
 }
 
-/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s); densities and pressures are absent. Of a file's
-/// particles those outside the domain are left out.
+/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s); densities and pressures are
+/// absent. Of a file's particles those outside the domain are left out.
 ///
 /// # Errors
 /// [`SampleError`] if there are none, too many, or some outside the domain; or a mesh or file cannot be used.
@@ -151,8 +153,9 @@ pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
     Ok(particles)
 }
 
-/// How many particles [`particles`] makes. Of blocks they are counted without storing them: exact up to [`MAX_PARTICLES`], above that an
-/// estimate from the blocks' volumes, quick for sizes of any kind. Meshes are filled and files read; one that cannot be used counts as none.
+/// How many particles [`particles`] makes. Of blocks they are counted without storing them: exact up to
+/// [`MAX_PARTICLES`], above that an estimate from the blocks' volumes, quick for sizes of any kind. Meshes are
+/// filled and files read; one that cannot be used counts as none.
 pub fn count(scene: &Scene) -> u64 {
     let fluid = &scene.fluid;
     let of_blocks = count_in(&scene.domain, fluid);
@@ -178,7 +181,8 @@ pub struct Inventory {
     pub emitted: u64,
 }
 
-/// Counts a scene's particles as a [`Simulation`] would have them; bodies are loaded for it, which may take seconds the first time.
+/// Counts a scene's particles as a [`Simulation`] would have them; bodies are loaded for it, which may take
+/// seconds the first time.
 ///
 /// # Errors
 /// [`SimulationError`] of sampling, bodies and outlets.

@@ -6,12 +6,13 @@ use rayon::prelude::*;
 const WORK: usize = 200_000_000;
 /// Most particles whose neighbours are looked for.
 const MOST_SAMPLES: usize = 1000;
-/// The neighbour whose distance is taken: on a lattice the corner of a box has three at one spacing. Of simulated fluids it is the one
-/// whose distance is nearest to the spacing that they were made with (1.02 to 1.03 times that of two runs of DFSPH).
+/// The neighbour whose distance is taken: on a lattice the corner of a box has three at one spacing. Of
+/// simulated fluids it is the one whose distance is nearest to the spacing that they were made with (1.02 to
+/// 1.03 times that of two runs of DFSPH).
 const NEIGHBOUR: usize = 3;
 
-/// The spacing of a lattice with neighbours as far as these particles have theirs, in m: the median distance of the third neighbour over
-/// some particles. `None` for fewer than four.
+/// The spacing of a lattice with neighbours as far as these particles have theirs, in m: the median distance of
+/// the third neighbour over some particles. `None` for fewer than four.
 pub fn typical_spacing(positions: &[[f32; 3]]) -> Option<f32> {
     let n = positions.len();
     if n <= NEIGHBOUR {

@@ -14,7 +14,8 @@ pub trait Choice: Copy + 'static {
     }
 }
 
-/// Declares enums whose variants are words of the scene file; the doc comment of a variant is also its explanation in the schema.
+/// Declares enums whose variants are words of the scene file; the doc comment of a variant is also its
+/// explanation in the schema.
 macro_rules! choices {
     ($(
         $(#[doc = $doc:literal])+

@@ -16,14 +16,15 @@ const LEAST_SPEED: f32 = 0.01;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Derived {
-    /// Number of particles at the start. [`Derived::new`] counts those inside bodies, too; see [`Derived::with_inventory`].
+    /// Number of particles at the start. [`Derived::new`] counts those inside bodies, too; see
+    /// [`Derived::with_inventory`].
     pub particles: u64,
     /// Number of particles that emitters will bring until the end.
     pub emitted: u64,
     /// Number of particles on average over the scene's time, if none is drained.
     pub mean_particles: f64,
-    /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`, so that the starting lattice has exactly the
-    /// rest density.
+    /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`, so that the starting
+    /// lattice has exactly the rest density.
     pub particle_mass: f32,
     /// The sum of `W * particle_spacing^3` over the infinite lattice, for the density's kernel.
     pub lattice_sum: f64,
@@ -33,16 +34,18 @@ pub struct Derived {
     pub support_radius: f32,
     /// Height in m of the fluid's highest point above the domain's lowest, along gravity; 0 without gravity.
     pub head: f32,
-    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0 is the fastest block, mesh, file, emitter or body. The
-    /// first part is the front of a dam break of that height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head)
-    /// of a fall from there. A scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
+    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0
+    /// is the fastest block, mesh, file, emitter or body. The first part is the front of a dam break of that
+    /// height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head) of a fall from there. A
+    /// scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
     pub reference_speed: f32,
     /// Speed of sound in m/s: as given, or from the stiffness, or ten times the reference speed.
     pub sound_speed: f32,
-    /// Stiffness of the equation of state: Tait's `c^2 rho0 / exponent` in Pa (`wcsph`), or `c^2` in m^2/s^2 (`mueller2003`).
+    /// Stiffness of the equation of state: Tait's `c^2 rho0 / exponent` in Pa (`wcsph`), or `c^2` in m^2/s^2
+    /// (`mueller2003`).
     pub stiffness: f32,
-    /// Expected time step in s: the least of `cfl_factor * support_radius / 2 / sound_speed`, `0.125 (support_radius / 2)^2 / viscosity`
-    /// (Morris et al. 1997) and `max_dt`.
+    /// Expected time step in s: the least of `cfl_factor * support_radius / 2 / sound_speed`, `0.125
+    /// (support_radius / 2)^2 / viscosity` (Morris et al. 1997) and `max_dt`.
     pub dt_estimate: f32,
     /// Which of the three it is: `sound`, `viscosity` or `max_dt`.
     pub dt_limit: &'static str,
@@ -53,8 +56,8 @@ pub struct Derived {
 }
 
 impl Derived {
-    /// From a checked scene. Values that a hand-made scene may break (zero spacing, no blocks) give numbers that make no sense, but no
-    /// panic.
+    /// From a checked scene. Values that a hand-made scene may break (zero spacing, no blocks) give numbers
+    /// that make no sense, but no panic.
     pub fn new(scene: &Scene) -> Self {
         Self::with_particles(scene, sample::count(scene))
     }
@@ -169,8 +172,8 @@ fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
     driven.max(capillary).max(LEAST_SPEED)
 }
 
-/// The sum of `W dx^3` over the lattice of distance dx, for a support radius of `ratio * dx`: the kernel with which the method sums
-/// its density (poly6 for `mueller2003`).
+/// The sum of `W dx^3` over the lattice of distance dx, for a support radius of `ratio * dx`: the kernel with
+/// which the method sums its density (poly6 for `mueller2003`).
 pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
     let weight = |q: f64| match (method, kernel) {
         (Method::Mueller2003, _) => 315.0 / 64.0 * (1.0 - q * q).powi(3),

@@ -1,4 +1,5 @@
-//! What a reader of a scene file is told: every problem at once, each with its place, the value given and what is allowed.
+//! What a reader of a scene file is told: every problem at once, each with its place, the value given and what
+//! is allowed.
 
 use std::fmt;
 

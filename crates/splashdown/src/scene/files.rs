@@ -23,7 +23,8 @@ const MOST_POINTS: usize = 64;
 /// Poses of a scripted body that are looked at.
 const POSES: u32 = 200;
 
-/// Reads every mesh and every file of particles that a whole scene names, and reports what is wrong with them, each at its line.
+/// Reads every mesh and every file of particles that a whole scene names, and reports what is wrong with them,
+/// each at its line.
 pub(crate) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let (bodies, placed) = check_bodies(scene, &root.sections_if_any("body")?);
     let emitters = check_emitters(scene, &root.sections_if_any("emitter")?, &placed);

@@ -1,7 +1,8 @@
 //! Formulas of the time t, as scene files write motions: `0.1 * sin(2 * pi * t)`.
 //!
-//! Written here because the need is a screen of code: numbers, `t`, `pi`, + - * / ^, brackets and a dozen functions. The crates for it
-//! either parse a language (evalexpr, under the AGPL), or are no longer kept (meval, fasteval).
+//! Written here because the need is a screen of code: numbers, `t`, `pi`, + - * / ^, brackets and a dozen
+//! functions. The crates for it either parse a language (evalexpr, under the AGPL), or are no longer kept
+//! (meval, fasteval).
 
 /// A formula that can be evaluated at any time.
 #[derive(Debug, Clone)]
@@ -97,8 +98,8 @@ impl Formula {
         stack.pop().unwrap_or(f64::NAN)
     }
 
-    /// A time in [0, `end`] (s) at which the formula has no finite value or one larger than `limit`, if one is found: among many samples,
-    /// and between those where the value is largest, for there a pole hides.
+    /// A time in [0, `end`] (s) at which the formula has no finite value or one larger than `limit`, if one is
+    /// found: among many samples, and between those where the value is largest, for there a pole hides.
     pub(crate) fn fault(&self, end: f64, limit: f64) -> Option<f64> {
         const SAMPLES: usize = 2000;
         const PEAKS: usize = 8;

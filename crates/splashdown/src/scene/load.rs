@@ -17,8 +17,9 @@ impl Scene {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// Everything that is wrong with it, at once: unreadable, too large, not text, not TOML, unknown or missing keys, values out of range,
-    /// values that contradict one another, meshes and particles that are missing or cannot be used.
+    /// Everything that is wrong with it, at once: unreadable, too large, not text, not TOML, unknown or missing
+    /// keys, values out of range, values that contradict one another, meshes and particles that are missing or
+    /// cannot be used.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -52,8 +53,8 @@ impl Scene {
         Ok(Self { source: Some(path.to_owned()), ..scene })
     }
 
-    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not looked for: paths stay as written, and
-    /// what is wrong with them is told when a simulation begins.
+    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not looked
+    /// for: paths stay as written, and what is wrong with them is told when a simulation begins.
     ///
     /// # Errors
     /// As [`Scene::load`].
@@ -61,8 +62,8 @@ impl Scene {
         Self::from_bytes(text.as_bytes(), file_name, None)
     }
 
-    /// As [`load`](Self::load), of the text of a file that is not where it was, or not as it was: the files that it names are looked for
-    /// beside `path`.
+    /// As [`load`](Self::load), of the text of a file that is not where it was, or not as it was: the files
+    /// that it names are looked for beside `path`.
     ///
     /// # Errors
     /// As [`Scene::load`].

@@ -1,9 +1,9 @@
 //! The scene file: from TOML to checked values.
 //!
-//! `keys.rs` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along that table and collects every
-//! problem with its line; `parse.rs` puts the values together; `geometry.rs` and `warnings.rs` compare them with each other, `files.rs`
-//! with the files that they name. `schema.rs` writes the same table as a JSON schema and as a page of documentation, so parser, schema
-//! and docs cannot disagree.
+//! `keys/` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along that
+//! table and collects every problem with its line; `parse.rs` puts the values together; `geometry.rs` and
+//! `warnings.rs` compare them with each other, `files.rs` with the files that they name. `schema.rs` writes the
+//! same table as a JSON schema and as a page of documentation, so parser, schema and docs cannot disagree.
 //!
 //! ```
 //! let text = r#"

@@ -1,7 +1,7 @@
 //! Walks the tree of a TOML file along the table of keys and collects every problem on the way.
 //!
-//! Why not serde: it stops at the first error. Here each key is read on its own; a failed one has already been reported, so its
-//! value is `Err(Reported)` and the reading goes on.
+//! Why not serde: it stops at the first error. Here each key is read on its own; a failed one has already been
+//! reported, so its value is `Err(Reported)` and the reading goes on.
 
 use std::cell::RefCell;
 use std::ops::Range as Span;
@@ -132,7 +132,8 @@ impl<'r> Section<'r> {
         self.reader.report(problem);
     }
 
-    /// The path of a file that this key names: from the scene file's folder, where that is known; the file must be there then.
+    /// The path of a file that this key names: from the scene file's folder, where that is known; the file must
+    /// be there then.
     pub fn file(&self, name: &str, file: &str) -> Result<PathBuf, Reported> {
         let Some(folder) = self.reader.folder else { return Ok(file.into()) };
         let path = folder.join(file);
@@ -199,7 +200,7 @@ impl<'r> Section<'r> {
         convert: impl FnOnce(&DeValue<'r>, Kind) -> Result<T, E>,
     ) -> Read<T> {
         let Some(key) = self.spec.key(name) else {
-            unreachable!("{name} is read but not declared in keys.rs");
+            unreachable!("{name} is read but not declared in keys/");
         };
         let Some(value) = self.value(name) else {
             return if key.required { Err(Reported) } else { Ok(None) };
@@ -370,7 +371,7 @@ impl<'r> Section<'r> {
     pub fn section(&self, name: &str) -> Result<Section<'r>, Reported> {
         let spec = match self.spec.key(name).map(|key| key.kind) {
             Some(Kind::Table(spec)) => spec,
-            _ => unreachable!("{name} is read as a section but not declared as one in keys.rs"),
+            _ => unreachable!("{name} is read as a section but not declared as one in keys/"),
         };
         let table = match self.value(name) {
             None => None,
@@ -382,7 +383,7 @@ impl<'r> Section<'r> {
     /// A list of sections; those that are not tables are reported and left out.
     pub fn sections(&self, name: &str) -> Result<Vec<Section<'r>>, Reported> {
         let Some(Kind::Tables(spec, most)) = self.spec.key(name).map(|key| key.kind) else {
-            unreachable!("{name} is read as a list of sections but not declared as one in keys.rs");
+            unreachable!("{name} is read as a list of sections but not declared as one in keys/");
         };
         let Some(value) = self.value(name) else { return Err(Reported) };
         let DeValue::Array(list) = value.get_ref() else {
@@ -460,7 +461,7 @@ fn describe_texts(count: usize, what: &str) -> String {
     format!("{count} texts of {what}")
 }
 
-/// `keys.rs` and the code that reads disagree: a mistake in this crate, shown as an error rather than a crash.
+/// `keys/` and the code that reads disagree: a mistake in this crate, shown as an error rather than a crash.
 fn undeclared(kind: Kind) -> Wrong {
     Wrong {
         message: format!("is declared as {kind:?} but read as something else"),

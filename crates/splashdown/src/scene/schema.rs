@@ -12,8 +12,9 @@ use super::values::describe;
 use crate::flow::outlet;
 use crate::sample;
 
-/// The JSON schema (draft 2020-12) of the scene file, for editors: types, ranges, words, required keys; no others allowed. What depends
-/// on several keys at once (a sphere needs a radius, blocks lie in the domain) only [`crate::scene::Scene::parse`] checks.
+/// The JSON schema (draft 2020-12) of the scene file, for editors: types, ranges, words, required keys; no
+/// others allowed. What depends on several keys at once (a sphere needs a radius, blocks lie in the domain)
+/// only [`crate::scene::Scene::parse`] checks.
 pub fn schema() -> Value {
     let mut schema = table(&ROOT);
     if let Value::Object(root) = &mut schema {

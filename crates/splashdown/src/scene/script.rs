@@ -20,8 +20,8 @@ pub struct Pose {
 /// A motion that is written down beforehand: keyframes, and formulas on top of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// Poses in order of time, at least one. Between them the position is a cubic with the slopes of Catmull and Rom and the rotation
-    /// turns steadily; before the first and after the last the body rests.
+    /// Poses in order of time, at least one. Between them the position is a cubic with the slopes of Catmull
+    /// and Rom and the rotation turns steadily; before the first and after the last the body rests.
     pub keyframes: Vec<Keyframe>,
     /// Added to the position, in m.
     pub shift: Option<Box<[Formula; 3]>>,

@@ -1,4 +1,4 @@
-//! The vocabulary in which `keys.rs` declares the scene file: kinds of values, keys, tables of keys.
+//! The vocabulary in which `keys/` declares the scene file: kinds of values, keys, tables of keys.
 
 use super::choice::Choice;
 

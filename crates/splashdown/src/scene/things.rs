@@ -201,8 +201,8 @@ pub enum Quantity {
         /// Edge lengths in m: along `along`, and along `normal` x `along`.
         size: [f32; 2],
     },
-    /// Volume in m^3, kinetic and potential energy in J (which is 0 at the origin) and momentum in N s of the fluid in a box, at the
-    /// end of every frame.
+    /// Volume in m^3, kinetic and potential energy in J (which is 0 at the origin) and momentum in N s of the
+    /// fluid in a box, at the end of every frame.
     Fluid {
         /// Lower corner in m; infinite for all the fluid.
         min: Vec3,

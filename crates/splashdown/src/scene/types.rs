@@ -1,7 +1,7 @@
 //! What a scene file says, once it is checked: plain values in SI units, y up.
 //!
 //! A [`Scene`] from [`Scene::load`] or [`Scene::parse`] holds only values inside the ranges of the table of keys
-//! (`keys.rs`); the fields are public, so code and tests can also build one by hand.
+//! (`keys/`); the fields are public, so code and tests can also build one by hand.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -92,8 +92,8 @@ impl Domain {
     }
 }
 
-/// A harmonic motion of the tank: its position is `amplitude * sin(2 pi t / period)`. The simulation runs in the tank's frame,
-/// where the fluid feels [`Shake::acceleration`].
+/// A harmonic motion of the tank: its position is `amplitude * sin(2 pi t / period)`. The simulation runs in
+/// the tank's frame, where the fluid feels [`Shake::acceleration`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shake {
     /// Amplitude in m, per axis.
@@ -103,7 +103,8 @@ pub struct Shake {
 }
 
 impl Shake {
-    /// Inertial acceleration of the fluid in the tank's frame at time `t` (s), in m/s^2: minus the tank's own acceleration.
+    /// Inertial acceleration of the fluid in the tank's frame at time `t` (s), in m/s^2: minus the tank's own
+    /// acceleration.
     pub fn acceleration(&self, t: f64) -> Vec3 {
         let omega = std::f64::consts::TAU / f64::from(self.period);
         self.amplitude * (omega * omega * (omega * t).sin()) as f32
@@ -222,7 +223,8 @@ impl Shape {
 choices! {
     /// The solver of the fluid's equations.
     Method {
-        /// Forces of Mueller, Charypar and Gross 2003: quick, springy; the mode of the thesis this program descends from.
+        /// Forces of Mueller, Charypar and Gross 2003: quick, springy; the mode of the thesis this program
+        /// descends from.
         Mueller2003 = "mueller2003",
         /// Weakly compressible SPH with Tait's equation of state: the mode to compare with measurements.
         Wcsph = "wcsph",

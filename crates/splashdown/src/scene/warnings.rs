@@ -56,7 +56,8 @@ pub(crate) fn check(scene: &Scene, root: &Section<'_>, fluid: &Section<'_>, solv
     if let Some(gauge) = gauge
         && scene.solver.density == DensityMode::Summation
     {
-        // A tenth too low at a floor at rest, and a fifth of an impact's (docs/validation.md): the walls' damping does the rest.
+        // A tenth too low at a floor at rest, and a fifth of an impact's (docs/validation.md): the walls'
+        // damping does the rest.
         let message = format!(
             "probe {:?} measures a pressure, but where densities are summed the pressure beside walls is too low",
             gauge.name

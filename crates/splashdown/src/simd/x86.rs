@@ -1,7 +1,7 @@
 //! The registers of AVX2 and of AVX-512.
 //!
 //! Such a register exists only in a [`Leaf`], which runs where the processor has it: that is why every intrinsic here
-//! may be called.
+//! may be called. Nobody but [`with_avx2`] and [`with_avx512`] may name the two types.
 
 #![expect(clippy::undocumented_unsafe_blocks, reason = "they are all safe for the reason above")]
 

@@ -11,8 +11,9 @@ use crate::passes::Tally;
 use crate::{SimulationError, memory, solver};
 
 impl Simulation {
-    /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the text of the scene
-    /// as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was [adopted](Self::adopt).
+    /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the
+    /// text of the scene as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was
+    /// [adopted](Self::adopt).
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -70,8 +71,8 @@ impl Simulation {
         Ok(checkpoint)
     }
 
-    /// Goes on from a checkpoint on any device. On the CPU, and on the adapter that it was made on, the same bits follow as if the
-    /// simulation had not stopped.
+    /// Goes on from a checkpoint on any device. On the CPU, and on the adapter that it was made on, the same
+    /// bits follow as if the simulation had not stopped.
     ///
     /// # Errors
     /// As [`new`](Self::new), and [`SimulationError::Checkpoint`] if its scene cannot be used any more.
@@ -79,7 +80,8 @@ impl Simulation {
         block_on(Self::resume_async(checkpoint, executor, &|_, _| {}))
     }
 
-    /// [`resume`](Self::resume) where blocking is not possible, as on a web page; `told` as in [`prepare`](Self::prepare).
+    /// [`resume`](Self::resume) where blocking is not possible, as on a web page; `told` as in
+    /// [`prepare`](Self::prepare).
     ///
     /// # Errors
     /// As [`resume`](Self::resume).
@@ -133,6 +135,11 @@ impl Simulation {
         let told = [stats.escaped, stats.non_finite, stats.drained];
         if told != [Tally::ESCAPED, Tally::NON_FINITE, Tally::DRAINED].map(|word| tally[word]) {
             let reason = "its entry `tally` contradicts its counts of particles".to_owned();
+            return Err(CheckpointError::Malformed(reason).into());
+        }
+        // A step that is not settled would be settled twice.
+        if tally[Tally::MOVED] != 0 {
+            let reason = "its entry `tally` is of the middle of a step".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
         Ok(())

@@ -8,7 +8,8 @@ use crate::foam::{self, DiffuseParticles, Foam, FoamParams, FoamState, KeptFoam}
 use crate::scene::{Derived, FoamSettings};
 
 impl Simulation {
-    /// Prepares foam, spray and bubbles with these settings; there are none yet. Whether they are enabled there does not matter.
+    /// Prepares foam, spray and bubbles with these settings; there are none yet. Whether they are enabled there
+    /// does not matter.
     ///
     /// # Errors
     /// [`SimulationError::TooMany`], and those of the device.
@@ -23,9 +24,10 @@ impl Simulation {
         Ok(foam)
     }
 
-    /// Brings the foam up to the simulation's time; it does not wait for the device. Call it between two frames: it sorts the particles, as
-    /// [`sort`](Self::sort). Called within a frame too, wherever [`continue_frame`](Self::continue_frame) returns, it takes finer
-    /// steps: every 4 ms of simulated time, as far as batches of steps allow.
+    /// Brings the foam up to the simulation's time; it does not wait for the device. Call it between two
+    /// frames: it sorts the particles, as [`sort`](Self::sort). Called within a frame too, wherever
+    /// [`continue_frame`](Self::continue_frame) returns, it takes finer steps: every 4 ms of simulated time, as
+    /// far as batches of steps allow.
     ///
     /// # Errors
     /// Those of the device.
@@ -41,8 +43,8 @@ impl Simulation {
         Ok(self.executor.run(foam.recording())?)
     }
 
-    /// All that is needed to go on with the foam later, in this simulation, in one that is resumed from a checkpoint, or in one that this was carried
-    /// over to.
+    /// All that is needed to go on with the foam later, in this simulation, in one that is resumed from a
+    /// checkpoint, or in one that this was carried over to.
     ///
     /// # Errors
     /// Those of the device.
@@ -52,8 +54,8 @@ impl Simulation {
         Ok(KeptFoam { state, pool })
     }
 
-    /// Goes on with foam that was kept at the time where the simulation is now. Where there is less room than there was, the youngest are left
-    /// out.
+    /// Goes on with foam that was kept at the time where the simulation is now. Where there is less room than
+    /// there was, the youngest are left out.
     ///
     /// # Errors
     /// Those of the device.
@@ -74,7 +76,8 @@ impl Simulation {
         Ok(state)
     }
 
-    /// Fetches the foam as it is now. Where there was no room for all, [`take_warnings`](Self::take_warnings) says so afterwards.
+    /// Fetches the foam as it is now. Where there was no room for all, [`take_warnings`](Self::take_warnings)
+    /// says so afterwards.
     ///
     /// # Errors
     /// Those of the device.

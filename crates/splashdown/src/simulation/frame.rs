@@ -27,8 +27,8 @@ impl Simulation {
     /// Simulates `seconds`, in as many steps as stability asks for, and waits for the end.
     ///
     /// # Errors
-    /// [`SimulationError::BadDuration`], [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`], and those of
-    /// the device.
+    /// [`SimulationError::BadDuration`], [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`],
+    /// and those of the device.
     pub fn advance(&mut self, seconds: f32) -> Result<Stats, SimulationError> {
         block_on(self.advance_async(seconds))
     }
@@ -46,8 +46,8 @@ impl Simulation {
         }
     }
 
-    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it. A frame of no length is
-    /// complete at once, without a step.
+    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it. A frame of no
+    /// length is complete at once, without a step.
     ///
     /// # Errors
     /// [`SimulationError::BadDuration`] if that is not a length of time, and those of the device.
@@ -78,8 +78,8 @@ impl Simulation {
         block_on(self.continue_frame_async())
     }
 
-    /// [`continue_frame`](Self::continue_frame) where blocking is not possible, as on a web page. A frame whose future is
-    /// dropped half-way is given up.
+    /// [`continue_frame`](Self::continue_frame) where blocking is not possible, as on a web page. A frame whose
+    /// future is dropped half-way is given up.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -98,8 +98,8 @@ impl Simulation {
         self.executor.run(&self.batches[power as usize])?;
         frame.submitted += 1 << power;
         let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
-        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never is. Bodies that
-        // may collide are looked at before they go on.
+        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never
+        // is. Bodies that may collide are looked at before they go on.
         let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || collide {
             frame.pending.take()
         } else {

@@ -11,7 +11,7 @@ use crate::scene::{Motion, Scene, Solver};
 use crate::{SimulationError, sample, solver};
 
 impl Simulation {
-    /// Puts a hand into the water, moves it, or takes it out. From the first hand on, a step has one more pass.
+    /// Puts a hand into the water, moves it, or takes it out. From the first hand on, a step takes two more passes.
     ///
     /// # Errors
     /// Those of the device.
@@ -26,14 +26,17 @@ impl Simulation {
         };
         stirrer.set(&mut self.executor, hand.unwrap_or(Hand::NONE))?;
         self.stirrer = Some(stirrer);
-        if is_first {
-            self.record_batches()?;
+        if is_first && let Err(error) = self.record_batches() {
+            // Without its pass a hand would do nothing, and nobody would be told.
+            self.stirrer = None;
+            return Err(error);
         }
         Ok(())
     }
 
-    /// Pulls a free body by the point `anchor` (m, in its own frame) towards `target` (m): its velocity becomes, once, the one
-    /// that brings the point there at `rate` times its distance per second. For between two frames.
+    /// Pulls a free body by the point `anchor` (m, in its own frame) towards `target` (m): its velocity
+    /// becomes, once, the one that brings the point there at `rate` times its distance per second. For between
+    /// two frames.
     ///
     /// # Errors
     /// Those of the device.
@@ -50,15 +53,15 @@ impl Simulation {
         }
     }
 
-    /// At most this many steps go to a device at once, between 1 and 64: fewer leave it free for drawing sooner. On the CPU it
-    /// is also how often a frame comes back to its caller.
+    /// At most this many steps go to a device at once, between 1 and 64: fewer leave it free for drawing
+    /// sooner. On the CPU it is also how often a frame comes back to its caller.
     pub fn set_steps_at_once(&mut self, steps: u32) {
         self.most_steps = steps.max(1);
     }
 
-    /// Goes on under another scene that differs in numbers alone: gravity, the fluid's material, the solver's coefficients, and
-    /// what is not about motion (camera, output, surface, foam). False, and nothing changed, if it differs in more; then
-    /// [`carry_over`](Self::carry_over) does it.
+    /// Goes on under another scene that differs in numbers alone: gravity, the fluid's material, the solver's
+    /// coefficients, and what is not about motion (camera, output, surface, foam). False, and nothing changed,
+    /// if it differs in more; then [`carry_over`](Self::carry_over) does it.
     ///
     /// # Errors
     /// Those of the device.
@@ -98,9 +101,10 @@ impl Simulation {
         Ok(true)
     }
 
-    /// The same fluid, at the same time, under another scene: its bodies, its box, its solver. Particles keep their places,
-    /// velocities and ids; those outside the box or inside a new body are taken out. Free bodies that both scenes have, by name, stay
-    /// where they are. The scene's own fluid is not added; its emitters begin to count anew.
+    /// The same fluid, at the same time, under another scene: its bodies, its box, its solver. Particles keep
+    /// their places, velocities and ids; those outside the box or inside a new body are taken out. Free bodies
+    /// that both scenes have, by name, stay where they are. The scene's own fluid is not added; its emitters
+    /// begin to count anew.
     ///
     /// This simulation is of no more use then, but for its results.
     ///

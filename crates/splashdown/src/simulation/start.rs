@@ -36,8 +36,9 @@ impl Simulation {
         Self::prepare(scene, executor, &|_, _| {})
     }
 
-    /// As [`with_executor`](Self::with_executor); `told` hears of each body whose distances are being computed, its name
-    /// and how far it is, in [0, 1]: a mesh of a hundred thousand triangles takes seconds when it is first seen.
+    /// As [`with_executor`](Self::with_executor); `told` hears of each body whose distances are being computed,
+    /// its name and how far it is, in [0, 1]: a mesh of a hundred thousand triangles takes seconds when it is
+    /// first seen.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -69,9 +70,9 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each other;
-    /// `densities`, if given, are where the continuity equation starts, in kg/m^3. Particles that lie outside the domain,
-    /// are not finite, or have a density that is not positive are taken out and counted.
+    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each
+    /// other; `densities`, if given, are where the continuity equation starts, in kg/m^3. Particles that lie
+    /// outside the domain, are not finite, or have a density that is not positive are taken out and counted.
     ///
     /// # Errors
     /// As [`new`](Self::new).

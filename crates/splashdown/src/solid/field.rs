@@ -15,8 +15,8 @@ pub struct DistanceField {
     pub cell_size: f32,
     /// Nodes along each axis.
     pub nodes: [u32; 3],
-    /// Per node, x fastest: the signed distance in m, negative inside; and the distance of the plane wall that would fill the
-    /// same share of the kernel.
+    /// Per node, x fastest: the signed distance in m, negative inside; and the distance of the plane wall that
+    /// would fill the same share of the kernel.
     pub values: Vec<Vec2>,
 }
 
@@ -26,7 +26,8 @@ const BLOCK: u32 = 8;
 const POINTS: i32 = 12;
 
 impl DistanceField {
-    /// Fills the grid. `half_thickness` makes a shell of the mesh; without it the winding number tells inside from outside.
+    /// Fills the grid. `half_thickness` makes a shell of the mesh; without it the winding number tells inside
+    /// from outside.
     pub(super) fn new(
         bvh: &Bvh,
         bounds: (Vec3, Vec3),
@@ -82,7 +83,8 @@ impl DistanceField {
                                 match half_thickness {
                                     Some(half) => d - half,
                                     None => {
-                                        // The surface cannot lie between nodes that are farther from it than from each other.
+                                        // The surface cannot lie between nodes that are farther from it than
+                                        // from each other.
                                         if last_sign == 0.0 || last.abs() <= self.cell_size {
                                             last_sign = sign(p);
                                         }
@@ -101,9 +103,9 @@ impl DistanceField {
 
     /// Fills in the effective distances: H q with D(q) = the solid's share of the kernel.
     ///
-    /// The share is a sum over points of the ball, each with the part of it that is inside, and is compared with what the
-    /// same sum gives for the plane wall at the same distance, whose exact share is known. So a plane comes out exact, and errors
-    /// of the quadrature cancel where shares are tiny.
+    /// The share is a sum over points of the ball, each with the part of it that is inside, and is compared
+    /// with what the same sum gives for the plane wall at the same distance, whose exact share is known. So a
+    /// plane comes out exact, and errors of the quadrature cancel where shares are tiny.
     pub(super) fn fill_effective(
         &mut self,
         support_radius: f32,
@@ -162,7 +164,8 @@ impl DistanceField {
         let x = self.node(at);
         let e = 0.5 * self.cell_size;
         let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
-        // In the middle of a wall or a slot the distance has no slope; any plane at that distance serves for comparison.
+        // In the middle of a wall or a slot the distance has no slope; any plane at that distance serves for
+        // comparison.
         let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or(Vec3::X);
         let inside = |distance: f32| (0.5 - distance / grain).clamp(0.0, 1.0);
         let (mut solid, mut plane) = (0.0, 0.0);
@@ -188,8 +191,8 @@ impl DistanceField {
         self.min + at.as_vec3() * self.cell_size
     }
 
-    /// The signed distance in m at a point of the mesh's frame: trilinear; outside the grid that of the nearest point on its rim plus
-    /// the way there.
+    /// The signed distance in m at a point of the mesh's frame: trilinear; outside the grid that of the nearest
+    /// point on its rim plus the way there.
     pub fn distance(&self, x: Vec3) -> f32 {
         let size = UVec3::from_array(self.nodes);
         let high = self.min + (size - UVec3::ONE).as_vec3() * self.cell_size;

@@ -46,8 +46,8 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// By the formula for polyhedra where the mesh is closed and agrees with its distances; else by counting cells. A shell's is its
-/// area times its thickness.
+/// By the formula for polyhedra where the mesh is closed and agrees with its distances; else by counting cells.
+/// A shell's is its area times its thickness.
 pub(super) fn properties(
     mesh: &Mesh,
     closed: bool,

@@ -1,12 +1,14 @@
 //! From a triangle mesh as it is found to a solid that a fluid can meet.
 //!
-//! *How it works.* The mesh is mended ([`RepairReport`] says how). On a grid round it the distance to the nearest triangle is found
-//! with a tree of boxes; inside and outside are told apart by the generalised winding number (Jacobson et al. 2013), which does
-//! not mind holes, doubled faces or torn seams. A mesh that is too open for an inside becomes a shell: a sheet with a thickness.
-//! Then every node learns the share of the kernel that the solid fills round it ([`DistanceField`]). The result is kept on disk
-//! under the hash of what it was made from.
+//! *How it works.* The mesh is mended ([`RepairReport`] says how). On a grid round it the distance to the
+//! nearest triangle is found with a tree of boxes; inside and outside are told apart by the generalised winding
+//! number (Jacobson et al. 2013), which does not mind holes, doubled faces or torn seams. A mesh that is too
+//! open for an inside becomes a shell: a sheet with a thickness. Then every node learns the share of the kernel
+//! that the solid fills round it ([`DistanceField`]). The result is kept on disk under the hash of what it was
+//! made from.
 //!
-//! *Why not* the mesh itself in the simulation: a look-up in a grid costs the same for twelve triangles and for a million.
+//! *Why not* the mesh itself in the simulation: a look-up in a grid costs the same for twelve triangles and for
+//! a million.
 
 mod bvh;
 mod cache;
@@ -117,7 +119,8 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Makes a solid of a mesh in m, or finds it on disk. `progress` hears how much more is done, in parts that add up to 1.
+    /// Makes a solid of a mesh in m, or finds it on disk. `progress` hears how much more is done, in parts that
+    /// add up to 1.
     ///
     /// # Errors
     /// [`SolidError`] of a mesh that cannot be used.
@@ -160,13 +163,14 @@ impl Solid {
         self.field.distance(x) < 0.0
     }
 
-    /// Points scattered over the surface, about `spacing` from each other and `depth` inside, in m (Akinci et al. 2012).
+    /// Points scattered over the surface, about `spacing` from each other and `depth` inside, in m (Akinci et
+    /// al. 2012).
     pub fn sample_surface(&self, spacing: f32, depth: f32) -> Vec<Vec3> {
         sample::surface(&self.mesh, &self.field, spacing, depth)
     }
 
-    /// The points `origin` + whole spacings that lie at least `clearance` (m) inside the solid at `position` with `rotation`, in the world,
-    /// x fastest.
+    /// The points `origin` + whole spacings that lie at least `clearance` (m) inside the solid at `position`
+    /// with `rotation`, in the world, x fastest.
     pub fn fill(
         &self,
         position: Vec3,

@@ -174,8 +174,9 @@ fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped:
     pieces.len() as u32
 }
 
-/// Turns pieces whose outside is not outside: the largest by its volume, then the others by what the winding number of all
-/// larger ones says about them. Closed pieces inside others that face inwards are hollows and stay.
+/// Turns pieces whose outside is not outside: the largest by its volume, then the others by what the winding
+/// number of all larger ones says about them. Closed pieces inside others that face inwards are hollows and
+/// stay.
 fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u32>], turned: &mut [bool]) {
     let corner = |v: u32| vertices[v as usize];
     let volume = |triangles: &[[u32; 3]], piece: &[u32]| -> f64 {

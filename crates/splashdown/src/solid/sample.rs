@@ -12,8 +12,9 @@ const CANDIDATES: f32 = 40.0;
 /// Points are no nearer to each other than this part of the spacing, so that their mean distance is about the spacing.
 const NEAREST: f32 = 0.8;
 
-/// Evenly scattered points of a surface: many candidates in a fixed sequence, each kept if no earlier one is near (dart
-/// throwing; Bridson 2007). `depth` moves them inwards along the faces' normals; what is not that deep then, beside an edge, is left out.
+/// Evenly scattered points of a surface: many candidates in a fixed sequence, each kept if no earlier one is
+/// near (dart throwing; Bridson 2007). `depth` moves them inwards along the faces' normals; what is not that
+/// deep then, beside an edge, is left out.
 pub(super) fn surface(mesh: &Mesh, field: &DistanceField, spacing: f32, depth: f32) -> Vec<Vec3> {
     let corner = |v: u32| Vec3::from(mesh.vertices[v as usize]);
     let areas: Vec<f32> = mesh
@@ -73,7 +74,8 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// The points of a lattice (`origin` + whole spacings) that lie at least `clearance` inside a solid with this pose; x fastest.
+/// The points of a lattice (`origin` + whole spacings) that lie at least `clearance` inside a solid with this
+/// pose; x fastest.
 pub(super) fn fill(
     field: &DistanceField,
     bounds: (Vec3, Vec3),

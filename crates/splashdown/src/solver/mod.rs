@@ -17,14 +17,16 @@ use crate::passes::{Params, begin, integrate, settle, state_equation};
 use crate::probes::Probes;
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
 
-/// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Chosen with `examples/droplet.rs`: the period of a
-/// swinging drop then gives 1.1 to 2.0 times the material's sigma at five to eight spacings of radius. It is no more than
-/// that: the model is made for looks, not for measuring (Akinci, Akinci & Teschner 2013).
+/// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Chosen with `examples/droplet.rs`: the
+/// period of a swinging drop then gives 1.1 to 2.0 times the material's sigma at five to eight spacings of
+/// radius. It is no more than that: the model is made for looks, not for measuring (Akinci, Akinci & Teschner
+/// 2013).
 const AKINCI_PER_SIGMA: f32 = 100.0;
 
-/// Viscosity that `mueller2003` adds to the material's, over c0 H. Its density (poly6) and its pressure (spiky) do not come
-/// from one energy, so it heats up where nothing rubs: water in a tank then boils at 0.5 sqrt(g depth). The thesis and its
-/// successors set a large viscosity by hand; this much calms a tank to under one per cent after two seconds.
+/// Viscosity that `mueller2003` adds to the material's, over c0 H. Its density (poly6) and its pressure (spiky)
+/// do not come from one energy, so it heats up where nothing rubs: water in a tank then boils at 0.5 sqrt(g
+/// depth). The thesis and its successors set a large viscosity by hand; this much calms a tank to under one per
+/// cent after two seconds.
 const MUELLER_VISCOSITY: f32 = 0.015;
 
 /// What meets the fluid, as far as a scene has it.
@@ -87,9 +89,9 @@ impl Solver {
         self.method == Method::Wcsph && !self.tension
     }
 
-    /// One step: the settling of the last one, sort, density and pressure, accelerations, motion. Before the first one of a
-    /// frame goes [`begin_frame`], behind the last one of a submission `settle`. Needs accelerations unless it
-    /// [fuses](Self::fuses) and there are no things.
+    /// One step: the settling of the last one, sort, density and pressure, accelerations, motion. Before the
+    /// first one of a frame goes [`begin_frame`], behind the last one of a submission `settle`. Needs
+    /// accelerations unless it [fuses](Self::fuses) and there are no things.
     pub fn step(&self, cells: &Cells, fields: &Fields, things: &Things<'_>, particles: u32) -> Recording {
         let Things { bodies, flow, probes, stirrer } = *things;
         let mut step = Recording::new("step");
@@ -207,7 +209,8 @@ pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
     recording
 }
 
-/// Settles the last step, where no other follows that does: the host, or another step's passes, may look at the state then.
+/// Settles the last step, where no other follows that does: the host, or another step's passes, may look at the
+/// state then.
 pub fn settle(fields: &Fields) -> Recording {
     let mut recording = Recording::new("settle");
     let buffers = [fields.params.id(), fields.state.id(), fields.tally.id()];

@@ -5,8 +5,8 @@ use splashdown_io::Mesh;
 
 /// Removes the pieces of a mesh that enclose less than `volume` m^3; returns how many.
 ///
-/// Pieces are connected through triangles. Bubbles, whose triangles face inwards and whose volume is negative, stay. A closed mesh
-/// stays closed; vertices that remain keep their order, normals and velocities.
+/// Pieces are connected through triangles. Bubbles, whose triangles face inwards and whose volume is negative,
+/// stay. A closed mesh stays closed; vertices that remain keep their order, normals and velocities.
 pub fn drop_blobs(mesh: &mut Mesh, volume: f64) -> usize {
     let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     for &[a, b, c] in &mesh.triangles {

@@ -7,15 +7,17 @@ use super::SurfaceError;
 use super::SurfaceParams;
 use super::reconstruct::{grid_over, sort_order};
 
-/// What vertices get of numbers or vectors that particles carry, velocities for example: the mean over the particles within the
-/// support radius, weighted by (1 - (r / support)^2)^3 (Shepard 1968), in the unit of what was given.
+/// What vertices get of numbers or vectors that particles carry, velocities for example: the mean over the
+/// particles within the support radius, weighted by (1 - (r / support)^2)^3 (Shepard 1968), in the unit of what
+/// was given.
 ///
-/// A vertex that smoothing has carried away from every particle takes the value of the nearest one that is less than two supports
-/// away, or zero. Particles whose positions or values are not finite are left out. `positions` and `values` are those of the particles,
-/// one for one; the sum goes over particles in their order, so the same input gives the same bits on any number of threads.
+/// A vertex that smoothing has carried away from every particle takes the value of the nearest one that is less
+/// than two supports away, or zero. Particles whose positions or values are not finite are left out.
+/// `positions` and `values` are those of the particles, one for one; the sum goes over particles in their
+/// order, so the same input gives the same bits on any number of threads.
 ///
-/// 57,000 vertices among 64,000 particles take half as long as their surface on the CPU does (`examples/surface_times.rs`), once
-/// a frame, which is why there is no such pass on the device.
+/// 57,000 vertices among 64,000 particles take half as long as their surface on the CPU does
+/// (`examples/surface_times.rs`), once a frame, which is why there is no such pass on the device.
 ///
 /// # Errors
 /// [`SurfaceError`] if a parameter makes no sense or the particles are too far apart.

@@ -443,7 +443,8 @@ impl Surface {
         Ok(executor.fetch(self.b.status).await?[0])
     }
 
-    /// Gives the memory of the field and of what smoothing needs back to the device: the mesh stays, and is the last one.
+    /// Gives the memory of the field and of what smoothing needs back to the device: the mesh stays, and is the
+    /// last one.
     pub(crate) fn release_field(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let lattice = &mut self.lattice;
         (lattice.particle_capacity, lattice.block_count, lattice.block_capacity) = (0, 0, 0);

@@ -24,7 +24,8 @@ fn run(
     if density == DensityMode::Continuity {
         scene.solver.negative_pressure = NegativePressure::Keep;
     }
-    // Nothing lies on a line of a body's grid, where the slope of its map jumps and rounding decides on which side one is.
+    // Nothing lies on a line of a body's grid, where the slope of its map jumps and rounding decides on which
+    // side one is.
     let mut standing = body("standing", "cube", 0.1, Vec3::new(0.1213, 0.0517, 0.1391), Motion::Static);
     standing.mesh.rotation = Quat::from_rotation_y(0.4);
     standing.friction = 0.7;
@@ -79,8 +80,9 @@ fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
         let mut apart: Vec<f32> =
             one.velocities.iter().zip(&two.velocities).map(|(a, b)| distance(a, b)).collect();
         apart.sort_by(f32::total_cmp);
-        // Where a clamped pressure just becomes positive, its hydrostatic part in a wall begins with a jump, and rounding decides
-        // in which step: that is a few particles of the lowest layer, and a hundredth of the speed.
+        // Where a clamped pressure just becomes positive, its hydrostatic part in a wall begins with a jump,
+        // and rounding decides in which step: that is a few particles of the lowest layer, and a hundredth of
+        // the speed.
         let most = apart[apart.len() * 19 / 20];
         assert!(most < 2e-3 * moved, "{what}: {most} of {moved} m/s");
         assert!(apart[apart.len() - 1] < 0.03 * moved, "{what}: {:?} of {moved} m/s", apart.last());

@@ -1,8 +1,8 @@
 //! Every pass: on the GPU against the CPU from equal input, and both against brute force in f64.
 //!
-//! SPH is chaotic, so whole runs are never compared; single passes are, from equal buffers with poisoned output. Each
-//! comparison has a control: one input changed by as little as must be noticed. The passes of the surface and of bodies have
-//! their own tests.
+//! SPH is chaotic, so whole runs are never compared; single passes are, from equal buffers with poisoned
+//! output. Each comparison has a control: one input changed by as little as must be noticed. The passes of the
+//! surface and of bodies have their own tests.
 
 mod cases;
 mod flow_cases;

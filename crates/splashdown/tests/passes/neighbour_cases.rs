@@ -1,4 +1,5 @@
-//! The sums over neighbours, on random clouds with particles at walls, in edges and corners, twice in one place, and dead.
+//! The sums over neighbours, on random clouds with particles at walls, in edges and corners, twice in one
+//! place, and dead.
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
@@ -15,8 +16,8 @@ use super::world::{World, params};
 /// A term of a sum is good to a dozen roundings, of which the steep flanks of the kernels make ten times as much; a
 /// hundred terms add up like a random walk. GPUs may divide and take roots to 2.5 units in the last place.
 const ROUNDING: f64 = 2e-5;
-/// The tables of edges interpolate linearly over a thirty-second of the support; in corners the overlap of three solids is
-/// a product formula, tested beside it to 6e-3.
+/// The tables of edges interpolate linearly over a thirty-second of the support; in corners the overlap of
+/// three solids is a product formula, tested beside it to 6e-3.
 const WALL_TABLE: [f64; 4] = [2e-6, 2e-6, 3e-3, 1e-2];
 
 const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };

@@ -45,7 +45,8 @@ impl Kernel {
         }
     }
 
-    /// The gradient with respect to x_i for d = x_i - x_j; nothing at the centre, where no direction is better than another.
+    /// The gradient with respect to x_i for d = x_i - x_j; nothing at the centre, where no direction is better
+    /// than another.
     fn gradient(self, d: DVec3, support: f64) -> DVec3 {
         let r = d.length();
         if r == 0.0 { DVec3::ZERO } else { d / r * self.dw(r / support) / support.powi(4) }

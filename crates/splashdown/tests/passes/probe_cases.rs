@@ -15,7 +15,8 @@ pub fn cases() -> Vec<Case> {
     vec![gather(), crossings(), log()]
 }
 
-/// A point in the fluid, one in a corner, one far above the fluid's reach; an upright and a leaning column; a body; two rectangles.
+/// A point in the fluid, one in a corner, one far above the fluid's reach; an upright and a leaning column; a
+/// body; two rectangles.
 fn probes() -> Vec<ProbePoint> {
     let none: ProbePoint = bytemuck::Zeroable::zeroed();
     let lean = Vec3::new(0.48, 0.8, -0.36);
@@ -176,7 +177,8 @@ fn log() -> Case {
     let state = world.state;
     let elapsed = state.frame_duration - state.remaining + state.dt;
     let mut probes = probes();
-    // Due: the first, one by less than half a step, the force, a flow. Not due: by more than half a step. Full: the fourth.
+    // Due: the first, one by less than half a step, the force, a flow. Not due: by more than half a step. Full:
+    // the fourth.
     let next =
         [elapsed - 0.001, elapsed + 0.4 * state.dt, elapsed + 0.6 * state.dt, 0.0, 1.0, 0.0, elapsed, 1.0];
     let none: Body = bytemuck::Zeroable::zeroed();

@@ -1,5 +1,6 @@
-//! Balls that float: as deep as Archimedes says (within 4 % of the diameter, after half a spacing on which the water keeps
-//! off), and heaving with the period that half of the displaced mass as added mass gives (within 10 %).
+//! Balls that float: as deep as Archimedes says (within 4 % of the diameter, after half a spacing on which the
+//! water keeps off), and heaving with the period that half of the displaced mass as added mass gives (within 10
+//! %).
 
 use glam::Vec3;
 use splashdown::scene::{MeshShape, Motion, Scene};
@@ -45,8 +46,8 @@ fn heights(scene: &Scene, seconds: f64) -> Series {
     found
 }
 
-/// How far a ball's middle is under the level at rest, over its radius, for a density in kg/m^3: where the cap's volume is
-/// that of the displaced water.
+/// How far a ball's middle is under the level at rest, over its radius, for a density in kg/m^3: where the
+/// cap's volume is that of the displaced water.
 fn archimedes(density: f64) -> f64 {
     let share = |s: f64| (2.0 + 3.0 * s - s.powi(3)) / 4.0;
     let (mut low, mut high) = (-1.0, 1.0);

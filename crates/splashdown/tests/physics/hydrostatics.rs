@@ -1,10 +1,10 @@
 //! A tank at rest: p = rho g (surface - y), the level, the load on the walls (after 2 s).
 //!
-//! The tank starts with the densities of water at rest, as numbers where the density is integrated, by closer layers
-//! where it is summed: water let go without pressure rings like a bell, for H / c0 is short and its viscosity little. The
-//! continuity form, which is there to measure with, has a support of three spacings; at two, the kernel itself gives a
-//! lattice's pressure gradient 5 % too little. The summation form and mueller2003 run as scenes have them, and their
-//! pressure is told rather than judged.
+//! The tank starts with the densities of water at rest, as numbers where the density is integrated, by closer
+//! layers where it is summed: water let go without pressure rings like a bell, for H / c0 is short and its
+//! viscosity little. The continuity form, which is there to measure with, has a support of three spacings; at
+//! two, the kernel itself gives a lattice's pressure gradient 5 % too little. The summation form and
+//! mueller2003 run as scenes have them, and their pressure is told rather than judged.
 
 use glam::Vec3;
 use splashdown::scene::{DensityMode, Method};
@@ -131,8 +131,8 @@ impl Tank {
         }
     }
 
-    /// The walls' vertical force on the fluid over the particles' weight: what the accelerations hold beside gravity and
-    /// the forces of pairs, which cancel.
+    /// The walls' vertical force on the fluid over the particles' weight: what the accelerations hold beside
+    /// gravity and the forces of pairs, which cancel.
     fn load(&self, simulation: &mut Simulation) -> f64 {
         let accelerations = simulation.fields().accelerations;
         let accelerations = simulation.executor().read(accelerations).unwrap();
@@ -174,8 +174,9 @@ impl Rest {
         figures
     }
 
-    /// Where the pressure is for moving the fluid, not for measuring it. Its walls carry less than the weight by what the
-    /// contact in the motion carries of particles that the pressure lets sink to a quarter of a spacing.
+    /// Where the pressure is for moving the fluid, not for measuring it. Its walls carry less than the weight
+    /// by what the contact in the motion carries of particles that the pressure lets sink to a quarter of a
+    /// spacing.
     fn told_of_mueller(&self, case: &str, speed: f64) {
         let mut figures = self.told(case, speed);
         figures.report("level - fill, spacings", self.level);
@@ -210,8 +211,8 @@ fn a_tank_with_summed_densities_comes_to_rest() {
     tank(MUELLER).settle(cpu(), 2.0).told_of_mueller("hydrostatics, mueller, CPU", 0.01);
 }
 
-/// A tank small enough for software Vulkan: seven particles from wall to wall, eight deep. It has half a second to come to
-/// rest instead of two, and a gate of 5 % instead of 1 %.
+/// A tank small enough for software Vulkan: seven particles from wall to wall, eight deep. It has half a second
+/// to come to rest instead of two, and a gate of 5 % instead of 1 %.
 #[test]
 fn a_small_tank_rests_on_every_executor() {
     for (name, executor) in testing::executors("a_small_tank_rests_on_every_executor") {

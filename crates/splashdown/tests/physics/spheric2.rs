@@ -1,10 +1,11 @@
 //! SPHERIC's test 2, a dam break against a box (Kleefsman et al. 2005): heights, arrivals and impulses, read by the
 //! probes of the scene that comes with the program.
 //!
-//! Heights are compared at the measured times, over the depth of 0.55 m. The front arrives when a gauge reads half a
-//! spacing: a front one particle high then covers half of the gauge's column. An impulse is the pressure's integral from
-//! 0.38 to 0.8 s. Of the peaks only P2's has a gate: a peak of a millisecond depends on where exactly the air was. The box is
-//! as high as three to nine particles, and its pressures are judged at the finer of the two spacings.
+//! Heights are compared at the measured times, over the depth of 0.55 m. The front arrives when a gauge reads
+//! half a spacing: a front one particle high then covers half of the gauge's column. An impulse is the
+//! pressure's integral from 0.38 to 0.8 s. Of the peaks only P2's has a gate: a peak of a millisecond depends
+//! on where exactly the air was. The box is as high as three to nine particles, and its pressures are judged at
+//! the finer of the two spacings.
 
 use splashdown::probes::ProbeRows;
 use splashdown::scene::Scene;

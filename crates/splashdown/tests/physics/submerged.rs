@@ -1,4 +1,5 @@
-//! Bodies held under water: they are lifted by the weight of the water that they displace (within 5 %), and not pushed aside.
+//! Bodies held under water: they are lifted by the weight of the water that they displace (within 5 %), and not
+//! pushed aside.
 //!
 //! At a support of three spacings a ball 12 spacings across is lifted by 9 % too much: where a surface bends within the
 //! support, the plane that its map stands for fits less well. Scenes have two spacings, and so has this case.

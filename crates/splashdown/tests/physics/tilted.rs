@@ -1,10 +1,11 @@
-//! Water at rest in a tank that stands askew: once as a domain under leaning gravity, once as a leaning mesh in an upright
-//! domain.
+//! Water at rest in a tank that stands askew: once as a domain under leaning gravity, once as a leaning mesh in
+//! an upright domain.
 //!
-//! The same water on the tank's own lattice, the same gates: p = rho g depth (L2 within 3 %), at rest (rms within 1 % of
-//! sqrt(g depth)) after 2 s, and nothing leaves or has to be put back. Where two walls of one mesh meet, the mesh is felt as a
-//! plane across the edge, whose hydrostatic part is not that of the two: in a tank of 12 particles, where a third of the
-//! water is beside edges, the pressure misses the gate, and is judged at full size only.
+//! The same water on the tank's own lattice, the same gates: p = rho g depth (L2 within 3 %), at rest (rms
+//! within 1 % of sqrt(g depth)) after 2 s, and nothing leaves or has to be put back. Where two walls of one
+//! mesh meet, the mesh is felt as a plane across the edge, whose hydrostatic part is not that of the two: in a
+//! tank of 12 particles, where a third of the water is beside edges, the pressure misses the gate, and is
+//! judged at full size only.
 
 use glam::{Quat, Vec3};
 use splashdown::Simulation;

@@ -1,10 +1,10 @@
-//! A tank that empties through a slit in its floor (Torricelli 1643): the level falls as
-//! (sqrt(y0) - C_d (A_o / A) sqrt(g / 2) t)^2, with the sharp edge's C_d about 0.61 (0.55 to 0.66 is the gate), and the jet
-//! leaves at sqrt(2 g y) (within 4 %).
+//! A tank that empties through a slit in its floor (Torricelli 1643): the level falls as (sqrt(y0) - C_d (A_o /
+//! A) sqrt(g / 2) t)^2, with the sharp edge's C_d about 0.61 (0.55 to 0.66 is the gate), and the jet leaves at
+//! sqrt(2 g y) (within 4 %).
 //!
-//! A slab eight spacings thick stands for two dimensions; the floor is two plates with a slit eight spacings wide, 16 at
-//! full resolution. An edge is felt through the kernel and so less far out than it is: at eight spacings the slit passes a
-//! seventh too much, which is told but not judged.
+//! A slab eight spacings thick stands for two dimensions; the floor is two plates with a slit eight spacings
+//! wide, 16 at full resolution. An edge is felt through the kernel and so less far out than it is: at eight
+//! spacings the slit passes a seventh too much, which is told but not judged.
 
 use glam::Vec3;
 use splashdown::scene::Motion;

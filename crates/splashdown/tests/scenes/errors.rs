@@ -1,5 +1,5 @@
-//! The words of every kind of mistake, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test -p splashdown --test
-//! scenes`, then read the difference.
+//! The words of every kind of mistake, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test -p
+//! splashdown --test scenes`, then read the difference.
 
 use std::fs;
 

@@ -134,7 +134,8 @@ fn a_block_of_broken_spacings_stands_on_the_wall_it_touches() {
     // Free: in the middle.
     let free = floor.replace("position = [0, 0, 0]", "position = [0, 0.4, 0]");
     assert!((low(&free, 1) - 0.435).abs() < 1e-6);
-    // From wall to wall nothing is squeezed in: 20.8 spacings hold 20 layers, none nearer to a wall than half a spacing.
+    // From wall to wall nothing is squeezed in: 20.8 spacings hold 20 layers, none nearer to a wall than half a
+    // spacing.
     let full = changed("max = [1, 1, 1]", "max = [1, 1, 1.04]")
         .replace("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.5, 1.04]");
     assert!(low(&full, 2) >= 0.025 && high(&full, 2) <= 1.04 - 0.025);

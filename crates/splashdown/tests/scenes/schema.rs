@@ -103,7 +103,8 @@ fn every_scene_satisfies_the_schema() {
     assert!(complaints(&as_json(CUBE), &schema, "cube").is_empty());
 }
 
-/// Controls of the checker above, and at once the accord of schema and parser: both refuse each of these, and accept the cube.
+/// Controls of the checker above, and at once the accord of schema and parser: both refuse each of these, and
+/// accept the cube.
 #[test]
 fn schema_and_parser_refuse_the_same_mistakes() {
     let schema = schema();
@@ -135,8 +136,8 @@ fn schema_and_parser_refuse_the_same_mistakes() {
     }
 }
 
-/// Every key of the schema, with its default or an allowed value, one at a time: the parser knows it, and the defaults it names are the
-/// defaults it takes.
+/// Every key of the schema, with its default or an allowed value, one at a time: the parser knows it, and the
+/// defaults it names are the defaults it takes.
 #[test]
 fn the_parser_knows_every_key_of_the_schema_and_takes_its_defaults() {
     let schema = schema();

@@ -11,8 +11,8 @@ const KERNELS: KernelPair = KernelPair::WendlandC2;
 /// A power of two, so that nodes lie exactly on the middles of walls and slots, where the distance has no slope.
 const CELL: f32 = 0.0625;
 const SUPPORT: f32 = 0.25;
-/// Nodes of one layer that are compared: those with |x| and |z| up to 0.25. Between two surfaces, the middle layer at least is
-/// no plane.
+/// Nodes of one layer that are compared: those with |x| and |z| up to 0.25. Between two surfaces, the middle
+/// layer at least is no plane.
 const LAYER: u32 = 9 * 9;
 
 fn settings() -> SolidSettings {
@@ -52,8 +52,9 @@ fn share(distance: f32) -> f32 {
     if q < 0.0 { 1.0 - d } else { d }
 }
 
-/// Compares the share at every node near the y axis with that of the layers `solid` (lower and upper y), which need not end
-/// inside the support; returns the number of nodes at which the plane at the same distance would not pass.
+/// Compares the share at every node near the y axis with that of the layers `solid` (lower and upper y), which
+/// need not end inside the support; returns the number of nodes at which the plane at the same distance would
+/// not pass.
 fn compare_with_layers(mesh: &Mesh, solid: &[[f32; 2]]) -> u32 {
     let made = Solid::build(mesh, &settings(), &|_| {}).unwrap();
     let [nx, ny, nz] = made.field.nodes;

@@ -54,8 +54,8 @@ fn open_meshes_are_shells_and_closed_ones_solids() {
     }
 }
 
-/// How many nodes within three cells of the good mesh's surface have another distance, by more than a cell, from the bad one;
-/// and how many there are.
+/// How many nodes within three cells of the good mesh's surface have another distance, by more than a cell,
+/// from the bad one; and how many there are.
 fn differing(good: &Solid, bad: &Solid) -> (u32, u32) {
     let cell = good.field.cell_size;
     let [nx, ny, _] = good.field.nodes;

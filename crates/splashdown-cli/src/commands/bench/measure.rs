@@ -10,7 +10,7 @@ use splashdown_gpu::Timings;
 use splashdown_gpu::floors::Floors;
 
 use crate::args::BenchArguments;
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::memory;
 use crate::report::{PassNumbers, passes};
 use crate::speed::seconds_per_step;
@@ -27,8 +27,9 @@ const BUDGET: Duration = Duration::from_secs(2);
 /// Steps in which dispatches are counted where no passes are wanted.
 const COUNTED: u32 = 2;
 
-/// What a step must at least move and compute per particle, with about 28 neighbours: every array once, in a step whose passes are joined as far as
-/// they can be; and the arithmetic of tests, density and forces. docs/performance.md derives both.
+/// What a step must at least move and compute per particle, with about 28 neighbours: every array once, in a
+/// step whose passes are joined as far as they can be; and the arithmetic of tests, density and forces.
+/// docs/performance.md derives both.
 const FLOOR_BYTES: f64 = 192.0;
 const FLOOR_OPERATIONS: f64 = 6047.0;
 /// Particles of whose neighbours the mean is told.
@@ -83,7 +84,14 @@ pub struct Row {
 pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Result<Row, Failure> {
     let device = &arguments.device.device;
     let unchecked = arguments.unchecked_shaders;
-    let executor = if unchecked { device.unchecked_executor()? } else { device.executor()? };
+    // SAFETY: nobody but the simulation uses the executor.
+    let executor = if unchecked { unsafe { device.unchecked_executor()? } } else { device.executor()? };
+    if unchecked && executor.gpu().is_none() {
+        let message = format!(
+            "--unchecked-shaders is for GPUs, and `{device}` is none: leave it out, or choose a --device"
+        );
+        return Err(Failure::new(Exit::Usage, message));
+    }
     let mut simulation = Simulation::with_executor(scene, executor)?;
     let (each, _) = seconds_per_step(&mut simulation, WARM_UP)?;
     let steps = arguments.steps.unwrap_or_else(|| {
@@ -96,7 +104,8 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     }
     rounds.sort_by(f64::total_cmp);
     let seconds = rounds[ROUNDS / 2];
-    // After the rounds: clocks round every pass cost a little on a GPU. The floor needs the number of dispatches in any case.
+    // After the rounds: clocks round every pass cost a little on a GPU. The floor needs the number of
+    // dispatches in any case.
     let mut timed_steps = 0;
     if simulation.enable_timing() {
         let steps = if arguments.no_passes { COUNTED.min(steps) } else { steps };

@@ -22,8 +22,8 @@ pub struct Earlier {
 }
 
 impl Earlier {
-    /// Looks for the files of the frames `since` to `last` that `scene` asks for. Of pictures, which a missing driver may have kept from
-    /// being drawn, those are missed that come after another one.
+    /// Looks for the files of the frames `since` to `last` that `scene` asks for. Of pictures, which a missing
+    /// driver may have kept from being drawn, those are missed that come after another one.
     pub fn find(layout: &Layout, scene: &Scene, pictures: &[PictureKind], since: u32, last: u32) -> Self {
         let files = layout.files_up_to(last);
         let there: HashSet<&Path> = files.iter().map(|file| file.path.as_path()).collect();

@@ -127,7 +127,8 @@ impl Session {
             }
             Ok(()) => {}
         }
-        // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than room for its own.
+        // Only now that nothing can refuse the run any more are the frames of an earlier one worth less than
+        // room for its own.
         match begins {
             Some(frame) => {
                 session.layout.remove_after(frame);

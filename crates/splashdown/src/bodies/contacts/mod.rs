@@ -1,12 +1,14 @@
 //! Which bodies a particle feels, and how: one look-up in the map of each body that is near.
 //!
-//! A body's map holds at every node of a grid the signed distance from its surface and the *effective* distance: that of the
-//! plane wall whose share of the kernel, D(q), is the body's (Koschier & Bender 2017 store the integral itself). For a plane both
-//! are the same straight line, so that interpolation is exact; for anything else the chain rule gives the gradient of
-//! the share, -A(q)/H grad(effective), at the cost of eight reads.
+//! A body's map holds at every node of a grid the signed distance from its surface and the *effective*
+//! distance: that of the plane wall whose share of the kernel, D(q), is the body's (Koschier & Bender 2017
+//! store the integral itself). For a plane both are the same straight line, so that interpolation is exact; for
+//! anything else the chain rule gives the gradient of the share, -A(q)/H grad(effective), at the cost of eight
+//! reads.
 //!
-//! A body may instead be felt by particles on its surface (Akinci et al. 2012): share = sum V_b W, slope = -sum V_b grad W. They lie
-//! in cells in the body's own frame, so that a moving body needs no sort. The effective distance then follows from the share.
+//! A body may instead be felt by particles on its surface (Akinci et al. 2012): share = sum V_b W, slope = -sum
+//! V_b grad W. They lie in cells in the body's own frame, so that a moving body needs no sort. The effective
+//! distance then follows from the share.
 //!
 //! The two bodies that matter most are kept per particle. A particle inside a body is put back by at most a tenth of a
 //! spacing along the normal, and counted.

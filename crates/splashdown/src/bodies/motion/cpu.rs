@@ -34,8 +34,8 @@ pub(super) fn motion(_: CpuWork, slots: &mut [Slot<'_>]) {
     }
 }
 
-/// A 64-bit sum in its units, rounded as the GPU rounds it: the two halves one after the other. The sign first: the halves of
-/// a small negative number are large.
+/// A 64-bit sum in its units, rounded as the GPU rounds it: the two halves one after the other. The sign first:
+/// the halves of a small negative number are large.
 fn value(words: &[u32], first: usize) -> f32 {
     let sum = (u64::from(words[first]) | u64::from(words[first + 1]) << 32).cast_signed();
     let size = sum.unsigned_abs();

@@ -1,11 +1,13 @@
 //! What bodies do to particles, and particles to bodies.
 //!
-//! A body acts as the box's closed sides do ([`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration) says why): its
-//! own pressure and its image's along the slope of the share; hydrostatic growth inside the solid; what acts along
-//! the surface divided by the open part of the kernel, 1 - D, of the other walls and bodies; damping of the approach; friction
-//! 2 nu A / (H d), with nu the material's and that of the artificial viscosity (alpha c0 H / 20, Monaghan 2005), so that
-//! no slip drags water at any resolution; adhesion by the spline of Akinci et al. (2013). A contact in the velocities keeps what
-//! has no pressure a quarter of a spacing away. All speeds are relative to the body's.
+//! A body acts as the box's closed sides do
+//! ([`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration) says why): its own pressure and its
+//! image's along the slope of the share; hydrostatic growth inside the solid; what acts along the surface
+//! divided by the open part of the kernel, 1 - D, of the other walls and bodies; damping of the approach;
+//! friction 2 nu A / (H d), with nu the material's and that of the artificial viscosity (alpha c0 H / 20,
+//! Monaghan 2005), so that no slip drags water at any resolution; adhesion by the spline of Akinci et al.
+//! (2013). A contact in the velocities keeps what has no pressure a quarter of a spacing away. All speeds are
+//! relative to the body's.
 //!
 //! The reaction is summed in fixed point, 64 bits, by integer atomics: the sum does not depend on the order.
 
@@ -58,8 +60,8 @@ pub static MUELLER: PassDesc = PassDesc {
     ..WENDLAND_C2
 };
 
-/// The force in N that one unit of the sums stands for: a particle's mass times 1e-5 m/s^2. Torques have this times the support
-/// radius.
+/// The force in N that one unit of the sums stands for: a particle's mass times 1e-5 m/s^2. Torques have this
+/// times the support radius.
 pub fn quantum(params: &Params) -> f32 {
     1e-5 * params.particle_mass
 }

@@ -1,8 +1,8 @@
 //! What bodies add to the density, and the pressure that follows.
 //!
-//! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), the shares of the two bodies that matter most, whose overlap counts
-//! once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, twice for the reason given in
-//! [`continuity`](crate::passes::continuity).
+//! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), the shares of the two bodies that matter most,
+//! whose overlap counts once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, twice for the reason
+//! given in [`continuity`](crate::passes::continuity).
 
 mod cpu;
 

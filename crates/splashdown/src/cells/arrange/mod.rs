@@ -1,11 +1,12 @@
-//! Copies the particles into the order of their cells, and inside every cell into that of their ids, whatever the order of
-//! their arrival: the same state gives the same bits twice.
+//! Copies the particles into the order of their cells, and inside every cell into that of their ids, whatever
+//! the order of their arrival: the same state gives the same bits twice.
 //!
 //! Every particle counts the ids of its cell that are smaller than its own; at two spacings of support a cell holds
 //! about eight. Only the dead may be many: more than 1,024 of them a GPU leaves as they arrived.
 //!
-//! The ids are read from `slots`, so that the sorted ones may go straight to the resting array: a step integrates back in
-//! this order. A sort without a step leaves the resting arrays alone and has `sorted_ids` for them.
+//! The ids are read from `slots`, so that the sorted ones may go straight to the resting array: a step
+//! integrates back in this order. A sort without a step leaves the resting arrays alone and has `sorted_ids`
+//! for them.
 
 mod cpu;
 

@@ -1,5 +1,5 @@
-//! Counts the particles of every cell, and notes each one's cell, where the pass that moves them does not: before the first
-//! step of a frame, and after emitters.
+//! Counts the particles of every cell, and notes each one's cell, where the pass that moves them does not:
+//! before the first step of a frame, and after emitters.
 //!
 //! Dead particles go to one more cell behind the last, so that sorting puts them behind the living. Particles that are
 //! outside the domain, or whose position, velocity or density is not finite, are marked dead here, and counted: before

@@ -1,7 +1,7 @@
 //! Moves what is in a nozzle as one piston: a = (speed * direction - v) / dt, so that the step ends with that velocity.
 //!
-//! Particles are born at rest density behind others of the same lattice, a support radius and more before the outlet; until they
-//! are there, nothing may push them about, since their lattice still lacks its back half.
+//! Particles are born at rest density behind others of the same lattice, a support radius and more before the
+//! outlet; until they are there, nothing may push them about, since their lattice still lacks its back half.
 
 mod cpu;
 

@@ -1,7 +1,8 @@
 //! Writes the particles of the layers that are due ([`plan`](super::plan)).
 //!
-//! The sorted order of the step still holds: particles have moved by half a spacing at most since, so that the 27 cells show
-//! everything within reach. Where another particle is in the way, as in an outlet under water, none is made and that is counted.
+//! The sorted order of the step still holds: particles have moved by half a spacing at most since, so that the
+//! 27 cells show everything within reach. Where another particle is in the way, as in an outlet under water,
+//! none is made and that is counted.
 
 mod cpu;
 

@@ -1,7 +1,8 @@
 //! Decides which emitters make a layer of particles in this step, and where these go.
 //!
-//! The fluid in a nozzle travels speed * dt per step; when it has gone a spacing the next layer is due, at the distance that is
-//! left over. Layers take the places behind the living, which the sort keeps free; one that finds too few is dropped and counted.
+//! The fluid in a nozzle travels speed * dt per step; when it has gone a spacing the next layer is due, at the
+//! distance that is left over. Layers take the places behind the living, which the sort keeps free; one that
+//! finds too few is dropped and counted.
 
 mod cpu;
 

@@ -2,7 +2,7 @@ use glam::{Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::passes::StepState;
-use crate::passes::moving::{Resting, Sorted, advance_all};
+use crate::passes::moving::{Before, Resting, advance_all};
 
 pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [
@@ -25,7 +25,7 @@ pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) 
     if state.done != 0 {
         return;
     }
-    let sorted = Sorted {
+    let before = Before {
         positions: sorted_positions.read(),
         velocities: sorted_velocities.read(),
         densities: densities.read(),
@@ -38,5 +38,5 @@ pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) 
     };
     let accelerations = accelerations.read::<Vec4>();
     let constants = (&params.get(), &grid.get(), &state);
-    advance_all(constants, sorted, resting, COUNTS, |i, _| accelerations[i].xyz());
+    advance_all(constants, before, resting, COUNTS, |i, _| accelerations[i].xyz());
 }

@@ -1,13 +1,14 @@
 //! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the resting ones.
 //!
-//! It is the leap-frog of the thesis read at half steps: v here is v at t + dt/2 there. Closed walls are a contact in the
-//! velocities: a particle nearer than a quarter of a spacing, or on its way there within this step, loses just the
-//! speed that would take it past. Pressure keeps a body of fluid off the wall; this holds the lone drops that have none.
-//! A particle that is outside all the same is put back and counted: the count is zero in a sound run. A result that is
-//! not finite leaves the particle where it was, dead, and is counted; so is one that leaves through an open side.
+//! It is the leap-frog of the thesis read at half steps: v here is v at t + dt/2 there. Closed walls are a
+//! contact in the velocities: a particle nearer than a quarter of a spacing, or on its way there within this
+//! step, loses just the speed that would take it past. Pressure keeps a body of fluid off the wall; this holds
+//! the lone drops that have none. A particle that is outside all the same is put back and counted: the count is
+//! zero in a sound run. A result that is not finite leaves the particle where it was, dead, and is counted; so
+//! is one that leaves through an open side.
 //!
-//! The particles are counted by cell for the next step's sort, unless emitters are to make more before it, or there is no
-//! next step in this frame.
+//! The particles are counted by cell for the next step's sort, unless emitters are to make more before it, or
+//! there is no next step in this frame.
 
 mod cpu;
 

@@ -8,8 +8,8 @@
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
 //! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
-//! Walls push with the particle's own pressure and its image's, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else they do is
-//! in [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
+//! Walls push with the particle's own pressure and its image's, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else
+//! they do is in [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
 
 pub(crate) mod cpu;
 

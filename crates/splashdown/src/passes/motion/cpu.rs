@@ -5,11 +5,11 @@ use crate::boundary::WallKernel;
 use crate::cells::Grid;
 use crate::kernel::Kernel;
 use crate::passes::momentum::cpu::Momentum;
-use crate::passes::moving::{Resting, Sorted, advance_all};
+use crate::passes::moving::{Before, Resting, advance_all};
 use crate::passes::{Params, StepState, pairs};
 
-/// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 % of a step
-/// longer. The resting velocities, which the second sweep writes, hold the accelerations in between.
+/// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 %
+/// of a step longer. The resting velocities, which the second sweep writes, hold the accelerations in between.
 pub(super) fn motion<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [
         params,
@@ -32,7 +32,7 @@ pub(super) fn motion<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>])
     if state.done != 0 {
         return;
     }
-    let sorted = Sorted {
+    let before = Before {
         positions: sorted_positions.read(),
         velocities: sorted_velocities.read(),
         densities: densities.read(),
@@ -43,9 +43,9 @@ pub(super) fn motion<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>])
         tally: tally.write(),
         census: census.write(),
     };
-    let Sorted { positions, velocities, densities } = sorted;
+    let Before { positions, velocities, densities } = before;
     let forces = Momentum::<K>::new(params, state, positions, velocities, densities, wall_table.read());
     let places = pairs::Sorted::new(params, grid, cell_start.read(), positions);
     pairs::for_each(places, resting.velocities, &forces);
-    advance_all((params, grid, state), sorted, resting, true, |_, a| a.xyz());
+    advance_all((params, grid, state), before, resting, true, |_, a| a.xyz());
 }

@@ -1,9 +1,9 @@
-//! [`momentum`](super::momentum) and [`integrate`](super::integrate) in one pass: the accelerations are neither written nor
-//! read, and position and velocity are read once.
+//! [`momentum`](super::momentum) and [`integrate`](super::integrate) in one pass: the accelerations are neither
+//! written nor read, and position and velocity are read once.
 //!
-//! For steps where nothing comes between the two: no bodies, emitters, sinks, gauges or hand, no surface tension. Both ways
-//! share their WGSL (`forces.wgsl`, `moving.wgsl`) and their Rust. State and table of walls are bound as uniforms, because
-//! there may be eight storage buffers.
+//! For steps where nothing comes between the two: no bodies, emitters, sinks, gauges or hand, no surface
+//! tension. Both ways share their WGSL (`forces.wgsl`, `moving.wgsl`) and their Rust. State and table of walls
+//! are bound as uniforms, because there may be eight storage buffers.
 
 mod cpu;
 

@@ -25,6 +25,10 @@ impl<const F: usize> Columns<F> {
     pub fn new(count: usize, load: impl Fn(usize) -> [f32; F] + Sync) -> Self {
         let stride = count + BLOCK;
         let mut values = MEMORY.take();
+        // A scene much larger than this one is over.
+        if values.capacity() > 4 * F.max(8) * stride {
+            values = Vec::new();
+        }
         // What lies there from last time is overwritten, or masked where it is read.
         values.resize(values.len().max(F * stride), 0.0);
         let mut rest: [&mut [f32]; F] = {

@@ -5,9 +5,9 @@
 //! ends, so the choice is one step late; the limit on velocities of half a spacing per step catches the rest. Near the
 //! end of the frame the rest is split evenly, so that no tiny step is left over.
 //!
-//! A step that is to be settled says so by [`Tally::MOVED`], so settling twice does it once. The pass of this module runs
-//! once per submission; inside one, the next step's [`scatter`](crate::cells) settles the step before it, which
-//! saves a dispatch per step: nothing before it in a step looks at the state.
+//! A step that is to be settled says so by [`Tally::MOVED`], so settling twice does it once. The pass of this
+//! module runs once per submission; inside one, the next step's [`scatter`](crate::cells) settles the step
+//! before it, which saves a dispatch per step: nothing before it in a step looks at the state.
 
 mod cpu;
 

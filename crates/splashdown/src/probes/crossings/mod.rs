@@ -1,7 +1,8 @@
 //! Counts the particles that went through the rectangles of flow probes in this step.
 //!
-//! Each particle's way from the step's beginning to its end is a straight line, and every line that meets a rectangle is one
-//! particle's volume: nothing that flows is missed or counted twice, however the rectangle is turned.
+//! Each particle's way from the step's beginning to its end is a straight line, and every line that meets a
+//! rectangle is one particle's volume: nothing that flows is missed or counted twice, however the rectangle is
+//! turned.
 
 mod cpu;
 

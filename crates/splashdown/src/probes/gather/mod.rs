@@ -1,13 +1,15 @@
 //! Pressures at points and heights in columns, from the particles near them; a workgroup per probe.
 //!
-//! *Pressure.* The mean of the particles' pressures with the kernel's weight (Shepard 1968), carried from their mean place
-//! to the point by the gradient that the momentum equation gives, grad p = rho (g - Dv/Dt): without it a gauge in a floor
-//! would read the pressure of half a support above. Where there is hardly any fluid the reading fades to zero.
+//! *Pressure.* The mean of the particles' pressures with the kernel's weight (Shepard 1968), carried from their
+//! mean place to the point by the gradient that the momentum equation gives, grad p = rho (g - Dv/Dt): without
+//! it a gauge in a floor would read the pressure of half a support above. Where there is hardly any fluid the
+//! reading fades to zero.
 //!
-//! *Height.* The fluid's length along the column: the integral of the share of fluid along it, sum V w(r) with a kernel
-//! of the distance r from the column whose integral over a plane is one (Wendland C2 in two dimensions). It is what a
-//! resistance gauge measures, counts no air under a breaking wave, and is smooth where a highest particle is not. The column
-//! is wider than the support, by [`COLUMN`]: at two spacings the lattice that particles rest on would show as three per cent.
+//! *Height.* The fluid's length along the column: the integral of the share of fluid along it, sum V w(r) with
+//! a kernel of the distance r from the column whose integral over a plane is one (Wendland C2 in two
+//! dimensions). It is what a resistance gauge measures, counts no air under a breaking wave, and is smooth
+//! where a highest particle is not. The column is wider than the support, by [`COLUMN`]: at two spacings the
+//! lattice that particles rest on would show as three per cent.
 
 mod cpu;
 

@@ -1,7 +1,8 @@
-//! Sums what the probes read over the time since their last row, and writes a row when it is due; an invocation per probe.
+//! Sums what the probes read over the time since their last row, and writes a row when it is due; an invocation
+//! per probe.
 //!
-//! A row is the mean over the time since the row before: a mean keeps impulses exact whatever the interval, and what sound
-//! adds to the pressures of one step is not mistaken for the fluid's.
+//! A row is the mean over the time since the row before: a mean keeps impulses exact whatever the interval, and
+//! what sound adds to the pressures of one step is not mistaken for the fluid's.
 
 mod cpu;
 

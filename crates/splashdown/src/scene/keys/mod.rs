@@ -1,4 +1,5 @@
-//! Every key of the scene file, declared once: the reader, the JSON schema, the reference and the messages come from here.
+//! Every key of the scene file, declared once: the reader, the JSON schema, the reference and the messages come
+//! from here.
 //!
 //! A file for each part of a scene; the words that keys take, where they are this module's own, are in `words`.
 

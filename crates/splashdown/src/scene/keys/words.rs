@@ -46,8 +46,8 @@ choices! {
         Force = "force",
         /// Volume in m^3/s through a rectangle: needs `position`, `normal` and `size`.
         Flow = "flow",
-        /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all the fluid, or of what is between `min` and `max`,
-        /// at the end of every frame.
+        /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all the fluid, or of what is
+        /// between `min` and `max`, at the end of every frame.
         Fluid = "fluid",
     }
     /// The word for a body's motion.

@@ -74,7 +74,8 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         let meshes = read_all(section, "mesh", fluid::read_fluid_mesh);
         let files = read_all(section, "file", fluid::read_fluid_file);
         let material = fluid::read_material(section);
-        // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block outside the tank.
+        // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block
+        // outside the tank.
         let sound = geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
         let blocks: Vec<geometry::ReadBlock<'_>> = blocks?;
         let blocks = blocks.into_iter().map(|(block, _)| block).collect::<Part<Vec<_>>>()?;

@@ -6,9 +6,10 @@
 //! sheets, which would shrink to nothing: with n the crowding interpolated to the vertex and `s = min(n / 13,
 //! 1)`, `w = 6 s^5 - 15 s^4 + 10 s^3`.
 //!
-//! splashsurf 0.14 mixes the mean with the vertex's place of one round before (`v''` in `v <- (1 - w) v'' + w mean`), and so smooths more slowly
-//! where w is below 1: of the splash of 64,000 particles 20 rounds at cells of half a spacing take 0.9 % of the volume here and 0.7 % there, and
-//! the meshes are 0.33 cells apart at most.
+//! splashsurf 0.14 mixes the mean with the vertex's place of one round before (`v''` in `v <- (1 - w) v'' + w
+//! mean`), and so smooths more slowly where w is below 1: of the splash of 64,000 particles 20 rounds at cells
+//! of half a spacing take 0.9 % of the volume here and 0.7 % there, and the meshes are 0.33 cells apart at
+//! most.
 //!
 //! # How it works
 //!
