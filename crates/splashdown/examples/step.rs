@@ -15,9 +15,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frames: u32 = arguments.next().map_or(Ok(3), |text| text.parse())?;
     let ways: Vec<String> = arguments.collect();
     let has = |way: &str| ways.iter().any(|given| given == way);
-    // SAFETY: nobody but the simulation uses the executor.
-    let executor =
-        if has("unchecked") { unsafe { device.unchecked_executor()? } } else { device.executor()? };
+    let executor = if has("unchecked") {
+        // SAFETY: nobody but the simulation uses the executor.
+        unsafe { device.unchecked_executor()? }
+    } else {
+        device.executor()?
+    };
     let mut simulation = Simulation::with_executor(&scene, executor)?;
     if has("apart") {
         simulation.set_hand(Some(Hand::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0)))?;

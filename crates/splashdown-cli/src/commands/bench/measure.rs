@@ -84,8 +84,12 @@ pub struct Row {
 pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Result<Row, Failure> {
     let device = &arguments.device.device;
     let unchecked = arguments.unchecked_shaders;
-    // SAFETY: nobody but the simulation uses the executor.
-    let executor = if unchecked { unsafe { device.unchecked_executor()? } } else { device.executor()? };
+    let executor = if unchecked {
+        // SAFETY: nobody but the simulation uses the executor.
+        unsafe { device.unchecked_executor()? }
+    } else {
+        device.executor()?
+    };
     if unchecked && executor.gpu().is_none() {
         let message = format!(
             "--unchecked-shaders is for GPUs, and `{device}` is none: leave it out, or choose a --device"
