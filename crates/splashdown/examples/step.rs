@@ -5,7 +5,7 @@
 //! two passes.
 
 use glam::Vec3;
-use splashdown::{Device, Hand, Simulation, scene::Scene};
+use splashdown::{Device, MouseForce, Simulation, scene::Scene};
 
 #[expect(clippy::print_stdout, reason = "an example that prints")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let mut simulation = Simulation::with_executor(&scene, executor)?;
     if has("apart") {
-        simulation.set_hand(Some(Hand::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0)))?;
+        simulation.set_mouse_force(Some(MouseForce::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0)))?;
     }
     println!(
         "{} particles on {}, {} MB",

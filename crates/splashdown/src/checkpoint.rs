@@ -1,6 +1,6 @@
 //! Checkpoints: a simulation in a file, from which it goes on as if it had not stopped.
 //!
-//! *What is in it.* Everything that a step reads and no scene can tell: the resting arrays of the particles,
+//! *What is in it.* Everything that a step reads and no scene can tell: the persistent arrays of the particles,
 //! the state on the device, the counters, the bodies with the world in which they collide, what emitters and
 //! probes remember, and the scene's text. What follows from the scene (grids, maps, constants) is made anew,
 //! and compared where a changed file could slip in. Going on from it gives the same bits as not stopping, on

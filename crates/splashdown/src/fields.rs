@@ -5,7 +5,7 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{Buffer, Executor, GpuError};
 
 use crate::boundary::{KernelPair, wall_table};
-use crate::passes::{Params, StepState, Tally};
+use crate::passes::{Params, StepCounters, StepState};
 
 /// Every buffer that passes share, but for those of the sort. One entry per particle unless said otherwise.
 #[derive(Clone, Copy, Debug)]
@@ -16,23 +16,23 @@ pub struct Fields {
     pub state: Buffer<StepState>,
     /// Length of the frame to begin, in seconds; one.
     pub duration: Buffer<f32>,
-    /// Counters and maxima, [`Tally::WORDS`] words.
-    pub tally: Buffer<u32>,
+    /// Counters and maxima, [`StepCounters::WORDS`] words.
+    pub counters: Buffer<u32>,
     /// Overlap of half-spaces; see [`wall_table`].
     pub wall_table: Buffer<Vec4>,
-    /// Resting: position in metres, and 0 or why the particle is dead.
+    /// Persistent: position in metres, and 0 or why the particle is dead.
     pub positions: Buffer<Vec4>,
-    /// Resting: velocity in m/s, and density in kg/m^3.
+    /// Persistent: velocity in m/s, and density in kg/m^3.
     pub velocities: Buffer<Vec4>,
-    /// Resting: number of the particle since the start.
+    /// Persistent: number of the particle since the start.
     pub ids: Buffer<u32>,
     /// Sorted by cell: as `positions`.
     pub sorted_positions: Buffer<Vec4>,
     /// Sorted by cell: as `velocities`.
     pub sorted_velocities: Buffer<Vec4>,
-    /// Sorted by cell: as `ids`, after a sort without a step. A step puts them straight to the resting ones.
+    /// Sorted by cell: as `ids`, after a sort without a step. A step puts them straight to the persistent ones.
     pub sorted_ids: Buffer<u32>,
-    /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the resting arrays
+    /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the persistent arrays
     /// once the step is done.
     pub densities: Buffer<Vec2>,
     /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`. One entry where forces and motion are
@@ -58,7 +58,7 @@ impl Fields {
             params: executor.create_uniform("params", params)?,
             state: executor.create_small("state", &[StepState::zeroed()])?,
             duration: executor.create_from("duration", &[0.0])?,
-            tally: executor.create_from("tally", &[0; Tally::WORDS])?,
+            counters: executor.create_from("counters", &[0; StepCounters::WORDS])?,
             wall_table: executor.create_small("wall_table", &wall_table(walls))?,
             positions: executor.create("positions", n)?,
             velocities: executor.create("velocities", n)?,

@@ -24,10 +24,10 @@ mod error;
 mod fields;
 pub mod flow;
 pub mod foam;
-pub mod hand;
 pub mod kernel;
 mod memory;
 pub mod models;
+pub mod mouse_force;
 pub mod passes;
 pub mod probes;
 mod run;
@@ -46,8 +46,8 @@ pub use device::Device;
 pub use error::SimulationError;
 pub use fields::Fields;
 pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam};
-pub use hand::Hand;
 pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
+pub use mouse_force::MouseForce;
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
 pub use simulation::Simulation;
 pub use stats::Stats;
@@ -59,7 +59,7 @@ pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
         bodies::passes(),
         flow::passes(),
         foam::passes(),
-        hand::passes(),
+        mouse_force::passes(),
         probes::passes(),
         surface::passes(),
     ]

@@ -45,7 +45,7 @@ motion = "dynamic"
 density = 600.0
 
 [[body]]
-name = "stirrer"
+name = "mouse_force"
 mesh = "cube"
 scale = 0.05
 position = [0.24, 0.06, 0.06]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use splashdown::scene::{Body, BoundaryKind, MeshSource, Motion, Scene};
-use splashdown::{Device, Hand, Simulation};
+use splashdown::{Device, MouseForce, Simulation};
 use splashdown_gpu::block_on;
 
 fn scene() -> Scene {
@@ -24,12 +24,12 @@ fn a_hand_carries_water_along_and_leaves_it_when_taken_out() {
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
     let middle = scene.fluid.blocks[0].shape.bounds();
     let origin = 0.5 * (middle.0 + middle.1);
-    let hand = Hand::new(origin, Vec3::NEG_Z, Vec3::new(0.5, 0.0, 0.0), 1.0, 10.0);
-    simulation.set_hand(Some(hand)).unwrap();
+    let mouse_force = MouseForce::new(origin, Vec3::NEG_Z, Vec3::new(0.5, 0.0, 0.0), 1.0, 10.0);
+    simulation.set_mouse_force(Some(mouse_force)).unwrap();
     simulation.advance(0.05).unwrap();
     let carried = mean_velocity(&mut simulation);
     assert!(carried.x > 0.05, "{carried}");
-    simulation.set_hand(None).unwrap();
+    simulation.set_mouse_force(None).unwrap();
     simulation.advance(0.02).unwrap();
     let after = mean_velocity(&mut simulation);
     // Control: nothing pulls any more.
@@ -43,7 +43,7 @@ fn other_numbers_are_adopted_and_other_things_are_not() {
     scene.gravity = Vec3::new(3.0, 0.0, 0.0);
     scene.fluid.material.viscosity = 0.01;
     scene.solver.artificial_viscosity = 0.2;
-    assert!(simulation.adopt(&scene).unwrap());
+    assert!(simulation.update_parameters(&scene).unwrap());
     simulation.advance(0.01).unwrap();
     let v = mean_velocity(&mut simulation);
     assert!(v.x > 0.01 && v.y.abs() < 0.1 * v.x, "{v}");
@@ -55,7 +55,7 @@ fn other_numbers_are_adopted_and_other_things_are_not() {
     ] {
         let mut other = scene.clone();
         change(&mut other);
-        assert!(!simulation.adopt(&other).unwrap());
+        assert!(!simulation.update_parameters(&other).unwrap());
         assert_eq!(simulation.scene(), &scene);
     }
 }
@@ -84,7 +84,7 @@ fn a_ball_is_thrown_in_and_the_water_goes_on() {
     let before = simulation.particles().unwrap();
     let top = scene.domain.max;
     scene.bodies.push(ball("first", Vec3::new(0.7 * top.x, 0.7 * top.y, 0.5 * top.z)));
-    let mut second = simulation.carry_over(&scene).unwrap();
+    let mut second = simulation.rebuild_with(&scene).unwrap();
     assert_eq!(second.particles().unwrap().positions, before.positions);
     assert_eq!(second.particles().unwrap().ids, before.ids);
     assert_eq!(second.stats().time, simulation.stats().time);
@@ -95,7 +95,7 @@ fn a_ball_is_thrown_in_and_the_water_goes_on() {
     // Another one: the first keeps its place and speed; a ball inside the water displaces some of it.
     let inside = Vec3::from(second.particles().unwrap().positions[before.ids.len() / 2]);
     scene.bodies.push(ball("second", inside));
-    let mut third = second.carry_over(&scene).unwrap();
+    let mut third = second.rebuild_with(&scene).unwrap();
     let states = third.body_states().unwrap();
     assert!(states[0].position.distance(fallen.position) < 1e-5, "{states:?}");
     assert!(states[0].velocity.distance(fallen.velocity) < 1e-5, "{states:?}");

@@ -6,7 +6,7 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 use proptest::prelude::*;
 use splashdown::boundary::KernelPair;
 use splashdown::cells::{Cells, Grid};
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown::scene::{Scene, Sort};
 use splashdown::{Fields, solver};
 use splashdown_gpu::{CpuExecutor, Executor, Recording, bytemuck, testing};
@@ -45,7 +45,7 @@ struct Sorted {
     /// Positions and velocities by their bits: a NaN equals itself.
     positions: Vec<[u32; 4]>,
     velocities: Vec<[u32; 4]>,
-    tally: Vec<u32>,
+    counters: Vec<u32>,
 }
 
 fn bits(values: &[Vec4]) -> Vec<[u32; 4]> {
@@ -93,7 +93,7 @@ fn sort(executor: &mut Executor, points: &[Vec3], way: Sort) -> Sorted {
         ids: executor.read(fields.sorted_ids).unwrap(),
         positions: bits(&executor.read(fields.sorted_positions).unwrap()),
         velocities: bits(&executor.read(fields.sorted_velocities).unwrap()),
-        tally: executor.read(fields.tally).unwrap(),
+        counters: executor.read(fields.counters).unwrap(),
     }
 }
 
@@ -141,8 +141,8 @@ fn check(sorted: &Sorted, points: &[Vec3], sample: usize) -> Result<(), String> 
     let living = points.iter().filter(|p| inside(p)).count();
     expect(sorted.living() == living, "the number of the living")?;
     let finite = points.iter().filter(|p| p.is_finite()).count();
-    expect(sorted.tally[Tally::ESCAPED] as usize == finite - living, "escaped are miscounted")?;
-    expect(sorted.tally[Tally::NON_FINITE] as usize == n - finite, "not finite are miscounted")?;
+    expect(sorted.counters[StepCounters::ESCAPED] as usize == finite - living, "escaped are miscounted")?;
+    expect(sorted.counters[StepCounters::NON_FINITE] as usize == n - finite, "not finite are miscounted")?;
     // A permutation that carries every particle's data with it.
     let mut place = vec![usize::MAX; n];
     let by_id: std::collections::HashMap<u32, usize> = (0..n).map(|i| (id(i, n), i)).collect();
@@ -275,7 +275,7 @@ fn wrong_sorts_are_noticed() {
     });
     notice("an id without its position", |s, _, k| s.ids.swap(k, k + 900));
     notice("a border moved by one", |s, cell, _| s.cell_start[cell + 1] -= 1);
-    notice("a particle counted as escaped", |s, _, _| s.tally[Tally::ESCAPED] += 1);
+    notice("a particle counted as escaped", |s, _, _| s.counters[StepCounters::ESCAPED] += 1);
     notice("a position changed in its last bit", |s, _, k| s.positions[k][1] ^= 1);
     // The walk itself: without its last row it misses neighbours.
     let missed = (0..4097).any(|k| {

@@ -1,7 +1,7 @@
 //! Doing what panels want done.
 
 use egui::Context;
-use splashdown::Hand;
+use splashdown::MouseForce;
 use splashdown::scene::{Scene, presets};
 
 use super::Viewer;
@@ -56,7 +56,7 @@ impl Viewer {
                     (HAND_SIZE * scene.domain.size().min_element()).max(3.0 * scene.fluid.particle_spacing);
                 // Half the speed of sound would tear the water.
                 let velocity = velocity.clamp_length_max(3.0 * scene.domain.size().max_element());
-                let hand = Hand::new(ray.0, ray.1, velocity, radius, HAND_RATE);
+                let hand = MouseForce::new(ray.0, ray.1, velocity, radius, HAND_RATE);
                 self.engine.send(Command::Hand(Some(hand)));
             }
             Action::LetGo => {

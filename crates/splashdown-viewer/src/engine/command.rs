@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use splashdown::scene::Scene;
-use splashdown::{Checkpoint, Hand};
+use splashdown::{Checkpoint, MouseForce};
 
 /// Which device simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub enum Command {
     /// Simulated seconds per second.
     TimeScale(f64),
     /// Put a hand into the water, or take it out.
-    Hand(Option<Hand>),
+    Hand(Option<MouseForce>),
     /// Hold a body, or let go.
     Grip(Option<Grip>),
     /// Whether the surface is wanted.

@@ -47,7 +47,7 @@ struct Contact {
     density: f32,
     normal: vec3<f32>,
     distance: f32,
-    share: f32,
+    kernel_fraction: f32,
     effective: f32,
     body: u32,
     unused: u32,

@@ -337,18 +337,18 @@ fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Ve
     if !shell {
         let offset = spacing * wall_offset(kernels, support / spacing);
         let wanted = kernels.density((0.5 * spacing + offset) / support).0;
-        let (mut share, mut count) = (0.0f64, 0.0f64);
+        let (mut kernel_fraction, mut count) = (0.0f64, 0.0f64);
         for &x in &places {
             let e = 0.5 * solid.field.cell_size;
             let slope = |axis: Vec3| solid.field.distance(x + e * axis) - solid.field.distance(x - e * axis);
             let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or_zero();
             let outside = x + normal * (0.5 * spacing - solid.field.distance(x));
-            share +=
+            kernel_fraction +=
                 f64::from(near.weighted(outside, &volumes, |r| kernels.w(r / support) / support.powi(3)));
             count += 1.0;
         }
-        if share > 0.0 {
-            scale = (f64::from(wanted) * count / share) as f32;
+        if kernel_fraction > 0.0 {
+            scale = (f64::from(wanted) * count / kernel_fraction) as f32;
         }
     }
     places.iter().zip(volumes).map(|(x, v)| x.extend(v * scale)).collect()

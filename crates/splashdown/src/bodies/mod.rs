@@ -6,14 +6,14 @@
 //! without asking the host. Between batches of steps the host lets bodies that touch one another or the box
 //! collide (`rigid`).
 
+mod boundary_density;
+mod boundary_force;
+mod boundary_lookup;
 mod closed;
-mod contacts;
 mod field;
 mod load;
 mod motion;
-mod push;
 mod rigid;
-mod share;
 mod types;
 
 pub(crate) use closed::closed_solid;
@@ -79,14 +79,14 @@ impl BodyState {
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
-        &contacts::WENDLAND_C2,
-        &contacts::CUBIC_SPLINE,
-        &contacts::MUELLER,
-        &share::SUMMATION,
-        &share::CONTINUITY,
-        &push::WENDLAND_C2,
-        &push::CUBIC_SPLINE,
-        &push::MUELLER,
+        &boundary_lookup::WENDLAND_C2,
+        &boundary_lookup::CUBIC_SPLINE,
+        &boundary_lookup::MUELLER,
+        &boundary_density::SUMMATION,
+        &boundary_density::CONTINUITY,
+        &boundary_force::WENDLAND_C2,
+        &boundary_force::CUBIC_SPLINE,
+        &boundary_force::MUELLER,
         &motion::MOTION,
     ]
 }
@@ -161,8 +161,12 @@ impl Bodies {
     }
 
     /// Appends the look-up; needs the sorted positions.
-    pub fn record_contacts(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
-        let pass = self.by_kernels(&contacts::WENDLAND_C2, &contacts::CUBIC_SPLINE, &contacts::MUELLER);
+    pub fn record_boundary_lookup(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+        let pass = self.by_kernels(
+            &boundary_lookup::WENDLAND_C2,
+            &boundary_lookup::CUBIC_SPLINE,
+            &boundary_lookup::MUELLER,
+        );
         let buffers = [
             fields.params.id(),
             cells.cell_start.id(),
@@ -170,13 +174,13 @@ impl Bodies {
             self.maps.id(),
             fields.sorted_positions.id(),
             self.contacts.id(),
-            fields.tally.id(),
+            fields.counters.id(),
         ];
         step.dispatch(pass, all, &buffers);
     }
 
     /// Appends the bodies' part in the density; needs the particles' own.
-    pub fn record_share(
+    pub fn record_boundary_density(
         &self,
         step: &mut Recording,
         cells: &Cells,
@@ -184,7 +188,7 @@ impl Bodies {
         all: Extent,
         continuity: bool,
     ) {
-        let pass = if continuity { &share::CONTINUITY } else { &share::SUMMATION };
+        let pass = if continuity { &boundary_density::CONTINUITY } else { &boundary_density::SUMMATION };
         let buffers = [
             fields.params.id(),
             fields.state.id(),
@@ -199,7 +203,7 @@ impl Bodies {
     }
 
     /// Appends the forces between bodies and particles; needs the accelerations by neighbours and walls.
-    pub fn record_push(&self, step: &mut Recording, fields: &Fields, all: Extent) {
+    pub fn record_boundary_force(&self, step: &mut Recording, fields: &Fields, all: Extent) {
         let buffers = [
             fields.params.id(),
             fields.state.id(),
@@ -212,7 +216,11 @@ impl Bodies {
             self.sums.id(),
         ];
         step.dispatch(
-            self.by_kernels(&push::WENDLAND_C2, &push::CUBIC_SPLINE, &push::MUELLER),
+            self.by_kernels(
+                &boundary_force::WENDLAND_C2,
+                &boundary_force::CUBIC_SPLINE,
+                &boundary_force::MUELLER,
+            ),
             all,
             &buffers,
         );
@@ -226,7 +234,7 @@ impl Bodies {
             self.scripts.id(),
             self.bodies.id(),
             self.sums.id(),
-            fields.tally.id(),
+            fields.counters.id(),
         ];
         step.dispatch(&motion::MOTION, Extent::Items(self.bodies.len()), &buffers);
     }

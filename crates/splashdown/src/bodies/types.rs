@@ -90,7 +90,7 @@ gpu_struct! {
         /// Distance from the surface in m, negative inside.
         distance: f32,
         /// Its share of the kernel.
-        share: f32,
+        kernel_fraction: f32,
         /// Distance of the plane wall that would have this share, in m.
         effective: f32,
         /// Which body; [`Contact::NONE`] if there is none.

@@ -10,15 +10,15 @@
 //! *Why not* a hash: the domain is a box, and its dense grid is one look-up. *Why not* a radix sort: a counting sort is
 //! one, of a single digit.
 
-mod arrange;
 mod bounds;
-pub(crate) mod census;
+pub(crate) mod cell_counts;
 mod count;
 pub(crate) mod grid;
 mod keys;
+mod reorder;
 mod scatter;
 
-pub use census::WGSL as CENSUS;
+pub use cell_counts::WGSL as CELL_COUNTS;
 pub use grid::{Grid, WGSL as GRID};
 
 use glam::UVec2;
@@ -28,11 +28,11 @@ use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recor
 
 use crate::fields::Fields;
 use crate::scene::Sort;
-use crate::solver::settle;
+use crate::solver::end_step;
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![&arrange::ARRANGE, &bounds::BOUNDS, &count::COUNT, &keys::KEYS, &scatter::SCATTER]
+    vec![&reorder::REORDER, &bounds::BOUNDS, &count::COUNT, &keys::KEYS, &scatter::SCATTER]
 }
 
 /// The grid and the buffers of the sort.
@@ -45,10 +45,10 @@ pub struct Cells {
     /// number of the living; then the number of all.
     pub cell_start: Buffer<u32>,
     /// How many particles every cell has, one entry per cell and one for the dead; then the cell of every particle.
-    pub census: Buffer<u32>,
+    pub cell_counts: Buffer<u32>,
     particles: u32,
     /// Id and number of the particles of every cell, in the order of their arrival.
-    slots: Buffer<UVec2>,
+    entries: Buffer<UVec2>,
     way: Way,
 }
 
@@ -71,8 +71,8 @@ impl Cells {
             grid_uniform: executor.create_uniform("grid", &grid)?,
             cell_start: executor.create("cell_start", cells as usize + 1)?,
             particles,
-            census: executor.create("census", cells as usize + n)?,
-            slots: executor.create("slots", n)?,
+            cell_counts: executor.create("cell_counts", cells as usize + n)?,
+            entries: executor.create("entries", n)?,
             way: match sort {
                 Sort::Counting => Way::Counting(Scan::new(executor, cells)?),
                 Sort::Bitonic => Way::Bitonic {
@@ -86,7 +86,7 @@ impl Cells {
     /// Appends the count that the first sort of a frame needs.
     pub fn record_first_count(&self, recording: &mut Recording, fields: &Fields) {
         // A frame that was given up leaves a count that nobody has used.
-        recording.clear(self.census);
+        recording.clear(self.cell_counts);
         self.record_count(recording, fields);
     }
 
@@ -98,47 +98,48 @@ impl Cells {
             fields.state.id(),
             fields.positions.id(),
             fields.velocities.id(),
-            self.census.id(),
-            fields.tally.id(),
+            self.cell_counts.id(),
+            fields.counters.id(),
         ];
         recording.dispatch(&count::COUNT, self.all(), &buffers);
     }
 
-    /// Appends the sort of the resting arrays, whose particles have been counted, into the sorted ones, ids
+    /// Appends the sort of the persistent arrays, whose particles have been counted, into the sorted ones, ids
     /// into `sorted_ids`; and the settling of the step before, if there is one.
     pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
         let (state, grid, ids) = (fields.state.id(), self.grid_uniform.id(), fields.ids.id());
-        let (census, cell_start, slots) = (self.census.id(), self.cell_start.id(), self.slots.id());
+        let (cell_counts, cell_start, entries) =
+            (self.cell_counts.id(), self.cell_start.id(), self.entries.id());
         match &self.way {
             Way::Counting(scan) => {
-                scan.record(recording, self.census, self.cell_start);
-                let (params, tally) = (fields.params.id(), fields.tally.id());
+                scan.record(recording, self.cell_counts, self.cell_start);
+                let (params, counters) = (fields.params.id(), fields.counters.id());
                 recording.dispatch(
                     &scatter::SCATTER,
                     self.all(),
-                    &[params, grid, state, tally, census, cell_start, ids, slots],
+                    &[params, grid, state, counters, cell_counts, cell_start, ids, entries],
                 );
             }
             Way::Bitonic { sort, pairs } => {
-                recording.append(&settle(fields));
-                recording.dispatch(&keys::KEYS, self.all(), &[grid, state, census, pairs.id()]);
+                recording.append(&end_step(fields));
+                recording.dispatch(&keys::KEYS, self.all(), &[grid, state, cell_counts, pairs.id()]);
                 sort.record(recording, *pairs);
                 let one_more = Extent::Items(self.particles + 1);
                 recording.dispatch(
                     &bounds::BOUNDS,
                     one_more,
-                    &[grid, state, pairs.id(), ids, cell_start, slots],
+                    &[grid, state, pairs.id(), ids, cell_start, entries],
                 );
             }
         }
         recording.dispatch(
-            &arrange::ARRANGE,
+            &reorder::REORDER,
             self.all(),
             &[
                 grid,
-                census,
+                cell_counts,
                 cell_start,
-                slots,
+                entries,
                 fields.positions.id(),
                 fields.velocities.id(),
                 fields.sorted_positions.id(),

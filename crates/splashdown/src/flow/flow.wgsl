@@ -1,4 +1,4 @@
-// Mirrors Nozzle and Drain in types.rs, and the words of Plan.
+// Mirrors Nozzle and SinkShape in types.rs, and the words of EmissionSchedule.
 struct Nozzle {
     back: vec3<f32>,
     speed: f32,
@@ -17,7 +17,7 @@ struct Nozzle {
     unused: vec2<u32>,
 }
 
-struct Drain {
+struct SinkShape {
     low: vec3<f32>,
     kind: u32,
     high: vec3<f32>,
@@ -26,12 +26,12 @@ struct Drain {
     first_node: u32,
 }
 
-const PLAN_PHASE: u32 = 0u;
-const PLAN_EMITTED: u32 = 1u;
-const PLAN_REFUSED: u32 = 2u;
-const PLAN_LAYER: u32 = 3u;
-const PLAN_SLOT: u32 = 4u;
-const PLAN_ID: u32 = 5u;
-const PLAN_DISTANCE: u32 = 6u;
-const PLAN_BLOCKED: u32 = 7u;
-const PLAN_WORDS: u32 = 8u;
+const SCHEDULE_PHASE: u32 = 0u;
+const SCHEDULE_EMITTED: u32 = 1u;
+const SCHEDULE_REFUSED: u32 = 2u;
+const SCHEDULE_LAYER: u32 = 3u;
+const SCHEDULE_SLOT: u32 = 4u;
+const SCHEDULE_ID: u32 = 5u;
+const SCHEDULE_DISTANCE: u32 = 6u;
+const SCHEDULE_BLOCKED: u32 = 7u;
+const SCHEDULE_WORDS: u32 = 8u;

@@ -2,19 +2,19 @@
 //!
 //! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet
 //! born is dead from the start, and the sort keeps the dead behind the living. An emitter's nozzle is a short
-//! pipe that ends at its outlet. At its back face layers of particles are born on a lattice (`plan`, `emit`),
-//! and travel to the outlet as one piston (`drive`), so that fluid leaves at rest density and with the right
+//! pipe that ends at its outlet. At its back face layers of particles are born on a lattice (`emission_schedule`, `emit`),
+//! and travel to the outlet as one piston (`inflow_constraint`), so that fluid leaves at rest density and with the right
 //! speed. The columns of a falling jet are staggered, or gravity, which stretches it, would draw it out into
-//! discs. A sink marks what is in it as dead (`drain`); its places are used again.
+//! discs. A sink marks what is in it as dead (`sink`); its places are used again.
 
-mod drain;
-mod drive;
+mod emission_schedule;
 mod emit;
+mod inflow_constraint;
 pub mod outlet;
-mod plan;
+mod sink;
 mod types;
 
-pub use types::{Drain, Nozzle, Plan};
+pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
 use glam::{UVec3, Vec3, Vec4};
 use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
@@ -25,7 +25,7 @@ use crate::checkpoint::hash;
 use crate::fields::Fields;
 use crate::scene::{Scene, Sink, SinkRegion};
 
-/// The WGSL side of [`Nozzle`], [`Drain`] and [`Plan`].
+/// The WGSL side of [`Nozzle`], [`SinkShape`] and [`EmissionSchedule`].
 pub const FLOW: WgslModule = WgslModule { name: "sph/flow", source: include_str!("flow.wgsl") };
 
 /// Most nodes in the map of a sink's mesh along one edge.
@@ -33,7 +33,12 @@ const MOST_NODES: f32 = 128.0;
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![&plan::PLAN, &emit::EMIT, &drive::DRIVE, &drain::DRAIN]
+    vec![
+        &emission_schedule::EMISSION_SCHEDULE,
+        &emit::EMIT,
+        &inflow_constraint::INFLOW_CONSTRAINT,
+        &sink::SINK,
+    ]
 }
 
 /// A scene's emitters and sinks, ready for a device.
@@ -43,7 +48,7 @@ pub struct LoadedFlow {
     names: Vec<String>,
     /// Points along the nozzle's `across`, `up` and `direction` in m.
     points: Vec<Vec4>,
-    drains: Vec<Drain>,
+    drains: Vec<SinkShape>,
     maps: Vec<f32>,
     expected: u64,
 }
@@ -94,19 +99,19 @@ impl LoadedFlow {
         initial.saturating_add(self.expected).min(allowed).max(initial)
     }
 
-    fn drain(&mut self, sink: &Sink, scene: &Scene) -> Result<Drain, BodyError> {
-        let none = Drain {
+    fn drain(&mut self, sink: &Sink, scene: &Scene) -> Result<SinkShape, BodyError> {
+        let none = SinkShape {
             low: Vec3::ZERO,
-            kind: Drain::BOX,
+            kind: SinkShape::BOX,
             high: Vec3::ZERO,
             cell_size: 0.0,
             nodes: UVec3::ZERO,
             first_node: 0,
         };
         Ok(match &sink.region {
-            SinkRegion::Box { min, max } => Drain { low: *min, high: *max, ..none },
+            SinkRegion::Box { min, max } => SinkShape { low: *min, high: *max, ..none },
             SinkRegion::Below { point, normal } => {
-                Drain { kind: Drain::BELOW, low: *point, high: *normal, ..none }
+                SinkShape { kind: SinkShape::BELOW, low: *point, high: *normal, ..none }
             }
             SinkRegion::Mesh(source) => {
                 let solid = {
@@ -128,7 +133,7 @@ impl LoadedFlow {
                     let local = source.rotation.conjugate() * (x - source.position);
                     self.maps.push(solid.field.distance(local));
                 }
-                Drain { kind: Drain::MAP, low, high, cell_size, nodes, first_node }
+                SinkShape { kind: SinkShape::MAP, low, high, cell_size, nodes, first_node }
             }
         })
     }
@@ -149,7 +154,7 @@ pub struct Flow {
     /// By what it is known again.
     hash: u64,
     nozzles: Option<Nozzles>,
-    drains: Option<(Buffer<Drain>, Buffer<f32>)>,
+    drains: Option<(Buffer<SinkShape>, Buffer<f32>)>,
 }
 
 #[derive(Debug)]
@@ -157,7 +162,7 @@ struct Nozzles {
     names: Vec<String>,
     nozzles: Buffer<Nozzle>,
     points: Buffer<Vec4>,
-    plans: Buffer<u32>,
+    schedules: Buffer<u32>,
     /// The emitters of which it was told that they found no room.
     told: Vec<bool>,
 }
@@ -177,16 +182,16 @@ impl Flow {
             None
         } else {
             // The first layer is due at once.
-            let mut plans = vec![0; loaded.nozzles.len() * Plan::WORDS + 1];
-            for plan in plans.chunks_exact_mut(Plan::WORDS) {
-                plan[Plan::PHASE] = spacing.to_bits();
+            let mut schedules = vec![0; loaded.nozzles.len() * EmissionSchedule::WORDS + 1];
+            for plan in schedules.chunks_exact_mut(EmissionSchedule::WORDS) {
+                plan[EmissionSchedule::PHASE] = spacing.to_bits();
             }
-            plans[loaded.nozzles.len() * Plan::WORDS] = next_id;
+            schedules[loaded.nozzles.len() * EmissionSchedule::WORDS] = next_id;
             Some(Nozzles {
                 names: loaded.names.clone(),
                 nozzles: executor.create_from("nozzles", &loaded.nozzles)?,
                 points: executor.create_from("points", &loaded.points)?,
-                plans: executor.create_from("plans", &plans)?,
+                schedules: executor.create_from("schedules", &schedules)?,
                 told: vec![false; loaded.nozzles.len()],
             })
         };
@@ -210,8 +215,8 @@ impl Flow {
     }
 
     /// What the emitters remember from step to step, if there are any.
-    pub(crate) fn plans(&self) -> Option<Buffer<u32>> {
-        self.nozzles.as_ref().map(|nozzles| nozzles.plans)
+    pub(crate) fn schedules(&self) -> Option<Buffer<u32>> {
+        self.nozzles.as_ref().map(|nozzles| nozzles.schedules)
     }
 
     /// The emitters of which it was told that they found no room.
@@ -238,12 +243,12 @@ impl Flow {
                 fields.state.id(),
                 cell_start,
                 nozzles.nozzles.id(),
-                nozzles.plans.id(),
+                nozzles.schedules.id(),
                 fields.sorted_positions.id(),
                 fields.sorted_velocities.id(),
                 fields.accelerations.id(),
             ];
-            step.dispatch(&drive::DRIVE, all, &buffers);
+            step.dispatch(&inflow_constraint::INFLOW_CONSTRAINT, all, &buffers);
         }
         if let Some((drains, maps)) = &self.drains {
             let buffers = [
@@ -253,25 +258,26 @@ impl Flow {
                 drains.id(),
                 maps.id(),
                 fields.sorted_positions.id(),
-                fields.tally.id(),
+                fields.counters.id(),
             ];
-            step.dispatch(&drain::DRAIN, all, &buffers);
+            step.dispatch(&sink::SINK, all, &buffers);
         }
     }
 
-    /// Appends the birth of particles into the resting arrays.
+    /// Appends the birth of particles into the persistent arrays.
     pub fn record_after_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields) {
         let Some(nozzles) = &self.nozzles else { return };
         let (params, grid, cell_start) = (fields.params.id(), cells.grid_uniform.id(), cells.cell_start.id());
-        let buffers = [params, grid, fields.state.id(), cell_start, nozzles.nozzles.id(), nozzles.plans.id()];
-        step.dispatch(&plan::PLAN, Extent::Groups(1), &buffers);
+        let buffers =
+            [params, grid, fields.state.id(), cell_start, nozzles.nozzles.id(), nozzles.schedules.id()];
+        step.dispatch(&emission_schedule::EMISSION_SCHEDULE, Extent::Groups(1), &buffers);
         let buffers = [
             params,
             grid,
             cell_start,
             nozzles.nozzles.id(),
             nozzles.points.id(),
-            nozzles.plans.id(),
+            nozzles.schedules.id(),
             fields.positions.id(),
             fields.velocities.id(),
             fields.ids.id(),
@@ -288,16 +294,16 @@ impl Flow {
         let mut count = FlowCount::default();
         let mut told = Vec::new();
         let Some(nozzles) = &mut self.nozzles else { return Ok((count, told)) };
-        let plans = executor.fetch(nozzles.plans).await?;
-        for (k, plan) in plans.chunks_exact(Plan::WORDS).enumerate() {
-            count.emitted += plan[Plan::EMITTED];
-            count.refused += plan[Plan::REFUSED];
-            if plan[Plan::REFUSED] > 0 && !std::mem::replace(&mut nozzles.told[k], true) {
+        let schedules = executor.fetch(nozzles.schedules).await?;
+        for (k, plan) in schedules.chunks_exact(EmissionSchedule::WORDS).enumerate() {
+            count.emitted += plan[EmissionSchedule::EMITTED];
+            count.refused += plan[EmissionSchedule::REFUSED];
+            if plan[EmissionSchedule::REFUSED] > 0 && !std::mem::replace(&mut nozzles.told[k], true) {
                 told.push(format!(
                     "emitter {:?} found no room for more after {} particles: the buffers were made for the scene's own \
                      duration. Make duration longer, or drain more",
                     nozzles.names[k],
-                    plan[Plan::EMITTED]
+                    plan[EmissionSchedule::EMITTED]
                 ));
             }
         }

@@ -41,10 +41,10 @@ gpu_struct! {
 
 gpu_struct! {
     /// A sink.
-    pub struct Drain {
+    pub struct SinkShape {
         /// Lower corner of a box or of a map, or a point of a plane, in m.
         low: Vec3,
-        /// [`Drain::BOX`], [`Drain::BELOW`] or [`Drain::MAP`].
+        /// [`SinkShape::BOX`], [`SinkShape::BELOW`] or [`SinkShape::MAP`].
         kind: u32,
         /// Upper corner in m, or the plane's normal.
         high: Vec3,
@@ -73,7 +73,7 @@ impl Nozzle {
     }
 }
 
-impl Drain {
+impl SinkShape {
     /// A box.
     pub const BOX: u32 = 0;
     /// The half-space behind a plane.
@@ -82,10 +82,10 @@ impl Drain {
     pub const MAP: u32 = 2;
 }
 
-/// One emitter's words in the buffer of plans; behind the last emitter's comes the next id to give.
-pub struct Plan;
+/// One emitter's words in the buffer of schedules; behind the last emitter's comes the next id to give.
+pub struct EmissionSchedule;
 
-impl Plan {
+impl EmissionSchedule {
     /// Distance since the last layer in m; a float's bits.
     pub const PHASE: usize = 0;
     /// Particles made so far.

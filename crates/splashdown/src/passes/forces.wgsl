@@ -1,5 +1,5 @@
 // The acceleration of a particle by its neighbours, the walls and what pulls at everything; see
-// passes/momentum. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
+// passes/acceleration. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
 // `densities`; a constant `HAS_TENSION`; and a function `tension_between`: what surface tension does between
 // particles i and j, d apart.
 fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f32> {

@@ -5,21 +5,21 @@
 //! that has nothing to do leaves A untouched. The pass that moves particles counts them for the next step's
 //! sort, and that sort settles the step before it.
 
+pub mod acceleration;
 pub mod begin;
 pub mod continuity;
 pub mod density;
+pub mod end_step;
+pub mod force_integrate;
 pub mod integrate;
-pub mod momentum;
-pub mod motion;
 pub mod mueller;
 pub mod normals;
-pub mod settle;
 pub mod state_equation;
 
-pub(crate) mod moving;
+pub(crate) mod advance;
 pub(crate) mod pairs;
 
-pub use moving::WGSL as MOVING;
+pub use advance::WGSL as ADVANCE;
 
 use crate::boundary::{KernelPair, Walls};
 use glam::Vec3;
@@ -33,9 +33,10 @@ pub const PARAMS: WgslModule = WgslModule { name: "sph/params", source: include_
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
 /// `acceleration_of`: all forces in one visit of the neighbours.
 pub const FORCES: WgslModule = WgslModule { name: "sph/forces", source: include_str!("forces.wgsl") };
-/// The WGSL side of [`Tally`].
-pub const TALLY: WgslModule = WgslModule { name: "sph/tally", source: include_str!("tally.wgsl") };
-/// `settle_step`: the end of a step; imports [`TALLY`].
+/// The WGSL side of [`StepCounters`].
+pub const STEP_COUNTERS: WgslModule =
+    WgslModule { name: "sph/step_counters", source: include_str!("step_counters.wgsl") };
+/// `finish_step`: the end of a step; imports [`STEP_COUNTERS`].
 pub const STEPS: WgslModule = WgslModule { name: "sph/steps", source: include_str!("steps.wgsl") };
 
 gpu_struct! {
@@ -126,9 +127,9 @@ gpu_struct! {
 ///
 /// Maxima are of non-negative floats by their bits, whose order is that of the numbers, so the result does not depend
 /// on the order of the invocations.
-pub struct Tally;
+pub struct StepCounters;
 
-impl Tally {
+impl StepCounters {
     /// Particles that left through an open side.
     pub const ESCAPED: usize = 0;
     /// Particles that became NaN or infinite.
@@ -145,7 +146,7 @@ impl Tally {
     pub const MAX_EXCESS: usize = 6;
     /// Particles that went into sinks.
     pub const DRAINED: usize = 7;
-    /// 1 if particles have moved since the last step was [settled](settle).
+    /// 1 if particles have moved since the last step was [settled](end_step).
     pub const MOVED: usize = 8;
     /// Number of words.
     pub const WORDS: usize = 9;
@@ -231,14 +232,14 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &density::POLY6,
         &integrate::INTEGRATE,
         &integrate::UNCOUNTED,
-        &momentum::WENDLAND_C2,
-        &momentum::CUBIC_SPLINE,
-        &motion::WENDLAND_C2,
-        &motion::CUBIC_SPLINE,
+        &acceleration::WENDLAND_C2,
+        &acceleration::CUBIC_SPLINE,
+        &force_integrate::WENDLAND_C2,
+        &force_integrate::CUBIC_SPLINE,
         &mueller::MUELLER,
         &normals::WENDLAND_C2,
         &normals::CUBIC_SPLINE,
-        &settle::SETTLE,
+        &end_step::END_STEP,
         &state_equation::STATE_EQUATION,
     ]);
     all

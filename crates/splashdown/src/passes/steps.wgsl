@@ -1,17 +1,17 @@
-#import sph/tally
-// The end of a step; needs `params`, `state` and `tally` (not atomic). See passes/settle.
+#import sph/step_counters
+// The end of a step; needs `params`, `state` and `counters` (not atomic). See passes/end_step.
 
-fn settle_step() {
-    if (tally[TALLY_MOVED] == 0u) {
+fn finish_step() {
+    if (counters[COUNTER_MOVED] == 0u) {
         return;
     }
-    let speed = bitcast<f32>(tally[TALLY_MAX_SPEED]);
-    let acceleration = bitcast<f32>(tally[TALLY_MAX_ACCELERATION]);
-    let excess = bitcast<f32>(tally[TALLY_MAX_EXCESS]);
-    tally[TALLY_MOVED] = 0u;
-    tally[TALLY_MAX_SPEED] = 0u;
-    tally[TALLY_MAX_ACCELERATION] = 0u;
-    tally[TALLY_MAX_EXCESS] = 0u;
+    let speed = bitcast<f32>(counters[COUNTER_MAX_SPEED]);
+    let acceleration = bitcast<f32>(counters[COUNTER_MAX_ACCELERATION]);
+    let excess = bitcast<f32>(counters[COUNTER_MAX_EXCESS]);
+    counters[COUNTER_MOVED] = 0u;
+    counters[COUNTER_MAX_SPEED] = 0u;
+    counters[COUNTER_MAX_ACCELERATION] = 0u;
+    counters[COUNTER_MAX_EXCESS] = 0u;
 
     let h = 0.5 * params.support_radius;
     let c = params.cfl_factor;

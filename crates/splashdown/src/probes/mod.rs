@@ -5,10 +5,10 @@
 //! once a frame. A particle counts as spacing^3 of fluid, as everywhere; its mass is less than that of so much
 //! fluid by what the kernel's sum over a lattice is off.
 
-mod crossings;
+mod accumulate;
 mod fluid;
-mod gather;
-mod log;
+mod flux;
+mod sample;
 mod types;
 
 pub(crate) use fluid::FluidProbes;
@@ -27,7 +27,7 @@ const SPARE_ROWS: u32 = 64;
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![&gather::GATHER, &crossings::CROSSINGS, &log::LOG]
+    vec![&sample::SAMPLE, &flux::FLUX, &accumulate::ACCUMULATE]
 }
 
 /// One probe's readings in time: a row is the time in s at which it ends, then the mean values since the row before, as
@@ -130,12 +130,12 @@ impl Probes {
             fields.accelerations.id(),
             self.values.id(),
         ];
-        step.dispatch(&gather::GATHER, Extent::Groups(self.points.len() as u32), &buffers);
+        step.dispatch(&sample::SAMPLE, Extent::Groups(self.points.len() as u32), &buffers);
         if self.has_flow {
             let sorted_positions = fields.sorted_positions.id();
             let counts = self.counts.id();
             let buffers = [grid, state, cell_start, probes, sorted_positions, fields.positions.id(), counts];
-            step.dispatch(&crossings::CROSSINGS, all, &buffers);
+            step.dispatch(&flux::FLUX, all, &buffers);
         }
         let buffers = [
             params,
@@ -147,7 +147,7 @@ impl Probes {
             self.accounts.id(),
             self.rows.id(),
         ];
-        step.dispatch(&log::LOG, Extent::Items(self.probes.len()), &buffers);
+        step.dispatch(&accumulate::ACCUMULATE, Extent::Items(self.probes.len()), &buffers);
     }
 
     /// Fetches the rows of a frame that began at `start` and has gone on for `passed`, in s: one list per probe, in the
@@ -223,7 +223,7 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
 
 /// The foot of a column so far from the closed sides that none of the column is cut off.
 fn off_walls(scene: &Scene, foot: Vec3, up: Vec3) -> Vec3 {
-    let radius = gather::COLUMN * scene.solver.support_radius(scene.fluid.particle_spacing);
+    let radius = sample::COLUMN * scene.solver.support_radius(scene.fluid.particle_spacing);
     let Domain { min, max, closed, .. } = scene.domain;
     let mut place = foot;
     for axis in (0..3).filter(|&axis| up[axis].abs() < 0.5) {

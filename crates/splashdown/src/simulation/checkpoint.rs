@@ -7,13 +7,13 @@ use splashdown_io::{Archive, NpyElement};
 use super::Simulation;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
 use crate::flow::LoadedFlow;
-use crate::passes::Tally;
+use crate::passes::StepCounters;
 use crate::{SimulationError, memory, solver};
 
 impl Simulation {
     /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the
     /// text of the scene as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was
-    /// [adopted](Self::adopt).
+    /// [adopted](Self::update_parameters).
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -130,15 +130,18 @@ impl Simulation {
         }
         (self.stats, self.stable_dt) = (host.stats, host.stable_dt);
         (self.initial, self.removed) = (host.initial, host.removed);
-        let tally = self.executor.fetch(self.fields.tally).await?;
+        let counters = self.executor.fetch(self.fields.counters).await?;
         let stats = &self.stats;
         let told = [stats.escaped, stats.non_finite, stats.drained];
-        if told != [Tally::ESCAPED, Tally::NON_FINITE, Tally::DRAINED].map(|word| tally[word]) {
+        if told
+            != [StepCounters::ESCAPED, StepCounters::NON_FINITE, StepCounters::DRAINED]
+                .map(|word| counters[word])
+        {
             let reason = "its entry `tally` contradicts its counts of particles".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
         // A step that is not settled would be settled twice.
-        if tally[Tally::MOVED] != 0 {
+        if counters[StepCounters::MOVED] != 0 {
             let reason = "its entry `tally` is of the middle of a step".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
@@ -149,12 +152,12 @@ impl Simulation {
     fn words(&self) -> Vec<(&'static str, Words, usize)> {
         let mut words = vec![
             ("state", Words::State(self.fields.state), 1),
-            ("tally", Words::Plain(self.fields.tally), 1),
+            ("tally", Words::Plain(self.fields.counters), 1),
         ];
         if let Some(bodies) = &self.bodies {
             words.push(("body_sums", Words::Plain(bodies.sums), 1));
         }
-        if let Some(plans) = self.flow.as_ref().and_then(|flow| flow.plans()) {
+        if let Some(plans) = self.flow.as_ref().and_then(|flow| flow.schedules()) {
             words.push(("emitters", Words::Plain(plans), 1));
         }
         if let Some(probes) = &self.probes {

@@ -35,7 +35,7 @@ impl Simulation {
         if self.frame.is_none() {
             self.sort()?;
         } else {
-            // Within a frame the sorted arrays are those of the last step, whose ids went straight to the resting ones.
+            // Within a frame the sorted arrays are those of the last step, whose ids went straight to the persistent ones.
             let mut ids = Recording::new("ids");
             ids.copy(self.fields.ids, self.fields.sorted_ids);
             self.executor.run(&ids)?;

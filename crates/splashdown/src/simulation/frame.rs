@@ -5,7 +5,7 @@ use splashdown_gpu::{Readback, block_on};
 
 use super::Simulation;
 use crate::bodies::Bodies;
-use crate::passes::{DEAD_NON_FINITE, StepState, Tally};
+use crate::passes::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
 /// Most steps in one submission to a device: a bound on how long it does not answer.
@@ -166,21 +166,21 @@ impl Simulation {
 
     /// Brings the counters of lost particles up to date.
     pub(super) async fn count(&mut self) -> Result<(), SimulationError> {
-        let tally = self.executor.fetch(self.fields.tally).await?;
+        let counters = self.executor.fetch(self.fields.counters).await?;
         let stats = &mut self.stats;
-        stats.escaped = tally[Tally::ESCAPED];
-        stats.wall_corrections = tally[Tally::CORRECTIONS];
-        stats.speed_limits = tally[Tally::LIMITED];
-        stats.drained = tally[Tally::DRAINED];
+        stats.escaped = counters[StepCounters::ESCAPED];
+        stats.wall_corrections = counters[StepCounters::CORRECTIONS];
+        stats.speed_limits = counters[StepCounters::LIMITED];
+        stats.drained = counters[StepCounters::DRAINED];
         if let Some(flow) = &mut self.flow {
             let (count, told) = flow.count(&mut self.executor).await?;
             (stats.emitted, stats.refused) = (count.emitted, count.refused);
             self.told.extend(told);
         }
-        let gone = stats.escaped + stats.drained + tally[Tally::NON_FINITE];
+        let gone = stats.escaped + stats.drained + counters[StepCounters::NON_FINITE];
         stats.particles = self.initial + stats.emitted - gone;
-        if tally[Tally::NON_FINITE] > stats.non_finite {
-            stats.non_finite = tally[Tally::NON_FINITE];
+        if counters[StepCounters::NON_FINITE] > stats.non_finite {
+            stats.non_finite = counters[StepCounters::NON_FINITE];
             let positions = self.executor.fetch(self.fields.positions).await?;
             let ids = self.executor.fetch(self.fields.ids).await?;
             let dead = positions.iter().zip(ids).filter(|(p, _)| p.w == DEAD_NON_FINITE);

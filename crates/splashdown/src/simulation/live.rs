@@ -5,7 +5,7 @@ use splashdown_gpu::block_on;
 
 use super::Simulation;
 use crate::bodies::{BodyState, LoadedBody};
-use crate::hand::{Hand, Stirrer};
+use crate::mouse_force::{MouseForce, MouseForceCoupling};
 use crate::passes::{Params, StepState};
 use crate::scene::{Motion, Scene, Solver};
 use crate::{SimulationError, sample, solver};
@@ -15,20 +15,20 @@ impl Simulation {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn set_hand(&mut self, hand: Option<Hand>) -> Result<(), SimulationError> {
-        if hand.is_none() && self.stirrer.is_none() {
+    pub fn set_mouse_force(&mut self, mouse_force: Option<MouseForce>) -> Result<(), SimulationError> {
+        if mouse_force.is_none() && self.mouse_force.is_none() {
             return Ok(());
         }
-        let is_first = self.stirrer.is_none();
-        let stirrer = match self.stirrer.take() {
-            Some(stirrer) => stirrer,
-            None => Stirrer::new(&mut self.executor)?,
+        let is_first = self.mouse_force.is_none();
+        let coupling = match self.mouse_force.take() {
+            Some(coupling) => coupling,
+            None => MouseForceCoupling::new(&mut self.executor)?,
         };
-        stirrer.set(&mut self.executor, hand.unwrap_or(Hand::NONE))?;
-        self.stirrer = Some(stirrer);
+        coupling.set(&mut self.executor, mouse_force.unwrap_or(MouseForce::NONE))?;
+        self.mouse_force = Some(coupling);
         if is_first && let Err(error) = self.record_batches() {
             // Without its pass a hand would do nothing, and nobody would be told.
-            self.stirrer = None;
+            self.mouse_force = None;
             return Err(error);
         }
         Ok(())
@@ -61,11 +61,11 @@ impl Simulation {
 
     /// Goes on under another scene that differs in numbers alone: gravity, the fluid's material, the solver's
     /// coefficients, and what is not about motion (camera, output, surface, foam). False, and nothing changed,
-    /// if it differs in more; then [`carry_over`](Self::carry_over) does it.
+    /// if it differs in more; then [`rebuild_with`](Self::rebuild_with) does it.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn adopt(&mut self, scene: &Scene) -> Result<bool, SimulationError> {
+    pub fn update_parameters(&mut self, scene: &Scene) -> Result<bool, SimulationError> {
         let old = &self.scene;
         let mut twin = scene.clone();
         (twin.name, twin.warnings, twin.source) =
@@ -110,11 +110,11 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn carry_over(&mut self, scene: &Scene) -> Result<Self, SimulationError> {
+    pub fn rebuild_with(&mut self, scene: &Scene) -> Result<Self, SimulationError> {
         block_on(self.carry_over_async(scene))
     }
 
-    /// [`carry_over`](Self::carry_over) where blocking is not possible, as on a web page.
+    /// [`rebuild_with`](Self::rebuild_with) where blocking is not possible, as on a web page.
     ///
     /// # Errors
     /// As [`new`](Self::new).

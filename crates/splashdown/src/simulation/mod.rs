@@ -17,7 +17,7 @@ use crate::bodies::{Bodies, BodyMesh};
 use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
-use crate::hand::Stirrer;
+use crate::mouse_force::MouseForceCoupling;
 use crate::passes::Params;
 use crate::probes::{ProbeRows, Probes};
 use crate::scene::Scene;
@@ -54,7 +54,7 @@ pub struct Simulation {
     removed: u32,
     flow: Option<Flow>,
     probes: Option<Probes>,
-    stirrer: Option<Stirrer>,
+    mouse_force: Option<MouseForceCoupling>,
     /// Most steps in one submission.
     most_steps: u32,
     /// Rows of the probes since they were last asked for.

@@ -16,7 +16,7 @@ use crate::passes::{DEAD_UNBORN, Params, StepState};
 use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::solid;
-use crate::solver::{self, Solver, Things};
+use crate::solver::{self, Couplings, Solver};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 
 impl Simulation {
@@ -170,7 +170,7 @@ impl Simulation {
             flow,
             rows: vec![Vec::new(); scene.probes.len()],
             probes,
-            stirrer: None,
+            mouse_force: None,
             most_steps: MOST_STEPS,
             initial: 0,
             told: Vec::new(),
@@ -185,24 +185,24 @@ impl Simulation {
     /// As [`Executor::create`].
     pub(super) fn record_batches(&mut self) -> Result<(), SimulationError> {
         let solver = Solver::new(&self.scene);
-        let things = Things {
+        let couplings = Couplings {
             bodies: self.bodies.as_ref(),
             flow: self.flow.as_ref(),
             probes: self.probes.as_ref(),
-            stirrer: self.stirrer.as_ref(),
+            mouse_force: self.mouse_force.as_ref(),
         };
-        if !(solver.fuses() && things.is_empty()) {
+        if !(solver.fuses() && couplings.is_empty()) {
             self.fields.make_accelerations(&mut self.executor)?;
         }
-        let step = solver.step(&self.cells, &self.fields, &things, self.params.particle_count);
-        let settle = solver::settle(&self.fields);
+        let step = solver.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
+        let end_step = solver::end_step(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done));
         self.batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
                 let mut batch = Recording::new(format!("{} steps", 1 << power));
                 batch.repeat(&step, 1 << power, done);
                 // The step before is settled by the one that follows; behind the last one nothing follows.
-                batch.append(&settle);
+                batch.append(&end_step);
                 batch
             })
             .collect();

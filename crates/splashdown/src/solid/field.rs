@@ -178,12 +178,12 @@ impl DistanceField {
         }
         let exact = through(kernels, phi / support);
         // Above one half the complement is what is small.
-        let share = if exact > 0.5 {
+        let kernel_fraction = if exact > 0.5 {
             1.0 - (1.0 - exact) * ((1.0 - solid) / (1.0 - plane).max(1e-7))
         } else {
             exact * solid / plane
         };
-        support * q_of(kernels, share.clamp(0.0, 1.0))
+        support * q_of(kernels, kernel_fraction.clamp(0.0, 1.0))
     }
 
     /// The place of a node in m.
@@ -218,15 +218,15 @@ fn through(kernels: KernelPair, q: f32) -> f32 {
 }
 
 /// Its inverse.
-fn q_of(kernels: KernelPair, share: f32) -> f32 {
+fn q_of(kernels: KernelPair, kernel_fraction: f32) -> f32 {
     // Shares below one half are exact down to tiny ones, so those above are asked for by their complement.
-    if share > 0.5 {
-        return -q_of(kernels, 1.0 - share);
+    if kernel_fraction > 0.5 {
+        return -q_of(kernels, 1.0 - kernel_fraction);
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        if through(kernels, middle) > share { low = middle } else { high = middle }
+        if through(kernels, middle) > kernel_fraction { low = middle } else { high = middle }
     }
     0.5 * (low + high)
 }

@@ -12,8 +12,8 @@ use crate::boundary::{KernelPair, wall_offset};
 use crate::cells::Cells;
 use crate::fields::Fields;
 use crate::flow::Flow;
-use crate::hand::Stirrer;
-use crate::passes::{Params, begin, integrate, settle, state_equation};
+use crate::mouse_force::MouseForceCoupling;
+use crate::passes::{Params, begin, end_step, integrate, state_equation};
 use crate::probes::Probes;
 use crate::scene::{DensityMode, Derived, KernelKind, Method, NegativePressure, Scene, SurfaceTension};
 
@@ -31,7 +31,7 @@ const MUELLER_VISCOSITY: f32 = 0.015;
 
 /// What meets the fluid, as far as a scene has it.
 #[derive(Clone, Copy, Default)]
-pub struct Things<'a> {
+pub struct Couplings<'a> {
     /// Solids.
     pub bodies: Option<&'a Bodies>,
     /// Emitters and sinks.
@@ -39,13 +39,13 @@ pub struct Things<'a> {
     /// Gauges.
     pub probes: Option<&'a Probes>,
     /// A hand.
-    pub stirrer: Option<&'a Stirrer>,
+    pub mouse_force: Option<&'a MouseForceCoupling>,
 }
 
-impl Things<'_> {
+impl Couplings<'_> {
     /// True if there is nothing.
     pub fn is_empty(&self) -> bool {
-        self.bodies.is_none() && self.flow.is_none() && self.probes.is_none() && self.stirrer.is_none()
+        self.bodies.is_none() && self.flow.is_none() && self.probes.is_none() && self.mouse_force.is_none()
     }
 }
 
@@ -84,33 +84,39 @@ impl Solver {
         self.tension
     }
 
-    /// True if forces and motion of a step without [`Things`] are one pass, which needs no accelerations.
+    /// True if forces and motion of a step without [`Couplings`] are one pass, which needs no accelerations.
     pub fn fuses(&self) -> bool {
         self.method == Method::Wcsph && !self.tension
     }
 
     /// One step: the settling of the last one, sort, density and pressure, accelerations, motion. Before the
-    /// first one of a frame goes [`begin_frame`], behind the last one of a submission `settle`. Needs
+    /// first one of a frame goes [`begin_frame`], behind the last one of a submission `end_step`. Needs
     /// accelerations unless it [fuses](Self::fuses) and there are no things.
-    pub fn step(&self, cells: &Cells, fields: &Fields, things: &Things<'_>, particles: u32) -> Recording {
-        let Things { bodies, flow, probes, stirrer } = *things;
+    pub fn step(
+        &self,
+        cells: &Cells,
+        fields: &Fields,
+        couplings: &Couplings<'_>,
+        particles: u32,
+    ) -> Recording {
+        let Couplings { bodies, flow, probes, mouse_force } = *couplings;
         let mut step = Recording::new("step");
         // An invocation where there is no particle, so that time goes on.
         let all = Extent::Items(particles.max(1));
-        // The resting arrays take the sorted order when the step integrates back into them; the ids do so at once.
+        // The persistent arrays take the sorted order when the step integrates back into them; the ids do so at once.
         cells.record_sort(&mut step, fields, fields.ids);
         if let Some(bodies) = bodies {
-            bodies.record_contacts(&mut step, cells, fields, all);
+            bodies.record_boundary_lookup(&mut step, cells, fields, all);
         }
         match self.method {
             Method::Wcsph => self.wcsph_pressure(&mut step, cells, fields, all),
             Method::Mueller2003 => self.mueller2003_pressure(&mut step, cells, fields, all),
         }
         if let Some(bodies) = bodies {
-            bodies.record_share(&mut step, cells, fields, all, self.continuity);
+            bodies.record_boundary_density(&mut step, cells, fields, all, self.continuity);
         }
-        if self.fuses() && things.is_empty() {
-            self.wcsph_motion(&mut step, cells, fields, all);
+        if self.fuses() && couplings.is_empty() {
+            self.wcsph_force_integrate(&mut step, cells, fields, all);
             return step;
         }
         match self.method {
@@ -118,14 +124,14 @@ impl Solver {
             Method::Mueller2003 => self.mueller2003_forces(&mut step, cells, fields, all),
         }
         if let Some(bodies) = bodies {
-            bodies.record_push(&mut step, fields, all);
+            bodies.record_boundary_force(&mut step, fields, all);
             bodies.record_motion(&mut step, fields);
         }
         if let Some(flow) = flow {
             flow.record_before_integrate(&mut step, cells, fields, all);
         }
-        if let Some(stirrer) = stirrer {
-            stirrer.record(&mut step, cells, fields, all);
+        if let Some(mouse_force) = mouse_force {
+            mouse_force.record(&mut step, cells, fields, all);
         }
         let emits = flow.is_some_and(Flow::emits);
         step.dispatch(
@@ -141,8 +147,8 @@ impl Solver {
                 fields.accelerations.id(),
                 fields.positions.id(),
                 fields.velocities.id(),
-                fields.tally.id(),
-                cells.census.id(),
+                fields.counters.id(),
+                cells.cell_counts.id(),
             ],
         );
         if let Some(probes) = probes {
@@ -170,7 +176,7 @@ impl Solver {
         cells.record_sort(&mut prime, fields, fields.ids);
         let all = Extent::Items(particles);
         if let Some(bodies) = bodies {
-            bodies.record_contacts(&mut prime, cells, fields, all);
+            bodies.record_boundary_lookup(&mut prime, cells, fields, all);
         }
         prime.copy(fields.sorted_positions, fields.positions);
         prime.copy(fields.sorted_velocities, fields.velocities);
@@ -178,7 +184,7 @@ impl Solver {
         if let Some(bodies) = bodies
             && !self.continuity
         {
-            bodies.record_share(&mut prime, cells, fields, all, false);
+            bodies.record_boundary_density(&mut prime, cells, fields, all, false);
         }
         prime
     }
@@ -211,10 +217,10 @@ pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
 
 /// Settles the last step, where no other follows that does: the host, or another step's passes, may look at the
 /// state then.
-pub fn settle(fields: &Fields) -> Recording {
-    let mut recording = Recording::new("settle");
-    let buffers = [fields.params.id(), fields.state.id(), fields.tally.id()];
-    recording.dispatch(&settle::SETTLE, Extent::Groups(1), &buffers);
+pub fn end_step(fields: &Fields) -> Recording {
+    let mut recording = Recording::new("end_step");
+    let buffers = [fields.params.id(), fields.state.id(), fields.counters.id()];
+    recording.dispatch(&end_step::END_STEP, Extent::Groups(1), &buffers);
     recording
 }
 

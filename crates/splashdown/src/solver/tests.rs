@@ -27,22 +27,22 @@ fn scene(size: f32, solver: &str) -> Scene {
 }
 
 /// Cells, and the commands of a step by kind: labels of its dispatches, clears and copies.
-fn step(size: f32, solver: &str, with_hand: bool) -> (u32, Vec<&'static str>) {
+fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static str>) {
     let scene = scene(size, solver);
     let (solver, params) = (Solver::new(&scene), params(&scene, 64));
     let mut executor = Executor::from(CpuExecutor::new());
     let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals()).unwrap();
     let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();
     let cells = Cells::new(&mut executor, grid, 64, Sort::Counting).unwrap();
-    let hand = with_hand.then(|| Stirrer::new(&mut executor).unwrap());
-    let things = Things { stirrer: hand.as_ref(), ..Things::default() };
+    let mouse_force = with_mouse_force.then(|| MouseForceCoupling::new(&mut executor).unwrap());
+    let couplings = Couplings { mouse_force: mouse_force.as_ref(), ..Couplings::default() };
     let label = |command: &Command| match command {
         Command::Dispatch { pass, .. } => pass.label,
         Command::Clear { .. } => "clear",
         Command::Copy { .. } => "copy",
         Command::Repeat { .. } => "repeat",
     };
-    let step = solver.step(&cells, &fields, &things, 64);
+    let step = solver.step(&cells, &fields, &couplings, 64);
     (grid.cell_count, step.commands.iter().map(label).collect())
 }
 
@@ -50,8 +50,13 @@ fn step(size: f32, solver: &str, with_hand: bool) -> (u32, Vec<&'static str>) {
 fn a_plain_step_is_five_dispatches_and_six_where_there_are_many_cells() {
     let (cells, small) = step(2.0, "", false);
     assert!(cells < 16_384);
-    let passes =
-        ["scan.single", "cells.scatter", "cells.arrange", "density.wendland_c2", "motion.wendland_c2"];
+    let passes = [
+        "scan.single",
+        "cells.scatter",
+        "cells.reorder",
+        "density.wendland_c2",
+        "force_integrate.wendland_c2",
+    ];
     assert_eq!(small, passes);
     let (cells, large) = step(10.0, "", false);
     assert!(cells > 16_384);

@@ -5,7 +5,7 @@ use splashdown_gpu::{Grid as Extent, PassDesc, Recording};
 use super::Solver;
 use crate::cells::Cells;
 use crate::fields::Fields;
-use crate::passes::{continuity, density, momentum, motion, normals};
+use crate::passes::{acceleration, continuity, density, force_integrate, normals};
 use crate::scene::KernelKind;
 
 impl Solver {
@@ -54,7 +54,7 @@ impl Solver {
             );
         }
         step.dispatch(
-            self.by_kernel(&momentum::WENDLAND_C2, &momentum::CUBIC_SPLINE),
+            self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE),
             all,
             &[
                 fields.params.id(),
@@ -72,9 +72,15 @@ impl Solver {
     }
 
     /// All accelerations in one visit of the neighbours, and the motion that follows from them.
-    pub(super) fn wcsph_motion(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+    pub(super) fn wcsph_force_integrate(
+        &self,
+        step: &mut Recording,
+        cells: &Cells,
+        fields: &Fields,
+        all: Extent,
+    ) {
         step.dispatch(
-            self.by_kernel(&motion::WENDLAND_C2, &motion::CUBIC_SPLINE),
+            self.by_kernel(&force_integrate::WENDLAND_C2, &force_integrate::CUBIC_SPLINE),
             all,
             &[
                 fields.params.id(),
@@ -87,8 +93,8 @@ impl Solver {
                 fields.densities.id(),
                 fields.positions.id(),
                 fields.velocities.id(),
-                fields.tally.id(),
-                cells.census.id(),
+                fields.counters.id(),
+                cells.cell_counts.id(),
             ],
         );
     }

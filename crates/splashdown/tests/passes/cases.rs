@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown_gpu::{Grid as Extent, testing};
 
 use super::harness::{Case, Check, Compare, Data, close, exact, wide};
@@ -64,7 +64,7 @@ pub fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
 fn compare_states() -> Compare {
     Box::new(|a, b| {
         same_state(&state_of(&a[0]), &state_of(&b[0]))?;
-        a.iter().zip(b).skip(1).try_for_each(|(a, b)| exact("tally", a.words(), b.words()))
+        a.iter().zip(b).skip(1).try_for_each(|(a, b)| exact("counters", a.words(), b.words()))
     })
 }
 
@@ -114,37 +114,37 @@ fn settle_cases() -> Vec<Case> {
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
     ];
     let mut cases: Vec<Case> =
-        ways.map(|(name, state, maxima, params)| settle(name, state, maxima, params)).into();
+        ways.map(|(name, state, maxima, params)| end_step(name, state, maxima, params)).into();
     // A frame that is complete, or a step that has been settled: nothing changes. The control has one that has not.
-    let mut complete = settle("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
+    let mut complete = end_step("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
     complete.control = |input| {
-        let Data::U32(tally) = &mut input[2] else { panic!("no tally") };
-        tally[Tally::MOVED] = 1;
+        let Data::U32(counters) = &mut input[2] else { panic!("no counters") };
+        counters[StepCounters::MOVED] = 1;
     };
     cases.push(complete);
     cases
 }
 
-fn settle(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
-    let mut tally = vec![5, 6, 7, 8, 0, 0, 0, 0, 0];
-    tally[Tally::MOVED] = u32::from(state.run_count > 0);
+fn end_step(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
+    let mut counters = vec![5, 6, 7, 8, 0, 0, 0, 0, 0];
+    counters[StepCounters::MOVED] = u32::from(state.run_count > 0);
     for (k, value) in maxima.iter().enumerate() {
-        tally[Tally::MAX_SPEED + k] = value.to_bits();
+        counters[StepCounters::MAX_SPEED + k] = value.to_bits();
     }
     let (expected, left) = if state.run_count == 0 {
-        (state, tally.clone())
+        (state, counters.clone())
     } else {
         (next_state(&params, &state, maxima.map(f64::from)), vec![5, 6, 7, 8, 0, 0, 0, 0, 0])
     };
     let oracle: Check = Box::new(move |out| {
         same_state(&state_of(&out[0]), &expected)?;
-        exact("tally", out[1].words(), &left)
+        exact("counters", out[1].words(), &left)
     });
     Case {
-        pass: pass("settle"),
+        pass: pass("end_step"),
         name: name.into(),
         extent: Extent::Groups(1),
-        input: vec![Data::Params(params), Data::State(state), Data::U32(tally)],
+        input: vec![Data::Params(params), Data::State(state), Data::U32(counters)],
         compare: compare_states(),
         oracle,
         // A step longer or shorter by a hundred-thousandth.
@@ -229,14 +229,19 @@ fn motion_tolerance(dt: f64, velocities: &[f64]) -> (f64, Vec<f64>) {
     (position, velocities.iter().map(|v| position / dt + 1e-5 * v.abs()).collect())
 }
 
-fn same_motion(out: &[Data], positions: &[f64], velocities: &[f64], tally: &[u32]) -> Result<(), String> {
+fn same_motion(
+    out: &[Data],
+    positions: &[f64],
+    velocities: &[f64],
+    expected_counters: &[u32],
+) -> Result<(), String> {
     let (position, velocity) = motion_tolerance(4e-4, velocities);
     close("positions", out[0].floats(), positions, &vec![position; positions.len()])?;
     close("velocities", out[1].floats(), velocities, &velocity)?;
-    let (counters, maxima) = out[2].words().split_at(Tally::MAX_SPEED);
-    exact("counters", counters, &tally[..Tally::MAX_SPEED])?;
+    let (counts, maxima) = out[2].words().split_at(StepCounters::MAX_SPEED);
+    exact("counters", counts, &expected_counters[..StepCounters::MAX_SPEED])?;
     let floats = |words: &[u32]| words.iter().map(|&w| f32::from_bits(w)).collect::<Vec<f32>>();
-    let expected = wide(&floats(&tally[Tally::MAX_SPEED..]));
+    let expected = wide(&floats(&expected_counters[StepCounters::MAX_SPEED..]));
     let tolerance: Vec<f64> = expected.iter().map(|v| 1e-5 * v).collect();
     close("maxima", &floats(maxima), &expected, &tolerance)
 }
@@ -263,7 +268,7 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         }
     }
     let grid = world.grid;
-    let census = empty_census(&grid, n);
+    let cell_counts = empty_census(&grid, n);
     let input = vec![
         Data::Params(params),
         Data::Grid(grid),
@@ -275,10 +280,10 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0, 0]),
-        Data::U32(census.clone()),
+        Data::U32(cell_counts.clone()),
     ];
-    let (positions, velocities, tally) = moved(&world, &accelerations);
-    assert!((1..4).all(|k| tally[k] > 5) || params.closed != 0b111111, "{tally:?}");
+    let (positions, velocities, counters) = moved(&world, &accelerations);
+    assert!((1..4).all(|k| counters[k] > 5) || params.closed != 0b111111, "{counters:?}");
     Case {
         pass: pass(label),
         name: name.into(),
@@ -286,9 +291,9 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         input,
         compare: Box::new(|a, b| same_motion(a, &wide(b[0].floats()), &wide(b[1].floats()), b[2].words())),
         oracle: Box::new(move |out| {
-            same_motion(out, &positions, &velocities, &tally)?;
-            let expected = if counts { census_of(&grid, &out[0]) } else { census.clone() };
-            exact("census", out[3].words(), &expected)
+            same_motion(out, &positions, &velocities, &counters)?;
+            let expected = if counts { census_of(&grid, &out[0]) } else { cell_counts.clone() };
+            exact("cell_counts", out[3].words(), &expected)
         }),
         // One particle is pushed a little harder.
         control: |input| {
@@ -299,7 +304,7 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
     }
 }
 
-/// The census of particles that are where a pass says.
+/// The cell_counts of particles that are where a pass says.
 pub fn census_of(grid: &Grid, positions: &Data) -> Vec<u32> {
     let Data::Vec4(positions) = positions else { panic!("no positions") };
     let mut counts = vec![0; grid.cell_count as usize + 1];
@@ -319,7 +324,7 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
     let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
     let closed = |axis: usize, side: usize| params.closed >> (2 * axis + side) & 1 == 1;
     let (mut positions, mut velocities) = (Vec::new(), Vec::new());
-    let mut tally = [0, 3, 1, 2, 0, 0, 0, 0, 1];
+    let mut counters = [0, 3, 1, 2, 0, 0, 0, 0, 1];
     let mut highest = [0.0_f64; 3];
     for (i, &p) in world.positions.iter().enumerate() {
         let (old, a) = (world.velocities[i], accelerations[i].xyz().as_dvec3());
@@ -334,10 +339,10 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
         let most = 0.5 * f64::from(SPACING) / dt;
         if v.length() > most {
             v *= most / v.length();
-            tally[Tally::LIMITED] += 1;
+            counters[StepCounters::LIMITED] += 1;
         }
         if !a.is_finite() {
-            tally[Tally::NON_FINITE] += 1;
+            counters[StepCounters::NON_FINITE] += 1;
             positions.extend(wide(&p.xyz().extend(DEAD_NON_FINITE).to_array()));
             velocities.extend([0.0, 0.0, 0.0, f64::from(params.rest_density)]);
             continue;
@@ -357,7 +362,7 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
             if (closed(axis, 0) && next[axis] < min[axis]) || (closed(axis, 1) && next[axis] > max[axis]) {
                 next[axis] = next[axis].clamp(min[axis], max[axis]);
                 v[axis] = 0.0;
-                tally[Tally::CORRECTIONS] += 1;
+                counters[StepCounters::CORRECTIONS] += 1;
             }
         }
         let excess = (rho / f64::from(params.rest_density) - 1.0).max(0.0);
@@ -366,12 +371,12 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
         }
         let push = |out: &mut Vec<f64>, v: DVec3, w: f64| out.extend([v.x, v.y, v.z, w]);
         let escaped = next.cmplt(min).any() || next.cmpgt(max).any();
-        tally[Tally::ESCAPED] += u32::from(escaped);
+        counters[StepCounters::ESCAPED] += u32::from(escaped);
         push(&mut positions, next, if escaped { f64::from(DEAD_ESCAPED) } else { 0.0 });
         push(&mut velocities, v, rho);
     }
     for (k, value) in highest.iter().enumerate() {
-        tally[Tally::MAX_SPEED + k] = (*value as f32).to_bits();
+        counters[StepCounters::MAX_SPEED + k] = (*value as f32).to_bits();
     }
-    (positions, velocities, tally.to_vec())
+    (positions, velocities, counters.to_vec())
 }

@@ -1,8 +1,8 @@
 //! Emitters and sinks.
 
 use glam::{DVec3, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown::flow::{Drain, Nozzle, Plan};
-use splashdown::passes::{DEAD_DRAINED, DEAD_UNBORN, Tally};
+use splashdown::flow::{EmissionSchedule, Nozzle, SinkShape};
+use splashdown::passes::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
 use splashdown_gpu::Grid as Extent;
 
 use super::harness::{Case, Data, close, exact, wide};
@@ -65,33 +65,35 @@ fn plan() -> Case {
     let dt = world.state.dt;
     let phases = [SPACING, 0.999_9 * SPACING, SPACING, SPACING, SPACING, SPACING];
     let emitted = [24, 0, 0, 0, 5, 95];
-    let mut plans = vec![0; 6 * Plan::WORDS + 1];
-    for (k, plan) in plans.chunks_exact_mut(Plan::WORDS).enumerate() {
-        plan[Plan::PHASE] = phases[k].to_bits();
-        plan[Plan::EMITTED] = emitted[k];
-        plan[Plan::LAYER] = 77;
+    let mut plans = vec![0; 6 * EmissionSchedule::WORDS + 1];
+    for (k, plan) in plans.chunks_exact_mut(EmissionSchedule::WORDS).enumerate() {
+        plan[EmissionSchedule::PHASE] = phases[k].to_bits();
+        plan[EmissionSchedule::EMITTED] = emitted[k];
+        plan[EmissionSchedule::LAYER] = 77;
     }
-    plans[6 * Plan::WORDS] = 4000;
+    plans[6 * EmissionSchedule::WORDS] = 4000;
     let mut expected = plans.clone();
-    for plan in expected.chunks_exact_mut(Plan::WORDS) {
-        plan[Plan::LAYER] = 0;
+    for plan in expected.chunks_exact_mut(EmissionSchedule::WORDS) {
+        plan[EmissionSchedule::LAYER] = 0;
     }
-    let mut set = |k: usize, word: usize, value: u32| expected[k * Plan::WORDS + word] = value;
+    let mut set = |k: usize, word: usize, value: u32| expected[k * EmissionSchedule::WORDS + word] = value;
     let rest =
         |k: usize| (f64::from(phases[k]) + f64::from(due[k % 4].speed * dt) - f64::from(SPACING)) as f32;
     for (k, slot, id) in [(0, living, 4000), (1, living + 12, 4012)] {
-        set(k, Plan::PHASE, rest(k).to_bits());
-        set(k, Plan::DISTANCE, rest(k).to_bits());
-        set(k, Plan::LAYER, due[k].points);
-        set(k, Plan::SLOT, slot);
-        set(k, Plan::ID, id);
+        set(k, EmissionSchedule::PHASE, rest(k).to_bits());
+        set(k, EmissionSchedule::DISTANCE, rest(k).to_bits());
+        set(k, EmissionSchedule::LAYER, due[k].points);
+        set(k, EmissionSchedule::SLOT, slot);
+        set(k, EmissionSchedule::ID, id);
     }
-    set(4, Plan::PHASE, rest(0).to_bits());
-    set(4, Plan::REFUSED, 12);
-    expected[6 * Plan::WORDS] = 4020;
+    set(4, EmissionSchedule::PHASE, rest(0).to_bits());
+    set(4, EmissionSchedule::REFUSED, 12);
+    expected[6 * EmissionSchedule::WORDS] = 4020;
     let same = |a: &[u32], b: &[u32]| {
         for (k, (a, b)) in a.iter().zip(b).enumerate() {
-            let is_float = [Plan::PHASE, Plan::DISTANCE].contains(&(k % Plan::WORDS)) && k < 6 * Plan::WORDS;
+            let is_float = [EmissionSchedule::PHASE, EmissionSchedule::DISTANCE]
+                .contains(&(k % EmissionSchedule::WORDS))
+                && k < 6 * EmissionSchedule::WORDS;
             let near = (f32::from_bits(*a) - f32::from_bits(*b)).abs() <= 1e-7 * SPACING.max(1.0);
             if !(a == b || is_float && near) {
                 return Err(format!("plans: word {k} is {a:#x} and {b:#x}"));
@@ -100,7 +102,7 @@ fn plan() -> Case {
         Ok(())
     };
     Case {
-        pass: pass("flow.plan"),
+        pass: pass("flow.emission_schedule"),
         name: "due, late, over, without room, at its limit".into(),
         extent: Extent::Groups(1),
         input: vec![
@@ -124,14 +126,14 @@ fn emit() -> Case {
     let world = World::new(params(2.0), 1500);
     let (nozzles, points) = (nozzles(), points());
     let living = world.living();
-    let mut plans = vec![0; 4 * Plan::WORDS + 1];
+    let mut plans = vec![0; 4 * EmissionSchedule::WORDS + 1];
     for (k, slot, id) in [(0, living, 9000), (1, living + 12, 9012)] {
-        let plan = &mut plans[k * Plan::WORDS..];
-        plan[Plan::EMITTED] = 5;
-        plan[Plan::LAYER] = nozzles[k].points;
-        plan[Plan::SLOT] = slot as u32;
-        plan[Plan::ID] = id;
-        plan[Plan::DISTANCE] = 0.004_f32.to_bits();
+        let plan = &mut plans[k * EmissionSchedule::WORDS..];
+        plan[EmissionSchedule::EMITTED] = 5;
+        plan[EmissionSchedule::LAYER] = nozzles[k].points;
+        plan[EmissionSchedule::SLOT] = slot as u32;
+        plan[EmissionSchedule::ID] = id;
+        plan[EmissionSchedule::DISTANCE] = 0.004_f32.to_bits();
     }
     // Behind the living: the dead, and the unborn.
     let n = living + 25;
@@ -155,12 +157,12 @@ fn emit() -> Case {
                 + q.y * nozzle.up.as_dvec3();
             let near = |p: &Vec4| p.w == 0.0 && p.xyz().as_dvec3().distance(x) < 0.7 * f64::from(SPACING);
             if positions.iter().any(near) {
-                expected.0[k * Plan::WORDS + Plan::BLOCKED] += 1;
+                expected.0[k * EmissionSchedule::WORDS + EmissionSchedule::BLOCKED] += 1;
                 blocked += 1;
                 continue;
             }
             let slot = living + if k == 0 { 0 } else { 12 } + place;
-            expected.0[k * Plan::WORDS + Plan::EMITTED] += 1;
+            expected.0[k * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] += 1;
             expected.1[slot] = x.as_vec3().extend(0.0);
             expected.2[slot] = (nozzle.speed * nozzle.direction).extend(1000.0);
             expected.3[slot] = 9000 + (slot - living) as u32;
@@ -214,11 +216,11 @@ fn emit() -> Case {
 fn drive() -> Case {
     let world = World::new(params(2.0), 1500);
     let nozzles = nozzles();
-    let mut plans = vec![0; 5 * Plan::WORDS + 1];
+    let mut plans = vec![0; 5 * EmissionSchedule::WORDS + 1];
     // The last would drive, but for its limit.
     let mut all = nozzles.clone();
     all.push(Nozzle { back: Vec3::new(0.0, 0.1, 0.2), most: 10, points: 5, first_point: 25, ..nozzles[0] });
-    plans[4 * Plan::WORDS + Plan::EMITTED] = 6;
+    plans[4 * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] = 6;
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
     let mut expected = accelerations.clone();
     let mut driven = 0;
@@ -244,7 +246,7 @@ fn drive() -> Case {
         close("accelerations", a, &b, &tolerance)
     };
     Case {
-        pass: pass("flow.drive"),
+        pass: pass("flow.inflow_constraint"),
         name: "a disc and a rectangle on, others off".into(),
         extent: Extent::Items(world.len() as u32),
         input: vec![
@@ -269,21 +271,22 @@ fn drive() -> Case {
 
 fn drain() -> Case {
     let world = World::new(params(2.0), 1500);
-    let none = Drain {
+    let none = SinkShape {
         low: Vec3::new(-0.211, 0.053, 0.157),
-        kind: Drain::BOX,
+        kind: SinkShape::BOX,
         high: Vec3::new(-0.083, 0.167, 0.291),
         cell_size: 0.0,
         nodes: UVec3::ZERO,
         first_node: 0,
     };
     let normal = Vec3::new(0.6, 0.8, 0.0);
-    let below = Drain { kind: Drain::BELOW, low: Vec3::new(-0.203, 0.0511, 0.0), high: normal, ..none };
+    let below =
+        SinkShape { kind: SinkShape::BELOW, low: Vec3::new(-0.203, 0.0511, 0.0), high: normal, ..none };
     // A ball of a tenth of a metre, behind five words that belong to nobody.
     let (center, nodes, cell_size) = (Vec3::new(0.1, 0.3, 0.45), UVec3::new(12, 13, 14), 0.02);
     let low = center - 0.12;
-    let ball = Drain {
-        kind: Drain::MAP,
+    let ball = SinkShape {
+        kind: SinkShape::MAP,
         low,
         high: low + (nodes - UVec3::ONE).as_vec3() * cell_size,
         cell_size,
@@ -310,7 +313,7 @@ fn drain() -> Case {
     let mut by = [0; 3];
     for p in &mut expected[..world.living()] {
         let x = p.xyz();
-        let within = |drain: &Drain| x.cmpge(drain.low).all() && x.cmplt(drain.high).all();
+        let within = |drain: &SinkShape| x.cmpge(drain.low).all() && x.cmplt(drain.high).all();
         let takes =
             [within(&none), (x - below.low).dot(normal) < 0.0, within(&ball) && interpolated(&maps, x) < 0.0];
         if let Some(k) = takes.iter().position(|&takes| takes) {
@@ -319,11 +322,11 @@ fn drain() -> Case {
         }
     }
     assert!(by.iter().all(|&n| n > 3), "{by:?}");
-    let mut tally = vec![1, 2, 3, 4, 0, 0, 0, 10];
-    let before = tally.clone();
-    tally[Tally::DRAINED] += by.iter().sum::<u32>();
+    let mut counters = vec![1, 2, 3, 4, 0, 0, 0, 10];
+    let before = counters.clone();
+    counters[StepCounters::DRAINED] += by.iter().sum::<u32>();
     Case {
-        pass: pass("flow.drain"),
+        pass: pass("flow.sink"),
         name: "a box, a plane, a ball".into(),
         extent: Extent::Items(world.len() as u32),
         input: vec![
@@ -337,11 +340,11 @@ fn drain() -> Case {
         ],
         compare: Box::new(|a, b| {
             exact("positions", a[0].words(), b[0].words())?;
-            exact("tally", a[1].words(), b[1].words())
+            exact("counters", a[1].words(), b[1].words())
         }),
         oracle: Box::new(move |out| {
             exact("positions", out[0].words(), Data::Vec4(expected.clone()).words())?;
-            exact("tally", out[1].words(), &tally)
+            exact("counters", out[1].words(), &counters)
         }),
         control: |input| {
             let Data::Drains(drains) = &mut input[3] else { panic!("no drains") };

@@ -1,10 +1,10 @@
 //! Runs one pass from given buffers on an executor, and compares what it leaves.
 
 use glam::{UVec2, Vec2, Vec4};
-use splashdown::Hand;
+use splashdown::MouseForce;
 use splashdown::bodies::Body;
 use splashdown::cells::Grid;
-use splashdown::flow::{Drain, Nozzle};
+use splashdown::flow::{Nozzle, SinkShape};
 use splashdown::foam::{Diffuse, FoamParams, FoamState};
 use splashdown::passes::{Params, StepState};
 use splashdown::probes::ProbePoint;
@@ -24,10 +24,10 @@ pub enum Data {
     Grid(Grid),
     State(StepState),
     Nozzles(Vec<Nozzle>),
-    Drains(Vec<Drain>),
+    Drains(Vec<SinkShape>),
     Probes(Vec<ProbePoint>),
     Bodies(Vec<Body>),
-    Hand(Hand),
+    MouseForce(MouseForce),
     Foam(FoamParams),
     FoamState(FoamState),
     Diffuse(Vec<Diffuse>),
@@ -42,7 +42,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice(v),
             Self::Vec4(v) => bytemuck::cast_slice(v),
             Self::UVec2(v) => bytemuck::cast_slice(v),
-            Self::Hand(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::MouseForce(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Foam(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::FoamState(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Diffuse(v) => bytemuck::cast_slice(v),
@@ -75,7 +75,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice_mut(v),
             Self::Vec4(v) => bytemuck::cast_slice_mut(v),
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
-            Self::Hand(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::MouseForce(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Foam(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::FoamState(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Diffuse(v) => bytemuck::cast_slice_mut(v),
@@ -180,7 +180,7 @@ fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (B
         Data::Drains(v) => array(executor, name, v, Data::Drains, uniform),
         Data::Probes(v) => array(executor, name, v, Data::Probes, uniform),
         Data::Bodies(v) => array(executor, name, v, Data::Bodies, uniform),
-        Data::Hand(v) => array(executor, name, &[*v], |v| Data::Hand(v[0]), uniform),
+        Data::MouseForce(v) => array(executor, name, &[*v], |v| Data::MouseForce(v[0]), uniform),
         Data::FoamState(v) => array(executor, name, &[*v], |v| Data::FoamState(v[0]), uniform),
         Data::Diffuse(v) => array(executor, name, v, Data::Diffuse, uniform),
         Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0]), uniform),

@@ -7,8 +7,8 @@
 mod cases;
 mod flow_cases;
 mod foam_cases;
-mod hand_cases;
 mod harness;
+mod mouse_force_cases;
 mod neighbour_cases;
 mod oracle;
 mod probe_cases;
@@ -30,7 +30,7 @@ fn all_cases() -> Vec<Case> {
         flow_cases::cases(),
         foam_cases::cases(),
         probe_cases::cases(),
-        hand_cases::cases(),
+        mouse_force_cases::cases(),
     ];
     all.into_iter().flatten().collect()
 }

@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
-use splashdown::passes::{Params, Tally};
+use splashdown::passes::{Params, StepCounters};
 use splashdown_gpu::{CpuExecutor, Grid as Extent};
 
 use super::cases::census_of;
@@ -254,7 +254,7 @@ fn two_passes(world: &World, kernels: Kernels) -> Vec<Data> {
             accelerations,
             positions.poison(),
             velocities.poison(),
-            Data::U32(vec![0; Tally::WORDS]),
+            Data::U32(vec![0; StepCounters::WORDS]),
             Data::U32(empty_census(&world.grid, world.len())),
         ],
         ..case
@@ -286,16 +286,16 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
                 tolerances[k].iter().zip(&wanted).map(|(t, v)| t + 1e-5 * v.abs().min(1e30)).collect();
             close(what, floats, &wanted, &tolerance)?;
         }
-        let maxima = Tally::MAX_SPEED..=Tally::MAX_EXCESS;
-        for word in (0..Tally::WORDS).filter(|word| !maxima.contains(word)) {
-            exact("tally", &out[2].words()[word..=word], &expected[2].words()[word..=word])?;
+        let maxima = StepCounters::MAX_SPEED..=StepCounters::MAX_EXCESS;
+        for word in (0..StepCounters::WORDS).filter(|word| !maxima.contains(word)) {
+            exact("counters", &out[2].words()[word..=word], &expected[2].words()[word..=word])?;
         }
         let wanted = wide(&expected[2].floats()[maxima.clone()]);
         let tolerance: Vec<f64> = wanted.iter().map(|v| 1e-4 * v).collect();
         close("maxima", &out[2].floats()[maxima], &wanted, &tolerance)?;
-        let census =
+        let cell_counts =
             if is_last { empty_census(&grid, out[0].words().len() / 4) } else { census_of(&grid, &out[0]) };
-        exact("census", out[3].words(), &census)
+        exact("cell_counts", out[3].words(), &cell_counts)
     };
     let same = std::rc::Rc::new(same);
     let oracle = std::rc::Rc::clone(&same);
@@ -315,7 +315,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
             densities,
             positions.poison(),
             velocities.poison(),
-            Data::U32(vec![0; Tally::WORDS]),
+            Data::U32(vec![0; StepCounters::WORDS]),
             Data::U32(empty_census(&grid, world.len())),
         ],
         compare: Box::new(move |a, b| same(a, b)),

@@ -96,7 +96,7 @@ fn gather() -> Case {
         close("values", a, b, &tolerance)
     };
     Case {
-        pass: pass("probes.gather"),
+        pass: pass("probes.sample"),
         name: "points in, in a corner of and outside the fluid, columns upright and leaning".into(),
         extent: Extent::Groups(probes.len() as u32),
         input: vec![
@@ -151,7 +151,7 @@ fn crossings() -> Case {
     }
     assert!(crossed[0] > 40 && crossed[1] > 10 && crossed[1] < crossed[0], "{crossed:?}");
     Case {
-        pass: pass("probes.crossings"),
+        pass: pass("probes.flux"),
         name: "two rectangles that face each other".into(),
         extent: Extent::Items(world.len() as u32),
         input: vec![
@@ -242,7 +242,7 @@ fn log() -> Case {
     };
     let counted = new_counts.clone();
     Case {
-        pass: pass("probes.log"),
+        pass: pass("probes.accumulate"),
         name: "due, nearly due, not due, without room".into(),
         extent: Extent::Items(probes.len() as u32),
         input: vec![

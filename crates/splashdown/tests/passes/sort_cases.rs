@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
+use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown_gpu::{Grid as Extent, PassDesc};
 
 use super::cases::{next_state, same_state, state_of};
@@ -60,7 +60,7 @@ pub fn cases() -> Vec<Case> {
         cases.push(keys(&world, name, run));
     }
     cases.extend([scatter(&world, "all", 0), scatter(&world, "after a step", 1)]);
-    cases.extend([arrange(&world), bounds(&world)]);
+    cases.extend([reorder(&world), bounds(&world)]);
     cases
 }
 
@@ -93,23 +93,23 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     }
     let n = positions.len();
     let state = StepState { remaining, ..state(n) };
-    let census = empty_census(&grid, n);
-    let mut tally = vec![0; Tally::WORDS];
-    tally[Tally::MOVED] = moved;
+    let cell_counts = empty_census(&grid, n);
+    let mut counters = vec![0; StepCounters::WORDS];
+    counters[StepCounters::MOVED] = moved;
     let input = vec![
         Data::Params(params),
         Data::Grid(grid),
         Data::State(state),
         Data::Vec4(positions.clone()),
         Data::Vec4(velocities.clone()),
-        Data::U32(census.clone()),
-        Data::U32(tally.clone()),
+        Data::U32(cell_counts.clone()),
+        Data::U32(counters.clone()),
     ];
-    let mut expected = judge(&params, &grid, &positions, &velocities, tally);
+    let mut expected = judge(&params, &grid, &positions, &velocities, counters);
     // There is nothing to count for behind the last step of a frame.
     let counts_for_none = moved == 1 && state.is_last_step();
     if counts_for_none {
-        expected[1] = Data::U32(census);
+        expected[1] = Data::U32(cell_counts);
     }
     Case {
         pass: pass("cells.count"),
@@ -127,20 +127,20 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     }
 }
 
-/// A census without a count, its cells poisoned.
+/// A cell_counts without a count, its cells poisoned.
 pub fn empty_census(grid: &Grid, particles: usize) -> Vec<u32> {
-    let mut census = vec![0; grid.cell_count as usize + 1];
-    census.extend(vec![u32::MAX; particles]);
-    census
+    let mut cell_counts = vec![0; grid.cell_count as usize + 1];
+    cell_counts.extend(vec![u32::MAX; particles]);
+    cell_counts
 }
 
-/// Positions, census and tally, particle by particle.
+/// Positions, cell_counts and counters, particle by particle.
 fn judge(
     params: &Params,
     grid: &Grid,
     positions: &[Vec4],
     velocities: &[Vec4],
-    mut tally: Vec<u32>,
+    mut counters: Vec<u32>,
 ) -> Vec<Data> {
     let mut positions = positions.to_vec();
     let mut counts = vec![0; grid.cell_count as usize + 1];
@@ -156,13 +156,13 @@ fn judge(
         if p.w == 0.0 {
             if !x.is_finite() {
                 *p = params.domain_min.extend(DEAD_NON_FINITE);
-                tally[Tally::NON_FINITE] += 1;
+                counters[StepCounters::NON_FINITE] += 1;
             } else if !moderate {
                 p.w = DEAD_NON_FINITE;
-                tally[Tally::NON_FINITE] += 1;
+                counters[StepCounters::NON_FINITE] += 1;
             } else if !(0..3).all(within) {
                 p.w = DEAD_ESCAPED;
-                tally[Tally::ESCAPED] += 1;
+                counters[StepCounters::ESCAPED] += 1;
             } else {
                 at = cell(grid, x);
             }
@@ -171,7 +171,7 @@ fn judge(
         counts[at as usize] += 1;
     }
     counts.extend(cells);
-    vec![Data::Vec4(positions), Data::U32(counts), Data::U32(tally)]
+    vec![Data::Vec4(positions), Data::U32(counts), Data::U32(counters)]
 }
 
 /// The first `run` entries of `all`, and poison behind.
@@ -188,15 +188,15 @@ fn only(all: &Data, run: usize) -> Data {
 }
 
 fn keys(world: &World, name: &str, run: usize) -> Case {
-    let (census, cells) = world.shuffled().census(world);
+    let (cell_counts, cells) = world.shuffled().cell_counts(world);
     let pairs = cells.iter().enumerate().map(|(i, &cell)| UVec2::new(cell, i as u32));
     let pairs = Data::UVec2(pairs.collect());
-    let input = vec![Data::Grid(world.grid), Data::State(state(run)), Data::U32(census), pairs.poison()];
+    let input = vec![Data::Grid(world.grid), Data::State(state(run)), Data::U32(cell_counts), pairs.poison()];
     let control: fn(&mut [Data]) = |input| {
         let Data::Grid(grid) = &input[0] else { panic!("no grid") };
         let first = grid.cell_count as usize + 1;
-        let Data::U32(census) = &mut input[2] else { panic!("no census") };
-        census[first] ^= 1;
+        let Data::U32(cell_counts) = &mut input[2] else { panic!("no cell_counts") };
+        cell_counts[first] ^= 1;
         // In a frame that is complete nothing may be written at all: what must be noticed there is one entry more.
         let Data::State(state) = &mut input[1] else { panic!("no state") };
         state.run_count = state.run_count.max(1);
@@ -206,16 +206,16 @@ fn keys(world: &World, name: &str, run: usize) -> Case {
 
 fn scatter(world: &World, name: &str, moved: u32) -> Case {
     let shuffled = world.shuffled();
-    let (census, cells) = shuffled.census(world);
+    let (cell_counts, cells) = shuffled.cell_counts(world);
     let params = Params { particle_count: world.len() as u32, ..world.params };
     let (before, ids) = (state(world.len()), shuffled.of(&world.ids));
-    let mut tally = vec![0; Tally::WORDS];
-    tally[Tally::MOVED] = moved;
+    let mut counters = vec![0; StepCounters::WORDS];
+    counters[StepCounters::MOVED] = moved;
     let mut after = before;
     if moved == 1 {
         let maxima = [0.5, 10.0, 0.002];
         for (k, value) in maxima.iter().enumerate() {
-            tally[Tally::MAX_SPEED + k] = f32::to_bits(*value);
+            counters[StepCounters::MAX_SPEED + k] = f32::to_bits(*value);
         }
         after = next_state(&params, &before, maxima.map(f64::from));
     }
@@ -224,13 +224,13 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
         Data::Params(params),
         Data::Grid(world.grid),
         Data::State(before),
-        Data::U32(tally),
-        Data::U32(census),
+        Data::U32(counters),
+        Data::U32(cell_counts),
         Data::U32(world.cell_start.clone()),
         Data::U32(ids.clone()),
         slots.poison(),
     ];
-    // All have been taken off the census; where each is stays known.
+    // All have been taken off the cell_counts; where each is stays known.
     let mut taken = vec![0; world.grid.cell_count as usize + 1];
     taken.extend(&cells);
     // The order of arrival is nobody's business: every cell's slots hold its particles.
@@ -240,8 +240,8 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
     expected.sort_unstable();
     let oracle: Check = Box::new(move |out| {
         same_state(&state_of(&out[0]), &after)?;
-        exact("tally", out[1].words(), &[0; Tally::WORDS])?;
-        exact("census", out[2].words(), &taken)?;
+        exact("counters", out[1].words(), &[0; StepCounters::WORDS])?;
+        exact("cell_counts", out[2].words(), &taken)?;
         exact("slots", &in_cells(&starts, &out[3]), &expected.concat())
     });
     let starts = world.cell_start.clone();
@@ -284,7 +284,7 @@ fn places(order: &[u32]) -> Vec<u32> {
 
 fn bounds(world: &World) -> Case {
     let shuffled = world.shuffled();
-    let (_, cells) = shuffled.census(world);
+    let (_, cells) = shuffled.cell_counts(world);
     let ids = shuffled.of(&world.ids);
     let order = places(&shuffled.order);
     let pairs = order.iter().map(|&i| UVec2::new(cells[i as usize], i)).collect();
@@ -305,9 +305,9 @@ fn bounds(world: &World) -> Case {
     })
 }
 
-fn arrange(world: &World) -> Case {
+fn reorder(world: &World) -> Case {
     let shuffled = world.shuffled();
-    let (census, cells) = shuffled.census(world);
+    let (cell_counts, cells) = shuffled.cell_counts(world);
     let ids = shuffled.of(&world.ids);
     // Slots in the order of arrival, which is not that of ids.
     let mut slots = vec![UVec2::ZERO; world.len()];
@@ -324,14 +324,14 @@ fn arrange(world: &World) -> Case {
     ];
     let mut input = vec![
         Data::Grid(world.grid),
-        Data::U32(census),
+        Data::U32(cell_counts),
         Data::U32(world.cell_start.clone()),
         Data::UVec2(slots),
         Data::Vec4(shuffled.of(&world.positions)),
         Data::Vec4(shuffled.of(&world.velocities)),
     ];
     input.extend(sorted.iter().map(Data::poison));
-    case("cells.arrange", "all", world.len(), input, sorted.to_vec(), |input| {
+    case("cells.reorder", "all", world.len(), input, sorted.to_vec(), |input| {
         let Data::U32(starts) = &input[2] else { panic!("no starts") };
         let crowded = starts.windows(2).position(|bounds| bounds[1] - bounds[0] >= 2).unwrap();
         let k = starts[crowded] as usize;

@@ -3,9 +3,9 @@
 use glam::{Vec2, Vec4};
 use splashdown::boundary::KernelPair;
 use splashdown::cells::{Cells, Grid};
-use splashdown::passes::{StepState, Tally};
+use splashdown::passes::{StepCounters, StepState};
 use splashdown::scene::Scene;
-use splashdown::solver::{self, Solver, Things};
+use splashdown::solver::{self, Couplings, Solver};
 use splashdown::{Fields, sample};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuElement, GpuExecutor, Recording, bytemuck, testing};
 
@@ -50,7 +50,7 @@ impl Rig {
         if !way.fuses() {
             fields.make_accelerations(&mut executor).unwrap();
         }
-        executor.write(fields.tally, &[0; Tally::WORDS]).unwrap();
+        executor.write(fields.counters, &[0; StepCounters::WORDS]).unwrap();
         let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();
         let cells = Cells::new(&mut executor, grid, n, scene.solver.sort).unwrap();
         let nudge = |i: usize| 0.01 * (testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5);
@@ -74,8 +74,8 @@ impl Rig {
         let mut count = Recording::new("count");
         cells.record_first_count(&mut count, &fields);
         executor.run(&count).unwrap();
-        let mut step = way.step(&cells, &fields, &Things::default(), n);
-        step.append(&solver::settle(&fields));
+        let mut step = way.step(&cells, &fields, &Couplings::default(), n);
+        step.append(&solver::end_step(&fields));
         Self { executor, fields, cells, step }
     }
 
@@ -98,7 +98,7 @@ impl Rig {
         }
         let (a, b, from, to) = (other.fields, self.fields, &mut other.executor, &mut self.executor);
         carry(from, to, a.state, b.state);
-        carry(from, to, a.tally, b.tally);
+        carry(from, to, a.counters, b.counters);
         carry(from, to, a.ids, b.ids);
         carry(from, to, a.densities, b.densities);
         carry(from, to, other.cells.cell_start, self.cells.cell_start);
@@ -114,21 +114,23 @@ impl Rig {
         }
     }
 
-    /// Positions, velocities, densities, and state with the tally's counters, as floats.
+    /// Positions, velocities, densities, and state with the counters's counters, as floats.
     fn result(&mut self) -> [Vec<f32>; 4] {
         let (fields, executor) = (self.fields, &mut self.executor);
         let positions: Vec<Vec4> = executor.read(fields.positions).unwrap();
         let velocities: Vec<Vec4> = executor.read(fields.velocities).unwrap();
         let densities: Vec<Vec2> = executor.read(fields.densities).unwrap();
         let state = executor.read(fields.state).unwrap()[0];
-        let tally = executor.read(fields.tally).unwrap();
+        let counters = executor.read(fields.counters).unwrap();
         [
             bytemuck::cast_slice(&positions).to_vec(),
             bytemuck::cast_slice(&velocities).to_vec(),
             bytemuck::cast_slice(&densities).to_vec(),
             [state.dt, state.stable_dt, state.time, state.max_speed, state.max_acceleration]
                 .into_iter()
-                .chain(tally[Tally::ESCAPED..=Tally::LIMITED].iter().map(|&count| count as f32))
+                .chain(
+                    counters[StepCounters::ESCAPED..=StepCounters::LIMITED].iter().map(|&count| count as f32),
+                )
                 .collect(),
         ]
     }
@@ -176,7 +178,7 @@ fn the_gpu_may_take_over_at_any_pass() {
             .commands
             .iter()
             .position(
-                |command| matches!(command, Command::Dispatch { pass, .. } if pass.label == "cells.arrange"),
+                |command| matches!(command, Command::Dispatch { pass, .. } if pass.label == "cells.reorder"),
             )
             .unwrap();
         for from in std::iter::once(0).chain(sorted + 1..commands) {

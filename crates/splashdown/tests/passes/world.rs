@@ -171,14 +171,14 @@ pub struct Shuffled {
 }
 
 impl Shuffled {
-    /// The census that counting leaves, and the cells of the particles alone.
-    pub fn census(&self, world: &World) -> (Vec<u32>, Vec<u32>) {
+    /// The cell_counts that counting leaves, and the cells of the particles alone.
+    pub fn cell_counts(&self, world: &World) -> (Vec<u32>, Vec<u32>) {
         let starts = &world.cell_start;
         let cell = |&k: &u32| starts.partition_point(|&start| start <= k) as u32 - 1;
         let cells: Vec<u32> = self.order.iter().map(cell).collect();
-        let mut census: Vec<u32> = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).collect();
-        census.extend(&cells);
-        (census, cells)
+        let mut cell_counts: Vec<u32> = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).collect();
+        cell_counts.extend(&cells);
+        (cell_counts, cells)
     }
 
     pub fn of<T: Copy>(&self, sorted: &[T]) -> Vec<T> {

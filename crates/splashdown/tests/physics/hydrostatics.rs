@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 use splashdown::scene::{DensityMode, Method};
-use splashdown::{Hand, Simulation, sample};
+use splashdown::{MouseForce, Simulation, sample};
 use splashdown_gpu::{Executor, testing};
 
 use super::figures::{Figures, full};
@@ -92,8 +92,8 @@ impl Tank {
     fn settle(&self, executor: Executor, seconds: f32) -> Rest {
         let mut simulation = self.simulation(executor);
         // A hand that does nothing: forces and motion in one pass would leave no accelerations to read.
-        let hand = Hand::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0);
-        simulation.set_hand(Some(hand)).unwrap();
+        let mouse_force = MouseForce::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0);
+        simulation.set_mouse_force(Some(mouse_force)).unwrap();
         assert_eq!(simulation.stats().particles, self.size.iter().product::<u32>());
         simulation.advance(0.7 * seconds).unwrap();
         // The load swings with the last sound waves: its mean over many of them.

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use splashdown::scene::Scene;
 use splashdown::surface::Surface;
-use splashdown::{BodyMesh, Checkpoint, Device, Foam, Hand, KeptFoam, Simulation, SimulationError};
+use splashdown::{BodyMesh, Checkpoint, Device, Foam, KeptFoam, MouseForce, Simulation, SimulationError};
 use splashdown_gpu::{Executor, Gpu, GpuExecutor};
 use web_time::Instant;
 
@@ -43,7 +43,7 @@ pub(super) struct Worker {
     playing: bool,
     wants_surface: bool,
     wants_timing: bool,
-    hand: Option<Hand>,
+    hand: Option<MouseForce>,
     grip: Option<Grip>,
     pace: Pace,
     meter: Meter,
@@ -129,7 +129,7 @@ impl Worker {
             Command::Hand(hand) => {
                 self.hand = hand;
                 if let Some(simulation) = &mut self.simulation {
-                    simulation.set_hand(hand)?;
+                    simulation.set_mouse_force(hand)?;
                 }
             }
             Command::Grip(grip) => self.grip = grip,
@@ -208,7 +208,7 @@ impl Worker {
         let Some(simulation) = &mut self.simulation else { return self.open(scene).await };
         let surface_differs = simulation.scene().surface != scene.surface;
         let foam_differs = simulation.scene().foam != scene.foam;
-        if simulation.adopt(&scene)? {
+        if simulation.update_parameters(&scene)? {
             if foam_differs && let Some(foam) = &self.foam {
                 // Old foam would be where the water was then.
                 foam.clear(simulation.executor())?;
@@ -234,7 +234,7 @@ impl Worker {
         if self.wants_timing {
             simulation.enable_timing();
         }
-        simulation.set_hand(self.hand)?;
+        simulation.set_mouse_force(self.hand)?;
         self.simulation = Some(simulation);
         self.surface = None;
         self.foam = None;

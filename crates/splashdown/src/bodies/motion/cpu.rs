@@ -1,18 +1,18 @@
 use glam::{Quat, Vec3, Vec4};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::bodies::push::quantum;
+use crate::bodies::boundary_force::quantum;
 use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
-use crate::passes::{Params, StepState, Tally};
+use crate::passes::{Params, StepCounters, StepState};
 
 pub(super) fn motion(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, scripts, bodies, sums, tally] = slots else { unreachable!() };
+    let [params, state, scripts, bodies, sums, counters] = slots else { unreachable!() };
     let (params, state) = (&params.get::<Params>(), &state.get::<StepState>());
     if state.run_count == 0 {
         return;
     }
     let scripts = scripts.read::<ScriptSample>();
-    let tally = tally.write::<u32>();
+    let counters = counters.write::<u32>();
     let sums = sums.write::<u32>().chunks_exact_mut(SUM_WORDS);
     for (body, sums) in bodies.write::<Body>().iter_mut().zip(sums) {
         let quantum = quantum(params);
@@ -29,7 +29,7 @@ pub(super) fn motion(_: CpuWork, slots: &mut [Slot<'_>]) {
             _ => continue,
         }
         let speed = body.velocity.length() + body.reach * body.angular_velocity.length();
-        let word = &mut tally[Tally::MAX_SPEED];
+        let word = &mut counters[StepCounters::MAX_SPEED];
         *word = (*word).max(speed.to_bits());
     }
 }

@@ -9,13 +9,13 @@ mod cpu;
 use splashdown_gpu::{PassDesc, read, uniform, write};
 
 use super::types::{self, Body, ScriptSample};
-use crate::passes::{PARAMS, Params, STATE, StepState, TALLY};
+use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static MOTION: PassDesc = PassDesc {
     label: "bodies.motion",
     wgsl: include_str!("motion.wgsl"),
-    imports: &[STATE, PARAMS, TALLY, types::WGSL],
+    imports: &[STATE, PARAMS, STEP_COUNTERS, types::WGSL],
     entry: "motion",
     workgroup_size: [64, 1, 1],
     constants: &[],
@@ -25,7 +25,7 @@ pub static MOTION: PassDesc = PassDesc {
         read::<ScriptSample>("scripts"),
         write::<Body>("bodies"),
         write::<u32>("sums"),
-        write::<u32>("tally"),
+        write::<u32>("counters"),
     ],
     cpu: cpu::motion,
 };

@@ -1,5 +1,5 @@
 #import sph/params
-#import sph/tally
+#import sph/step_counters
 #import sph/body
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -7,7 +7,7 @@
 @group(0) @binding(2) var<storage, read> scripts: array<ScriptSample>;
 @group(0) @binding(3) var<storage, read_write> bodies: array<Body>;
 @group(0) @binding(4) var<storage, read_write> sums: array<u32>;
-@group(0) @binding(5) var<storage, read_write> tally: array<atomic<u32>>;
+@group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
 
 // A sum in its units, and back to zero. The sign first: the halves of a small negative number are large.
 fn taken(word: u32) -> f32 {
@@ -92,5 +92,5 @@ fn motion(@builtin(global_invocation_id) gid: vec3<u32>) {
         return;
     }
     let speed = length(bodies[b].velocity) + bodies[b].reach * length(bodies[b].angular_velocity);
-    atomicMax(&tally[TALLY_MAX_SPEED], bitcast<u32>(speed));
+    atomicMax(&counters[COUNTER_MAX_SPEED], bitcast<u32>(speed));
 }

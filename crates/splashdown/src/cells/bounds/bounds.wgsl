@@ -7,7 +7,7 @@
 @group(0) @binding(2) var<storage, read> pairs: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> ids: array<u32>;
 @group(0) @binding(4) var<storage, read_write> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read_write> slots: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read_write> entries: array<vec2<u32>>;
 
 // One invocation more than particles: the last one closes the cells behind the last particle.
 @compute @workgroup_size(64)
@@ -21,7 +21,7 @@ fn bounds(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     var here = grid.cell_count + 1u;
     if (k < n) {
         here = pairs[k].x;
-        slots[k] = vec2(ids[pairs[k].y], pairs[k].y);
+        entries[k] = vec2(ids[pairs[k].y], pairs[k].y);
     }
     var first = 0u;
     if (k > 0u) {

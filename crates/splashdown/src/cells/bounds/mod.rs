@@ -23,7 +23,7 @@ pub static BOUNDS: PassDesc = PassDesc {
         read::<UVec2>("pairs"),
         read::<u32>("ids"),
         write::<u32>("cell_start"),
-        write::<UVec2>("slots"),
+        write::<UVec2>("entries"),
     ],
     cpu: cpu::bounds,
 };

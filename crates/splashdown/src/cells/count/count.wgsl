@@ -1,15 +1,15 @@
 #import gpu/index
 #import sph/params
 #import sph/grid
-#import sph/census
+#import sph/cell_counts
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> grid: Grid;
 @group(0) @binding(2) var<storage, read> state: StepState;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> velocities: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> census: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> tally: array<atomic<u32>>;
+@group(0) @binding(5) var<storage, read_write> cell_counts: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>>;
 
 // A velocity (xyz) whose square has a value, and a density (w) that has one.
 fn is_moderate(v: vec4<f32>) -> bool {
@@ -27,19 +27,19 @@ fn count(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
     if (p.w == 0.0) {
         if (!is_finite(p.xyz)) {
             positions[i] = vec4(params.domain_min, DEAD_NON_FINITE);
-            atomicAdd(&tally[TALLY_NON_FINITE], 1u);
+            atomicAdd(&counters[COUNTER_NON_FINITE], 1u);
         } else if (!is_moderate(velocities[i])) {
             positions[i].w = DEAD_NON_FINITE;
-            atomicAdd(&tally[TALLY_NON_FINITE], 1u);
+            atomicAdd(&counters[COUNTER_NON_FINITE], 1u);
         } else if (is_outside(p.xyz)) {
             positions[i].w = DEAD_ESCAPED;
-            atomicAdd(&tally[TALLY_ESCAPED], 1u);
+            atomicAdd(&counters[COUNTER_ESCAPED], 1u);
         } else {
             cell = cell_of(p.xyz);
         }
     }
     // After the last step of a frame there is no next one to count for.
-    if (atomicLoad(&tally[TALLY_MOVED]) == 0u || !is_last_step(state.dt, state.remaining)) {
-        enroll(i, cell);
+    if (atomicLoad(&counters[COUNTER_MOVED]) == 0u || !is_last_step(state.dt, state.remaining)) {
+        count_particle(i, cell);
     }
 }

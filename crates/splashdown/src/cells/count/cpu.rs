@@ -5,19 +5,19 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
-use crate::cells::census::{self, Enroller};
-use crate::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState, Tally};
+use crate::cells::cell_counts::{self, CellCounter};
+use crate::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 
 const CHUNK: usize = 4096;
 
 pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, positions, velocities, census, tally] = slots else { unreachable!() };
+    let [params, grid, state, positions, velocities, cell_counts, counters] = slots else { unreachable!() };
     let (params, grid, state) = (&params.get::<Params>(), &grid.get::<Grid>(), state.get::<StepState>());
     let n = state.run_count as usize;
-    let tally = tally.atomics();
+    let counters = counters.atomics();
     // After the last step of a frame there is no next one to count for.
-    let counts_for_none = tally[Tally::MOVED].load(Relaxed) != 0 && state.is_last_step();
-    let (counts, cells) = census::split(grid, census.write());
+    let counts_for_none = counters[StepCounters::MOVED].load(Relaxed) != 0 && state.is_last_step();
+    let (counts, cells) = cell_counts::split(grid, cell_counts.write());
     let classify = |p: &mut Vec4, v: Vec4| {
         let x = p.xyz();
         if p.w != 0.0 {
@@ -25,13 +25,13 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
         }
         if !x.is_finite() {
             *p = params.domain_min.extend(DEAD_NON_FINITE);
-            tally[Tally::NON_FINITE].fetch_add(1, Relaxed);
+            counters[StepCounters::NON_FINITE].fetch_add(1, Relaxed);
         } else if !(v.xyz().length_squared() + v.w).is_finite() {
             p.w = DEAD_NON_FINITE;
-            tally[Tally::NON_FINITE].fetch_add(1, Relaxed);
+            counters[StepCounters::NON_FINITE].fetch_add(1, Relaxed);
         } else if params.is_outside(x) {
             p.w = DEAD_ESCAPED;
-            tally[Tally::ESCAPED].fetch_add(1, Relaxed);
+            counters[StepCounters::ESCAPED].fetch_add(1, Relaxed);
         } else {
             return grid.cell_of(x);
         }
@@ -41,12 +41,12 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
     let velocities = velocities.read::<Vec4>()[..n].par_chunks(CHUNK);
     let cells = cells[..n].par_chunks_mut(CHUNK);
     positions.zip(velocities).zip(cells).for_each(|((positions, velocities), cells)| {
-        let mut enroller = Enroller::new(counts);
+        let mut counter = CellCounter::new(counts);
         for ((p, &v), out) in positions.iter_mut().zip(velocities).zip(cells) {
             let cell = classify(p, v);
             if !counts_for_none {
                 *out = cell;
-                enroller.add(cell);
+                counter.add(cell);
             }
         }
     });

@@ -10,14 +10,14 @@ mod cpu;
 use glam::Vec4;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{CENSUS, GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, StepState, TALLY};
+use super::{CELL_COUNTS, GRID, Grid};
+use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static COUNT: PassDesc = PassDesc {
     label: "cells.count",
     wgsl: include_str!("count.wgsl"),
-    imports: &[wgsl::INDEX, GRID, STATE, PARAMS, TALLY, CENSUS],
+    imports: &[wgsl::INDEX, GRID, STATE, PARAMS, STEP_COUNTERS, CELL_COUNTS],
     entry: "count",
     workgroup_size: [64, 1, 1],
     constants: &[],
@@ -27,8 +27,8 @@ pub static COUNT: PassDesc = PassDesc {
         read::<StepState>("state"),
         write::<Vec4>("positions"),
         read::<Vec4>("velocities"),
-        write::<u32>("census"),
-        write::<u32>("tally"),
+        write::<u32>("cell_counts"),
+        write::<u32>("counters"),
     ],
     cpu: cpu::count,
 };

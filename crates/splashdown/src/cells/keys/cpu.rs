@@ -6,9 +6,9 @@ use crate::cells::Grid;
 use crate::passes::StepState;
 
 pub(super) fn keys(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [grid, state, census, pairs] = slots else { unreachable!() };
+    let [grid, state, cell_counts, pairs] = slots else { unreachable!() };
     let n = state.get::<StepState>().run_count as usize;
-    let cells = &census.read::<u32>()[grid.get::<Grid>().cell_count as usize + 1..][..n];
+    let cells = &cell_counts.read::<u32>()[grid.get::<Grid>().cell_count as usize + 1..][..n];
     pairs.write::<UVec2>()[..n]
         .par_iter_mut()
         .with_min_len(4096)

@@ -19,7 +19,7 @@ pub static KEYS: PassDesc = PassDesc {
     bindings: &[
         uniform::<Grid>("grid"),
         read::<StepState>("state"),
-        read::<u32>("census"),
+        read::<u32>("cell_counts"),
         write::<UVec2>("pairs"),
     ],
     cpu: cpu::keys,

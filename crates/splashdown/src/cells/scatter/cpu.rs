@@ -3,19 +3,19 @@ use std::sync::atomic::Ordering::Relaxed;
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::cells::{Grid, census};
-use crate::passes::settle::settle_step;
+use crate::cells::{Grid, cell_counts};
+use crate::passes::end_step::finish_step;
 use crate::passes::{Params, StepState};
 
 const CHUNK: usize = 4096;
 
 pub(super) fn scatter(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, tally, census, cell_start, ids, out] = slots else { unreachable!() };
-    settle_step(&params.get::<Params>(), &mut state.write::<StepState>()[0], tally.write());
+    let [params, grid, state, counters, cell_counts, cell_start, ids, out] = slots else { unreachable!() };
+    finish_step(&params.get::<Params>(), &mut state.write::<StepState>()[0], counters.write());
     let grid = grid.get::<Grid>();
     let cell_start = cell_start.read::<u32>();
     let n = cell_start[grid.cell_count as usize + 1] as usize;
-    let (counts, cells) = census::split(&grid, census.write());
+    let (counts, cells) = cell_counts::split(&grid, cell_counts.write());
     // Every place is written once; relaxed atomic stores are plain ones that two threads may make side by side.
     let out = out.atomics();
     let chunks = cells[..n].par_chunks(CHUNK).zip(ids.read::<u32>()[..n].par_chunks(CHUNK));

@@ -1,6 +1,6 @@
-//! Puts the id and the number of every particle into its cell's part of `slots`, in the order of arrival.
+//! Puts the id and the number of every particle into its cell's part of `entries`, in the order of arrival.
 //!
-//! Each one takes itself off the census: what is left of its cell's number tells the place, and once all are placed all
+//! Each one takes itself off the cell_counts: what is left of its cell's number tells the place, and once all are placed all
 //! numbers are zero again, ready for the next count. So nothing has to be cleared, and no rank to be written and read.
 //!
 //! The first invocation settles the step before, which a dispatch of its own would do otherwise.
@@ -11,13 +11,13 @@ use glam::UVec2;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, STEPS, StepState, TALLY};
+use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
 
 /// See the module.
 pub static SCATTER: PassDesc = PassDesc {
     label: "cells.scatter",
     wgsl: include_str!("scatter.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, TALLY, STEPS],
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, STEP_COUNTERS, STEPS],
     entry: "scatter",
     workgroup_size: [64, 1, 1],
     constants: &[],
@@ -25,11 +25,11 @@ pub static SCATTER: PassDesc = PassDesc {
         uniform::<Params>("params"),
         uniform::<Grid>("grid"),
         write::<StepState>("state"),
-        write::<u32>("tally"),
-        write::<u32>("census"),
+        write::<u32>("counters"),
+        write::<u32>("cell_counts"),
         read::<u32>("cell_start"),
         read::<u32>("ids"),
-        write::<UVec2>("slots"),
+        write::<UVec2>("entries"),
     ],
     cpu: cpu::scatter,
 };

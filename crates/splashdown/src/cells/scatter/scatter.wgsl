@@ -6,23 +6,23 @@
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> grid: Grid;
 @group(0) @binding(2) var<storage, read_write> state: StepState;
-@group(0) @binding(3) var<storage, read_write> tally: array<u32>;
-@group(0) @binding(4) var<storage, read_write> census: array<atomic<u32>>;
+@group(0) @binding(3) var<storage, read_write> counters: array<u32>;
+@group(0) @binding(4) var<storage, read_write> cell_counts: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(6) var<storage, read> ids: array<u32>;
-@group(0) @binding(7) var<storage, read_write> slots: array<vec2<u32>>;
+@group(0) @binding(7) var<storage, read_write> entries: array<vec2<u32>>;
 
 @compute @workgroup_size(64)
 fn scatter(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (i == 0u) {
-        settle_step();
+        finish_step();
     }
     // How many there are is known from the count: nobody but the first invocation looks at the state.
     if (i >= cell_start[grid.cell_count + 1u]) {
         return;
     }
-    let cell = atomicLoad(&census[grid.cell_count + 1u + i]);
-    let left = atomicSub(&census[cell], 1u);
-    slots[cell_start[cell + 1u] - left] = vec2(ids[i], i);
+    let cell = atomicLoad(&cell_counts[grid.cell_count + 1u + i]);
+    let left = atomicSub(&cell_counts[cell], 1u);
+    entries[cell_start[cell + 1u] - left] = vec2(ids[i], i);
 }

@@ -2,14 +2,14 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
-use crate::flow::{Nozzle, Plan};
+use crate::flow::{EmissionSchedule, Nozzle};
 use crate::passes::Params;
 
 /// Nothing is born nearer to another particle than this many spacings.
 const NEAREST: f32 = 0.7;
 
 pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, cell_start, nozzles, points, plans, positions, velocities, ids, densities] = slots
+    let [params, grid, cell_start, nozzles, points, schedules, positions, velocities, ids, densities] = slots
     else {
         unreachable!()
     };
@@ -17,26 +17,26 @@ pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
     let (cell_start, points) = (cell_start.read::<u32>(), points.read::<Vec4>());
     let (positions, velocities) = (positions.write::<Vec4>(), velocities.write::<Vec4>());
     let (ids, densities) = (ids.write::<u32>(), densities.write::<Vec2>());
-    let plans = plans.write::<u32>().chunks_exact_mut(Plan::WORDS);
-    for (nozzle, plan) in nozzles.read::<Nozzle>().iter().zip(plans) {
-        if plan[Plan::LAYER] == 0 {
+    let schedules = schedules.write::<u32>().chunks_exact_mut(EmissionSchedule::WORDS);
+    for (nozzle, plan) in nozzles.read::<Nozzle>().iter().zip(schedules) {
+        if plan[EmissionSchedule::LAYER] == 0 {
             continue;
         }
-        let distance = f32::from_bits(plan[Plan::DISTANCE]);
+        let distance = f32::from_bits(plan[EmissionSchedule::DISTANCE]);
         let first = nozzle.first_point as usize;
         for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
             let forward = (distance + q.z) * nozzle.direction;
             let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
             if !is_free(&params, &grid, cell_start, positions, x) {
-                plan[Plan::BLOCKED] += 1;
+                plan[EmissionSchedule::BLOCKED] += 1;
                 continue;
             }
-            let slot = plan[Plan::SLOT] as usize + place;
+            let slot = plan[EmissionSchedule::SLOT] as usize + place;
             positions[slot] = x.extend(0.0);
             velocities[slot] = (nozzle.speed * nozzle.direction).extend(params.rest_density);
-            ids[slot] = plan[Plan::ID] + place as u32;
+            ids[slot] = plan[EmissionSchedule::ID] + place as u32;
             densities[slot] = Vec2::new(params.rest_density, 0.0);
-            plan[Plan::EMITTED] += 1;
+            plan[EmissionSchedule::EMITTED] += 1;
         }
     }
 }

@@ -9,7 +9,7 @@
 @group(0) @binding(2) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(3) var<storage, read> nozzles: array<Nozzle>;
 @group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> plans: array<atomic<u32>>;
+@group(0) @binding(5) var<storage, read_write> schedules: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> velocities: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> ids: array<u32>;
@@ -44,22 +44,22 @@ fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
         return;
     }
     let nozzle = nozzles[k];
-    let w = k * PLAN_WORDS;
-    if (atomicLoad(&plans[w + PLAN_LAYER]) == 0u) {
+    let w = k * SCHEDULE_WORDS;
+    if (atomicLoad(&schedules[w + SCHEDULE_LAYER]) == 0u) {
         return;
     }
     let q = points[i];
-    let distance = bitcast<f32>(atomicLoad(&plans[w + PLAN_DISTANCE]));
+    let distance = bitcast<f32>(atomicLoad(&schedules[w + SCHEDULE_DISTANCE]));
     let x = nozzle.back + (distance + q.z) * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
     if (!is_free(x)) {
-        atomicAdd(&plans[w + PLAN_BLOCKED], 1u);
+        atomicAdd(&schedules[w + SCHEDULE_BLOCKED], 1u);
         return;
     }
     let place = i - nozzle.first_point;
-    let slot = atomicLoad(&plans[w + PLAN_SLOT]) + place;
+    let slot = atomicLoad(&schedules[w + SCHEDULE_SLOT]) + place;
     positions[slot] = vec4(x, 0.0);
     velocities[slot] = vec4(nozzle.speed * nozzle.direction, params.rest_density);
-    ids[slot] = atomicLoad(&plans[w + PLAN_ID]) + place;
+    ids[slot] = atomicLoad(&schedules[w + SCHEDULE_ID]) + place;
     densities[slot] = vec2(params.rest_density, 0.0);
-    atomicAdd(&plans[w + PLAN_EMITTED], 1u);
+    atomicAdd(&schedules[w + SCHEDULE_EMITTED], 1u);
 }

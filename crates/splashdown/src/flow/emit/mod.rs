@@ -1,4 +1,4 @@
-//! Writes the particles of the layers that are due ([`plan`](super::plan)).
+//! Writes the particles of the layers that are due ([`emission_schedule`](super::plan)).
 //!
 //! The sorted order of the step still holds: particles have moved by half a spacing at most since, so that the
 //! 27 cells show everything within reach. Where another particle is in the way, as in an outlet under water,
@@ -27,7 +27,7 @@ pub static EMIT: PassDesc = PassDesc {
         read::<u32>("cell_start"),
         read::<Nozzle>("nozzles"),
         read::<Vec4>("points"),
-        write::<u32>("plans"),
+        write::<u32>("schedules"),
         write::<Vec4>("positions"),
         write::<Vec4>("velocities"),
         write::<u32>("ids"),

@@ -9,7 +9,7 @@
 //! with v = v_i - v_j and h = H / 2: the diffusion of Molteni & Colagrossi (2009), where psi_ij = rho_j - rho_i
 //! less what hydrostatics alone makes of it (Fourtakas et al. 2019). The walls' share is twice the v_i.G of a
 //! solid at rest: behind a wall stands an image of the particle, which answers its pressure in
-//! [`momentum`](super::momentum) and moves when it moves.
+//! [`acceleration`](super::acceleration) and moves when it moves.
 //!
 //! The density is advanced first, with the velocities that the particles have, and the velocities after it, with the
 //! pressure of the new density: symplectic for sound. Advancing both from the old state, as explicit Euler would, makes

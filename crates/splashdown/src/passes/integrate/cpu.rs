@@ -2,7 +2,7 @@ use glam::{Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::passes::StepState;
-use crate::passes::moving::{Before, Resting, advance_all};
+use crate::passes::advance::{Before, Persistent, advance_all};
 
 pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [
@@ -15,8 +15,8 @@ pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) 
         accelerations,
         positions,
         velocities,
-        tally,
-        census,
+        counters,
+        cell_counts,
     ] = slots
     else {
         unreachable!()
@@ -30,13 +30,13 @@ pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) 
         velocities: sorted_velocities.read(),
         densities: densities.read(),
     };
-    let resting = Resting {
+    let persistent = Persistent {
         positions: positions.write(),
         velocities: velocities.write(),
-        tally: tally.write(),
-        census: census.write(),
+        counters: counters.write(),
+        cell_counts: cell_counts.write(),
     };
     let accelerations = accelerations.read::<Vec4>();
     let constants = (&params.get(), &grid.get(), &state);
-    advance_all(constants, before, resting, COUNTS, |i, _| accelerations[i].xyz());
+    advance_all(constants, before, persistent, COUNTS, |i, _| accelerations[i].xyz());
 }

@@ -1,7 +1,7 @@
 #import gpu/index
 #import sph/params
 #import sph/grid
-#import sph/moving
+#import sph/advance
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> grid: Grid;
@@ -12,8 +12,8 @@
 @group(0) @binding(6) var<storage, read> accelerations: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> velocities: array<vec4<f32>>;
-@group(0) @binding(9) var<storage, read_write> tally: array<atomic<u32>>;
-@group(0) @binding(10) var<storage, read_write> census: array<atomic<u32>>;
+@group(0) @binding(9) var<storage, read_write> counters: array<atomic<u32>>;
+@group(0) @binding(10) var<storage, read_write> cell_counts: array<atomic<u32>>;
 
 override COUNTS: u32 = 1u; // 0 leaves the count for the next step to another pass
 
@@ -23,13 +23,13 @@ fn integrate(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    begin_moving(local);
+    begin_advance(local);
     let i = linear_index(gid, groups, 256u);
     if (i < state.run_count) {
         let cell = advance(i, sorted_positions[i], sorted_velocities[i], densities[i].x, accelerations[i].xyz);
         if (COUNTS == 1u && !is_last_step(state.dt, state.remaining)) {
-            enroll(i, cell);
+            count_particle(i, cell);
         }
     }
-    end_moving(i, local);
+    end_advance(i, local);
 }

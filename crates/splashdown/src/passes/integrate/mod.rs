@@ -1,4 +1,4 @@
-//! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the resting ones.
+//! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the persistent ones.
 //!
 //! It is the leap-frog of the thesis read at half steps: v here is v at t + dt/2 there. Closed walls are a
 //! contact in the velocities: a particle nearer than a quarter of a spacing, or on its way there within this
@@ -15,14 +15,14 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{MOVING, PARAMS, Params, STATE, StepState, TALLY};
-use crate::cells::{CENSUS, GRID, Grid};
+use super::{ADVANCE, PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+use crate::cells::{CELL_COUNTS, GRID, Grid};
 
 /// See the module.
 pub static INTEGRATE: PassDesc = PassDesc {
     label: "integrate",
     wgsl: include_str!("integrate.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, TALLY, GRID, CENSUS, MOVING],
+    imports: &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, GRID, CELL_COUNTS, ADVANCE],
     entry: "integrate",
     workgroup_size: [256, 1, 1],
     constants: &[],
@@ -36,8 +36,8 @@ pub static INTEGRATE: PassDesc = PassDesc {
         read::<Vec4>("accelerations"),
         write::<Vec4>("positions"),
         write::<Vec4>("velocities"),
-        write::<u32>("tally"),
-        write::<u32>("census"),
+        write::<u32>("counters"),
+        write::<u32>("cell_counts"),
     ],
     cpu: cpu::integrate::<true>,
 };

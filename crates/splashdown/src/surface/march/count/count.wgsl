@@ -29,7 +29,7 @@ fn count(
     let slot = linear_group(group, groups);
     let is_filled = slot < status.blocks;
     var edges = 0u;
-    var tally = 0u;
+    var counters = 0u;
     if is_filled {
         let place = block_place(block_list[slot]);
         let y = row & 7u;
@@ -44,13 +44,13 @@ fn count(
         let y_edges = (here.x ^ here.y) & 255u;
         let z_edges = (here.x ^ here.z) & 255u;
         edges = x_edges | (y_edges << 8u) | (z_edges << 16u);
-        tally = countOneBits(edges);
+        counters = countOneBits(edges);
         edges |= here.x << 24u;
         for (var x = 0u; x < 8u; x++) {
-            tally += (cases[cell_case(here, x)].y >> 28u) << 16u;
+            counters += (cases[cell_case(here, x)].y >> 28u) << 16u;
         }
     }
-    tallies[row] = tally;
+    tallies[row] = counters;
     workgroupBarrier();
     if is_filled {
         var before = 0u;
@@ -59,8 +59,8 @@ fn count(
         }
         rows[slot * 64u + row] = vec2<u32>(edges, before);
         if row == 63u {
-            vertex_counts[slot] = (before + tally) & 0xffffu;
-            triangle_counts[slot] = (before + tally) >> 16u;
+            vertex_counts[slot] = (before + counters) & 0xffffu;
+            triangle_counts[slot] = (before + counters) >> 16u;
         }
     }
 }

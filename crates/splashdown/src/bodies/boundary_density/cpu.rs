@@ -1,0 +1,43 @@
+use glam::{Vec2, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::bodies::types::{Body, Contact};
+use crate::passes::{Params, StepState};
+
+const CHUNK: usize = 4096;
+
+pub(super) fn boundary_density<const CONTINUITY: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, state, living, bodies, contacts, positions, velocities, densities] = slots else {
+        unreachable!()
+    };
+    let (params, state) = (&params.get::<Params>(), state.get::<StepState>());
+    let living = living.read::<u32>();
+    let n = living[living.len() - 2] as usize;
+    let bodies = bodies.read::<Body>();
+    let contacts = contacts.read::<Contact>().as_chunks::<2>().0;
+    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
+    densities.write::<Vec2>()[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, densities)| {
+        for (k, density) in densities.iter_mut().enumerate() {
+            let i = chunk * CHUNK + k;
+            let pair = &contacts[i];
+            if pair[0].body == Contact::NONE {
+                continue;
+            }
+            let mut rho = density.x;
+            if CONTINUITY {
+                let (x, v) = (positions[i].xyz(), velocities[i]);
+                let flow: f32 = pair
+                    .iter()
+                    .filter(|contact| contact.body != Contact::NONE)
+                    .map(|contact| contact.slope.dot(v.xyz() - bodies[contact.body as usize].velocity_at(x)))
+                    .sum();
+                rho -= state.dt * 2.0 * v.w * flow;
+            } else {
+                let open = (1.0 - pair[0].density) * (1.0 - pair[1].density);
+                rho += params.rest_density * (1.0 - open);
+            }
+            *density = Vec2::new(rho, params.pressure_at(rho));
+        }
+    });
+}

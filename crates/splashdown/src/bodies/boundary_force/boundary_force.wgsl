@@ -1,0 +1,156 @@
+#import gpu/index
+#import sph/params
+#import sph/planes
+#import sph/body
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> state: StepState;
+@group(0) @binding(2) var<storage, read> bodies: array<Body>;
+@group(0) @binding(3) var<storage, read> contact_list: array<Contact>;
+@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
+@group(0) @binding(7) var<storage, read_write> accelerations: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> sums: array<atomic<u32>>;
+
+// Adds to a 64-bit fixed-point number; see boundary_force/mod.rs.
+fn add(word: u32, value: f32) {
+    // A million of the largest terms still fit into the sum.
+    let units = round(clamp(value, -1e12, 1e12));
+    let high = floor(units / 4294967296.0);
+    let low = u32(units - high * 4294967296.0);
+    let before = atomicAdd(&sums[word], low);
+    let carry = select(0u, 1u, before > 0xffffffffu - low);
+    atomicAdd(&sums[word + 1u], bitcast<u32>(i32(high)) + carry);
+}
+
+fn react(b: u32, point: vec3<f32>, force: vec3<f32>) {
+    let quantum = 1e-5 * params.particle_mass;
+    let torque = cross(point - bodies[b].position, force);
+    for (var axis = 0u; axis < 3u; axis++) {
+        add(SUM_WORDS * b + 2u * axis, force[axis] / quantum);
+        add(SUM_WORDS * b + 6u + 2u * axis, torque[axis] / (quantum * params.support_radius));
+    }
+}
+
+// The open part of the kernel that the box leaves along a direction: its sides across it count.
+fn open_beside(x: vec3<f32>, n: vec3<f32>) -> f32 {
+    let low = x - params.domain_min;
+    let high = params.domain_max - x;
+    var open = 1.0;
+    for (var axis = 0u; axis < 3u; axis++) {
+        var distance = 1e30;
+        if (((params.closed >> (2u * axis)) & 1u) == 1u) {
+            distance = low[axis];
+        }
+        if (((params.closed >> (2u * axis + 1u)) & 1u) == 1u) {
+            distance = min(distance, high[axis]);
+        }
+        let kernel_fraction = wall_plane_gradient(max(distance, 0.0) / params.support_radius).x;
+        open *= 1.0 - kernel_fraction * (1.0 - n[axis] * n[axis]);
+    }
+    return open;
+}
+
+struct Effect {
+    // By the body.
+    direct: vec3<f32>,
+    normal: vec3<f32>,
+}
+
+fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: vec3<f32>) -> Effect {
+    let contact = contact_list[2u * i + k];
+    let b = contact.body;
+    let x = sorted_positions[i].xyz;
+    let scale = 1.0 / params.support_radius;
+    let steep = length(contact.slope);
+    let n = select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
+    let across = dot(n, other_normal);
+    let open = open_beside(x, n) * (1.0 - other_fraction * (1.0 - across * across));
+
+    let rho = densities[i].x;
+    let pressure = densities[i].y;
+    let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+    let effective = max(contact.effective, 0.0);
+    var a = push * contact.slope;
+    if (push > 0.0) {
+        a -= (contact.kernel_fraction + steep * effective) * dot(n, body) * n;
+    }
+    a = a / max(open, 0.1);
+
+    let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
+    let v = sorted_velocities[i].xyz - wall;
+    let vn = dot(v, n);
+    let q = min(effective * scale, 1.0);
+    let t = 1.0 - q;
+    if (vn < 0.0) {
+        let damping = params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
+        a -= damping / (1.0 + damping * state.dt) * vn * n;
+    }
+    let viscosity = params.viscosity
+        + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
+    let friction = bodies[b].friction * 2.0 * viscosity * steep / max(effective, 0.25 * params.particle_spacing);
+    a -= friction / (1.0 + friction * state.dt) * (v - vn * n);
+    if (q > 0.5) {
+        let spline = max(-4.0 * q * q + 6.0 * q - 2.0, 0.0);
+        a -= bodies[b].adhesion * sqrt(sqrt(4.0 * spline)) * n;
+    }
+    return Effect(a, n);
+}
+
+// The acceleration that keeps a particle with velocity `v` after this step out of the body.
+fn held_off(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
+    let contact = contact_list[2u * i + k];
+    let b = contact.body;
+    let x = sorted_positions[i].xyz;
+    let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
+    let slowest = -max(contact.distance - 0.25 * params.particle_spacing, 0.0) / state.dt;
+    return max(slowest - dot(v - wall, contact.normal), 0.0) / state.dt * contact.normal;
+}
+
+@compute @workgroup_size(64)
+fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= state.run_count || sorted_positions[i].w != 0.0 || contact_list[2u * i].body == NO_BODY) {
+        return;
+    }
+    let both = contact_list[2u * i + 1u].body != NO_BODY;
+    let body = body_acceleration(state.time);
+    var a = accelerations[i].xyz - body;
+    var reaction: array<vec3<f32>, 2>;
+    var normals: array<vec3<f32>, 2>;
+    for (var k = 0u; k < 2u; k++) {
+        if (k == 1u && !both) {
+            continue;
+        }
+        let other_fraction = select(0.0, contact_list[2u * i + 1u - k].kernel_fraction, both);
+        let other_normal = contact_list[2u * i + 1u - k].normal;
+        let one = effect(i, k, other_fraction, other_normal, body);
+        reaction[k] = one.direct;
+        normals[k] = one.normal;
+    }
+    for (var k = 0u; k < 2u; k++) {
+        if (k == 0u || both) {
+            // What acts along the surface goes on in the solid.
+            let kernel_fraction = clamp(contact_list[2u * i + k].kernel_fraction, 0.0, 0.6);
+            a += kernel_fraction / (1.0 - kernel_fraction) * (a - dot(a, normals[k]) * normals[k]);
+        }
+    }
+    a += reaction[0] + reaction[1] + body;
+    let v = sorted_velocities[i].xyz;
+    for (var k = 0u; k < 2u; k++) {
+        if (k == 0u || both) {
+            let hold = held_off(i, k, v + state.dt * a);
+            a += hold;
+            reaction[k] += hold;
+        }
+    }
+    accelerations[i] = vec4(a, 0.0);
+    for (var k = 0u; k < 2u; k++) {
+        let contact = contact_list[2u * i + k];
+        if (contact.body != NO_BODY) {
+            let x = sorted_positions[i].xyz - contact.distance * contact.normal;
+            react(contact.body, x, -params.particle_mass * reaction[k]);
+        }
+    }
+}

@@ -1,0 +1,185 @@
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use super::quantum;
+use crate::bodies::types::{Body, Contact, SUM_WORDS};
+use crate::boundary::{KernelPair, WallKernel};
+use crate::passes::{Params, StepState};
+
+const CHUNK: usize = 4096;
+
+pub(super) fn boundary_force<K: WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, state, bodies, contacts, positions, velocities, densities, accelerations, sums] = slots
+    else {
+        unreachable!()
+    };
+    let (params, state) = (&params.get::<Params>(), &state.get::<StepState>());
+    let n = state.run_count as usize;
+    let (bodies, contacts) = (bodies.read::<Body>(), contacts.read::<Contact>().as_chunks::<2>().0);
+    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
+    let densities = densities.read::<Vec2>();
+    let wall_body = params.body_acceleration(state.time);
+    let totals: Vec<Vec<[i64; 6]>> = accelerations.write::<Vec4>()[..n]
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .map(|(chunk, accelerations)| {
+            let mut totals = Vec::new();
+            for (k, a) in accelerations.iter_mut().enumerate() {
+                let i = chunk * CHUNK + k;
+                if positions[i].w != 0.0 || contacts[i][0].body == Contact::NONE {
+                    continue;
+                }
+                totals.resize(bodies.len(), [0; 6]);
+                let pushed = Pushed {
+                    params,
+                    dt: state.dt,
+                    wall_body,
+                    kernels: K::WALLS,
+                    x: positions[i].xyz(),
+                    v: velocities[i].xyz(),
+                    density: densities[i],
+                    contacts: &contacts[i],
+                    bodies,
+                };
+                pushed.run(a, &mut totals);
+            }
+            totals
+        })
+        .collect();
+    let sums = sums.write::<u32>();
+    for (b, words) in sums.chunks_exact_mut(SUM_WORDS).enumerate() {
+        for (component, pair) in words.chunks_exact_mut(2).enumerate() {
+            let before = u64::from(pair[0]) | u64::from(pair[1]) << 32;
+            let more: i64 = totals.iter().filter_map(|chunk| chunk.get(b)).map(|sum| sum[component]).sum();
+            let after = before.wrapping_add(more as u64);
+            (pair[0], pair[1]) = (after as u32, (after >> 32) as u32);
+        }
+    }
+}
+
+/// One particle that feels bodies.
+struct Pushed<'a> {
+    params: &'a Params,
+    dt: f32,
+    wall_body: Vec3,
+    kernels: KernelPair,
+    x: Vec3,
+    v: Vec3,
+    density: Vec2,
+    contacts: &'a [Contact; 2],
+    bodies: &'a [Body],
+}
+
+impl Pushed<'_> {
+    fn run(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
+        let used = if self.contacts[1].body == Contact::NONE { 1 } else { 2 };
+        let mut a = acceleration.xyz() - self.wall_body;
+        let both = used == 2;
+        let second = if both { self.effect(1, both) } else { (Vec3::ZERO, Vec3::ZERO) };
+        let (mut reaction, normals): ([Vec3; 2], [Vec3; 2]) = {
+            let first = self.effect(0, both);
+            ([first.0, second.0], [first.1, second.1])
+        };
+        for (contact, normal) in self.contacts.iter().zip(normals).take(used) {
+            // What acts along the surface goes on in the solid.
+            let kernel_fraction = contact.kernel_fraction.clamp(0.0, 0.6);
+            a += kernel_fraction / (1.0 - kernel_fraction) * (a - a.dot(normal) * normal);
+        }
+        a += reaction[0] + reaction[1] + self.wall_body;
+        for (k, reaction) in reaction.iter_mut().enumerate().take(used) {
+            let hold = self.held_off(k, self.v + self.dt * a);
+            a += hold;
+            *reaction += hold;
+        }
+        *acceleration = a.extend(0.0);
+        for (contact, reaction) in self.contacts.iter().zip(reaction).take(used) {
+            let body = &self.bodies[contact.body as usize];
+            let force = -self.params.particle_mass * reaction;
+            let point = self.x - contact.distance * contact.normal;
+            let torque = (point - body.position).cross(force);
+            let quantum = quantum(self.params);
+            let total = &mut totals[contact.body as usize];
+            for axis in 0..3 {
+                total[axis] += fixed(force[axis] / quantum);
+                total[3 + axis] += fixed(torque[axis] / (quantum * self.params.support_radius));
+            }
+        }
+    }
+
+    fn wall_velocity(&self, contact: &Contact) -> Vec3 {
+        self.bodies[contact.body as usize].velocity_at(self.x)
+    }
+
+    /// The acceleration by a body, and the direction in which its pressure acts.
+    fn effect(&self, k: usize, both: bool) -> (Vec3, Vec3) {
+        let (params, contact) = (self.params, &self.contacts[k]);
+        let other = &self.contacts[1 - k];
+        let body = &self.bodies[contact.body as usize];
+        let scale = 1.0 / params.support_radius;
+        let steep = contact.slope.length();
+        let n = if steep > 1e-3 * scale { contact.slope / steep.max(1e-20) } else { contact.normal };
+        let across = n.dot(other.normal);
+        let other_fraction = if both { other.kernel_fraction } else { 0.0 };
+        let open = self.open_beside(n) * (1.0 - other_fraction * (1.0 - across * across));
+
+        let [rho, pressure] = self.density.to_array();
+        let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+        let effective = contact.effective.max(0.0);
+        let mut a = push * contact.slope;
+        if push > 0.0 {
+            a -= (contact.kernel_fraction + steep * effective) * n.dot(self.wall_body) * n;
+        }
+        a /= open.max(0.1);
+
+        let v = self.v - self.wall_velocity(contact);
+        let vn = v.dot(n);
+        let q = (effective * scale).min(1.0);
+        let t = 1.0 - q;
+        if vn < 0.0 {
+            let damping =
+                params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
+            a -= damping / (1.0 + damping * self.dt) * vn * n;
+        }
+        let viscosity = params.viscosity
+            + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
+        let friction =
+            body.friction * 2.0 * viscosity * steep / effective.max(0.25 * params.particle_spacing);
+        a -= friction / (1.0 + friction * self.dt) * (v - vn * n);
+        if q > 0.5 {
+            let spline = (-4.0 * q * q + 6.0 * q - 2.0).max(0.0);
+            a -= body.adhesion * (4.0 * spline).sqrt().sqrt() * n;
+        }
+        (a, n)
+    }
+
+    /// The open part of the kernel that the box leaves along a direction: its sides across it count.
+    fn open_beside(&self, n: Vec3) -> f32 {
+        let params = self.params;
+        let (low, high) = (self.x - params.domain_min, params.domain_max - self.x);
+        let closed = |bit: usize| params.closed >> bit & 1 == 1;
+        (0..3)
+            .map(|axis| {
+                let below = if closed(2 * axis) { low[axis] } else { 1e30 };
+                let above = if closed(2 * axis + 1) { high[axis] } else { 1e30 };
+                let q = below.min(above).max(0.0) / params.support_radius;
+                let kernel_fraction = if q < 1.0 { self.kernels.gradient(q).0 } else { 0.0 };
+                1.0 - kernel_fraction * (1.0 - n[axis] * n[axis])
+            })
+            .product()
+    }
+
+    /// The acceleration that keeps a particle with velocity `v` after this step out of a body.
+    fn held_off(&self, k: usize, v: Vec3) -> Vec3 {
+        let contact = &self.contacts[k];
+        let slowest = -(contact.distance - 0.25 * self.params.particle_spacing).max(0.0) / self.dt;
+        let toward = (v - self.wall_velocity(contact)).dot(contact.normal);
+        (slowest - toward).max(0.0) / self.dt * contact.normal
+    }
+}
+
+/// Whole units of a sum; NaN counts as none.
+fn fixed(value: f32) -> i64 {
+    // A million of the largest terms still fit into the sum.
+    value.clamp(-1e12, 1e12).round_ties_even() as i64
+}

@@ -1,0 +1,179 @@
+#import gpu/index
+#import sph/params
+#import sph/step_counters
+#import sph/kernel
+#import sph/planes
+#import sph/body
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> living: array<u32>;
+@group(0) @binding(2) var<storage, read> bodies: array<Body>;
+@group(0) @binding(3) var<storage, read> maps: array<vec2<f32>>;
+@group(0) @binding(4) var<storage, read_write> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> contact_list: array<Contact>;
+@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>>;
+
+// The map at a point of the mesh's frame: distance, effective distance and their gradients.
+struct Field {
+    distance: f32,
+    effective: f32,
+    distance_gradient: vec3<f32>,
+    effective_gradient: vec3<f32>,
+}
+
+fn nothing() -> Contact {
+    return Contact(vec3(0.0), 0.0, vec3(0.0), 1e30, 0.0, 1e30, NO_BODY, 0u);
+}
+
+// (D, A) on both sides of the wall.
+fn plane_through(q: f32) -> vec2<f32> {
+    let plane = wall_plane_gradient(abs(q));
+    return select(plane, vec2(1.0 - plane.x, plane.y), q < 0.0);
+}
+
+fn density_through(q: f32) -> f32 {
+    let d = wall_plane(abs(q)).x;
+    return select(d, 1.0 - d, q < 0.0);
+}
+
+fn field_at(b: u32, y: vec3<f32>) -> Field {
+    let size = vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z);
+    let inverse = 1.0 / bodies[b].cell_size;
+    let at = (y - bodies[b].field_min) * inverse;
+    let cell = min(vec3<u32>(at), size - vec3(2u));
+    let f = at - vec3<f32>(cell);
+    let row = size.x;
+    let plane = size.x * size.y;
+    let first = bodies[b].first_node + cell.z * plane + cell.y * row + cell.x;
+    let c000 = maps[first];
+    let c100 = maps[first + 1u];
+    let c010 = maps[first + row];
+    let c110 = maps[first + row + 1u];
+    let c001 = maps[first + plane];
+    let c101 = maps[first + plane + 1u];
+    let c011 = maps[first + plane + row];
+    let c111 = maps[first + plane + row + 1u];
+    let x00 = mix(c000, c100, f.x);
+    let x10 = mix(c010, c110, f.x);
+    let x01 = mix(c001, c101, f.x);
+    let x11 = mix(c011, c111, f.x);
+    let y0 = mix(x00, x10, f.y);
+    let y1 = mix(x01, x11, f.y);
+    let value = mix(y0, y1, f.z);
+    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z) * inverse;
+    let dy = mix(x10 - x00, x11 - x01, f.z) * inverse;
+    let dz = (y1 - y0) * inverse;
+    return Field(value.x, value.y, vec3(dx.x, dy.x, dz.x), vec3(dx.y, dy.y, dz.y));
+}
+
+// The q at which a plane wall has this share.
+fn q_of_fraction(kernel_fraction: f32) -> f32 {
+    var low = -1.0;
+    var high = 1.0;
+    for (var k = 0u; k < 16u; k++) {
+        let middle = 0.5 * (low + high);
+        if (plane_through(middle).x > kernel_fraction) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+// The boundary particles round a point of the mesh's frame: minus the gradient of their share, and the share.
+fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
+    let scale = 1.0 / params.support_radius;
+    let scale3 = scale * scale * scale;
+    let size = vec3<i32>(vec3(bodies[b].samples_x, bodies[b].samples_y, bodies[b].samples_z));
+    let home = vec3<i32>(floor((y - bodies[b].field_min) * scale));
+    let low = max(home - vec3(1), vec3(0));
+    let high = min(home + vec3(1), size - vec3(1));
+    var sum = vec4(0.0);
+    for (var z = low.z; z <= high.z; z++) {
+        for (var yy = low.y; yy <= high.y; yy++) {
+            for (var x = low.x; x <= high.x; x++) {
+                let cell = bodies[b].first_sample_cell + u32((z * size.y + yy) * size.x + x);
+                let range = bitcast<vec2<u32>>(maps[cell]);
+                for (var k = range.x; k < range.y; k++) {
+                    let xy = maps[2u * k];
+                    let zv = maps[2u * k + 1u];
+                    let d = y - vec3(xy, zv.x);
+                    let q = length(d) * scale;
+                    if (q < 1.0) {
+                        sum += zv.y * scale3 * vec4(-kernel_g(q) * scale * scale * d, kernel_w(q));
+                    }
+                }
+            }
+        }
+    }
+    return sum;
+}
+
+fn contact_with(b: u32, x: vec3<f32>) -> Contact {
+    let away = x - bodies[b].position;
+    if (dot(away, away) >= bodies[b].radius * bodies[b].radius) {
+        return nothing();
+    }
+    let orientation = bodies[b].orientation;
+    let y = turned_back(orientation, away) + bodies[b].center;
+    let size = vec3<f32>(vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z) - vec3(1u));
+    let high = bodies[b].field_min + size * bodies[b].cell_size;
+    if (any(y <= bodies[b].field_min) || any(y >= high)) {
+        return nothing();
+    }
+    let field = field_at(b, y);
+    let support = params.support_radius;
+    if (min(field.distance, field.effective) >= support) {
+        return nothing();
+    }
+    var contact = nothing();
+    contact.body = b;
+    contact.distance = field.distance;
+    contact.normal = turned(orientation, field.distance_gradient / max(length(field.distance_gradient), 1e-6));
+    if (bodies[b].way == BODY_PARTICLES) {
+        let sum = sampled(b, y);
+        contact.kernel_fraction = min(sum.w, 1.0);
+        contact.density = contact.kernel_fraction;
+        contact.slope = turned(orientation, sum.xyz);
+        contact.effective = support * q_of_fraction(contact.kernel_fraction);
+    } else {
+        let plane = plane_through(field.effective / support);
+        contact.kernel_fraction = plane.x;
+        contact.slope = turned(orientation, plane.y / support * field.effective_gradient);
+        contact.effective = field.effective;
+        contact.density = density_through((field.effective + params.wall_offset) / support);
+    }
+    return contact;
+}
+
+@compute @workgroup_size(64)
+fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= living[arrayLength(&living) - 2u]) {
+        return;
+    }
+    var x = sorted_positions[i].xyz;
+    var first = nothing();
+    var second = nothing();
+    for (var b = 0u; b < arrayLength(&bodies); b++) {
+        let contact = contact_with(b, x);
+        let rank = min(contact.distance, contact.effective);
+        if (rank < min(first.distance, first.effective)) {
+            second = first;
+            first = contact;
+        } else if (rank < min(second.distance, second.effective)) {
+            second = contact;
+        }
+    }
+    contact_list[2u * i] = first;
+    contact_list[2u * i + 1u] = second;
+    let inside = min(first.distance, second.distance);
+    if (inside < 0.0) {
+        let deeper = first.distance <= second.distance;
+        let normal = select(second.normal, first.normal, deeper);
+        x += min(-inside, 0.1 * params.particle_spacing) * normal;
+        sorted_positions[i] = vec4(clamp(x, params.domain_min, params.domain_max), sorted_positions[i].w);
+        atomicAdd(&counters[COUNTER_CORRECTIONS], 1u);
+    }
+}

@@ -1,0 +1,149 @@
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::bodies::field;
+use crate::bodies::types::{Body, Contact};
+use crate::boundary::{KernelPair, WallKernel};
+use crate::kernel::Kernel;
+use crate::passes::{Params, StepCounters};
+
+/// Particles of a chunk lie near one another, so that most bodies are far from all of them.
+const CHUNK: usize = 128;
+
+pub(super) fn boundary_lookup<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, living, bodies, maps, positions, contacts, counters] = slots else { unreachable!() };
+    let (params, living) = (&params.get::<Params>(), living.read::<u32>());
+    let n = living[living.len() - 2] as usize;
+    let (bodies, maps) = (bodies.read::<Body>(), maps.read::<Vec2>());
+    let corrections: u32 = positions.write::<Vec4>()[..n]
+        .par_chunks_mut(CHUNK)
+        .zip(contacts.write::<Contact>().par_chunks_mut(2 * CHUNK))
+        .with_min_len(8)
+        .map_init(Vec::new, |near: &mut Vec<usize>, (positions, contacts)| {
+            find_near(bodies, positions, near);
+            let pairs = contacts.as_chunks_mut::<2>().0;
+            let mut corrections = 0;
+            for (p, contacts) in positions.iter_mut().zip(pairs) {
+                *contacts = [NOTHING; 2];
+                for &b in near.iter() {
+                    insert(contacts, contact_with::<K>(params, bodies, maps, b, p.xyz()));
+                }
+                corrections += u32::from(put_back(params, p, contacts));
+            }
+            corrections
+        })
+        .sum();
+    counters.write::<u32>()[StepCounters::CORRECTIONS] += corrections;
+}
+
+const NOTHING: Contact = Contact {
+    slope: Vec3::ZERO,
+    density: 0.0,
+    normal: Vec3::ZERO,
+    distance: 1e30,
+    kernel_fraction: 0.0,
+    effective: 1e30,
+    body: Contact::NONE,
+    unused: 0,
+};
+
+/// The bodies that any of these particles may feel, in their order.
+fn find_near(bodies: &[Body], positions: &[Vec4], near: &mut Vec<usize>) {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in positions {
+        low = low.min(p.xyz());
+        high = high.max(p.xyz());
+    }
+    near.clear();
+    near.extend((0..bodies.len()).filter(|&b| {
+        let closest = bodies[b].position.clamp(low, high);
+        closest.distance_squared(bodies[b].position) < bodies[b].radius * bodies[b].radius
+    }));
+}
+
+/// Keeps the two that matter most.
+#[inline]
+fn insert(contacts: &mut [Contact; 2], contact: Contact) {
+    let rank = |contact: &Contact| contact.distance.min(contact.effective);
+    if rank(&contact) < rank(&contacts[0]) {
+        contacts[1] = contacts[0];
+        contacts[0] = contact;
+    } else if rank(&contact) < rank(&contacts[1]) {
+        contacts[1] = contact;
+    }
+}
+
+/// Moves a particle that is inside a body towards its surface; true if it was inside.
+#[inline]
+fn put_back(params: &Params, p: &mut Vec4, contacts: &[Contact; 2]) -> bool {
+    let inside = contacts[0].distance.min(contacts[1].distance);
+    if inside >= 0.0 {
+        return false;
+    }
+    let deeper = if contacts[0].distance <= contacts[1].distance { &contacts[0] } else { &contacts[1] };
+    let x = p.xyz() + (-inside).min(0.1 * params.particle_spacing) * deeper.normal;
+    *p = x.clamp(params.domain_min, params.domain_max).extend(p.w);
+    true
+}
+
+#[inline]
+fn contact_with<K: Kernel + WallKernel>(
+    params: &Params,
+    bodies: &[Body],
+    maps: &[Vec2],
+    b: usize,
+    x: Vec3,
+) -> Contact {
+    let body = &bodies[b];
+    let away = x - body.position;
+    if away.length_squared() >= body.radius * body.radius {
+        return NOTHING;
+    }
+    let rotation = body.rotation();
+    let y = rotation.conjugate() * away + body.center;
+    let support = params.support_radius;
+    let Some(field) = field::at(body, maps, y, support) else { return NOTHING };
+    let length = field.distance_gradient.length().max(1e-6);
+    let mut contact = Contact {
+        body: b as u32,
+        distance: field.distance,
+        normal: rotation * (field.distance_gradient / length),
+        ..NOTHING
+    };
+    if body.way == Body::PARTICLES {
+        let sum = field::sampled::<K>(body, maps, y, support);
+        contact.kernel_fraction = sum.w.min(1.0);
+        contact.density = contact.kernel_fraction;
+        contact.slope = rotation * sum.xyz();
+        contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
+    } else {
+        let (kernel_fraction, slope) = plane_through(K::WALLS, field.effective / support);
+        contact.kernel_fraction = kernel_fraction;
+        contact.slope = rotation * (slope / support * field.effective_gradient);
+        contact.effective = field.effective;
+        contact.density = density_through(K::WALLS, (field.effective + params.wall_offset) / support);
+    }
+    contact
+}
+
+/// (D, A) on both sides of the wall.
+fn plane_through(kernels: KernelPair, q: f32) -> (f32, f32) {
+    let (d, a) = if q.abs() < 1.0 { kernels.gradient(q.abs()) } else { (0.0, 0.0) };
+    if q < 0.0 { (1.0 - d, a) } else { (d, a) }
+}
+
+fn density_through(kernels: KernelPair, q: f32) -> f32 {
+    let d = if q.abs() < 1.0 { kernels.density(q.abs()).0 } else { 0.0 };
+    if q < 0.0 { 1.0 - d } else { d }
+}
+
+/// The q at which a plane wall has this share.
+fn q_of_fraction(kernels: KernelPair, kernel_fraction: f32) -> f32 {
+    let (mut low, mut high) = (-1.0, 1.0);
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if plane_through(kernels, middle).0 > kernel_fraction { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,39 @@
+#import gpu/index
+#import sph/grid
+
+@group(0) @binding(0) var<uniform> grid: Grid;
+@group(0) @binding(1) var<storage, read> cell_counts: array<u32>;
+@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(3) var<storage, read> entries: array<vec2<u32>>;
+@group(0) @binding(4) var<storage, read> positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> velocities: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> sorted_ids: array<u32>;
+
+// Nobody asks for the order of the dead behind the last cell. Past this many they stay as they arrived: they may be
+// all particles, and comparing each with each would hang the device.
+const MOST_DEAD_IN_ORDER: u32 = 1024u;
+
+@compute @workgroup_size(64)
+fn reorder(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = linear_index(gid, groups, 64u);
+    if (k >= cell_start[grid.cell_count + 1u]) {
+        return;
+    }
+    let id = entries[k].x;
+    let i = entries[k].y;
+    let cell = cell_counts[grid.cell_count + 1u + i];
+    let begin = cell_start[cell];
+    let end = cell_start[cell + 1u];
+    var place = k;
+    if (cell < grid.cell_count || end - begin <= MOST_DEAD_IN_ORDER) {
+        place = begin;
+        for (var m = begin; m < end; m++) {
+            place += u32(entries[m].x < id);
+        }
+    }
+    sorted_positions[place] = positions[i];
+    sorted_velocities[place] = velocities[i];
+    sorted_ids[place] = id;
+}

@@ -1,0 +1,37 @@
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::cells::Grid;
+use crate::flow::{EmissionSchedule, Nozzle};
+use crate::passes::{Params, StepState};
+
+pub(super) fn emission_schedule(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, grid, state, cell_start, nozzles, schedules] = slots else { unreachable!() };
+    let (params, state) = (params.get::<Params>(), state.get::<StepState>());
+    let nozzles = nozzles.read::<Nozzle>();
+    let (schedules, next) = schedules.write::<u32>().split_at_mut(nozzles.len() * EmissionSchedule::WORDS);
+    let mut slot = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
+    for (nozzle, plan) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
+        plan[EmissionSchedule::LAYER] = 0;
+        if state.run_count == 0 || state.time < nozzle.start || state.time >= nozzle.end {
+            continue;
+        }
+        if plan[EmissionSchedule::EMITTED] + nozzle.points > nozzle.most {
+            continue;
+        }
+        let mut phase = f32::from_bits(plan[EmissionSchedule::PHASE]) + nozzle.speed * state.dt;
+        if phase >= params.particle_spacing {
+            phase -= params.particle_spacing;
+            if slot + nozzle.points > params.particle_count {
+                plan[EmissionSchedule::REFUSED] += nozzle.points;
+            } else {
+                plan[EmissionSchedule::LAYER] = nozzle.points;
+                plan[EmissionSchedule::SLOT] = slot;
+                plan[EmissionSchedule::ID] = next[0];
+                plan[EmissionSchedule::DISTANCE] = phase.to_bits();
+                slot += nozzle.points;
+                next[0] += nozzle.points;
+            }
+        }
+        plan[EmissionSchedule::PHASE] = phase.to_bits();
+    }
+}

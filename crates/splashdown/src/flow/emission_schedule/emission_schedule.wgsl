@@ -1,0 +1,44 @@
+#import sph/params
+#import sph/grid
+#import sph/flow
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> state: StepState;
+@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(4) var<storage, read> nozzles: array<Nozzle>;
+@group(0) @binding(5) var<storage, read_write> schedules: array<u32>;
+
+@compute @workgroup_size(1)
+fn emission_schedule() {
+    let count = arrayLength(&nozzles);
+    var slot = cell_start[grid.cell_count];
+    var id = schedules[count * SCHEDULE_WORDS];
+    for (var k = 0u; k < count; k++) {
+        let nozzle = nozzles[k];
+        let w = k * SCHEDULE_WORDS;
+        schedules[w + SCHEDULE_LAYER] = 0u;
+        if (state.run_count == 0u || state.time < nozzle.start || state.time >= nozzle.end) {
+            continue;
+        }
+        if (schedules[w + SCHEDULE_EMITTED] + nozzle.points > nozzle.most) {
+            continue;
+        }
+        var phase = bitcast<f32>(schedules[w + SCHEDULE_PHASE]) + nozzle.speed * state.dt;
+        if (phase >= params.particle_spacing) {
+            phase -= params.particle_spacing;
+            if (slot + nozzle.points > params.particle_count) {
+                schedules[w + SCHEDULE_REFUSED] += nozzle.points;
+            } else {
+                schedules[w + SCHEDULE_LAYER] = nozzle.points;
+                schedules[w + SCHEDULE_SLOT] = slot;
+                schedules[w + SCHEDULE_ID] = id;
+                schedules[w + SCHEDULE_DISTANCE] = bitcast<u32>(phase);
+                slot += nozzle.points;
+                id += nozzle.points;
+            }
+        }
+        schedules[w + SCHEDULE_PHASE] = bitcast<u32>(phase);
+    }
+    schedules[count * SCHEDULE_WORDS] = id;
+}

@@ -1,0 +1,35 @@
+//! Moves what is in a nozzle as one piston: a = (speed * direction - v) / dt, so that the step ends with that velocity.
+//!
+//! Particles are born at rest density behind others of the same lattice, a support radius and more before the
+//! outlet; until they are there, nothing may push them about, since their lattice still lacks its back half.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{FLOW, Nozzle};
+use crate::cells::{GRID, Grid};
+use crate::passes::{PARAMS, Params, STATE, StepState};
+
+/// See the module.
+pub static INFLOW_CONSTRAINT: PassDesc = PassDesc {
+    label: "flow.inflow_constraint",
+    wgsl: include_str!("inflow_constraint.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, FLOW],
+    entry: "inflow_constraint",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        read::<u32>("cell_start"),
+        read::<Nozzle>("nozzles"),
+        read::<u32>("schedules"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        write::<Vec4>("accelerations"),
+    ],
+    cpu: cpu::inflow_constraint,
+};

@@ -1,0 +1,43 @@
+use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::cells::Grid;
+use crate::flow::SinkShape;
+use crate::passes::{DEAD_DRAINED, StepCounters, StepState};
+
+pub(super) fn sink(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [grid, state, cell_start, drains, drain_maps, sorted_positions, counters] = slots else {
+        unreachable!()
+    };
+    let living = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
+    let n = living.min(state.get::<StepState>().run_count) as usize;
+    let (drains, maps) = (drains.read::<SinkShape>(), drain_maps.read::<f32>());
+    let positions = sorted_positions.write::<Vec4>()[..n].par_iter_mut().with_min_len(4096);
+    let drained = positions
+        .filter_map(|p| {
+            let gone = p.w == 0.0 && drains.iter().any(|drain| takes(drain, maps, p.xyz()));
+            gone.then(|| p.w = DEAD_DRAINED)
+        })
+        .count();
+    counters.write::<u32>()[StepCounters::DRAINED] += drained as u32;
+}
+
+fn takes(drain: &SinkShape, maps: &[f32], x: Vec3) -> bool {
+    if drain.kind == SinkShape::BELOW {
+        return (x - drain.low).dot(drain.high) < 0.0;
+    }
+    let inside = x.cmpge(drain.low).all() && x.cmple(drain.high).all();
+    if drain.kind == SinkShape::BOX || !inside {
+        return inside;
+    }
+    let at = (x - drain.low) / drain.cell_size;
+    let c = at.as_uvec3().min(drain.nodes - UVec3::splat(2));
+    let f = at - c.as_vec3();
+    let (row, plane) = (drain.nodes.x as usize, (drain.nodes.x * drain.nodes.y) as usize);
+    let first = drain.first_node as usize + c.z as usize * plane + c.y as usize * row + c.x as usize;
+    let mix = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+    let sides = [first, first + plane]
+        .map(|k| mix(mix(maps[k], maps[k + 1], f.x), mix(maps[k + row], maps[k + row + 1], f.x), f.y));
+    mix(sides[0], sides[1], f.z) < 0.0
+}

@@ -1,0 +1,48 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/walls
+#import sph/forces
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> grid: Grid;
+@group(0) @binding(2) var<storage, read> state: StepState;
+@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
+@group(0) @binding(7) var<storage, read> normals: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> wall_table: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read_write> accelerations: array<vec4<f32>>;
+
+const HAS_TENSION: bool = true;
+var<private> own_normal: vec3<f32>;
+
+// Akinci's cohesion kernel times H^3; both branches meet at q = 1/2.
+fn cohesion(q: f32) -> f32 {
+    let t = (1.0 - q) * q;
+    let t3 = t * t * t;
+    return 32.0 / PI * select(t3, 2.0 * t3 - 1.0 / 64.0, q <= 0.5);
+}
+
+fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {
+    let scale = 1.0 / params.support_radius;
+    let k = -params.surface_tension * 2.0 * params.rest_density / (rho_i + rho_j);
+    let pull = params.particle_mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
+    return k * (pull * d + own_normal - normals[j].xyz);
+}
+
+@compute @workgroup_size(64)
+fn acceleration(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= living()) {
+        return;
+    }
+    if (params.surface_tension > 0.0) {
+        own_normal = normals[i].xyz;
+    }
+    let a = acceleration_of(i, sorted_positions[i].xyz, sorted_velocities[i].xyz, densities[i]);
+    accelerations[i] = vec4(a, 0.0);
+}

@@ -1,0 +1,201 @@
+use std::f32::consts::PI;
+use std::marker::PhantomData;
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::boundary::{NearWalls, WallKernel};
+use crate::kernel::{Kernel, SMALLEST_Q};
+use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::passes::{Params, StepState};
+use crate::simd::{Lanes, Register};
+
+pub(super) fn acceleration<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [
+        params,
+        grid,
+        state,
+        cell_start,
+        positions,
+        velocities,
+        densities,
+        normals,
+        wall_table,
+        accelerations,
+    ] = slots
+    else {
+        unreachable!()
+    };
+    let (params, grid) = (&params.get::<Params>(), &grid.get());
+    let positions = positions.read();
+    let pass = Acceleration::<K>::new(
+        params,
+        &state.get(),
+        positions,
+        velocities.read(),
+        densities.read(),
+        wall_table.read(),
+    );
+    let sorted = Sorted::new(params, grid, cell_start.read(), positions);
+    let out = accelerations.write();
+    // Columns and arithmetic that a scene does not ask for cost nothing.
+    if params.surface_tension > 0.0 {
+        pairs::for_each(sorted, out, &WithTension { momentum: pass, normals: normals.read() });
+    } else {
+        pairs::for_each(sorted, out, &pass);
+    }
+}
+
+/// Pressure and viscosity.
+pub(crate) struct Acceleration<'a, K> {
+    params: &'a Params,
+    dt: f32,
+    body: Vec3,
+    positions: &'a [Vec4],
+    velocities: &'a [Vec4],
+    densities: &'a [Vec2],
+    walls: NearWalls<'a>,
+    scale: f32,
+    factor: f32,
+    soft: f32,
+    /// What rubs where two particles part, and where they approach each other.
+    parting: f32,
+    approaching: f32,
+    kernel: PhantomData<K>,
+}
+
+impl<'a, K: WallKernel> Acceleration<'a, K> {
+    /// Of a step's arrays, and the table of the walls.
+    pub fn new(
+        params: &'a Params,
+        state: &StepState,
+        positions: &'a [Vec4],
+        velocities: &'a [Vec4],
+        densities: &'a [Vec2],
+        wall_table: &'a [Vec4],
+    ) -> Self {
+        let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
+        let volume = params.particle_mass / params.rest_density;
+        let laminar = 10.0 * params.viscosity * volume;
+        Self {
+            params,
+            dt: state.dt,
+            body: params.body_acceleration(state.time),
+            positions,
+            velocities,
+            densities,
+            walls: NearWalls::new(params.walls(K::WALLS), wall_table),
+            scale,
+            factor: (scale * scale) * (scale * scale) * scale,
+            soft: 0.01 * support * support,
+            parting: laminar,
+            approaching: laminar + params.artificial_viscosity * params.sound_speed * 0.5 * support * volume,
+            kernel: PhantomData,
+        }
+    }
+}
+
+impl<K> Acceleration<'_, K> {
+    /// The acceleration of a particle from its sums.
+    #[inline(always)]
+    pub fn acceleration(&self, i: usize, sums: [f32; 3]) -> Vec3 {
+        let (params, x) = (self.params, self.positions[i].xyz());
+        let mut a = self.factor * Vec3::from(sums);
+        if let Some(terms) = self.walls.terms(x) {
+            let [rho, pressure] = self.densities[i].to_array();
+            let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+            a = terms.acceleration(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
+        }
+        a + self.body
+    }
+
+    /// Mass times pressure over the square of the density.
+    #[inline(always)]
+    fn push(&self, j: usize) -> f32 {
+        let [rho, pressure] = self.densities[j].to_array();
+        self.params.particle_mass * pressure / (rho * rho)
+    }
+}
+
+impl<K: Kernel> PairSum<7, 3> for Acceleration<'_, K> {
+    type Output = Vec4;
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 7] {
+        let (p, v) = (self.positions[j], self.velocities[j]);
+        [p.x, p.y, p.z, v.x, v.y, v.z, self.push(j)]
+    }
+
+    /// The acceleration over the factor.
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 7]) -> [V; 3] {
+        let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
+        let push = V::splat(self.push(i));
+        let (zero, parting, approaching) =
+            (V::splat(0.0), V::splat(self.parting), V::splat(self.approaching));
+        #[inline(always)]
+        move |[x_j, y_j, z_j, u_j, v_j, w_j, push_j]| {
+            let d = difference(x, [x_j, y_j, z_j]);
+            let r2 = dot(d, d);
+            let vx = dot(difference(v, [u_j, v_j, w_j]), d);
+            let rub = vx * vx.if_less(zero, approaching, parting) / (r2 + self.soft);
+            scaled(K::g(r2.sqrt() * self.scale) * (rub - (push + push_j)), d)
+        }
+    }
+
+    #[inline(always)]
+    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
+        *out = self.acceleration(i, sums).extend(0.0);
+    }
+}
+
+/// Pressure, viscosity and surface tension.
+struct WithTension<'a, K> {
+    momentum: Acceleration<'a, K>,
+    normals: &'a [Vec4],
+}
+
+impl<K: Kernel> PairSum<11, 3> for WithTension<'_, K> {
+    type Output = Vec4;
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 11] {
+        let [x, y, z, u, v, w, push] = self.momentum.load(j);
+        let n = self.normals[j];
+        [x, y, z, u, v, w, push, self.momentum.densities[j].x, n.x, n.y, n.z]
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 11]) -> [V; 3] {
+        let Acceleration { params, positions, densities, scale, factor, .. } = self.momentum;
+        let (x, n, rho) = (splat::<V>(positions[i]), splat::<V>(self.normals[i]), V::splat(densities[i].x));
+        // The sums are multiplied by the factor in the end.
+        let tension = V::splat(-2.0 * params.surface_tension * params.rest_density / factor);
+        let pull = params.particle_mass * (scale * scale) * (scale * scale);
+        let (zero, one, smallest) = (V::splat(0.0), V::splat(1.0), V::splat(SMALLEST_Q));
+        let momentum = self.momentum.pair::<V>(i);
+        #[inline(always)]
+        move |[x_j, y_j, z_j, u_j, v_j, w_j, push_j, rho_j, n_x, n_y, n_z]| {
+            let a = momentum([x_j, y_j, z_j, u_j, v_j, w_j, push_j]);
+            let d = difference(x, [x_j, y_j, z_j]);
+            let q = dot(d, d).sqrt() * scale;
+            let share = q.if_less(one, tension, zero) / (rho + rho_j);
+            let pull = cohesion(q) * pull / q.max(smallest);
+            let bend = difference(n, [n_x, n_y, n_z]);
+            std::array::from_fn(|axis| a[axis] + share * (pull * d[axis] + bend[axis]))
+        }
+    }
+
+    #[inline(always)]
+    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
+        self.momentum.finish(i, sums, out);
+    }
+}
+
+/// Akinci's cohesion kernel times H^3 for q in [0, 1]; both branches meet at q = 1/2.
+#[inline(always)]
+fn cohesion<V: Lanes>(q: V) -> V {
+    let t = (V::splat(1.0) - q).max(V::splat(0.0)) * q;
+    let t3 = t * t * t;
+    q.if_less(V::splat(0.5), t3 * 2.0 - 1.0 / 64.0, t3) * (32.0 / PI)
+}

@@ -1,0 +1,63 @@
+//! Accelerations of weakly compressible SPH.
+//!
+//! Per neighbour, with V = m / rho0, x = x_i - x_j, v = v_i - v_j and h = H / 2:
+//!
+//! * pressure: -m (p_i/rho_i^2 + p_j/rho_j^2) grad W (Monaghan 1992), which conserves momentum;
+//! * laminar viscosity: 10 nu V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 2005), which conserves angular momentum too;
+//!   rho0 in V instead of rho_j keeps each pair's two forces equal to the last bit that matters;
+//! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
+//! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
+//!
+//! Walls push with the particle's own pressure and its image's, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else
+//! they do is in [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
+
+pub(crate) mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{FORCES, PARAMS, Params, ROWS, STATE, StepState};
+use crate::boundary::{self, KernelPair};
+use crate::cells::{GRID, Grid};
+use crate::kernel::{self, CubicSpline, Kernel};
+
+/// With the Wendland C2 kernel.
+pub static WENDLAND_C2: PassDesc = PassDesc {
+    label: "acceleration.wendland_c2",
+    wgsl: include_str!("acceleration.wgsl"),
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::PLANES,
+        boundary::WGSL,
+        FORCES,
+    ],
+    entry: "acceleration",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        read::<u32>("cell_start"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<Vec2>("densities"),
+        read::<Vec4>("normals"),
+        read::<Vec4>("wall_table"),
+        write::<Vec4>("accelerations"),
+    ],
+    cpu: cpu::acceleration::<kernel::WendlandC2>,
+};
+
+/// With the cubic spline.
+pub static CUBIC_SPLINE: PassDesc = PassDesc {
+    label: "acceleration.cubic_spline",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
+    cpu: cpu::acceleration::<CubicSpline>,
+    ..WENDLAND_C2
+};

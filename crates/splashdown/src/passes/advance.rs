@@ -1,0 +1,183 @@
+//! The motion of particles on the CPU, for all passes that move some.
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::WgslModule;
+
+use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
+use crate::boundary::closed_bounds;
+use crate::cells::Grid;
+use crate::cells::cell_counts::{self, CellCounter};
+
+/// The WGSL side.
+pub const WGSL: WgslModule = WgslModule { name: "sph/advance", source: include_str!("advance.wgsl") };
+
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+/// The particles as a step's sort left them: positions, velocities, densities.
+#[derive(Clone, Copy)]
+pub(crate) struct Before<'a> {
+    pub positions: &'a [Vec4],
+    pub velocities: &'a [Vec4],
+    pub densities: &'a [Vec2],
+}
+
+/// Where they go.
+pub(crate) struct Persistent<'a> {
+    pub positions: &'a mut [Vec4],
+    pub velocities: &'a mut [Vec4],
+    pub counters: &'a mut [u32],
+    pub cell_counts: &'a mut [u32],
+}
+
+/// Moves all particles, and counts them for the next step if `counts`. The acceleration of a particle is that
+/// of its number, and of what stands at its place in the persistent velocities.
+pub(crate) fn advance_all(
+    (params, grid, state): (&Params, &Grid, &StepState),
+    sorted: Before<'_>,
+    persistent: Persistent<'_>,
+    counts: bool,
+    acceleration: impl Fn(usize, Vec4) -> Vec3 + Sync,
+) {
+    let n = state.run_count as usize;
+    let mover = Mover::new(params, grid, state.dt);
+    // After the last step of a frame there is no next one to count for.
+    let counting = counts && !state.is_last_step();
+    let (counts, cells) = cell_counts::split(grid, persistent.cell_counts);
+    let found: Vec<Found> = sorted.positions[..n]
+        .par_chunks(CHUNK)
+        .zip(sorted.velocities[..n].par_chunks(CHUNK))
+        .zip(sorted.densities[..n].par_chunks(CHUNK))
+        .zip(persistent.positions[..n].par_chunks_mut(CHUNK))
+        .zip(persistent.velocities[..n].par_chunks_mut(CHUNK))
+        .zip(cells[..n].par_chunks_mut(CHUNK))
+        .enumerate()
+        .map(|(chunk, (((((p, v), density), new_p), new_v), cells))| {
+            let mut found = Found::default();
+            let mut counter = CellCounter::new(counts);
+            for k in 0..p.len() {
+                let a = acceleration(chunk * CHUNK + k, new_v[k]);
+                let particle = (p[k], v[k], density[k].x, a);
+                let moved = mover.advance(particle, &mut found);
+                (new_p[k], new_v[k]) = (moved.position, moved.velocity);
+                if counting {
+                    cells[k] = moved.cell;
+                    counter.add(moved.cell);
+                }
+            }
+            found
+        })
+        .collect();
+    Found::tell(&found, params, persistent.counters);
+}
+
+/// What a group of particles adds to the counters.
+#[derive(Default)]
+struct Found {
+    escaped: u32,
+    non_finite: u32,
+    corrections: u32,
+    limited: u32,
+    /// Squares of speed and acceleration; density.
+    highest: [f32; 3],
+}
+
+impl Found {
+    /// Puts what all groups found into the counters, and that particles have moved.
+    fn tell(all: &[Self], params: &Params, counters: &mut [u32]) {
+        for found in all {
+            counters[StepCounters::ESCAPED] += found.escaped;
+            counters[StepCounters::NON_FINITE] += found.non_finite;
+            counters[StepCounters::CORRECTIONS] += found.corrections;
+            counters[StepCounters::LIMITED] += found.limited;
+            // Roots and quotients rise with what is under them, so that they are taken of the highest alone.
+            let [speed2, acceleration2, density] = found.highest;
+            let excess = (density / params.rest_density - 1.0).max(0.0);
+            for (k, value) in [speed2.sqrt(), acceleration2.sqrt(), excess].into_iter().enumerate() {
+                let word = &mut counters[StepCounters::MAX_SPEED + k];
+                *word = (*word).max(value.to_bits());
+            }
+        }
+        counters[StepCounters::MOVED] = 1;
+    }
+}
+
+/// What a particle is after a step.
+struct Moved {
+    position: Vec4,
+    velocity: Vec4,
+    cell: u32,
+}
+
+/// The part of a spacing that a step covers at most, and the part that closed sides keep free.
+const LONGEST: f32 = 0.5;
+const FREE: f32 = 0.25;
+
+/// Moves particles by one step.
+struct Mover<'a> {
+    params: &'a Params,
+    grid: &'a Grid,
+    dt: f32,
+    /// The domain, without bounds where it is open.
+    low: Vec3,
+    high: Vec3,
+    /// The box from which no side is met in one step.
+    inner: [Vec3; 2],
+}
+
+impl<'a> Mover<'a> {
+    fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
+        let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
+        let margin = 1.01 * (LONGEST + FREE) * params.particle_spacing;
+        let inner = [params.domain_min + margin, params.domain_max - margin];
+        Self { params, grid, dt, low, high, inner }
+    }
+
+    /// Moves a particle, given its position, velocity, density in kg/m^3 and acceleration.
+    #[inline]
+    fn advance(&self, (p, old, rho, a): (Vec4, Vec4, f32, Vec3), found: &mut Found) -> Moved {
+        let Self { params, grid, dt, low, high, inner } = *self;
+        if p.w != 0.0 {
+            return Moved { position: p, velocity: old, cell: grid.cell_count };
+        }
+        let mut v = old.xyz() + dt * a;
+        let (step, most) = (v.length() * dt, LONGEST * params.particle_spacing);
+        if step > most {
+            v *= most / step;
+            found.limited += 1;
+        }
+        let p = p.xyz();
+        let is_inner = p.cmpgt(inner[0]).all() && p.cmplt(inner[1]).all();
+        if !is_inner {
+            let free = Vec3::splat(FREE * params.particle_spacing);
+            v = v.max(-(p - low - free).max(Vec3::ZERO) / dt).min((high - p - free).max(Vec3::ZERO) / dt);
+        }
+        let mut x = p + dt * v;
+        // `max` and `min` take the other operand of a NaN, so the sum of everything is asked, not only the result.
+        if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
+            found.non_finite += 1;
+            return Moved {
+                position: p.extend(DEAD_NON_FINITE),
+                velocity: Vec4::new(0.0, 0.0, 0.0, params.rest_density),
+                cell: grid.cell_count,
+            };
+        }
+        let beyond = x.cmplt(low) | x.cmpgt(high);
+        if !is_inner && beyond.any() {
+            x = x.clamp(low, high);
+            v = Vec3::select(beyond, Vec3::ZERO, v);
+            found.corrections += beyond.bitmask().count_ones();
+        }
+        let values = [v.length_squared(), a.length_squared(), rho];
+        for (highest, value) in found.highest.iter_mut().zip(values) {
+            *highest = highest.max(value);
+        }
+        let velocity = v.extend(rho);
+        if !is_inner && params.is_outside(x) {
+            found.escaped += 1;
+            return Moved { position: x.extend(DEAD_ESCAPED), velocity, cell: grid.cell_count };
+        }
+        Moved { position: x.extend(0.0), velocity, cell: grid.cell_of(x) }
+    }
+}

@@ -1,0 +1,45 @@
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::passes::{Params, StepCounters, StepState};
+
+pub(super) fn end_step(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, state, counters] = slots else { unreachable!() };
+    finish_step(&params.get(), &mut state.write::<StepState>()[0], counters.write());
+}
+
+/// Settles the step before, if there is one to end_step.
+pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut [u32]) {
+    if std::mem::take(&mut counters[StepCounters::MOVED]) == 0 {
+        return;
+    }
+    let mut take = |word: usize| f32::from_bits(std::mem::take(&mut counters[word]));
+    let [speed, acceleration, excess] =
+        [StepCounters::MAX_SPEED, StepCounters::MAX_ACCELERATION, StepCounters::MAX_EXCESS].map(&mut take);
+
+    let h = 0.5 * params.support_radius;
+    let c = params.cfl_factor;
+    let mut stable = (1.1 * state.stable_dt)
+        .min(params.max_dt)
+        .min(c * h / (params.sound_speed + speed))
+        .min(c * (h / acceleration.max(1e-20)).sqrt())
+        .min(c * 0.4 * params.particle_spacing / speed.max(1e-20))
+        .min(0.125 * h * h / params.viscosity.max(1e-20));
+    if stable < params.min_dt {
+        stable = params.min_dt;
+        state.too_small = 1;
+    }
+    state.time += state.dt;
+    state.steps += 1;
+    state.stable_dt = stable;
+    state.max_speed = speed;
+    state.max_acceleration = acceleration;
+    state.density_error = state.density_error.max(excess);
+    if state.is_last_step() {
+        state.remaining = 0.0;
+        state.done = 1;
+        state.run_count = 0;
+    } else {
+        state.remaining -= state.dt;
+        state.dt = StepState::step_length(stable, state.remaining);
+    }
+}

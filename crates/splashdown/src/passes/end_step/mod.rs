@@ -1,0 +1,32 @@
+//! Ends a step: takes the maxima, and chooses the next time step on the device.
+//!
+//! With h = H / 2: dt = min(C h / (c0 + |v|max), C sqrt(h / |a|max), 0.4 spacing C / |v|max, 0.125 h^2 / nu, max_dt)
+//! (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last. The maxima are those of the step that
+//! ends, so the choice is one step late; the limit on velocities of half a spacing per step catches the rest. Near the
+//! end of the frame the rest is split evenly, so that no tiny step is left over.
+//!
+//! A step that is to be settled says so by [`StepCounters::MOVED`], so settling twice does it once. The pass of this
+//! module runs once per submission; inside one, the next step's [`scatter`](crate::cells) settles the step
+//! before it, which saves a dispatch per step: nothing before it in a step looks at the state.
+
+mod cpu;
+
+use splashdown_gpu::{PassDesc, uniform, write};
+
+#[cfg(doc)]
+use super::StepCounters;
+use super::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
+
+pub(crate) use cpu::finish_step;
+
+/// See the module.
+pub static END_STEP: PassDesc = PassDesc {
+    label: "end_step",
+    wgsl: include_str!("end_step.wgsl"),
+    imports: &[STATE, PARAMS, STEP_COUNTERS, STEPS],
+    entry: "end_step",
+    workgroup_size: [1, 1, 1],
+    constants: &[],
+    bindings: &[uniform::<Params>("params"), write::<StepState>("state"), write::<u32>("counters")],
+    cpu: cpu::end_step,
+};

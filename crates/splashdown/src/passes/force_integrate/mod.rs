@@ -1,0 +1,62 @@
+//! [`acceleration`](super::acceleration) and [`integrate`](super::integrate) in one pass: the accelerations are neither
+//! written nor read, and position and velocity are read once.
+//!
+//! For steps where nothing comes between the two: no bodies, emitters, sinks, gauges or hand, no surface
+//! tension. Both ways share their WGSL (`forces.wgsl`, `advance.wgsl`) and their Rust. State and table of walls
+//! are bound as uniforms, because there may be eight storage buffers.
+
+mod cpu;
+
+use glam::{Vec2, Vec4};
+use splashdown_gpu::{PassDesc, read, uniform, uniform_array, wgsl, write};
+
+use super::{ADVANCE, FORCES, PARAMS, Params, ROWS, STATE, STEP_COUNTERS, StepState};
+use crate::boundary::{self, KernelPair};
+use crate::cells::{CELL_COUNTS, GRID, Grid};
+use crate::kernel::{self, CubicSpline, Kernel};
+
+/// With the Wendland C2 kernel.
+pub static WENDLAND_C2: PassDesc = PassDesc {
+    label: "force_integrate.wendland_c2",
+    wgsl: include_str!("force_integrate.wgsl"),
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::PLANES,
+        boundary::WGSL,
+        FORCES,
+        STEP_COUNTERS,
+        CELL_COUNTS,
+        ADVANCE,
+    ],
+    entry: "force_integrate",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
+    bindings: &[
+        uniform::<Params>("params"),
+        uniform::<Grid>("grid"),
+        uniform::<StepState>("state"),
+        uniform_array("wall_table"),
+        read::<u32>("cell_start"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("sorted_velocities"),
+        read::<Vec2>("densities"),
+        write::<Vec4>("positions"),
+        write::<Vec4>("velocities"),
+        write::<u32>("counters"),
+        write::<u32>("cell_counts"),
+    ],
+    cpu: cpu::force_integrate::<kernel::WendlandC2>,
+};
+
+/// With the cubic spline.
+pub static CUBIC_SPLINE: PassDesc = PassDesc {
+    label: "force_integrate.cubic_spline",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
+    cpu: cpu::force_integrate::<CubicSpline>,
+    ..WENDLAND_C2
+};

@@ -1,0 +1,54 @@
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::bodies::Body;
+use crate::passes::{Params, StepState};
+use crate::probes::{Account, ProbePoint, ROW, VALUES};
+
+pub(super) fn accumulate(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [params, state, probes, bodies, values, counts, accounts, rows] = slots else { unreachable!() };
+    let (params, state) = (params.get::<Params>(), state.get::<StepState>());
+    if state.run_count == 0 {
+        return;
+    }
+    let (bodies, rows) = (bodies.read::<Body>(), rows.write::<f32>());
+    let values = values.read::<f32>().chunks_exact(VALUES);
+    let accounts = accounts.write::<u32>().chunks_exact_mut(Account::WORDS);
+    let probes = probes.read::<ProbePoint>().iter().zip(values).zip(counts.write::<u32>()).zip(accounts);
+    for (((probe, values), count), account) in probes {
+        let dt = state.dt;
+        let add = |word: &mut u32, value: f32| *word = (f32::from_bits(*word) + value).to_bits();
+        add(&mut account[Account::TIME], dt);
+        let sums = &mut account[Account::SUMS..];
+        if probe.kind == ProbePoint::FORCE {
+            let body = &bodies[probe.body as usize];
+            for a in 0..3 {
+                add(&mut sums[a], body.force[a] * dt);
+                add(&mut sums[3 + a], body.torque[a] * dt);
+            }
+        } else if probe.kind == ProbePoint::FLOW {
+            add(&mut sums[0], *count as i32 as f32 * params.particle_spacing.powi(3));
+            *count = 0;
+        } else {
+            add(&mut sums[0], values[0] * dt);
+        }
+        // The step whose end is nearest to the time that is due has the row.
+        let elapsed = state.frame_duration - state.remaining + dt;
+        let row = account[Account::ROWS];
+        let next = f32::from_bits(account[Account::NEXT]);
+        if elapsed + 0.5 * dt < next || row >= probe.most_rows {
+            continue;
+        }
+        let at = (probe.first_row + row) as usize * ROW;
+        let duration = f32::from_bits(account[Account::TIME]);
+        rows[at] = elapsed;
+        for v in 0..VALUES {
+            let sum = &mut account[Account::SUMS + v];
+            rows[at + 1 + v] = f32::from_bits(*sum) / duration;
+            *sum = 0;
+        }
+        account[Account::TIME] = 0;
+        account[Account::ROWS] = row + 1;
+        // Steps longer than the interval have a row each.
+        account[Account::NEXT] = (next + probe.interval).max(elapsed).to_bits();
+    }
+}

@@ -1,0 +1,41 @@
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::{Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use splashdown_gpu::{CpuWork, Slot};
+
+use crate::cells::Grid;
+use crate::passes::StepState;
+use crate::probes::ProbePoint;
+
+pub(super) fn flux(_: CpuWork, slots: &mut [Slot<'_>]) {
+    let [grid, state, cell_start, probes, sorted_positions, positions, counts] = slots else {
+        unreachable!()
+    };
+    let living = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
+    let n = living.min(state.get::<StepState>().run_count) as usize;
+    let probes = probes.read::<ProbePoint>();
+    let flows: Vec<_> =
+        probes.iter().enumerate().filter(|(_, probe)| probe.kind == ProbePoint::FLOW).collect();
+    let sums: Vec<AtomicU32> = probes.iter().map(|_| AtomicU32::new(0)).collect();
+    let ways = sorted_positions.read::<Vec4>()[..n].par_iter().zip(&positions.read::<Vec4>()[..n]);
+    ways.with_min_len(4096).filter(|(before, _)| before.w == 0.0).for_each(|(before, after)| {
+        let (before, after) = (before.xyz(), after.xyz());
+        for (k, probe) in &flows {
+            let [a, b] = [before, after].map(|x| (x - probe.position).dot(probe.normal));
+            if (a < 0.0) == (b < 0.0) {
+                continue;
+            }
+            let at = before + a / (a - b) * (after - before) - probe.position;
+            if at.dot(probe.along).abs() <= probe.half_along
+                && at.dot(probe.across).abs() <= probe.half_across
+            {
+                // One up, or one down in two's complement.
+                sums[*k].fetch_add(if a < 0.0 { 1 } else { u32::MAX }, Ordering::Relaxed);
+            }
+        }
+    });
+    for (count, sum) in counts.write::<u32>().iter_mut().zip(sums) {
+        *count = count.wrapping_add(sum.into_inner());
+    }
+}

@@ -1,0 +1,41 @@
+#import gpu/index
+#import sph/state
+#import sph/grid
+#import sph/probe
+
+@group(0) @binding(0) var<uniform> grid: Grid;
+@group(0) @binding(1) var<storage, read> state: StepState;
+@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(3) var<storage, read> probes: array<ProbePoint>;
+@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> positions: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
+
+@compute @workgroup_size(64)
+fn flux(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= min(cell_start[grid.cell_count], state.run_count)) {
+        return;
+    }
+    let before = sorted_positions[i];
+    if (before.w != 0.0) {
+        return;
+    }
+    let after = positions[i].xyz;
+    for (var k = 0u; k < arrayLength(&probes); k++) {
+        let probe = probes[k];
+        if (probe.kind != PROBE_FLOW) {
+            continue;
+        }
+        let a = dot(before.xyz - probe.position, probe.normal);
+        let b = dot(after - probe.position, probe.normal);
+        if ((a < 0.0) == (b < 0.0)) {
+            continue;
+        }
+        let at = before.xyz + a / (a - b) * (after - before.xyz) - probe.position;
+        if (abs(dot(at, probe.along)) <= probe.half_along && abs(dot(at, probe.across)) <= probe.half_across) {
+            // One up, or one down in two's complement.
+            atomicAdd(&counts[k], select(0xffffffffu, 1u, a < 0.0));
+        }
+    }
+}

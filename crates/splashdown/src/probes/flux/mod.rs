@@ -1,0 +1,34 @@
+//! Counts the particles that went through the rectangles of flow probes in this step.
+//!
+//! Each particle's way from the step's beginning to its end is a straight line, and every line that meets a
+//! rectangle is one particle's volume: nothing that flows is missed or counted twice, however the rectangle is
+//! turned.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+
+use super::{PROBE, ProbePoint};
+use crate::cells::{GRID, Grid};
+use crate::passes::{STATE, StepState};
+
+/// See the module.
+pub static FLUX: PassDesc = PassDesc {
+    label: "probes.flux",
+    wgsl: include_str!("flux.wgsl"),
+    imports: &[wgsl::INDEX, STATE, GRID, PROBE],
+    entry: "flux",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: &[
+        uniform::<Grid>("grid"),
+        read::<StepState>("state"),
+        read::<u32>("cell_start"),
+        read::<ProbePoint>("probes"),
+        read::<Vec4>("sorted_positions"),
+        read::<Vec4>("positions"),
+        write::<u32>("counts"),
+    ],
+    cpu: cpu::flux,
+};
