@@ -51,10 +51,15 @@ pub fn target() -> PathBuf {
 
 /// Builds the command line in release mode and returns the path of the binary.
 pub fn build_release() -> Result<PathBuf> {
+    build_release_with(&[])
+}
+
+/// As [`build_release`], with further arguments of `cargo build`, such as features.
+pub fn build_release_with(arguments: &[&str]) -> Result<PathBuf> {
     say("Building (release) ...");
-    run(&mut cargo(["build", "--release", "--package", "splashdown-cli"]))?;
+    run(cargo(["build", "--release", "--package", "splashdown-cli"]).args(arguments))?;
     let binary = target().join("release").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
-    ensure!(binary.exists(), "the build went well, but {} is not there", binary.display());
+    ensure!(binary.exists(), "the build succeeded, but {} does not exist", binary.display());
     Ok(binary)
 }
 

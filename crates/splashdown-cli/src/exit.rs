@@ -10,6 +10,7 @@ use splashdown::{CheckpointError, SimulationError};
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;
+#[cfg(feature = "window")]
 use splashdown_viewer::ViewerError;
 
 /// What the program's exit code says.
@@ -122,6 +123,7 @@ impl From<RenderError> for Failure {
     }
 }
 
+#[cfg(feature = "window")]
 impl From<ViewerError> for Failure {
     fn from(error: ViewerError) -> Self {
         Self::new(Exit::Device, error.to_string())

@@ -17,6 +17,7 @@ mod lines;
 mod lock;
 mod memory;
 mod pictures;
+#[cfg(feature = "plot")]
 mod plot;
 mod probes;
 mod progress;
@@ -79,12 +80,18 @@ fn quieten_drivers() {
 fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
     match command {
         Command::Run(arguments) => return commands::run::run(arguments),
+        #[cfg(feature = "window")]
         Command::View(arguments) => commands::view::view(arguments)?,
+        #[cfg(not(feature = "window"))]
+        Command::View(_) => return Err(commands::left_out("view", "window")),
         Command::Check(arguments) => commands::check::run(arguments)?,
         Command::Doctor(arguments) => commands::doctor::run(arguments),
         Command::Scenes(arguments) => commands::scenes::run(arguments)?,
         Command::Surface(arguments) => commands::surface::run(arguments)?,
+        #[cfg(feature = "plot")]
         Command::Plot(arguments) => commands::plot::run(arguments)?,
+        #[cfg(not(feature = "plot"))]
+        Command::Plot(_) => return Err(commands::left_out("plot", "plot")),
         Command::Bench(arguments) => commands::bench::run(arguments)?,
         Command::Completions(arguments) => commands::completions::run(arguments),
     }

@@ -13,7 +13,7 @@ use splashdown_render::{
     Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
     Renderer, SurfaceStyle, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
-use splashdown_viewer::stage;
+use splashdown_run::stage;
 
 use crate::exit::Failure;
 use crate::layout::Layout;

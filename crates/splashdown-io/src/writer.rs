@@ -15,7 +15,7 @@ use crate::error::IoError;
 use crate::film::Film;
 use crate::mesh::{self, Mesh};
 use crate::particles::{self, Particles};
-use crate::picture::{self, Picture};
+use crate::picture::Picture;
 use crate::usd::{MeshSeries, PointSeries};
 
 /// One file to write, or one frame to add to a film or series. Data is shared, so several formats cost no copy.
@@ -27,6 +27,7 @@ pub enum Job {
     /// A mesh, in the format that the path's ending names ([`mesh::FORMATS`]).
     Mesh(PathBuf, Arc<Mesh>),
     /// A picture as PNG.
+    #[cfg(feature = "png")]
     Png(PathBuf, Arc<Picture>),
     /// Bytes as they are (an index, a report).
     Bytes(PathBuf, Vec<u8>),
@@ -185,7 +186,8 @@ fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
     Ok(match job {
         Job::Particles(path, particles) => file(path, particles::write(path, particles)?),
         Job::Mesh(path, mesh) => file(path, mesh::write(path, mesh)?),
-        Job::Png(path, picture) => file(path, picture::write_png(path, picture)?),
+        #[cfg(feature = "png")]
+        Job::Png(path, picture) => file(path, crate::picture::write_png(path, picture)?),
         Job::Bytes(path, bytes) => file(path, atomic::write(path, |out| out.write_all(bytes))?),
         Job::Film(film, picture) => {
             film.push(picture);

@@ -1,17 +1,16 @@
 //! Where files of the program go: on a desktop into the current folder, without writing over anything; on a web
 //! page to the downloads.
 
-use splashdown_io::{Mesh, ply};
+use splashdown_io::{Mesh, Picture, picture, ply};
 
 /// Keeps a picture as PNG; says where.
 ///
 /// # Errors
 /// A sentence with the file's name.
 pub fn png(name: &str, [width, height]: [u32; 2], rgba: Vec<u8>) -> Result<String, String> {
-    let picture = image::RgbaImage::from_raw(width, height, rgba).ok_or("the picture came incomplete")?;
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, image::ImageFormat::Png).map_err(|error| error.to_string())?;
-    file(name, "image/png", &bytes.into_inner())
+    let mut bytes = Vec::new();
+    picture::write_png_to(&mut bytes, &Picture { width, height, rgba }).map_err(|error| error.to_string())?;
+    file(name, "image/png", &bytes)
 }
 
 /// Keeps a mesh as PLY; says where.

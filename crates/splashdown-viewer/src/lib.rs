@@ -25,7 +25,6 @@ mod pixels;
 #[cfg(not(target_arch = "wasm32"))]
 mod record;
 pub mod save;
-pub mod stage;
 pub mod state;
 mod thumbnails;
 #[cfg(not(target_arch = "wasm32"))]

@@ -8,12 +8,12 @@ use splashdown_render::{
     Axis, Camera, Colouring, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
     Frame, PassTime, PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
+use splashdown_run::stage;
 
 use crate::engine::Snapshot;
 use crate::look::{Look, Way};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::pixels;
-use crate::stage;
 
 /// Colours as egui wants its textures.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -2,6 +2,7 @@
 
 use egui::{ColorImage, Context, Id, TextureHandle, TextureId};
 use splashdown::scene::presets;
+use splashdown_io::picture::decode_png;
 
 /// Width of a thumbnail, in points.
 pub const WIDTH: f32 = 144.0;
@@ -24,9 +25,10 @@ pub fn texture(ctx: &Context, name: &str) -> Option<TextureId> {
         return Some(handle.id());
     }
     let (_, png) = PICTURES.iter().find(|(scene, _)| *scene == name)?;
-    let picture = image::load_from_memory(png).ok()?.to_rgb8();
-    let size = [picture.width() as usize, picture.height() as usize];
-    let handle = ctx.load_texture(name, ColorImage::from_rgb(size, &picture), egui::TextureOptions::LINEAR);
+    let picture = decode_png(png).ok()?;
+    let size = [picture.width as usize, picture.height as usize];
+    let image = ColorImage::from_rgba_unmultiplied(size, &picture.rgba);
+    let handle = ctx.load_texture(name, image, egui::TextureOptions::LINEAR);
     let texture = handle.id();
     ctx.data_mut(|data| data.insert_temp(id, handle));
     Some(texture)

@@ -62,6 +62,14 @@ pub enum BodyError {
         /// Edges with one triangle only.
         open_edges: u32,
     },
+    /// A dynamic body in a build without collisions.
+    #[error(
+        "{owner}: this build cannot compute dynamic bodies; build with the Cargo feature `rigid`, or make the body static or scripted"
+    )]
+    NoCollisions {
+        /// What the mesh is for.
+        owner: String,
+    },
     /// An outlet too small for a particle.
     #[error(
         "{owner}: the outline of its mesh across the direction holds no particle of {spacing} m, half a spacing inside; the mesh's \
@@ -166,6 +174,9 @@ fn load_one(
     told: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<LoadedBody, BodyError> {
     let owner = owner("body", &body.name, &body.mesh);
+    if !cfg!(feature = "rigid") && matches!(body.motion, Motion::Dynamic { .. }) {
+        return Err(BodyError::NoCollisions { owner });
+    }
     let mesh = mesh_of(&owner, &body.mesh)?;
     check_scale(&owner, &body.mesh, &mesh, &scene.domain)?;
     let spacing = params.particle_spacing;

@@ -13,6 +13,10 @@ mod closed;
 mod field;
 mod load;
 mod motion;
+#[cfg(feature = "rigid")]
+mod rigid;
+#[cfg(not(feature = "rigid"))]
+#[path = "no_rigid.rs"]
 mod rigid;
 mod types;
 

@@ -1,4 +1,4 @@
-//! How a scene is set before the camera: what the command line's pictures and the window have in common.
+//! Camera, box, liquid and colouring of a scene, as the pictures of a run and the window draw them.
 
 use splashdown::scene::{ColourBy, Derived, Scene};
 use splashdown_render::{Camera, ColourMap, Colouring, Domain, Liquid, Quantity};
