@@ -91,6 +91,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &boundary_force::WENDLAND_C2,
         &boundary_force::CUBIC_SPLINE,
         &boundary_force::MUELLER,
+        &boundary_force::WENDLAND_C2_PRESSURE,
+        &boundary_force::WENDLAND_C2_OTHER,
         &motion::MOTION,
     ]
 }

@@ -1,29 +1,35 @@
-//! What closed sides do to a particle.
+//! The forces of closed sides on a particle: pressure, and all others.
 
 use glam::Vec3;
 
-use super::WallTerms;
+use super::{WallTerms, law, part};
 use crate::passes::Params;
 
 impl WallTerms {
-    /// The acceleration in m/s^2, body forces left out, of a particle with velocity `v` on which its neighbours
-    /// act with `fluid`, and whose pressure pushes with `push` (2 p / rho: its own and its image's) against a G
-    /// of one metre:
+    /// The acceleration in m/s^2 of a particle by its neighbours and the walls, without body forces.
     ///
-    /// * across a wall the pressure pushes with -push G and, while it does, goes on growing hydrostatically in
-    ///   the solid: -(D + A d / H) body, the half-space integral of a linear pressure;
-    /// * along a wall everything goes on in the solid as it is in the fluid, and neighbours fill only 1 - D of
-    ///   the kernel: their sum is divided by the 1 - D of the other axes' walls. Without it the fluid at side
-    ///   walls sinks;
-    /// * the speed towards a wall is damped, k = c0 H B with B = 7 (1-q)^5 (1+2q) / H^2 (the Morris operator
-    ///   over a solid at rest), where the density is summed. The image's pressure does work that the density,
-    ///   which knows of one G only, does not account for, so water in a tank would boil at 7 % of sqrt(g depth)
-    ///   for ever, whatever the time step. Only towards the wall: damped both ways, a collapsing column leaves
-    ///   a film standing on it. The continuity equation counts the image too and needs no damping;
-    /// * friction along it, k = 2 nu A / (H d), the closed form for a velocity that goes linearly through the wall.
+    /// `FORCES` selects the [`part`] that is computed; `fluid` is the same part of what the neighbours do. `v` is
+    /// the velocity of the particle, and `push` the acceleration of its pressure and its image's, 2 p / rho, per
+    /// unit of G in 1/m.
     ///
-    /// The last two are implicit, k / (1 + k dt), and so stable for any k.
-    pub fn acceleration(
+    /// All forces: neighbours fill only 1 - D of the kernel beside a wall, and the fluid continues unchanged along
+    /// the wall. So the sum over the neighbours is divided by the 1 - D of the walls of the other axes. Without
+    /// this the fluid at side walls sinks.
+    ///
+    /// Pressure: -push G across the wall. A positive pressure continues to grow hydrostatically inside the solid:
+    /// -(D + A d / H) body, the half-space integral of a linear pressure.
+    ///
+    /// Other forces:
+    ///
+    /// * The velocity towards a wall is damped where the density is summed, k = c0 H B with
+    ///   B = 7 (1-q)^5 (1+2q) / H^2 (the Morris operator over a solid at rest). The pressure of the image does work
+    ///   that the summed density, which has a single G, does not account for; without damping, water in a tank
+    ///   moves at 7 % of sqrt(g depth) at any time step. Damping in both directions was tried: it leaves a film
+    ///   on the wall behind a collapsing column. The continuity equation includes the image and needs no damping.
+    /// * Friction along the wall, k = 2 nu A / (H d): the closed form for a velocity that is linear across the wall.
+    ///
+    /// Damping and friction are implicit, k / (1 + k dt), and stable for any k.
+    pub fn acceleration<const FORCES: u32>(
         &self,
         params: &Params,
         v: Vec3,
@@ -41,31 +47,24 @@ impl WallTerms {
             if distance >= params.support_radius {
                 continue;
             }
-            let mut own = push * self.slope[axis] * scale * self.normal[axis];
-            if push > 0.0 {
-                own -= (self.plane[axis] + self.plane_slope[axis] * scale * distance) * body[axis];
+            if FORCES & part::PRESSURE != 0 {
+                let mut own = push * self.slope[axis] * scale * self.normal[axis];
+                if push > 0.0 {
+                    own -= (self.plane[axis] + self.plane_slope[axis] * scale * distance) * body[axis];
+                }
+                a[axis] += own / others[axis];
             }
-            a[axis] += own / others[axis];
+            if FORCES & part::OTHER == 0 {
+                continue;
+            }
             if v[axis] * self.normal[axis] < 0.0 {
-                let q = distance * scale;
-                let t = 1.0 - q;
-                let damping = params.wall_damping
-                    * 7.0
-                    * params.sound_speed
-                    * scale
-                    * t
-                    * t
-                    * t
-                    * t
-                    * t
-                    * (1.0 + 2.0 * q);
-                a[axis] -= damping / (1.0 + damping * dt) * v[axis];
+                a[axis] -= law::implicit_rate(law::approach_damping(params, distance * scale), dt) * v[axis];
             }
-            let friction = params.wall_friction * 2.0 * params.viscosity * self.plane_slope[axis] * scale
-                / distance.max(0.25 * params.particle_spacing);
+            let gradient = self.plane_slope[axis] * scale;
+            let friction = law::friction(params, params.wall_friction, params.viscosity, gradient, distance);
             let mut along = v;
             along[axis] = 0.0;
-            a -= friction / (1.0 + friction * dt) * along;
+            a -= law::implicit_rate(friction, dt) * along;
         }
         a
     }

@@ -1,7 +1,20 @@
-//! What bounds the fluid: the box's closed sides.
+//! The boundary of the fluid: the closed sides of the box, and what they share with [`bodies`](crate::bodies).
+//!
+//! Walls and bodies implement the same three operations, which a scheme calls separately:
+//!
+//! | operation | walls | bodies |
+//! |---|---|---|
+//! | density contribution | [`Walls::density_at`], in the density passes | `bodies.boundary_density` |
+//! | pressure force, with its reaction | [`WallTerms::acceleration`] with [`part::PRESSURE`] | `bodies.boundary_force.*.pressure` |
+//! | all other forces, with theirs | [`WallTerms::acceleration`] with [`part::OTHER`] | `bodies.boundary_force.*.other` |
+//!
+//! An explicit scheme uses [`part::ALL`], which computes both in one pass. An implicit solver repeats the pressure part
+//! alone.
 
 mod contact;
+pub(crate) mod law;
 mod near;
+pub mod part;
 mod walls;
 
 pub(crate) use near::{NearWalls, closed_bounds};
@@ -11,5 +24,7 @@ use splashdown_gpu::WgslModule;
 
 /// The integrals of one plane, which [`WGSL`] imports.
 pub const PLANES: WgslModule = WgslModule { name: "sph/planes", source: include_str!("planes.wgsl") };
+/// The forces of walls and bodies apart from pressure, and the selection of a [`part`].
+pub const LAW: WgslModule = WgslModule { name: "sph/boundary_law", source: include_str!("law.wgsl") };
 /// The WGSL side of [`Walls`]: `wall_terms`.
 pub const WGSL: WgslModule = WgslModule { name: "sph/walls", source: include_str!("walls.wgsl") };

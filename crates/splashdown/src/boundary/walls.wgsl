@@ -1,5 +1,6 @@
 // The closed sides of the box; see walls.rs. Needs `params` (Params) and `wall_table` (33 x 33 nodes).
 #import sph/planes
+#import sph/boundary_law
 const WALL_STEPS: u32 = 32u;
 
 struct WallTerms {
@@ -85,7 +86,7 @@ fn wall_terms(x: vec3<f32>) -> WallTerms {
     return terms;
 }
 
-// The acceleration by neighbours and walls; see `WallTerms::acceleration`.
+// The selected part of the acceleration by neighbours and walls; see `WallTerms::acceleration`.
 fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, fluid: vec3<f32>, push: f32, dt: f32) -> vec3<f32> {
     let scale = 1.0 / params.support_radius;
     let open = vec3(1.0) - wall.plane;
@@ -96,22 +97,25 @@ fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, fluid: vec3
         if (distance >= params.support_radius) {
             continue;
         }
-        var own = push * wall.slope[axis] * scale * wall.normal[axis];
-        if (push > 0.0) {
-            own -= (wall.plane[axis] + wall.plane_slope[axis] * scale * distance) * body[axis];
+        if ((FORCES & PRESSURE_FORCE) != 0u) {
+            var own = push * wall.slope[axis] * scale * wall.normal[axis];
+            if (push > 0.0) {
+                own -= (wall.plane[axis] + wall.plane_slope[axis] * scale * distance) * body[axis];
+            }
+            a[axis] += own / others[axis];
         }
-        a[axis] += own / others[axis];
+        if ((FORCES & OTHER_FORCES) == 0u) {
+            continue;
+        }
         if (v[axis] * wall.normal[axis] < 0.0) {
             let q = distance * scale;
-            let t = 1.0 - q;
-            let damping = params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
-            a[axis] -= damping / (1.0 + damping * dt) * v[axis];
+            a[axis] -= implicit_rate(approach_damping(q), dt) * v[axis];
         }
-        let friction = params.wall_friction * 2.0 * params.viscosity * wall.plane_slope[axis] * scale
-            / max(distance, 0.25 * params.particle_spacing);
+        let gradient = wall.plane_slope[axis] * scale;
+        let friction = boundary_friction(params.wall_friction, params.viscosity, gradient, distance);
         var along = v;
         along[axis] = 0.0;
-        a -= friction / (1.0 + friction * dt) * along;
+        a -= implicit_rate(friction, dt) * along;
     }
     return a;
 }

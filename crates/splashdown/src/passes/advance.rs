@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
 use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
-use crate::boundary::closed_bounds;
+use crate::boundary::{closed_bounds, law};
 use crate::cells::Grid;
 use crate::cells::cell_counts::{self, CellCounter};
 
@@ -110,9 +110,8 @@ struct Moved {
     cell: u32,
 }
 
-/// The part of a spacing that a step covers at most, and the part that closed sides keep free.
+/// The part of a spacing that a step covers at most.
 const LONGEST: f32 = 0.5;
-const FREE: f32 = 0.25;
 
 /// Moves particles by one step.
 struct Mover<'a> {
@@ -129,7 +128,7 @@ struct Mover<'a> {
 impl<'a> Mover<'a> {
     fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
         let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
-        let margin = 1.01 * (LONGEST + FREE) * params.particle_spacing;
+        let margin = 1.01 * (LONGEST + law::CLEARANCE) * params.particle_spacing;
         let inner = [params.domain_min + margin, params.domain_max - margin];
         Self { params, grid, dt, low, high, inner }
     }
@@ -150,7 +149,7 @@ impl<'a> Mover<'a> {
         let p = p.xyz();
         let is_inner = p.cmpgt(inner[0]).all() && p.cmplt(inner[1]).all();
         if !is_inner {
-            let free = Vec3::splat(FREE * params.particle_spacing);
+            let free = Vec3::splat(law::CLEARANCE * params.particle_spacing);
             v = v.max(-(p - low - free).max(Vec3::ZERO) / dt).min((high - p - free).max(Vec3::ZERO) / dt);
         }
         let mut x = p + dt * v;

@@ -1,4 +1,5 @@
 #import sph/cell_counts
+#import sph/boundary_law
 // The motion of one particle; needs `params`, `grid`, `state`, `positions`, `velocities`, `cell_counts` and `counters`,
 // the last two atomic. See passes/integrate.
 
@@ -45,13 +46,12 @@ fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, rho: f32, a: vec3<f32>) -> u32 
         v *= most / step;
         atomicAdd(&counters[COUNTER_LIMITED], 1u);
     }
-    let near = 0.25 * params.particle_spacing;
     for (var axis = 0u; axis < 3u; axis++) {
         if (is_closed(2u * axis)) {
-            v[axis] = max(v[axis], -max(p[axis] - params.domain_min[axis] - near, 0.0) / dt);
+            v[axis] = max(v[axis], -contact_speed(p[axis] - params.domain_min[axis], dt));
         }
         if (is_closed(2u * axis + 1u)) {
-            v[axis] = min(v[axis], max(params.domain_max[axis] - p[axis] - near, 0.0) / dt);
+            v[axis] = min(v[axis], contact_speed(params.domain_max[axis] - p[axis], dt));
         }
     }
     var x = p.xyz + dt * v;

@@ -1,4 +1,4 @@
-// The acceleration of a particle by its neighbours, the walls and what pulls at everything; see
+// The part FORCES of the acceleration of a particle by its neighbours, the walls and body forces; see
 // passes/acceleration. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
 // `densities`; a constant `HAS_TENSION`; and a function `tension_between`: what surface tension does between
 // particles i and j, d apart.
@@ -18,7 +18,7 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
     let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
-    let tension = HAS_TENSION && params.surface_tension > 0.0;
+    let tension = HAS_TENSION && (FORCES & OTHER_FORCES) != 0u && params.surface_tension > 0.0;
 
     var a = vec3(0.0);
     for (var row = 0u; row < 9u; row++) {
@@ -34,7 +34,8 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
             let other = densities[j];
             let vx = dot(v - sorted_velocities[j].xyz, d);
             let rub = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-            a += (g * (rub - mass * (specific + other.y / (other.x * other.x)))) * d;
+            let squeeze = mass * (specific + other.y / (other.x * other.x));
+            a += (g * (select(0.0, rub, (FORCES & OTHER_FORCES) != 0u) - select(0.0, squeeze, (FORCES & PRESSURE_FORCE) != 0u))) * d;
             if (tension) {
                 a += tension_between(i, j, d, q, rho, other.x);
             }
@@ -42,5 +43,6 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     }
 
     let push = params.rest_density * specific + pressure / params.rest_density;
-    return wall_acceleration(wall_terms(x), v, body, a, push, state.dt) + body;
+    a = wall_acceleration(wall_terms(x), v, body, a, push, state.dt);
+    return a + select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
 }

@@ -234,6 +234,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &integrate::UNCOUNTED,
         &acceleration::WENDLAND_C2,
         &acceleration::CUBIC_SPLINE,
+        &acceleration::WENDLAND_C2_PRESSURE,
+        &acceleration::WENDLAND_C2_OTHER,
         &force_integrate::WENDLAND_C2,
         &force_integrate::CUBIC_SPLINE,
         &mueller::MUELLER,

@@ -8,7 +8,7 @@ use splashdown_gpu::{CpuExecutor, Grid as Extent};
 
 use super::cases::census_of;
 use super::harness::{Case, Data, close, exact, wide};
-use super::oracle::{self, Kernel, Sum};
+use super::oracle::{self, Kernel, Parts, Sum};
 use super::sort_cases::{empty_census, pass};
 use super::walls::{Kernels, Wall};
 use super::world::{World, params};
@@ -54,7 +54,22 @@ pub fn cases() -> Vec<Case> {
             ("wider support, clamped, open above", rich),
             ("no friction", Params { wall_friction: 0.0, viscosity: 0.0, ..params(2.0) }),
         ] {
-            cases.push(momentum(name, kernels, params));
+            cases.push(acceleration(name, kernels, params));
+        }
+        for (suffix, parts) in [
+            (".pressure", Parts { pressure: true, other: false }),
+            (".other", Parts { pressure: false, other: true }),
+        ] {
+            if kernels.density == Kernel::WendlandC2 {
+                cases.push(part_of_acceleration(suffix, "walls", kernels, params(2.0), parts));
+                cases.push(part_of_acceleration(
+                    suffix,
+                    "surface tension, open above",
+                    kernels,
+                    tension_open(),
+                    parts,
+                ));
+            }
         }
         cases.push(motion("pressure, viscosities, walls", kernels, params(2.0), 0.01));
         cases.push(motion("wider support, clamped, open above", kernels, rich, 0.01));
@@ -65,6 +80,10 @@ pub fn cases() -> Vec<Case> {
     cases.push(mueller("surface tension", tension));
     cases.push(mueller("wider support, clamped, open above", Params { surface_tension: 7.0, ..rich }));
     cases
+}
+
+fn tension_open() -> Params {
+    Params { surface_tension: 0.4, closed: 0b110111, ..params(2.0) }
 }
 
 fn world(params: Params) -> World {
@@ -217,11 +236,16 @@ fn push_error(world: &World, wall: &Wall, i: usize) -> f64 {
     WALL_TABLE[wall.near] * (push * 500.0 / support + body)
 }
 
-fn momentum(name: &str, kernels: Kernels, params: Params) -> Case {
+fn acceleration(name: &str, kernels: Kernels, params: Params) -> Case {
+    part_of_acceleration("", name, kernels, params, Parts::ALL)
+}
+
+/// `suffix` is the end of the label of the pass that computes these parts.
+fn part_of_acceleration(suffix: &str, name: &str, kernels: Kernels, params: Params, parts: Parts) -> Case {
     let world = world(params);
     let walls = oracle::walls(&world, kernels);
     let mut expected = Expected::new();
-    for (i, sum) in oracle::momentum(&world, kernels.gradient, &walls).iter().enumerate() {
+    for (i, sum) in oracle::acceleration(&world, kernels.gradient, &walls, parts).iter().enumerate() {
         expected.vector(sum, push_error(&world, &walls[i], i));
     }
     let mut input = base(&world);
@@ -234,12 +258,12 @@ fn momentum(name: &str, kernels: Kernels, params: Params) -> Case {
     });
     input.push(table(kernels));
     let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
-    expected.case(format!("momentum.{}", word(kernels)), name, &world, input, output, heavier)
+    expected.case(format!("acceleration.{}{suffix}", word(kernels)), name, &world, input, output, heavier)
 }
 
 /// What forces and motion leave in two passes on the CPU, each of which is compared with the oracle by itself.
 fn two_passes(world: &World, kernels: Kernels) -> Vec<Data> {
-    let case = momentum("", kernels, world.params);
+    let case = acceleration("", kernels, world.params);
     let accelerations = case.run(&mut CpuExecutor::new().into()).remove(0);
     let [state, _, positions, velocities, densities] = pair_input(world);
     let integrate = Case {
@@ -269,7 +293,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     let walls = oracle::walls(&world, kernels);
     let dt = f64::from(world.state.dt);
     let mut tolerances = [Vec::new(), Vec::new()];
-    for sum in oracle::momentum(&world, kernels.gradient, &walls) {
+    for sum in oracle::acceleration(&world, kernels.gradient, &walls, Parts::ALL) {
         // Contacts divide a place's rounding by the step.
         let velocity = 2.0 * dt * ROUNDING * sum.size + 1.3e-7 / dt;
         tolerances[0].extend([2e-7 + dt * velocity; 4]);
@@ -301,7 +325,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     let oracle = std::rc::Rc::clone(&same);
     let [state, starts, positions, velocities, densities] = pair_input(&world);
     Case {
-        pass: pass(&format!("motion.{}", word(kernels))),
+        pass: pass(&format!("force_integrate.{}", word(kernels))),
         name: name.into(),
         extent: Extent::Items(world.len() as u32),
         input: vec![

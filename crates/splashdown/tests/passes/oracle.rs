@@ -173,10 +173,13 @@ pub fn continuity(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
 }
 
 /// What neighbours (`pairs`) and walls do together; the walls push with `push` = 2 p / rho, or what stands for it.
-fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64) -> Sum {
+fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64, parts: Parts) -> Sum {
     let p = &world.params;
     let v = speed(world, i);
-    let mut sum = Sum { value: c.body, size: c.body.length() };
+    let mut sum = Sum::default();
+    if parts.other {
+        sum = Sum { value: c.body, size: c.body.length() };
+    }
     for axis in 0..3 {
         let e = DVec3::AXES[axis];
         // Along the walls of the other axes all goes on as in the fluid, of which the kernel sees only this part.
@@ -184,13 +187,18 @@ fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64) -
         sum.value += pairs.value[axis] / seen * e;
         sum.size += pairs.size / seen;
         let Some(distance) = wall.distance[axis] else { continue };
-        let mut own = -push * wall.gradient[axis];
-        sum.size += own.abs() / seen;
-        if push > 0.0 {
-            let share = wall.plane[axis] + wall.single[axis] * distance / c.support;
-            own -= share * c.body[axis];
+        if parts.pressure {
+            let mut own = -push * wall.gradient[axis];
+            sum.size += own.abs() / seen;
+            if push > 0.0 {
+                let fraction = wall.plane[axis] + wall.single[axis] * distance / c.support;
+                own -= fraction * c.body[axis];
+            }
+            sum.add(own / seen * e);
         }
-        sum.add(own / seen * e);
+        if !parts.other {
+            continue;
+        }
         let q = distance / c.support;
         let implicit = |k: f64| k / (1.0 + k * c.dt);
         if v[axis] * wall.normal[axis] < 0.0 {
@@ -211,8 +219,19 @@ fn cohesion(r: f64, h: f64) -> f64 {
     32.0 / (PI * h.powi(9)) * if 2.0 * r > h { spline } else { 2.0 * spline - h.powi(6) / 64.0 }
 }
 
-/// Accelerations of the momentum pass.
-pub fn momentum(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
+/// Which forces are summed.
+#[derive(Clone, Copy)]
+pub struct Parts {
+    pub pressure: bool,
+    pub other: bool,
+}
+
+impl Parts {
+    pub const ALL: Self = Self { pressure: true, other: true };
+}
+
+/// Accelerations of the acceleration pass.
+pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts) -> Vec<Sum> {
     let (c, p) = (constants(world), &world.params);
     let [nu, alpha, gamma] = [p.viscosity, p.artificial_viscosity, p.surface_tension].map(f64::from);
     let state = |i: usize| world.densities[i].as_dvec2();
@@ -224,7 +243,15 @@ pub fn momentum(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
             }
             let g = kernel.gradient(d, c.support);
             let (own, other) = (state(i), state(j));
-            sum.add_parts(&[-c.mass * own.y / own.x.powi(2) * g, -c.mass * other.y / other.x.powi(2) * g]);
+            if parts.pressure {
+                sum.add_parts(&[
+                    -c.mass * own.y / own.x.powi(2) * g,
+                    -c.mass * other.y / other.x.powi(2) * g,
+                ]);
+            }
+            if !parts.other {
+                return;
+            }
             let softened = d.length_squared() + 0.01 * c.support.powi(2);
             let approach = (speed(world, i) - speed(world, j)).dot(d);
             sum.add(10.0 * nu * c.mass / c.rest * approach / softened * g);
@@ -244,7 +271,7 @@ pub fn momentum(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
         // The image in the wall has the rest density.
         let own = state(i);
         let push = c.rest * (own.y / own.x.powi(2) + own.y / c.rest.powi(2));
-        contact(world, &c, i, &walls[i], sum, push)
+        contact(world, &c, i, &walls[i], sum, push, parts)
     };
     (0..world.living()).map(sum).collect()
 }
@@ -279,7 +306,7 @@ pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
             // The direction of a nearly cancelled sum is as uncertain as its terms are large.
             sum.size += per * (laplacian.size * steepness + laplacian.value.x.abs() * normal.size);
         }
-        (contact(world, &c, i, &walls[i], sum, own.y / own.x), Steepness(steepness * 2.0 * h))
+        (contact(world, &c, i, &walls[i], sum, own.y / own.x, Parts::ALL), Steepness(steepness * 2.0 * h))
     };
     (0..world.living()).map(sum).collect()
 }

@@ -1,6 +1,7 @@
 #import gpu/index
 #import sph/params
 #import sph/planes
+#import sph/boundary_law
 #import sph/body
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -72,25 +73,29 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
     let pressure = densities[i].y;
     let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
     let effective = max(contact.effective, 0.0);
-    var a = push * contact.slope;
-    if (push > 0.0) {
-        a -= (contact.kernel_fraction + steep * effective) * dot(n, body) * n;
+    var a = vec3(0.0);
+    if ((FORCES & PRESSURE_FORCE) != 0u) {
+        a = push * contact.slope;
+        if (push > 0.0) {
+            a -= (contact.kernel_fraction + steep * effective) * dot(n, body) * n;
+        }
+        a = a / max(open, 0.1);
     }
-    a = a / max(open, 0.1);
+    if ((FORCES & OTHER_FORCES) == 0u) {
+        return Effect(a, n);
+    }
 
     let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
     let v = sorted_velocities[i].xyz - wall;
     let vn = dot(v, n);
     let q = min(effective * scale, 1.0);
-    let t = 1.0 - q;
     if (vn < 0.0) {
-        let damping = params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
-        a -= damping / (1.0 + damping * state.dt) * vn * n;
+        a -= implicit_rate(approach_damping(q), state.dt) * vn * n;
     }
     let viscosity = params.viscosity
         + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
-    let friction = bodies[b].friction * 2.0 * viscosity * steep / max(effective, 0.25 * params.particle_spacing);
-    a -= friction / (1.0 + friction * state.dt) * (v - vn * n);
+    let friction = boundary_friction(bodies[b].friction, viscosity, steep, effective);
+    a -= implicit_rate(friction, state.dt) * (v - vn * n);
     if (q > 0.5) {
         let spline = max(-4.0 * q * q + 6.0 * q - 2.0, 0.0);
         a -= bodies[b].adhesion * sqrt(sqrt(4.0 * spline)) * n;
@@ -104,7 +109,7 @@ fn held_off(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
     let b = contact.body;
     let x = sorted_positions[i].xyz;
     let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
-    let slowest = -max(contact.distance - 0.25 * params.particle_spacing, 0.0) / state.dt;
+    let slowest = -contact_speed(contact.distance, state.dt);
     return max(slowest - dot(v - wall, contact.normal), 0.0) / state.dt * contact.normal;
 }
 
@@ -116,7 +121,9 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     }
     let both = contact_list[2u * i + 1u].body != NO_BODY;
     let body = body_acceleration(state.time);
-    var a = accelerations[i].xyz - body;
+    // Body forces are among the other forces, and do not continue into the solid.
+    let unchanged = select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
+    var a = accelerations[i].xyz - unchanged;
     var reaction: array<vec3<f32>, 2>;
     var normals: array<vec3<f32>, 2>;
     for (var k = 0u; k < 2u; k++) {
@@ -136,10 +143,10 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
             a += kernel_fraction / (1.0 - kernel_fraction) * (a - dot(a, normals[k]) * normals[k]);
         }
     }
-    a += reaction[0] + reaction[1] + body;
+    a += reaction[0] + reaction[1] + unchanged;
     let v = sorted_velocities[i].xyz;
     for (var k = 0u; k < 2u; k++) {
-        if (k == 0u || both) {
+        if ((FORCES & OTHER_FORCES) != 0u && (k == 0u || both)) {
             let hold = held_off(i, k, v + state.dt * a);
             a += hold;
             reaction[k] += hold;

@@ -4,12 +4,12 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use super::quantum;
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
-use crate::boundary::{KernelPair, WallKernel};
+use crate::boundary::{KernelPair, WallKernel, law, part};
 use crate::passes::{Params, StepState};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn boundary_force<K: WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, bodies, contacts, positions, velocities, densities, accelerations, sums] = slots
     else {
         unreachable!()
@@ -42,7 +42,7 @@ pub(super) fn boundary_force<K: WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) 
                     contacts: &contacts[i],
                     bodies,
                 };
-                pushed.run(a, &mut totals);
+                pushed.run::<FORCES>(a, &mut totals);
             }
             totals
         })
@@ -72,13 +72,15 @@ struct Pushed<'a> {
 }
 
 impl Pushed<'_> {
-    fn run(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
+    fn run<const FORCES: u32>(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
         let used = if self.contacts[1].body == Contact::NONE { 1 } else { 2 };
-        let mut a = acceleration.xyz() - self.wall_body;
+        // Body forces are among the other forces, and do not continue into the solid.
+        let unchanged = if FORCES & part::OTHER != 0 { self.wall_body } else { Vec3::ZERO };
+        let mut a = acceleration.xyz() - unchanged;
         let both = used == 2;
-        let second = if both { self.effect(1, both) } else { (Vec3::ZERO, Vec3::ZERO) };
+        let second = if both { self.effect::<FORCES>(1, both) } else { (Vec3::ZERO, Vec3::ZERO) };
         let (mut reaction, normals): ([Vec3; 2], [Vec3; 2]) = {
-            let first = self.effect(0, both);
+            let first = self.effect::<FORCES>(0, both);
             ([first.0, second.0], [first.1, second.1])
         };
         for (contact, normal) in self.contacts.iter().zip(normals).take(used) {
@@ -86,8 +88,11 @@ impl Pushed<'_> {
             let kernel_fraction = contact.kernel_fraction.clamp(0.0, 0.6);
             a += kernel_fraction / (1.0 - kernel_fraction) * (a - a.dot(normal) * normal);
         }
-        a += reaction[0] + reaction[1] + self.wall_body;
+        a += reaction[0] + reaction[1] + unchanged;
         for (k, reaction) in reaction.iter_mut().enumerate().take(used) {
+            if FORCES & part::OTHER == 0 {
+                break;
+            }
             let hold = self.held_off(k, self.v + self.dt * a);
             a += hold;
             *reaction += hold;
@@ -112,7 +117,7 @@ impl Pushed<'_> {
     }
 
     /// The acceleration by a body, and the direction in which its pressure acts.
-    fn effect(&self, k: usize, both: bool) -> (Vec3, Vec3) {
+    fn effect<const FORCES: u32>(&self, k: usize, both: bool) -> (Vec3, Vec3) {
         let (params, contact) = (self.params, &self.contacts[k]);
         let other = &self.contacts[1 - k];
         let body = &self.bodies[contact.body as usize];
@@ -126,26 +131,28 @@ impl Pushed<'_> {
         let [rho, pressure] = self.density.to_array();
         let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
         let effective = contact.effective.max(0.0);
-        let mut a = push * contact.slope;
-        if push > 0.0 {
-            a -= (contact.kernel_fraction + steep * effective) * n.dot(self.wall_body) * n;
+        let mut a = Vec3::ZERO;
+        if FORCES & part::PRESSURE != 0 {
+            a = push * contact.slope;
+            if push > 0.0 {
+                a -= (contact.kernel_fraction + steep * effective) * n.dot(self.wall_body) * n;
+            }
+            a /= open.max(0.1);
         }
-        a /= open.max(0.1);
+        if FORCES & part::OTHER == 0 {
+            return (a, n);
+        }
 
         let v = self.v - self.wall_velocity(contact);
         let vn = v.dot(n);
         let q = (effective * scale).min(1.0);
-        let t = 1.0 - q;
         if vn < 0.0 {
-            let damping =
-                params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
-            a -= damping / (1.0 + damping * self.dt) * vn * n;
+            a -= law::implicit_rate(law::approach_damping(params, q), self.dt) * vn * n;
         }
         let viscosity = params.viscosity
             + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
-        let friction =
-            body.friction * 2.0 * viscosity * steep / effective.max(0.25 * params.particle_spacing);
-        a -= friction / (1.0 + friction * self.dt) * (v - vn * n);
+        let friction = law::friction(params, body.friction, viscosity, steep, effective);
+        a -= law::implicit_rate(friction, self.dt) * (v - vn * n);
         if q > 0.5 {
             let spline = (-4.0 * q * q + 6.0 * q - 2.0).max(0.0);
             a -= body.adhesion * (4.0 * spline).sqrt().sqrt() * n;
@@ -172,7 +179,7 @@ impl Pushed<'_> {
     /// The acceleration that keeps a particle with velocity `v` after this step out of a body.
     fn held_off(&self, k: usize, v: Vec3) -> Vec3 {
         let contact = &self.contacts[k];
-        let slowest = -(contact.distance - 0.25 * self.params.particle_spacing).max(0.0) / self.dt;
+        let slowest = -law::contact_speed(self.params, contact.distance, self.dt);
         let toward = (v - self.wall_velocity(contact)).dot(contact.normal);
         (slowest - toward).max(0.0) / self.dt * contact.normal
     }

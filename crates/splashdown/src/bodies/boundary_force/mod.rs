@@ -1,4 +1,4 @@
-//! What bodies do to particles, and particles to bodies.
+//! The forces of bodies on particles, and their reactions: all of them, or the pressure part, or the others.
 //!
 //! A body acts as the box's closed sides do
 //! ([`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration) says why): its own pressure and its
@@ -17,10 +17,11 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
 
 use super::types::{self, Body, Contact};
-use crate::boundary::{self, KernelPair};
+use crate::boundary::{self, KernelPair, part};
+use crate::kernel;
 use crate::passes::{PARAMS, Params, STATE, StepState};
 
-const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::PLANES, types::WGSL];
+const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::PLANES, boundary::LAW, types::WGSL];
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
@@ -41,14 +42,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         write::<Vec4>("accelerations"),
         write::<u32>("sums"),
     ],
-    cpu: cpu::boundary_force::<crate::kernel::WendlandC2>,
+    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::ALL }>,
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "bodies.boundary_force.cubic_spline",
     constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::boundary_force::<crate::kernel::CubicSpline>,
+    cpu: cpu::boundary_force::<kernel::CubicSpline, { part::ALL }>,
     ..WENDLAND_C2
 };
 
@@ -56,7 +57,23 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static MUELLER: PassDesc = PassDesc {
     label: "bodies.boundary_force.mueller",
     constants: &[("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    cpu: cpu::boundary_force::<crate::kernel::Poly6>,
+    cpu: cpu::boundary_force::<kernel::Poly6, { part::ALL }>,
+    ..WENDLAND_C2
+};
+
+/// The pressure part, and its reaction, with the Wendland C2 kernel.
+pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
+    label: "bodies.boundary_force.wendland_c2.pressure",
+    constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::PRESSURE as f64)],
+    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::PRESSURE }>,
+    ..WENDLAND_C2
+};
+
+/// The other forces, and their reaction, with the Wendland C2 kernel.
+pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
+    label: "bodies.boundary_force.wendland_c2.other",
+    constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::OTHER as f64)],
+    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::OTHER }>,
     ..WENDLAND_C2
 };
 

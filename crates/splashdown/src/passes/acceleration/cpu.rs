@@ -4,13 +4,13 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{NearWalls, WallKernel};
+use crate::boundary::{NearWalls, WallKernel, part};
 use crate::kernel::{Kernel, SMALLEST_Q};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::passes::{Params, StepState};
 use crate::simd::{Lanes, Register};
 
-pub(super) fn acceleration<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
+pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [
         params,
         grid,
@@ -28,7 +28,7 @@ pub(super) fn acceleration<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot
     };
     let (params, grid) = (&params.get::<Params>(), &grid.get());
     let positions = positions.read();
-    let pass = Acceleration::<K>::new(
+    let pass = Acceleration::<K, FORCES>::new(
         params,
         &state.get(),
         positions,
@@ -39,15 +39,15 @@ pub(super) fn acceleration<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot
     let sorted = Sorted::new(params, grid, cell_start.read(), positions);
     let out = accelerations.write();
     // Columns and arithmetic that a scene does not ask for cost nothing.
-    if params.surface_tension > 0.0 {
-        pairs::for_each(sorted, out, &WithTension { momentum: pass, normals: normals.read() });
+    if FORCES & part::OTHER != 0 && params.surface_tension > 0.0 {
+        pairs::for_each(sorted, out, &WithTension { forces: pass, normals: normals.read() });
     } else {
         pairs::for_each(sorted, out, &pass);
     }
 }
 
-/// Pressure and viscosity.
-pub(crate) struct Acceleration<'a, K> {
+/// Pressure, viscosity, walls and body forces, or the [`part`] `FORCES` of them.
+pub(crate) struct Acceleration<'a, K, const FORCES: u32> {
     params: &'a Params,
     dt: f32,
     body: Vec3,
@@ -64,7 +64,7 @@ pub(crate) struct Acceleration<'a, K> {
     kernel: PhantomData<K>,
 }
 
-impl<'a, K: WallKernel> Acceleration<'a, K> {
+impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
     /// Of a step's arrays, and the table of the walls.
     pub fn new(
         params: &'a Params,
@@ -95,7 +95,7 @@ impl<'a, K: WallKernel> Acceleration<'a, K> {
     }
 }
 
-impl<K> Acceleration<'_, K> {
+impl<K, const FORCES: u32> Acceleration<'_, K, FORCES> {
     /// The acceleration of a particle from its sums.
     #[inline(always)]
     pub fn acceleration(&self, i: usize, sums: [f32; 3]) -> Vec3 {
@@ -104,9 +104,9 @@ impl<K> Acceleration<'_, K> {
         if let Some(terms) = self.walls.terms(x) {
             let [rho, pressure] = self.densities[i].to_array();
             let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
-            a = terms.acceleration(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
+            a = terms.acceleration::<FORCES>(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
         }
-        a + self.body
+        if FORCES & part::OTHER != 0 { a + self.body } else { a }
     }
 
     /// Mass times pressure over the square of the density.
@@ -117,7 +117,7 @@ impl<K> Acceleration<'_, K> {
     }
 }
 
-impl<K: Kernel> PairSum<7, 3> for Acceleration<'_, K> {
+impl<K: Kernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'_, K, FORCES> {
     type Output = Vec4;
 
     #[inline(always)]
@@ -138,8 +138,13 @@ impl<K: Kernel> PairSum<7, 3> for Acceleration<'_, K> {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
             let vx = dot(difference(v, [u_j, v_j, w_j]), d);
-            let rub = vx * vx.if_less(zero, approaching, parting) / (r2 + self.soft);
-            scaled(K::g(r2.sqrt() * self.scale) * (rub - (push + push_j)), d)
+            let rub = || vx * vx.if_less(zero, approaching, parting) / (r2 + self.soft);
+            let along = match FORCES {
+                part::PRESSURE => V::splat(0.0) - (push + push_j),
+                part::OTHER => rub(),
+                _ => rub() - (push + push_j),
+            };
+            scaled(K::g(r2.sqrt() * self.scale) * along, d)
         }
     }
 
@@ -150,33 +155,33 @@ impl<K: Kernel> PairSum<7, 3> for Acceleration<'_, K> {
 }
 
 /// Pressure, viscosity and surface tension.
-struct WithTension<'a, K> {
-    momentum: Acceleration<'a, K>,
+struct WithTension<'a, K, const FORCES: u32> {
+    forces: Acceleration<'a, K, FORCES>,
     normals: &'a [Vec4],
 }
 
-impl<K: Kernel> PairSum<11, 3> for WithTension<'_, K> {
+impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES> {
     type Output = Vec4;
 
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 11] {
-        let [x, y, z, u, v, w, push] = self.momentum.load(j);
+        let [x, y, z, u, v, w, push] = self.forces.load(j);
         let n = self.normals[j];
-        [x, y, z, u, v, w, push, self.momentum.densities[j].x, n.x, n.y, n.z]
+        [x, y, z, u, v, w, push, self.forces.densities[j].x, n.x, n.y, n.z]
     }
 
     #[inline(always)]
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 11]) -> [V; 3] {
-        let Acceleration { params, positions, densities, scale, factor, .. } = self.momentum;
+        let Acceleration { params, positions, densities, scale, factor, .. } = self.forces;
         let (x, n, rho) = (splat::<V>(positions[i]), splat::<V>(self.normals[i]), V::splat(densities[i].x));
         // The sums are multiplied by the factor in the end.
         let tension = V::splat(-2.0 * params.surface_tension * params.rest_density / factor);
         let pull = params.particle_mass * (scale * scale) * (scale * scale);
         let (zero, one, smallest) = (V::splat(0.0), V::splat(1.0), V::splat(SMALLEST_Q));
-        let momentum = self.momentum.pair::<V>(i);
+        let forces = self.forces.pair::<V>(i);
         #[inline(always)]
         move |[x_j, y_j, z_j, u_j, v_j, w_j, push_j, rho_j, n_x, n_y, n_z]| {
-            let a = momentum([x_j, y_j, z_j, u_j, v_j, w_j, push_j]);
+            let a = forces([x_j, y_j, z_j, u_j, v_j, w_j, push_j]);
             let d = difference(x, [x_j, y_j, z_j]);
             let q = dot(d, d).sqrt() * scale;
             let share = q.if_less(one, tension, zero) / (rho + rho_j);
@@ -188,7 +193,7 @@ impl<K: Kernel> PairSum<11, 3> for WithTension<'_, K> {
 
     #[inline(always)]
     fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
-        self.momentum.finish(i, sums, out);
+        self.forces.finish(i, sums, out);
     }
 }
 

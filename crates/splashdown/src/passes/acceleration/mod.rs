@@ -17,7 +17,7 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{FORCES, PARAMS, Params, ROWS, STATE, StepState};
-use crate::boundary::{self, KernelPair};
+use crate::boundary::{self, KernelPair, part};
 use crate::cells::{GRID, Grid};
 use crate::kernel::{self, CubicSpline, Kernel};
 
@@ -33,6 +33,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::PLANES,
+        boundary::LAW,
         boundary::WGSL,
         FORCES,
     ],
@@ -51,13 +52,29 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         read::<Vec4>("wall_table"),
         write::<Vec4>("accelerations"),
     ],
-    cpu: cpu::acceleration::<kernel::WendlandC2>,
+    cpu: cpu::acceleration::<kernel::WendlandC2, { part::ALL }>,
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "acceleration.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::acceleration::<CubicSpline>,
+    cpu: cpu::acceleration::<CubicSpline, { part::ALL }>,
+    ..WENDLAND_C2
+};
+
+/// The pressure part with the Wendland C2 kernel.
+pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
+    label: "acceleration.wendland_c2.pressure",
+    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0), ("FORCES", part::PRESSURE as f64)],
+    cpu: cpu::acceleration::<kernel::WendlandC2, { part::PRESSURE }>,
+    ..WENDLAND_C2
+};
+
+/// The other forces with the Wendland C2 kernel.
+pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
+    label: "acceleration.wendland_c2.other",
+    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0), ("FORCES", part::OTHER as f64)],
+    cpu: cpu::acceleration::<kernel::WendlandC2, { part::OTHER }>,
     ..WENDLAND_C2
 };

@@ -29,7 +29,17 @@ use crate::kernel::{self, CubicSpline, Kernel};
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "continuity.wendland_c2",
     wgsl: include_str!("continuity.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::WGSL],
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::PLANES,
+        boundary::LAW,
+        boundary::WGSL,
+    ],
     entry: "continuity",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],

@@ -14,7 +14,7 @@ use crate::cells::{GRID, Grid};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
 
 const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::WGSL];
+    &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::LAW, boundary::WGSL];
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

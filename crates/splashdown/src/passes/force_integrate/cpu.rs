@@ -1,7 +1,7 @@
 use glam::{Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::WallKernel;
+use crate::boundary::{WallKernel, part};
 use crate::cells::Grid;
 use crate::kernel::Kernel;
 use crate::passes::acceleration::cpu::Acceleration;
@@ -44,7 +44,14 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [S
         cell_counts: cell_counts.write(),
     };
     let Before { positions, velocities, densities } = before;
-    let forces = Acceleration::<K>::new(params, state, positions, velocities, densities, wall_table.read());
+    let forces = Acceleration::<K, { part::ALL }>::new(
+        params,
+        state,
+        positions,
+        velocities,
+        densities,
+        wall_table.read(),
+    );
     let places = pairs::Sorted::new(params, grid, cell_start.read(), positions);
     pairs::for_each(places, persistent.velocities, &forces);
     advance_all((params, grid, state), before, persistent, true, |_, a| a.xyz());

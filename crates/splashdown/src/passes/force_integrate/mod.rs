@@ -27,6 +27,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::PLANES,
+        boundary::LAW,
         boundary::WGSL,
         FORCES,
         STEP_COUNTERS,

@@ -16,13 +16,14 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{ADVANCE, PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+use crate::boundary;
 use crate::cells::{CELL_COUNTS, GRID, Grid};
 
 /// See the module.
 pub static INTEGRATE: PassDesc = PassDesc {
     label: "integrate",
     wgsl: include_str!("integrate.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, GRID, CELL_COUNTS, ADVANCE],
+    imports: &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, GRID, CELL_COUNTS, boundary::LAW, ADVANCE],
     entry: "integrate",
     workgroup_size: [256, 1, 1],
     constants: &[],

@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::boundary::{KernelPair, NearWalls};
+use crate::boundary::{KernelPair, NearWalls, part};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::passes::{Params, StepState};
@@ -88,7 +88,7 @@ impl PairSum<8, 7> for Mueller<'_> {
         }
         let mut a = force / rho;
         if let Some(terms) = self.walls.terms(x) {
-            a = terms.acceleration(params, v, self.body, a, pressure / rho, self.dt);
+            a = terms.acceleration::<{ part::ALL }>(params, v, self.body, a, pressure / rho, self.dt);
         }
         *out = (a + self.body).extend(0.0);
     }

@@ -19,7 +19,17 @@ use crate::kernel::{self, Kernel, Spiky};
 pub static MUELLER: PassDesc = PassDesc {
     label: "mueller",
     wgsl: include_str!("mueller.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::WGSL],
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::PLANES,
+        boundary::LAW,
+        boundary::WGSL,
+    ],
     entry: "mueller",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", Spiky::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
