@@ -4,7 +4,7 @@ use crate::cells::Grid;
 use crate::flow::LoadedFlow;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
-use crate::solver::Solver;
+use crate::schemes::Scheme;
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
@@ -94,7 +94,7 @@ fn per_particle(scene: &Scene) -> u64 {
         && scene.emitters.is_empty()
         && scene.sinks.is_empty()
         && scene.probes.is_empty()
-        && Solver::new(scene).fuses();
+        && Scheme::new(scene).is_fused();
     let some = |needed: bool, bytes: u64| if needed { bytes } else { 0 };
     PER_PARTICLE
         + some(!is_plain, ACCELERATION)

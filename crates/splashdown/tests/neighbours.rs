@@ -8,7 +8,7 @@ use splashdown::boundary::KernelPair;
 use splashdown::cells::{Cells, Grid};
 use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown::scene::{Scene, Sort};
-use splashdown::{Fields, solver};
+use splashdown::{Fields, schemes};
 use splashdown_gpu::{CpuExecutor, Executor, Recording, bytemuck, testing};
 
 const SUPPORT: f32 = 0.1;
@@ -27,7 +27,7 @@ fn params(particles: u32) -> Params {
         position = [0.0, 0.1, 0.6]
         size = [0.2, 0.2, 0.2]
     ";
-    let params = solver::params(&Scene::parse(text, "box.toml").unwrap(), particles);
+    let params = schemes::params(&Scene::parse(text, "box.toml").unwrap(), particles);
     assert_eq!(params.support_radius, SUPPORT);
     params
 }

@@ -29,14 +29,13 @@ pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample, WGSL as 
 use std::sync::Arc;
 
 use glam::{Quat, UVec3, Vec2, Vec3, Vec4};
-use splashdown_gpu::{Buffer, BufferId, Executor, GpuError, Grid as Extent, PassDesc, Recording};
+use splashdown_gpu::{Buffer, BufferId, Executor, GpuError, Grid as Extent, PassDesc};
 use splashdown_io::{Mesh, Particles};
 
 use crate::SimulationError;
 use crate::boundary::KernelPair;
-use crate::cells::Cells;
 use crate::checkpoint::{BodyKey, CheckpointError, hash};
-use crate::fields::Fields;
+use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::passes::Params;
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
@@ -166,8 +165,8 @@ impl Bodies {
         })
     }
 
-    /// Appends the look-up; needs the sorted positions.
-    pub fn record_boundary_lookup(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+    fn record_boundary_lookup(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, particles, .. } = step;
         let pass = self.by_kernels(
             &boundary_lookup::WENDLAND_C2,
             &boundary_lookup::CUBIC_SPLINE,
@@ -182,19 +181,13 @@ impl Bodies {
             self.contacts.id(),
             fields.counters.id(),
         ];
-        step.dispatch(pass, all, &buffers);
+        recording.dispatch(pass, *particles, &buffers);
     }
 
-    /// Appends the bodies' part in the density; needs the particles' own.
-    pub fn record_boundary_density(
-        &self,
-        step: &mut Recording,
-        cells: &Cells,
-        fields: &Fields,
-        all: Extent,
-        continuity: bool,
-    ) {
-        let pass = if continuity { &boundary_density::CONTINUITY } else { &boundary_density::SUMMATION };
+    fn record_boundary_density(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, particles, is_density_integrated } = step;
+        let pass =
+            if *is_density_integrated { &boundary_density::CONTINUITY } else { &boundary_density::SUMMATION };
         let buffers = [
             fields.params.id(),
             fields.state.id(),
@@ -205,11 +198,11 @@ impl Bodies {
             fields.sorted_velocities.id(),
             fields.densities.id(),
         ];
-        step.dispatch(pass, all, &buffers);
+        recording.dispatch(pass, *particles, &buffers);
     }
 
-    /// Appends the forces between bodies and particles; needs the accelerations by neighbours and walls.
-    pub fn record_boundary_force(&self, step: &mut Recording, fields: &Fields, all: Extent) {
+    fn record_boundary_force(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, fields, particles, .. } = step;
         let buffers = [
             fields.params.id(),
             fields.state.id(),
@@ -221,19 +214,16 @@ impl Bodies {
             fields.accelerations.id(),
             self.sums.id(),
         ];
-        step.dispatch(
-            self.by_kernels(
-                &boundary_force::WENDLAND_C2,
-                &boundary_force::CUBIC_SPLINE,
-                &boundary_force::MUELLER,
-            ),
-            all,
-            &buffers,
+        let pass = self.by_kernels(
+            &boundary_force::WENDLAND_C2,
+            &boundary_force::CUBIC_SPLINE,
+            &boundary_force::MUELLER,
         );
+        recording.dispatch(pass, *particles, &buffers);
     }
 
-    /// Appends the bodies' own motion.
-    pub fn record_motion(&self, step: &mut Recording, fields: &Fields) {
+    fn record_motion(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, fields, .. } = step;
         let buffers: [BufferId; 6] = [
             fields.params.id(),
             fields.state.id(),
@@ -242,7 +232,7 @@ impl Bodies {
             self.sums.id(),
             fields.counters.id(),
         ];
-        step.dispatch(&motion::MOTION, Extent::Items(self.bodies.len()), &buffers);
+        recording.dispatch(&motion::MOTION, Extent::Items(self.bodies.len()), &buffers);
     }
 
     fn by_kernels(
@@ -454,6 +444,23 @@ impl Bodies {
             })
         };
         particles.positions.iter().filter(|&&x| within(x.into())).count() as u32
+    }
+}
+
+impl Coupling for Bodies {
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::BoundaryLookup, Stage::BoundaryDensity, Stage::BoundaryForces]
+    }
+
+    fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {
+        match stage {
+            Stage::BoundaryLookup => self.record_boundary_lookup(step),
+            Stage::BoundaryDensity => self.record_boundary_density(step),
+            _ => {
+                self.record_boundary_force(step);
+                self.record_motion(step);
+            }
+        }
     }
 }
 

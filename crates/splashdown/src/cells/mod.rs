@@ -28,7 +28,7 @@ use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recor
 
 use crate::fields::Fields;
 use crate::scene::Sort;
-use crate::solver::end_step;
+use crate::schemes::end_step;
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {

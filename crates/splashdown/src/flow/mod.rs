@@ -17,12 +17,11 @@ mod types;
 pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
 use glam::{UVec3, Vec3, Vec4};
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, WgslModule};
 
 use crate::bodies::{BodyError, closed_solid, owner};
-use crate::cells::Cells;
 use crate::checkpoint::hash;
-use crate::fields::Fields;
+use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Scene, Sink, SinkRegion};
 
 /// The WGSL side of [`Nozzle`], [`SinkShape`] and [`EmissionSchedule`].
@@ -233,8 +232,9 @@ impl Flow {
         }
     }
 
-    /// Appends the nozzles' drive and the sinks; needs the accelerations.
-    pub fn record_before_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+    /// Appends the inflow constraint of the emitters, and the sinks.
+    fn record_forces(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, particles, .. } = step;
         let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
         if let Some(nozzles) = &self.nozzles {
             let buffers = [
@@ -248,7 +248,7 @@ impl Flow {
                 fields.sorted_velocities.id(),
                 fields.accelerations.id(),
             ];
-            step.dispatch(&inflow_constraint::INFLOW_CONSTRAINT, all, &buffers);
+            recording.dispatch(&inflow_constraint::INFLOW_CONSTRAINT, *particles, &buffers);
         }
         if let Some((drains, maps)) = &self.drains {
             let buffers = [
@@ -260,17 +260,18 @@ impl Flow {
                 fields.sorted_positions.id(),
                 fields.counters.id(),
             ];
-            step.dispatch(&sink::SINK, all, &buffers);
+            recording.dispatch(&sink::SINK, *particles, &buffers);
         }
     }
 
-    /// Appends the birth of particles into the persistent arrays.
-    pub fn record_after_integrate(&self, step: &mut Recording, cells: &Cells, fields: &Fields) {
+    /// Appends the emission of particles into the persistent arrays.
+    fn record_emission(&self, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, .. } = step;
         let Some(nozzles) = &self.nozzles else { return };
         let (params, grid, cell_start) = (fields.params.id(), cells.grid_uniform.id(), cells.cell_start.id());
         let buffers =
             [params, grid, fields.state.id(), cell_start, nozzles.nozzles.id(), nozzles.schedules.id()];
-        step.dispatch(&emission_schedule::EMISSION_SCHEDULE, Extent::Groups(1), &buffers);
+        recording.dispatch(&emission_schedule::EMISSION_SCHEDULE, Extent::Groups(1), &buffers);
         let buffers = [
             params,
             grid,
@@ -283,7 +284,7 @@ impl Flow {
             fields.ids.id(),
             fields.densities.id(),
         ];
-        step.dispatch(&emit::EMIT, Extent::Items(nozzles.points.len()), &buffers);
+        recording.dispatch(&emit::EMIT, Extent::Items(nozzles.points.len()), &buffers);
     }
 
     /// What has been made so far, and a sentence for each emitter that found no room for the first time.
@@ -308,5 +309,15 @@ impl Flow {
             }
         }
         Ok((count, told))
+    }
+}
+
+impl Coupling for Flow {
+    fn stages(&self) -> &'static [Stage] {
+        if self.emits() { &[Stage::ExternalForces, Stage::Emission] } else { &[Stage::ExternalForces] }
+    }
+
+    fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {
+        if stage == Stage::Emission { self.record_emission(step) } else { self.record_forces(step) }
     }
 }

@@ -6,12 +6,9 @@
 pub mod apply;
 
 use glam::Vec3;
-use splashdown_gpu::{
-    Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule, gpu_struct,
-};
+use splashdown_gpu::{Buffer, Executor, GpuError, PassDesc, WgslModule, gpu_struct};
 
-use crate::cells::Cells;
-use crate::fields::Fields;
+use crate::coupling::{Coupling, Stage, StepRecorder};
 
 /// The WGSL side of [`MouseForce`].
 pub(crate) const MOUSE_FORCE: WgslModule =
@@ -90,9 +87,15 @@ impl MouseForceCoupling {
     pub fn set(&self, executor: &mut Executor, mouse_force: MouseForce) -> Result<(), GpuError> {
         executor.write(self.mouse_force, &[mouse_force])
     }
+}
 
-    /// Appends what the hand does; needs the accelerations.
-    pub fn record(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
+impl Coupling for MouseForceCoupling {
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::ExternalForces]
+    }
+
+    fn record(&self, _: Stage, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, particles, .. } = step;
         let buffers = [
             cells.grid_uniform.id(),
             fields.state.id(),
@@ -102,6 +105,6 @@ impl MouseForceCoupling {
             fields.sorted_velocities.id(),
             fields.accelerations.id(),
         ];
-        step.dispatch(&apply::APPLY, all, &buffers);
+        recording.dispatch(&apply::APPLY, *particles, &buffers);
     }
 }

@@ -15,11 +15,10 @@ pub(crate) use fluid::FluidProbes;
 pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
 
 use glam::Vec3;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording};
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc};
 
 use crate::bodies::{Bodies, Body};
-use crate::cells::Cells;
-use crate::fields::Fields;
+use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Probe, Quantity, Scene};
 
 /// Room for rows that a longer frame than the scene's may need.
@@ -114,42 +113,6 @@ impl Probes {
         [self.accounts, self.counts]
     }
 
-    /// Appends the readings; needs the step's densities and accelerations, and the positions after it.
-    pub fn record(&self, step: &mut Recording, cells: &Cells, fields: &Fields, all: Extent) {
-        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
-        let (params, state) = (fields.params.id(), fields.state.id());
-        let probes = self.probes.id();
-        let buffers = [
-            params,
-            grid,
-            state,
-            cell_start,
-            probes,
-            fields.sorted_positions.id(),
-            fields.densities.id(),
-            fields.accelerations.id(),
-            self.values.id(),
-        ];
-        step.dispatch(&sample::SAMPLE, Extent::Groups(self.points.len() as u32), &buffers);
-        if self.has_flow {
-            let sorted_positions = fields.sorted_positions.id();
-            let counts = self.counts.id();
-            let buffers = [grid, state, cell_start, probes, sorted_positions, fields.positions.id(), counts];
-            step.dispatch(&flux::FLUX, all, &buffers);
-        }
-        let buffers = [
-            params,
-            state,
-            probes,
-            self.bodies.id(),
-            self.values.id(),
-            self.counts.id(),
-            self.accounts.id(),
-            self.rows.id(),
-        ];
-        step.dispatch(&accumulate::ACCUMULATE, Extent::Items(self.probes.len()), &buffers);
-    }
-
     /// Fetches the rows of a frame that began at `start` and has gone on for `passed`, in s: one list per probe, in the
     /// order of the scene.
     ///
@@ -180,6 +143,48 @@ impl Probes {
         }
         executor.write(self.accounts, &accounts)?;
         Ok(taken)
+    }
+}
+
+impl Coupling for Probes {
+    fn stages(&self) -> &'static [Stage] {
+        &[Stage::Measurement]
+    }
+
+    fn record(&self, _: Stage, step: &mut StepRecorder<'_>) {
+        let StepRecorder { recording, cells, fields, particles, .. } = step;
+        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
+        let (params, state) = (fields.params.id(), fields.state.id());
+        let probes = self.probes.id();
+        let buffers = [
+            params,
+            grid,
+            state,
+            cell_start,
+            probes,
+            fields.sorted_positions.id(),
+            fields.densities.id(),
+            fields.accelerations.id(),
+            self.values.id(),
+        ];
+        recording.dispatch(&sample::SAMPLE, Extent::Groups(self.points.len() as u32), &buffers);
+        if self.has_flow {
+            let sorted_positions = fields.sorted_positions.id();
+            let counts = self.counts.id();
+            let buffers = [grid, state, cell_start, probes, sorted_positions, fields.positions.id(), counts];
+            recording.dispatch(&flux::FLUX, *particles, &buffers);
+        }
+        let buffers = [
+            params,
+            state,
+            probes,
+            self.bodies.id(),
+            self.values.id(),
+            self.counts.id(),
+            self.accounts.id(),
+            self.rows.id(),
+        ];
+        recording.dispatch(&accumulate::ACCUMULATE, Extent::Items(self.probes.len()), &buffers);
     }
 }
 

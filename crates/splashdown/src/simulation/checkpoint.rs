@@ -8,7 +8,7 @@ use super::Simulation;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
 use crate::flow::LoadedFlow;
 use crate::passes::StepCounters;
-use crate::{SimulationError, memory, solver};
+use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
     /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the
@@ -114,7 +114,7 @@ impl Simulation {
             let words = checkpoint.numbers::<u32>(name, buffer.words())?;
             buffer.write(&mut self.executor, &words)?;
         }
-        self.params = solver::params(&self.scene, host.capacity);
+        self.params = schemes::params(&self.scene, host.capacity);
         self.params.sound_speed = host.sound_speed;
         self.executor.write(self.fields.params, &[self.params])?;
         if let Some(flow) = &mut self.flow {

@@ -8,7 +8,7 @@ use crate::bodies::{BodyState, LoadedBody};
 use crate::mouse_force::{MouseForce, MouseForceCoupling};
 use crate::passes::{Params, StepState};
 use crate::scene::{Motion, Scene, Solver};
-use crate::{SimulationError, sample, solver};
+use crate::{SimulationError, sample, schemes};
 
 impl Simulation {
     /// Puts a hand into the water, moves it, or takes it out. From the first hand on, a step takes two more passes.
@@ -93,7 +93,7 @@ impl Simulation {
             return Ok(false);
         }
         // Water that moves was made for its speed of sound: with a lower one it would be soft, and pressures burst.
-        let params = solver::params(scene, self.params.particle_count);
+        let params = schemes::params(scene, self.params.particle_count);
         let params = Params { sound_speed: params.sound_speed.max(self.params.sound_speed), ..params };
         self.executor.write(self.fields.params, &[params])?;
         self.params = params;

@@ -15,8 +15,8 @@ use crate::flow::{Flow, LoadedFlow};
 use crate::passes::{DEAD_UNBORN, Params, StepState};
 use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
+use crate::schemes::{self, Couplings, Scheme};
 use crate::solid;
-use crate::solver::{self, Couplings, Solver};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample};
 
 impl Simulation {
@@ -89,8 +89,8 @@ impl Simulation {
         scene: &Scene,
         told: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Vec<LoadedBody>, SimulationError> {
-        let kernels = Solver::new(scene).walls();
-        let params = solver::params(scene, 0);
+        let kernels = Scheme::new(scene).walls();
+        let params = schemes::params(scene, 0);
         Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), told)?)
     }
 
@@ -126,8 +126,8 @@ impl Simulation {
         loaded: Vec<LoadedBody>,
         loaded_flow: &LoadedFlow,
     ) -> Result<Self, SimulationError> {
-        let solver = Solver::new(scene);
-        let params = solver::params(scene, capacity);
+        let scheme = Scheme::new(scene);
+        let params = schemes::params(scene, capacity);
         let (min, max) = (scene.domain.min, scene.domain.max);
         let grid =
             Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
@@ -136,12 +136,12 @@ impl Simulation {
                 allowed: 1 << 31,
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
-        let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals())?;
+        let fields = Fields::new(&mut executor, &params, scheme.walls(), scheme.needs_normals())?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort)?;
         let bodies = if loaded.is_empty() {
             None
         } else {
-            Some(Bodies::new(&mut executor, loaded, &params, solver.walls(), &scene.domain)?)
+            Some(Bodies::new(&mut executor, loaded, &params, scheme.walls(), &scene.domain)?)
         };
         let flow = if loaded_flow.is_empty() {
             None
@@ -154,8 +154,13 @@ impl Simulation {
 
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
         let mut simulation = Self {
-            begin: solver::begin_frame(&cells, &fields),
-            prime: solver.prime(&cells, &fields, bodies.as_ref(), capacity),
+            begin: schemes::begin_frame(&cells, &fields),
+            prime: scheme.initial_state(
+                &cells,
+                &fields,
+                &Couplings { bodies: bodies.as_ref(), ..Couplings::default() },
+                capacity,
+            ),
             executor,
             scene: scene.clone(),
             params,
@@ -184,18 +189,18 @@ impl Simulation {
     /// # Errors
     /// As [`Executor::create`].
     pub(super) fn record_batches(&mut self) -> Result<(), SimulationError> {
-        let solver = Solver::new(&self.scene);
+        let scheme = Scheme::new(&self.scene);
         let couplings = Couplings {
             bodies: self.bodies.as_ref(),
             flow: self.flow.as_ref(),
             probes: self.probes.as_ref(),
             mouse_force: self.mouse_force.as_ref(),
         };
-        if !(solver.fuses() && couplings.is_empty()) {
+        if !(scheme.is_fused() && couplings.is_empty()) {
             self.fields.make_accelerations(&mut self.executor)?;
         }
-        let step = solver.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
-        let end_step = solver::end_step(&self.fields);
+        let step = scheme.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
+        let end_step = schemes::end_step(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done));
         self.batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {

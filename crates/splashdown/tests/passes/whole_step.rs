@@ -5,7 +5,7 @@ use splashdown::boundary::KernelPair;
 use splashdown::cells::{Cells, Grid};
 use splashdown::passes::{StepCounters, StepState};
 use splashdown::scene::Scene;
-use splashdown::solver::{self, Couplings, Solver};
+use splashdown::schemes::{self, Couplings, Scheme};
 use splashdown::{Fields, sample};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuElement, GpuExecutor, Recording, bytemuck, testing};
 
@@ -44,10 +44,10 @@ impl Rig {
     fn new(scene: &Scene, mut executor: Executor) -> Self {
         let particles = sample::particles(scene).unwrap();
         let n = particles.positions.len() as u32;
-        let (params, way) = (solver::params(scene, n), Solver::new(scene));
+        let (params, way) = (schemes::params(scene, n), Scheme::new(scene));
         let kernels: KernelPair = way.walls();
         let mut fields = Fields::new(&mut executor, &params, kernels, way.needs_normals()).unwrap();
-        if !way.fuses() {
+        if !way.is_fused() {
             fields.make_accelerations(&mut executor).unwrap();
         }
         executor.write(fields.counters, &[0; StepCounters::WORDS]).unwrap();
@@ -75,7 +75,7 @@ impl Rig {
         cells.record_first_count(&mut count, &fields);
         executor.run(&count).unwrap();
         let mut step = way.step(&cells, &fields, &Couplings::default(), n);
-        step.append(&solver::end_step(&fields));
+        step.append(&schemes::end_step(&fields));
         Self { executor, fields, cells, step }
     }
 

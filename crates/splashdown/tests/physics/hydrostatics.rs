@@ -74,7 +74,7 @@ impl Tank {
             self.solver
         ));
         let mut particles = sample::particles(&scene).unwrap();
-        let params = splashdown::solver::params(&scene, 0);
+        let params = splashdown::schemes::params(&scene, 0);
         // A linear equation of state will do: the densities differ by a part in a hundred.
         let (height, per_depth) = (self.height() as f32, self.gravity as f32 / params.sound_speed.powi(2));
         if scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity {

@@ -57,7 +57,7 @@ impl Tank {
 
     /// Water at rest up to the level.
     fn water(&self, scene: &Scene) -> Particles {
-        let params = splashdown::solver::params(scene, 0);
+        let params = splashdown::schemes::params(scene, 0);
         let per_depth = GRAVITY / params.sound_speed.powi(2);
         let mut particles = Particles::default();
         let [nx, ny, nz] = self.size;

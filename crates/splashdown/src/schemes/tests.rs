@@ -2,6 +2,7 @@ use splashdown_gpu::{Command, CpuExecutor, Executor};
 
 use super::*;
 use crate::cells::Grid;
+use crate::mouse_force::MouseForceCoupling;
 use crate::scene::Sort;
 
 /// A block of 64 particles in a box of so many metres, whose cells have edges of 0.2 m.
@@ -29,7 +30,7 @@ fn scene(size: f32, solver: &str) -> Scene {
 /// Cells, and the commands of a step by kind: labels of its dispatches, clears and copies.
 fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static str>) {
     let scene = scene(size, solver);
-    let (solver, params) = (Solver::new(&scene), params(&scene, 64));
+    let (solver, params) = (Scheme::new(&scene), params(&scene, 64));
     let mut executor = Executor::from(CpuExecutor::new());
     let fields = Fields::new(&mut executor, &params, solver.walls(), solver.needs_normals()).unwrap();
     let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();

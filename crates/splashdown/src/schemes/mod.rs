@@ -1,0 +1,116 @@
+//! Schemes: each is one function that records the passes of a time step, in the order of its paper.
+//!
+//! | scheme | function | reference |
+//! |---|---|---|
+//! | `wcsph` | [`wcsph::wcsph`] | Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009 |
+//! | `mueller2003` | [`mueller2003::mueller2003`] | Müller, Charypar & Gross 2003 |
+//!
+//! The functions call the operations of [`Step`], which choose the variant of a pass by the scene's kernel, density form
+//! and surface tension. Parameters that only one scheme has stand beside its function.
+
+mod mueller2003;
+mod params;
+mod step;
+#[cfg(test)]
+mod tests;
+mod wcsph;
+
+pub use params::params;
+pub use step::{Couplings, Step};
+
+use splashdown_gpu::{Grid as DispatchSize, Recording};
+
+use crate::boundary::KernelPair;
+use crate::cells::Cells;
+use crate::fields::Fields;
+use crate::passes::{begin, end_step};
+use crate::scene::{DensityMode, KernelKind, Method, Scene, SurfaceTension};
+
+/// A scheme with the choices of a scene's `[solver]` section that select passes.
+#[derive(Clone, Copy, Debug)]
+pub struct Scheme {
+    method: Method,
+    kernel: KernelKind,
+    is_density_integrated: bool,
+    has_tension: bool,
+}
+
+impl Scheme {
+    /// The scheme of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            method: scene.solver.method,
+            kernel: scene.solver.kernel,
+            is_density_integrated: scene.solver.method == Method::Wcsph
+                && scene.solver.density == DensityMode::Continuity,
+            has_tension: scene.solver.surface_tension == SurfaceTension::Akinci2013,
+        }
+    }
+
+    /// The kernels whose integrals the walls use.
+    pub fn walls(&self) -> KernelPair {
+        match (self.method, self.kernel) {
+            (Method::Mueller2003, _) => KernelPair::Mueller,
+            (Method::Wcsph, KernelKind::WendlandC2) => KernelPair::WendlandC2,
+            (Method::Wcsph, KernelKind::CubicSpline) => KernelPair::CubicSpline,
+        }
+    }
+
+    /// True if the normals of the surface are computed; they take memory for each particle.
+    pub fn needs_normals(&self) -> bool {
+        self.has_tension
+    }
+
+    /// True if forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
+    pub fn is_fused(&self) -> bool {
+        self.method == Method::Wcsph && !self.has_tension
+    }
+
+    /// Records one step. [`begin_frame`] precedes the first step of a frame, and [`end_step`](fn@end_step) follows the
+    /// last step of a submission. Needs a buffer of accelerations unless the scheme [is fused](Self::is_fused) and there
+    /// are no couplings.
+    pub fn step(
+        &self,
+        cells: &Cells,
+        fields: &Fields,
+        couplings: &Couplings<'_>,
+        particles: u32,
+    ) -> Recording {
+        let mut step = Step::new(*self, "step", cells, fields, couplings, particles);
+        match self.method {
+            Method::Wcsph => wcsph::wcsph(&mut step),
+            Method::Mueller2003 => mueller2003::mueller2003(&mut step),
+        }
+        step.finish()
+    }
+
+    /// Records the sort, density and pressure without motion: the fields of the first frame.
+    pub fn initial_state(
+        &self,
+        cells: &Cells,
+        fields: &Fields,
+        couplings: &Couplings<'_>,
+        particles: u32,
+    ) -> Recording {
+        let mut step = Step::new(*self, "initial state", cells, fields, couplings, particles);
+        step.initial_state();
+        step.finish()
+    }
+}
+
+/// Begins a frame of the length that `duration` holds, and counts the particles for the first sort.
+pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
+    let mut recording = Recording::new("begin frame");
+    let buffers = [fields.params.id(), fields.duration.id(), fields.state.id()];
+    recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &buffers);
+    cells.record_first_count(&mut recording, fields);
+    recording
+}
+
+/// Ends the last step of a submission: afterwards the host, or another step, may read the state.
+pub fn end_step(fields: &Fields) -> Recording {
+    let mut recording = Recording::new("end_step");
+    let buffers = [fields.params.id(), fields.state.id(), fields.counters.id()];
+    recording.dispatch(&end_step::END_STEP, DispatchSize::Groups(1), &buffers);
+    recording
+}
