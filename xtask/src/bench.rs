@@ -1,4 +1,4 @@
-//! The numbers of `docs/bench.md`, each with the command that gives it.
+//! `cargo xtask bench`: measures and writes `docs/bench.md`.
 
 use std::path::Path;
 
@@ -8,11 +8,10 @@ use crate::process::{self, say};
 use crate::report::Page;
 use crate::{peers, report};
 
-/// A GPU's sizes, where there is one.
+/// Numbers of particles for a GPU.
 const GPU_SIZES: &str = "64K,256K,1M,4M,10M";
 
-/// The word `bench`. The tables come from `splashdown bench`; this only chooses what to measure and writes the
-/// headings.
+/// Runs `cargo xtask bench`. `splashdown bench` prints the tables; this module chooses the cases and writes the headings.
 pub fn run(arguments: &[String]) -> Result<()> {
     let quick = match arguments {
         [] => false,
@@ -22,16 +21,17 @@ pub fn run(arguments: &[String]) -> Result<()> {
     };
     let binary = process::build_release()?;
     let command = if quick { "cargo xtask bench --quick" } else { "cargo xtask bench" };
-    let mut page = Page::new("Measured", command, &binary)?;
+    let mut page = Page::new("Benchmarks", command, &binary)?;
     page.add(
-        "Each table has its command. The scene is a dam break that grows with the number of particles; support of two spacings. *Over \
-         the floor* is the time of a step over the least that the device could need for its bytes, its arithmetic and its dispatches, \
-         measured in the same process ([performance.md](performance.md) derives them). Beside other programs: [peers.md](peers.md).",
+        "Each section names its command. The scene is a dam break that grows with the number of particles; the support radius is two \
+         spacings. *Over the floor* is the time of a step divided by the minimum time that the device needs for the memory traffic, the \
+         arithmetic and the dispatches of a step; these limits are measured in the same process. [Performance](performance.md) \
+         explains the results, and [Comparison](peers.md) compares them with other programs.",
     );
     let one = if quick { "8K" } else { "64K" };
     let few = if quick { "8K,16K" } else { "64K,1M" };
     let threads = threads();
-    section(&mut page, &binary, "One step on the CPU, by pass", &["--device", "cpu", "--particles", one])?;
+    section(&mut page, &binary, "One step on the CPU by pass", &["--device", "cpu", "--particles", one])?;
     let growth: &[&str] = if quick {
         &["--device", "cpu", "--particles", "8K,16K,32K", "--no-passes"]
     } else {
@@ -47,16 +47,11 @@ pub fn run(arguments: &[String]) -> Result<()> {
     section(
         &mut page,
         &binary,
-        "The thesis's forces on the CPU",
+        "Solver mueller2003 on the CPU",
         &["--device", "cpu", "--solver", "mueller2003", "--particles", one],
     )?;
-    section(&mut page, &binary, "On the best GPU", &["--device", "gpu", "--particles", GPU_SIZES])?;
-    section(
-        &mut page,
-        &binary,
-        "On software Vulkan, for the record",
-        &["--device", "llvmpipe", "--particles", one],
-    )?;
+    section(&mut page, &binary, "GPU", &["--device", "gpu", "--particles", GPU_SIZES])?;
+    section(&mut page, &binary, "Software Vulkan", &["--device", "llvmpipe", "--particles", one])?;
     if quick {
         say("\n--quick: docs/bench.md is left as it is.");
         return Ok(());
@@ -64,7 +59,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     page.write("docs/bench.md")
 }
 
-/// One thread, and doubling up to all there are.
+/// Powers of two up to the number of threads, and that number.
 fn threads() -> String {
     let all = report::threads();
     let doubling =
@@ -72,7 +67,12 @@ fn threads() -> String {
     doubling.chain([all]).map(|threads| threads.to_string()).collect::<Vec<_>>().join(",")
 }
 
-/// One table. A device that is not there is said and passed over: the tables that can be made are worth having.
+/// The name of a section for the guide: `GPU` becomes `gpu`.
+fn anchor(title: &str) -> String {
+    title.to_lowercase().replace(' ', "-")
+}
+
+/// One section with its table. A missing device is reported in the section; the other sections are still written.
 fn section(page: &mut Page, binary: &Path, title: &str, arguments: &[&str]) -> Result<()> {
     let mut command = process::command(binary);
     command.arg("bench").args(arguments).stderr(std::process::Stdio::inherit());
@@ -81,10 +81,12 @@ fn section(page: &mut Page, binary: &Path, title: &str, arguments: &[&str]) -> R
     let output = command.output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     match output.status.code() {
-        Some(0) => page.add(&text),
-        Some(4) if text.is_empty() => page.add("No such device on this machine."),
-        // The largest sizes may not fit; the rows before them are worth having.
-        Some(4) => page.add(&format!("{text}\nFurther sizes do not fit this device.")),
+        Some(0) => page.add_anchored(&anchor(title), &text),
+        Some(4) if text.is_empty() => page.add_anchored(&anchor(title), "This machine has no such device."),
+        // The rows of the sizes that fit are kept.
+        Some(4) => {
+            page.add_anchored(&anchor(title), &format!("{text}\nFurther sizes do not fit this device."));
+        }
         _ => bail!("`{}` failed ({})", process::line(&command), output.status),
     }
     Ok(())

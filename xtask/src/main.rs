@@ -3,6 +3,7 @@
 
 mod bench;
 mod demo;
+mod guide;
 mod layers;
 mod page;
 mod peers;
@@ -28,6 +29,7 @@ Usage: cargo xtask <WORD> [OPTIONS]
   bench [--quick]   measure and write docs/bench.md (--quick: small sizes only, and nothing is written)
   bench --peers [--quick] [--particles FILE SPACING]
                     measure beside SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
+  guide             build the user guide as HTML into target/guide and check its links
   pictures [SCENE]  make the pictures of the README anew
   web [--build] [--port N]
                     the web page: build it and serve it on localhost (--build: build it only)
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         "web" => web::run(rest),
         "validate" => validate::run(rest),
         "setup" => setup::run(rest),
+        "guide" => guide::run(rest),
         "help" | "--help" | "-h" => {
             process::say(HELP.trim_end());
             Ok(())

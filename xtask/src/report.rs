@@ -7,19 +7,19 @@ use anyhow::{Context, Result};
 
 use crate::process::{self, root, say};
 
-/// A page that is printed while it grows and written at its end.
+/// A page that is printed section by section and written at the end.
 pub struct Page {
     text: String,
 }
 
 impl Page {
-    /// Begins with the title and with what holds for all of it.
+    /// Starts a page with its title, the date, the machine and the command.
     pub fn new(title: &str, command: &str, binary: &Path) -> Result<Self> {
         let mut page = Self { text: String::new() };
         page.add(&format!("# {title}"));
         page.add(&format!("Written by `{}`, {}, on {}", command.trim(), date(), machine(binary)?));
         page.add(&format!(
-            "Shared machines are noisy: trust ratios taken in one run, not single times.{}",
+            "Shared machines are noisy: ratios of one run are more reliable than single times.{}",
             load().map_or_else(String::new, |load| format!(" Load before the first measurement: {load}."))
         ));
         Ok(page)
@@ -35,7 +35,12 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// Writes it below the repository.
+    /// Adds a part that the guide includes by this name.
+    pub fn add_anchored(&mut self, name: &str, part: &str) {
+        self.add(&format!("<!-- ANCHOR: {name} -->\n{}\n<!-- ANCHOR_END: {name} -->", part.trim()));
+    }
+
+    /// Writes the page to a path relative to the repository.
     pub fn write(self, path: &str) -> Result<()> {
         fs::write(root().join(path), self.text).with_context(|| format!("cannot write {path}"))?;
         say(format!("\nWritten: {path}"));

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 
 use crate::layers::{Outcome, Report, filtered, succeeds};
 use crate::process::{cargo, command, say};
-use crate::{page, python, setup};
+use crate::{guide, page, python, setup};
 
 /// Systems that are checked without being there.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -46,6 +46,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
             succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))
         });
+        report.layer("guide", |_| guide::test());
         report.layer("web page", |_| page::test());
         for (name, target) in OTHER_SYSTEMS {
             report.layer(&format!("{name} ({target})"), |_| check_for(target));

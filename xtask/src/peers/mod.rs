@@ -1,5 +1,5 @@
-//! `cargo xtask bench --peers`: the same work done by this program and by what people use, one after the other
-//! on the same machine with the same number of threads, several times. The peers come from Python's registry.
+//! `cargo xtask bench --peers`: runs the same cases with Splashdown, SPlisHSPlasH and splashsurf, alternately, on one
+//! machine with the same number of threads. The other programs are Python wheels.
 
 mod numbers;
 mod steps;
@@ -79,13 +79,13 @@ pub fn run(arguments: &[String]) -> Result<()> {
     };
     std::fs::create_dir_all(&sides.folder)?;
     let mut page = Page::new(
-        "Beside others",
+        "Comparison with other programs",
         &format!("cargo xtask bench --peers {}", arguments.join(" ")),
         &sides.ours,
     )?;
     page.add(&format!(
-        "Both sides run in turn, {} times each, in processes of their own with {} threads; medians. The peers are the wheels of \
-         `xtask/peers/requirements.txt` from PyPI.",
+        "Both programs run alternately, {} times each, in separate processes with {} threads; the figures are medians. The other programs are \
+         the Python wheels of `xtask/peers/requirements.txt`.",
         sides.rounds, sides.threads
     ));
     steps::compare(&sides, &mut page)?;

@@ -94,16 +94,17 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
     table.row(&ours.row("`wcsph`", "1".to_owned()));
     table.row(&wcsph.row("SPlisHSPlasH, WCSPH", at_least(each(&wcsph) / each(&ours), BAR)));
     table.row(&dfsph.row("SPlisHSPlasH, DFSPH", format!("{:.2}", each(&dfsph) / each(&ours))));
-    page.add("## A step");
-    page.add(table.text());
+    page.add("## Time of a step");
+    page.add_anchored("step", &table.text());
     page.add(
-        "Scene: SPlisHSPlasH's own `DamBreakModel.json`, its block and its box twice as long (and the block a spacing more, which gives it 40 particles on every side); WCSPH with stiffness 50,000, exponent 7 \
-         and steps of 0.1 ms. *Equal*: spacing, support radius, size of block and box, threads, `f32`. *Not equal*: the kernel (Wendland C2 \
-         here, cubic spline there), walls (integrals here, volume maps there; neither has boundary particles, so both visit fluid neighbours only), \
-         viscosity, and how long the steps are: ours follow the speed of sound, DFSPH's are ten and more times longer and hold several \
-         iterations each. A step of DFSPH is not to be compared with one of WCSPH; it is there to tell what a user of it waits for. \
-         Peak memory is that of the whole process, Python included. \
-         On a busy machine the peer's threads wait for each other actively and lose more than ours do: measure on a quiet one.",
+        "Scene: SPlisHSPlasH's `DamBreakModel.json` with twice the edge lengths, and a block that is one spacing longer, so that it has 40 \
+         particles along every edge. WCSPH uses a stiffness of 50,000, an exponent of 7 and time steps of 0.1 ms.\n\n\
+         *Equal*: spacing, support radius, size of block and box, threads, single precision.\n\n\
+         *Different*: the kernel (Wendland C2 in Splashdown, cubic spline in SPlisHSPlasH), the walls (integrals, volume maps; neither has \
+         boundary particles, so both visit fluid neighbours only), the viscosity, and the length of the time steps. Splashdown's follow the \
+         speed of sound. A DFSPH step is at least ten times longer and contains several iterations, so its row is for information.\n\n\
+         Peak memory is that of the whole process, including Python. On a busy machine the threads of SPlisHSPlasH wait for each other \
+         actively and lose more time than Splashdown's; measure on a quiet machine.",
     );
     Ok(())
 }

@@ -69,15 +69,15 @@ pub fn compare(sides: &Sides, given: Option<(PathBuf, f64)>, page: &mut Page) ->
             at_most(memory[0] / memory[1], MEMORY_BAR),
         ]);
     }
-    page.add("## The surface of particles");
-    page.add(table.text());
+    page.add("## Surface reconstruction");
+    page.add_anchored("surface", &table.text());
     let name = particles.file_name().unwrap_or_default().to_string_lossy();
     page.add(&format!(
-        "Particles: `{name}`, {count} of them, radius r = {} m. Support four radii (smoothing length 2.0), threshold 0.6. Smoothed is with \
-         weights and normals, and with splashsurf's clean-up of the mesh, which takes vertices away; ours needs none and keeps them. Times are from \
-         particles in memory to the mesh in memory, the median of {REPETITIONS} in a process. Memory is the peak of a process that \
-         reads the particles and writes one mesh as PLY, less what the program took before it read them: ours by \
-         `splashdown surface`, theirs by splashsurf's command line inside Python.",
+        "Particles: `{name}`, {count} of them, radius r = {} m. Support four radii (smoothing length 2.0), threshold 0.6. Smoothed cases include \
+         weights and normals, and splashsurf's mesh clean-up, which removes vertices; Splashdown needs no clean-up. Times are from \
+         particles in memory to the mesh in memory, the median of {REPETITIONS} in one process. Memory is the peak of a process that \
+         reads the particles and writes one mesh as PLY, minus the memory in use before the particles are read: for Splashdown that of \
+         `splashdown surface`, for splashsurf that of its command line in Python.",
         spacing / 2.0
     ));
     Ok(())
