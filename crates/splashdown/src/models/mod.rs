@@ -31,44 +31,32 @@ pub use ugly::ugly;
 type Model = (&'static str, &'static str, fn() -> Mesh);
 
 const MODELS: &[Model] = &[
-    (
-        "lighthouse",
-        "a lighthouse on its rock, with gallery and lantern room, 1 m high",
-        lighthouse::lighthouse,
-    ),
-    ("figure", "a statue: a woman in a long robe who carries a jar on her head, 1 m high", figure::figure),
-    (
-        "hull",
-        "a small tug with a solid hull, bulwark, wheelhouse and funnel, 0.6 m long; floats",
-        boats::hull,
-    ),
-    ("buoy", "a beacon buoy with a counterweight, 0.66 m high; floats", boats::buoy),
-    ("cup", "a mug with thick walls and a handle, 0.1 m high, open on top", crockery::cup),
-    ("thin-cup", "a beaker without thickness, 0.1 m high: an open sheet", crockery::thin_cup),
+    ("lighthouse", "lighthouse on a rock, with gallery and lantern room, 1 m high", lighthouse::lighthouse),
+    ("figure", "statue of a woman in a long robe with a jar on her head, 1 m high", figure::figure),
+    ("hull", "small tug with a solid hull, bulwark, wheelhouse and funnel, 0.6 m long; floats", boats::hull),
+    ("buoy", "beacon buoy with a counterweight, 0.66 m high; floats", boats::buoy),
+    ("cup", "mug with thick walls and a handle, 0.1 m high, open on top", crockery::cup),
+    ("thin-cup", "beaker without thickness (an open sheet), 0.1 m high", crockery::thin_cup),
     (
         "thin-cup-filling",
-        "the room inside thin-cup up to its rim, 0.1 m high: a shape to fill with fluid",
+        "inside of thin-cup up to its rim, 0.1 m high, to be filled with fluid",
         crockery::thin_cup_filling,
     ),
     (
         "spout",
-        "a bent pipe with a flange; its mouth, 0.06 m wide, is at the origin and points down",
+        "bent pipe with a flange; its outlet, 0.06 m wide, is at the origin and points down",
         machines::spout,
     ),
-    ("gear", "a spur gear of 20 teeth with a bore, 0.44 m across, axis along z", machines::gear),
-    ("paddle-wheel", "a wheel with 12 paddles, 0.5 m across, axis along z", machines::paddle_wheel),
-    ("drum", "a mixing drum with 6 lifters, 0.5 m across, axis along z, with a mouth at +z", machines::drum),
-    ("torus-knot", "a trefoil knot of round rope, 0.6 m across, in the xy plane", curves::torus_knot),
-    ("sphere", "a ball, 0.2 m across", curves::sphere),
-    ("block", "a cube of 0.2 m with rounded edges, its middle at the origin", curves::block),
-    ("cube", "a cube of 1 m with sharp edges, its middle at the origin", direct::cube),
-    (
-        "marin-box",
-        "the obstacle of SPHERIC test 2: 0.161 m x 0.161 m high x 0.403 m along z",
-        direct::marin_box,
-    ),
-    ("ramp", "a wedge, 1 m long, 0.5 m wide, rising to 0.3 m towards +x", direct::ramp),
-    ("steps", "a flight of five stairs, 1 m long, 0.5 m wide, rising to 0.5 m towards +x", direct::steps),
+    ("gear", "spur gear of 20 teeth with a bore, 0.44 m across, axis along z", machines::gear),
+    ("paddle-wheel", "wheel with 12 paddles, 0.5 m across, axis along z", machines::paddle_wheel),
+    ("drum", "mixing drum with 6 lifters, 0.5 m across, axis along z, open at +z", machines::drum),
+    ("torus-knot", "trefoil knot of round rope, 0.6 m across, in the xy plane", curves::torus_knot),
+    ("sphere", "sphere, 0.2 m across", curves::sphere),
+    ("block", "cube of 0.2 m with rounded edges, centred at the origin", curves::block),
+    ("cube", "cube of 1 m with sharp edges, centred at the origin", direct::cube),
+    ("marin-box", "obstacle of SPHERIC test 2, 0.161 m x 0.161 m high x 0.403 m along z", direct::marin_box),
+    ("ramp", "wedge, 1 m long, 0.5 m wide, rising to 0.3 m towards +x", direct::ramp),
+    ("steps", "five stairs, 1 m long, 0.5 m wide, rising to 0.5 m towards +x", direct::steps),
 ];
 
 /// The models: the name of each, and one line that says what it is and how large in m.

@@ -1,4 +1,4 @@
-//! Liquids by name, as measured at 20 °C and one atmosphere.
+//! Properties of liquids, measured at 20 °C and one atmosphere.
 
 use super::types::Material;
 

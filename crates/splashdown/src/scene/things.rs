@@ -95,9 +95,9 @@ choices! {
     }
     /// How the fluid feels a body.
     BoundaryKind {
-        /// By the kernel's integral over the solid, from a map on a grid.
+        /// Integral of the kernel over the solid, interpolated from a grid.
         Map = "map",
-        /// By particles on the body's surface (Akinci et al. 2012).
+        /// Boundary particles on the surface of the body (Akinci et al. 2012).
         Particles = "particles",
     }
 }

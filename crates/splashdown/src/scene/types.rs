@@ -223,31 +223,31 @@ impl Shape {
 choices! {
     /// The solver of the fluid's equations.
     Method {
-        /// Forces of Mueller, Charypar and Gross 2003: quick, springy; the mode of the thesis this program
-        /// descends from.
+        /// Forces of Mueller, Charypar and Gross 2003, the method of the thesis of Figueroa 2012: fast, and more
+        /// compressible.
         Mueller2003 = "mueller2003",
-        /// Weakly compressible SPH with Tait's equation of state: the mode to compare with measurements.
+        /// Weakly compressible SPH with Tait's equation of state.
         Wcsph = "wcsph",
     }
     /// The smoothing kernel of `wcsph` (`mueller2003` brings its own three).
     KernelKind {
-        /// Wendland's C2 function: particles do not pair.
+        /// Wendland's C2 function, without pairing instability.
         WendlandC2 = "wendland_c2",
         /// The cubic spline of Monaghan and Lattanzio.
         CubicSpline = "cubic_spline",
     }
     /// How the density is found.
     DensityMode {
-        /// Summed over the neighbours in every step: robust.
+        /// Sum over the neighbours in every step: robust.
         Summation = "summation",
-        /// Integrated from the velocity's divergence, with diffusion (delta-SPH): smooth pressure.
+        /// Continuity equation with diffusion (delta-SPH): smooth pressure.
         Continuity = "continuity",
     }
     /// What happens to pressures below zero.
     NegativePressure {
-        /// They become zero: no clumping at the surface.
+        /// They are set to zero: no clumping at the surface.
         Clamp = "clamp",
-        /// They stay: needed to compare pressures with measurements.
+        /// They are kept: needed to compare pressures with measurements.
         Keep = "keep",
     }
     /// The model of surface tension.
@@ -263,35 +263,35 @@ choices! {
     Sort {
         /// Counting sort: a histogram, a scan, a scatter.
         Counting = "counting",
-        /// Bitonic sort, the thesis's way; kept as a baseline.
+        /// Bitonic sort, the method of the thesis; a baseline for comparison.
         Bitonic = "bitonic",
     }
     /// A kind of output file.
     Format {
-        /// Binary PLY: particles and, if extracted, the mesh.
+        /// Binary PLY: particles and the surface.
         Ply = "ply",
-        /// VTK's XML point cloud, for ParaView: particles.
+        /// VTK's XML format for ParaView: particles.
         Vtu = "vtu",
-        /// Wavefront OBJ: the mesh.
+        /// Wavefront OBJ: the surface.
         Obj = "obj",
-        /// Legacy VTK: particles and, if extracted, the mesh.
+        /// Legacy VTK: particles and the surface.
         Vtk = "vtk",
-        /// Houdini's geometry: particles.
+        /// Houdini's geometry format: particles.
         Bgeo = "bgeo",
-        /// An archive of arrays for numpy: particles.
+        /// Archive of arrays for numpy: particles.
         Npz = "npz",
-        /// Binary STL, for printers: the mesh.
+        /// Binary STL for 3-D printers: the surface.
         Stl = "stl",
-        /// Binary glTF, for the web and games: the mesh.
+        /// Binary glTF for the web and game engines: the surface.
         Glb = "glb",
-        /// Animated USD, one file of all frames: particles and, if extracted, the mesh.
+        /// Animated USD, one file for all frames: particles and the surface.
         Usd = "usd",
     }
     /// What a picture shows.
     PictureKind {
-        /// The particles as shaded balls with a colour bar.
+        /// The particles as shaded spheres with a colour bar.
         Particles = "particles",
-        /// The extracted surface as water.
+        /// The reconstructed surface as a liquid.
         Surface = "surface",
     }
     /// The quantity that colours the particles.

@@ -1,4 +1,4 @@
-//! Words that keys take and that are read into something else: shapes, quantities, sides.
+//! Values of keys that only the reader uses: shapes, quantities, sides.
 
 use crate::scene::choice::{Choice, choices};
 
@@ -24,14 +24,14 @@ choices! {
         Disc = "disc",
         /// Needs `size`.
         Rectangle = "rectangle",
-        /// The outline of a closed mesh, cut through its origin across the direction: needs `mesh`.
+        /// Cross-section of a closed mesh through its origin, perpendicular to the direction: needs `mesh`.
         Mesh = "mesh",
     }
     /// The word for a sink's shape.
     SinkWord {
         /// Inside a box: needs `min` and `max`.
         Box = "box",
-        /// Behind a plane: needs `point` and `normal`.
+        /// On one side of a plane: needs `point` and `normal`.
         Below = "below",
         /// Inside a closed mesh: needs `mesh`.
         Mesh = "mesh",
@@ -44,19 +44,19 @@ choices! {
         Height = "height",
         /// Force in N and torque in N m of the fluid on a body: needs `body`.
         Force = "force",
-        /// Volume in m^3/s through a rectangle: needs `position`, `normal` and `size`.
+        /// Volume flow in m^3/s through a rectangle: needs `position`, `normal` and `size`.
         Flow = "flow",
-        /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all the fluid, or of what is
+        /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all fluid, or of the fluid
         /// between `min` and `max`, at the end of every frame.
         Fluid = "fluid",
     }
     /// The word for a body's motion.
     MotionWord {
-        /// It stands still.
+        /// The body does not move.
         Static = "static",
-        /// It moves as keyframes or formulas say.
+        /// Keyframes or formulas move the body.
         Scripted = "scripted",
-        /// The fluid, gravity and contacts move it.
+        /// The fluid, gravity and contacts move the body.
         Dynamic = "dynamic",
     }
     /// The word for a block's shape.
