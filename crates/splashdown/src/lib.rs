@@ -31,6 +31,7 @@ pub mod models;
 pub mod mouse_force;
 pub mod passes;
 pub mod probes;
+mod reconstruct;
 mod run;
 pub mod sample;
 pub mod scene;
@@ -49,9 +50,13 @@ pub use fields::Fields;
 pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam};
 pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
 pub use mouse_force::MouseForce;
+pub use reconstruct::reconstruct;
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
+pub use scene::{Scene, SceneBuilder, SceneErrors};
 pub use simulation::Simulation;
 pub use stats::Stats;
+pub use surface::{Surface, SurfaceParams, SurfaceStats};
+pub use {glam, splashdown_gpu::Executor, splashdown_io::Mesh, splashdown_io::Particles};
 
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {

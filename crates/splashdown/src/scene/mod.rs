@@ -27,6 +27,7 @@
 //! # Ok::<(), splashdown::scene::SceneErrors>(())
 //! ```
 
+mod builder;
 mod choice;
 mod derived;
 mod errors;
@@ -52,6 +53,7 @@ mod warnings;
 
 pub(crate) use spec::place;
 
+pub use builder::{SceneBuilder, SceneValue, SectionBuilder};
 pub use choice::Choice;
 pub use derived::{Derived, lattice_sum};
 pub use errors::{SceneErrors, SceneProblem, SceneWarning};
