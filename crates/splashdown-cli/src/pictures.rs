@@ -11,7 +11,7 @@ use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, Mesh, Particles, Picture, picture};
 use splashdown_render::{
     Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
-    Renderer, SurfaceStyle, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
+    Renderer, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 use splashdown_run::stage;
 
@@ -266,35 +266,25 @@ impl Artist {
             )
         });
         let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
-        let empty = Frame {
-            bodies: bodies.as_ref().map(UploadedBodies::buffers),
-            foam: foam.as_ref().map(|foam| DrawnFoam {
-                buffers: foam.buffers(),
-                radius: self.scene.fluid.particle_radius(),
-            }),
-            caption: Some(&caption),
-            ..Frame::new(stage::camera(&self.scene, drawn.time), stage::domain(&self.scene))
-        };
+        let radius = self.scene.fluid.particle_radius();
+        let mut empty = Frame::new(stage::camera(&self.scene, drawn.time), stage::domain(&self.scene))
+            .with_caption(&caption);
+        empty.bodies = bodies.as_ref().map(UploadedBodies::buffers);
+        empty.foam = foam.as_ref().map(|foam| DrawnFoam::new(foam.buffers(), radius));
         let mut tickets = Vec::new();
         for kind in &self.kinds {
-            let frame = match kind {
-                PictureKind::Particles => Frame {
-                    particles: particles.as_ref().map(|particles| DrawnParticles {
-                        buffers: particles.buffers(),
-                        radius: self.scene.fluid.particle_radius(),
-                        colouring: self.colouring,
-                    }),
-                    ..empty
-                },
-                PictureKind::Surface => Frame {
-                    surface: surface.as_ref().map(|surface| DrawnSurface {
-                        buffers: surface.buffers(),
-                        liquid: self.liquid,
-                        style: SurfaceStyle::Liquid,
-                    }),
-                    ..empty
-                },
-            };
+            let mut frame = empty;
+            match kind {
+                PictureKind::Particles => {
+                    frame.particles = particles
+                        .as_ref()
+                        .map(|particles| DrawnParticles::new(particles.buffers(), radius, self.colouring));
+                }
+                PictureKind::Surface => {
+                    frame.surface =
+                        surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
+                }
+            }
             tickets.push(self.target.submit(&mut self.renderer, &frame)?);
         }
         let [width, height] = self.target.size();

@@ -1,25 +1,27 @@
-//! Where the picture is taken from.
+//! The camera.
 
 use crate::{Domain, RenderError};
 use glam::{Mat4, Vec3, Vec4};
 
 /// A perspective camera.
 ///
-/// Right-handed, y up. Depth is reversed with the far plane at infinity: 1 at the near plane, 0 at infinity, and
-/// `near / distance` between. Floats are densest near 0, so this keeps the precision even over the whole range.
+/// Right-handed, y up. Depth is reversed, with the far plane at infinity: 1 at the near plane, 0 at
+/// infinity, and `near / distance` in between. Floats are densest near 0, which makes the relative
+/// precision uniform over the range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position of the eye, metres.
     pub eye: [f32; 3],
     /// Point in the middle of the picture, metres.
     pub target: [f32; 3],
-    /// Which way is up in the picture; need not be perpendicular to the view, must not be parallel to it.
+    /// Up direction in the picture; not parallel to the view direction.
     pub up: [f32; 3],
     /// Vertical angle of view, degrees, between 1 and 170.
     pub field_of_view_deg: f32,
 }
 
-/// A camera's axes for one picture size. `right` and `up` are scaled to half the picture at unit distance.
+/// The axes of a camera for one picture size. `right` and `up` are scaled to half the picture at
+/// unit distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub eye: Vec3,
@@ -33,7 +35,8 @@ pub(crate) struct View {
 impl Camera {
     /// A camera on a sphere around `target`, metres and degrees.
     ///
-    /// Azimuth 0 stands on the +z side, 90 on the +x side; elevation 0 is level with the target, 90 right above it.
+    /// Azimuth 0 is on the +z side, 90 on the +x side. Elevation 0 is level with the target, 90
+    /// vertically above it.
     pub fn orbit(
         target: [f32; 3],
         distance: f32,
@@ -45,12 +48,14 @@ impl Camera {
         let (sin_elevation, cos_elevation) = elevation_deg.to_radians().sin_cos();
         let out = Vec3::new(sin_azimuth * cos_elevation, sin_elevation, cos_azimuth * cos_elevation);
         let eye = Vec3::from(target) + distance * out;
-        // Straight above and below, the picture's upper side is where the horizon would be.
+        // The limit of the up vector is used at the poles, so that it is never parallel to the
+        // view.
         let up = Vec3::new(-sin_azimuth * sin_elevation, cos_elevation, -cos_azimuth * sin_elevation);
         Camera { eye: eye.into(), target, up: up.into(), field_of_view_deg }
     }
 
-    /// An orbit camera far enough away that the whole box is in a picture of the given aspect ratio (width / height).
+    /// An orbit camera at the distance where the whole box fits into a picture of the given aspect
+    /// ratio (width / height).
     pub fn framing(
         domain: &Domain,
         azimuth_deg: f32,
@@ -66,7 +71,8 @@ impl Camera {
         let right = forward.cross(up);
         let tan_y = (0.5 * field_of_view_deg.clamp(1.0, 170.0)).to_radians().tan();
         let tan_x = tan_y * aspect_ratio.max(1e-3);
-        // A corner at `c` from the centre is inside when |c.right| <= (distance + c.forward) tan_x, likewise for up.
+        // A corner at offset c from the centre is visible if |c.right| <= (distance + c.forward)
+        // tan_x; likewise for up.
         let distance = domain
             .corners()
             .iter()
@@ -79,10 +85,11 @@ impl Camera {
         Camera::orbit(centre.into(), 1.06 * distance, azimuth_deg, elevation_deg, field_of_view_deg)
     }
 
-    /// Where a point is in a picture of the given size: pixels from the upper left corner, or `None` behind the eye.
+    /// Projects a point into a picture of the given size: pixels from the upper left corner, or
+    /// `None` if the point is behind the eye.
     ///
     /// # Errors
-    /// [`RenderError::Camera`] if the camera looks nowhere.
+    /// [`RenderError::Camera`] if the camera is invalid.
     pub fn project(&self, point: [f32; 3], picture_size: [u32; 2]) -> Result<Option<[f32; 2]>, RenderError> {
         let [width, height] = picture_size.map(|side| side as f32);
         let clip = self.view(width / height)?.clip_from_world * Vec3::from(point).extend(1.0);
@@ -135,16 +142,16 @@ mod tests {
     }
 
     #[test]
-    fn orbit_stands_where_the_angles_say() {
+    fn orbit_places_the_eye_by_azimuth_and_elevation() {
         assert!(close(Camera::orbit([1.0, 2.0, 3.0], 2.0, 0.0, 0.0, 40.0).eye, [1.0, 2.0, 5.0]));
         assert!(close(Camera::orbit([1.0, 2.0, 3.0], 2.0, 90.0, 0.0, 40.0).eye, [3.0, 2.0, 3.0]));
         assert!(close(Camera::orbit([1.0, 2.0, 3.0], 2.0, 30.0, 90.0, 40.0).eye, [1.0, 4.0, 3.0]));
-        // Negative control: the other way round the circle is another place.
+        // Negative control: the opposite azimuth.
         assert!(!close(Camera::orbit([1.0, 2.0, 3.0], 2.0, -90.0, 0.0, 40.0).eye, [3.0, 2.0, 3.0]));
     }
 
     #[test]
-    fn the_target_is_in_the_middle_and_up_is_up() {
+    fn the_target_is_projected_to_the_middle_and_up_is_up() {
         for elevation in [-80.0, 0.0, 35.0, 90.0] {
             let camera = Camera::orbit([0.3, -0.2, 0.1], 4.0, 25.0, elevation, 45.0);
             let middle = camera.project([0.3, -0.2, 0.1], [640, 480]).unwrap().unwrap();
@@ -157,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_field_of_view_reaches_the_picture_s_edge() {
+    fn the_field_of_view_spans_the_height_of_the_picture() {
         let camera = Camera::orbit([0.0; 3], 2.0, 0.0, 0.0, 90.0);
         let edge = camera.project([0.0, 2.0, 0.0], [300, 200]).unwrap().unwrap();
         assert!((edge[0] - 150.0).abs() < 1e-3 && edge[1].abs() < 1e-3, "{edge:?}");
@@ -176,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn framing_holds_the_whole_box_and_little_more() {
+    fn framing_fits_the_box_tightly() {
         let domain = Domain::closed([-1.0, 0.0, -0.2], [2.0, 1.0, 0.6]);
         for (azimuth, elevation, size) in
             [(30.0, 20.0, [1280, 720]), (200.0, -10.0, [300, 900]), (0.0, 89.0, [64, 64])]
@@ -189,17 +196,17 @@ mod tests {
                 let from_middle = [2.0 * x / size[0] as f32 - 1.0, 2.0 * y / size[1] as f32 - 1.0];
                 reach = reach.max(from_middle[0].abs()).max(from_middle[1].abs());
             }
-            assert!(reach < 1.0 && reach > 0.85, "the box reaches {reach} of the way to the edge");
+            assert!(reach < 1.0 && reach > 0.85, "the box covers {reach} of the picture");
         }
     }
 
     #[test]
-    fn useless_cameras_are_refused_with_the_reason() {
+    fn invalid_cameras_are_refused_with_the_reason() {
         let good = Camera::orbit([0.0; 3], 2.0, 0.0, 0.0, 60.0);
-        let told = |camera: Camera| camera.view(1.0).unwrap_err().to_string();
-        assert!(told(Camera { eye: [0.0; 3], ..good }).contains("move one"));
-        assert!(told(Camera { up: [0.0, 0.0, 1.0], ..good }).contains("parallel"));
-        assert!(told(Camera { field_of_view_deg: 180.0, ..good }).contains("1 to 170"));
-        assert!(told(Camera { eye: [f32::NAN, 0.0, 0.0], ..good }).contains("finite"));
+        let message = |camera: Camera| camera.view(1.0).unwrap_err().to_string();
+        assert!(message(Camera { eye: [0.0; 3], ..good }).contains("move one"));
+        assert!(message(Camera { up: [0.0, 0.0, 1.0], ..good }).contains("parallel"));
+        assert!(message(Camera { field_of_view_deg: 180.0, ..good }).contains("1 to 170"));
+        assert!(message(Camera { eye: [f32::NAN, 0.0, 0.0], ..good }).contains("finite"));
     }
 }

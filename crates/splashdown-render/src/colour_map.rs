@@ -1,23 +1,24 @@
-//! From a number between 0 and 1 to a colour that an eye can order.
+//! Perceptual colour maps.
 
 use wgpu::{Device, Queue, TextureView};
 
-/// A colour map. All but [`ColourMap::BlueRed`] grow lighter from end to end, so that they also read in grey.
+/// A colour map. All except [`ColourMap::BlueRed`] increase monotonically in lightness, so that
+/// they also work in greyscale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum ColourMap {
-    /// Deep blue over turquoise to white: quiet water to foam.
+    /// Deep blue over turquoise to white, for water.
     #[default]
     Water,
-    /// Violet over green to yellow (van der Walt and Smith 2015), the usual choice of the sciences.
+    /// Violet over green to yellow (van der Walt and Smith 2015), common in scientific plots.
     Viridis,
     /// Black over purple and orange to pale yellow (van der Walt and Smith 2015).
     Inferno,
-    /// Blue over white to red, for values around a middle (ColorBrewer RdBu, Brewer 2003).
+    /// Blue over white to red, a diverging map (ColorBrewer RdBu, Brewer 2003).
     BlueRed,
 }
 
-/// Evenly spaced sRGB colours; between them the map is straight.
+/// Evenly spaced sRGB colours, linearly interpolated.
 const WATER: [u32; 9] =
     [0x13296b, 0x154389, 0x195ea8, 0x217bbf, 0x309ace, 0x55b8db, 0x8bd2e6, 0xc3e7f0, 0xf6fbfc];
 const VIRIDIS: [u32; 11] = [
@@ -32,11 +33,11 @@ const BLUE_RED: [u32; 9] =
     [0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b];
 
 impl ColourMap {
-    /// Every map, for menus and tests.
+    /// All maps.
     pub const ALL: [ColourMap; 4] =
         [ColourMap::Water, ColourMap::Viridis, ColourMap::Inferno, ColourMap::BlueRed];
 
-    /// Name in lower case, as a scene file or a menu would spell it.
+    /// Name in lower case, as in scene files and menus.
     pub fn name(self) -> &'static str {
         match self {
             ColourMap::Water => "water",
@@ -51,7 +52,7 @@ impl ColourMap {
         ColourMap::ALL.into_iter().find(|map| map.name() == name)
     }
 
-    /// The sRGB colour at `t`; below 0 and above 1 the end's colour, and the lower end's for NaN.
+    /// The sRGB colour at `t` in [0, 1]. Values outside are clamped; NaN gives the colour at 0.
     pub fn sample(self, t: f32) -> [u8; 3] {
         let stops: &[u32] = match self {
             ColourMap::Water => &WATER,
@@ -61,15 +62,15 @@ impl ColourMap {
         };
         let place = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) * (stops.len() - 1) as f32 };
         let below = (place as usize).min(stops.len() - 2);
-        let share = place - below as f32;
+        let fraction = place - below as f32;
         [16, 8, 0].map(|shift| {
             let channel = |stop: u32| (stop >> shift & 0xff) as f32;
             let low = channel(stops[below]);
-            (low + share * (channel(stops[below + 1]) - low)).round() as u8
+            (low + fraction * (channel(stops[below + 1]) - low)).round() as u8
         })
     }
 
-    /// 256 RGBA texels from end to end.
+    /// The map as 256 RGBA texels.
     pub(crate) fn texels(self) -> Vec<u8> {
         (0..256)
             .flat_map(|i| {
@@ -94,7 +95,7 @@ impl ColourTextures {
     }
 
     pub fn of(&self, map: ColourMap) -> &TextureView {
-        // ALL holds the maps in the order of their declaration.
+        // The order of ALL is that of the variants.
         &self.0[map as usize]
     }
 }
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_out_of_range() {
+    fn values_at_the_ends_and_out_of_range() {
         assert_eq!(ColourMap::Viridis.sample(0.0), [0x44, 0x01, 0x54]);
         assert_eq!(ColourMap::Viridis.sample(1.0), [0xfd, 0xe7, 0x25]);
         for map in ColourMap::ALL {
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn sequential_maps_grow_lighter_without_steps() {
+    fn sequential_maps_increase_smoothly_in_lightness() {
         let steps = |map: ColourMap| -> Vec<f32> {
             let light: Vec<f32> = (0..=32).map(|i| lightness(map.sample(i as f32 / 32.0))).collect();
             light.windows(2).map(|pair| pair[1] - pair[0]).collect()

@@ -9,8 +9,8 @@ use wgpu::{
 /// Opens the best adapter there is for drawing without a window, a software one if need be.
 ///
 /// # Errors
-/// [`RenderError::NoAdapter`] if the system has no driver, with what to install; [`RenderError::NoDevice`] if
-/// the driver refuses.
+/// [`RenderError::NoAdapter`] if the system has no driver, with what to install;
+/// [`RenderError::NoDevice`] if the driver refuses.
 pub fn open_device() -> Result<(Device, Queue, AdapterInfo), RenderError> {
     let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
     let options = RequestAdapterOptions {

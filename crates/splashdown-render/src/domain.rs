@@ -1,32 +1,33 @@
-//! The box around the fluid.
+//! The domain of the simulation, drawn as a box.
 
 use crate::RenderError;
 use glam::Vec3;
 
-/// The simulation's box and which of its sides are walls.
+/// The box of the simulation, and which of its sides are walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
-    /// Corner with the smallest coordinates, metres.
+    /// Lower corner, metres.
     pub min: [f32; 3],
-    /// Corner with the largest coordinates, metres.
+    /// Upper corner, metres.
     pub max: [f32; 3],
-    /// Walls at -x, +x, -y, +y, -z, +z. An edge between two open sides is drawn dashed and faint.
+    /// Whether there is a wall at -x, +x, -y, +y, -z, +z. An edge between two open sides is dashed
+    /// and faint.
     pub closed: [bool; 6],
 }
 
-/// One edge of the box, as it is to be drawn.
+/// One edge of the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxEdge {
     pub start: Vec3,
     pub end: Vec3,
-    /// Both walls that meet here turn their inside to the eye, so the fluid may be in front of this edge.
+    /// The eye sees both adjacent walls from the inside, so that fluid may hide this edge.
     pub behind: bool,
     /// At least one of the two sides is a wall.
     pub wall: bool,
 }
 
 impl Domain {
-    /// A box with walls on all sides but the upper one.
+    /// A box with walls on all sides except the top.
     pub fn closed(min: [f32; 3], max: [f32; 3]) -> Domain {
         Domain { min, max, closed: [true, true, true, false, true, true] }
     }
@@ -39,11 +40,11 @@ impl Domain {
         Err(RenderError::Value {
             what: "the box of the domain",
             given: format!("{low} to {high}"),
-            allowed: "a box whose max is above its min on every axis",
+            allowed: "a box whose max is greater than its min on every axis",
         })
     }
 
-    /// Bit 0 of the index chooses x, bit 1 y, bit 2 z.
+    /// The eight corners. Bit 0 of the index selects x, bit 1 y, bit 2 z.
     pub(crate) fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|index| {
             Vec3::from_array(std::array::from_fn(|axis| match index >> axis & 1 {
@@ -53,7 +54,7 @@ impl Domain {
         })
     }
 
-    /// The twelve edges; those that fluid inside can hide come first.
+    /// The twelve edges; those that fluid in the box can hide come first.
     pub(crate) fn edges(&self, eye: Vec3) -> [BoxEdge; 12] {
         let corners = self.corners();
         let seen_from_outside = |axis: usize, upper: bool| match upper {
@@ -82,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn twelve_different_edges_of_the_right_lengths() {
+    fn there_are_twelve_different_edges_of_the_right_lengths() {
         let domain = Domain::closed([0.0; 3], [1.0, 2.0, 3.0]);
         let edges = domain.edges(Vec3::splat(10.0));
         let total: f32 = edges.iter().map(|edge| edge.start.distance(edge.end)).sum();
@@ -95,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn from_a_corner_three_edges_are_behind_and_they_meet_at_the_far_corner() {
+    fn seen_from_a_corner_the_three_edges_at_the_opposite_corner_can_be_hidden() {
         let domain = Domain::closed([0.0; 3], [1.0; 3]);
         let edges = domain.edges(Vec3::splat(5.0));
         let behind: Vec<_> = edges.iter().filter(|edge| edge.behind).collect();
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn only_edges_between_open_sides_count_as_open() {
+    fn only_edges_between_open_sides_are_open() {
         let mut domain = Domain::closed([0.0; 3], [1.0; 3]);
         assert!(domain.edges(Vec3::splat(5.0)).iter().all(|edge| edge.wall));
         domain.closed = [false, true, true, false, true, true];
@@ -120,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn an_inside_out_box_is_refused() {
+    fn an_inverted_box_is_refused() {
         assert!(Domain::closed([0.0; 3], [1.0, 0.0, 1.0]).check().is_err());
         assert!(Domain::closed([0.0; 3], [1.0, f32::NAN, 1.0]).check().is_err());
         assert!(Domain::closed([0.0; 3], [1.0; 3]).check().is_ok());

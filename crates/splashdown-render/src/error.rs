@@ -1,4 +1,4 @@
-//! What can go wrong while drawing.
+//! Errors of this crate.
 
 use crate::Ticket;
 
@@ -6,102 +6,103 @@ use crate::Ticket;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The system offers nothing to draw with.
+    /// The system has no graphics adapter.
     #[error(
         "no graphics adapter found ({reason}); pictures need a GPU driver or a software one: on Debian and Ubuntu \
          `apt-get install mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
     )]
     NoAdapter {
-        /// What the system answered.
+        /// The reason given by the system.
         reason: String,
     },
-    /// An adapter is there but would not give a device.
-    #[error("the adapter \"{adapter}\" gave no device: {reason}")]
+    /// The adapter did not provide a device.
+    #[error("the adapter \"{adapter}\" did not provide a device: {reason}")]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
-        /// What the driver answered.
+        /// The reason given by the driver.
         reason: String,
     },
-    /// The picture has no pixels, or more than the device can hold.
+    /// The picture has no pixels, or exceeds the limit of the device.
     #[error(
         "a picture of {width} x {height} pixels cannot be drawn: each side must be between 1 and {limit} on this device"
     )]
     PictureSize {
-        /// Width asked for, in pixels.
+        /// Requested width in pixels.
         width: u32,
-        /// Height asked for, in pixels.
+        /// Requested height in pixels.
         height: u32,
-        /// Largest side that the device allows.
+        /// Largest side that the device supports.
         limit: u32,
     },
-    /// A number of samples per pixel that WebGPU does not know.
-    #[error("{given} samples per pixel were asked for; only 1 and 4 exist everywhere")]
+    /// WebGPU does not support this number of samples per pixel.
+    #[error("{given} samples per pixel were requested; WebGPU supports 1 and 4")]
     SampleCount {
-        /// The number asked for.
+        /// The requested number.
         given: u32,
     },
-    /// Renderer and target store colours in different ways.
+    /// Renderer and target have different texture formats.
     #[error(
-        "the renderer was made for {renderer:?} pictures and cannot draw into {target:?}; make it with the target's format"
+        "the renderer was created for the format {renderer:?} and cannot draw into {target:?}; create it with the \
+         format of the target"
     )]
     Format {
-        /// Format the renderer was made for.
+        /// Format of the renderer.
         renderer: wgpu::TextureFormat,
         /// Format of the target.
         target: wgpu::TextureFormat,
     },
-    /// The camera looks nowhere.
-    #[error("the camera is unusable: {reason}")]
+    /// The camera is invalid.
+    #[error("the camera is invalid: {reason}")]
     Camera {
-        /// Which number is wrong and what is allowed.
+        /// The wrong value and what is allowed.
         reason: String,
     },
-    /// A number of the frame's description is out of range.
+    /// A value of the frame is out of range.
     #[error("{what} is {given}, allowed is {allowed}")]
     Value {
-        /// Which number.
+        /// Name of the value.
         what: &'static str,
-        /// What was given.
+        /// The given value.
         given: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
-    /// The frame has the same liquid twice.
-    #[error("a frame has a surface or liquid particles, not both: set one of the two to None")]
+    /// The frame has both a surface and liquid particles.
+    #[error("a frame has either a surface or liquid particles; set one of the two to None")]
     TwoLiquids,
-    /// A buffer is shorter than the number of elements promises.
+    /// A buffer is too short for the number of elements.
     #[error("the buffer of {what} holds {given} bytes, {needed} are needed")]
     BufferTooShort {
         /// Which buffer.
         what: &'static str,
         /// Its size in bytes.
         given: u64,
-        /// The size that the counts ask for.
+        /// The required size in bytes.
         needed: u64,
     },
-    /// A buffer is larger than a shader can see.
+    /// A buffer is larger than the largest storage binding.
     #[error(
-        "the buffer of {what} holds {given} bytes, more than the {limit} that a shader can see on this device; draw the \
-         surface without lines"
+        "the buffer of {what} holds {given} bytes, the largest storage binding of this device is {limit} bytes; draw \
+         the surface without lines"
     )]
     BufferTooLong {
         /// Which buffer.
         what: &'static str,
         /// Its size in bytes.
         given: u64,
-        /// The device's limit.
+        /// The limit of the device in bytes.
         limit: u64,
     },
-    /// A buffer was made without a usage that drawing needs.
+    /// A buffer was created without a required usage.
     #[error("the buffer of {what} lacks the usage {missing:?}; create it with that usage")]
     BufferUsage {
         /// Which buffer.
         what: &'static str,
-        /// The usages that are missing.
+        /// The missing usages.
         missing: wgpu::BufferUsages,
     },
-    /// Host slices that belong together have different lengths.
+    /// Host slices have different lengths.
     #[error("{what} has {given} elements; it must have {needed}, or none if the attribute is absent")]
     Length {
         /// Which slice.
@@ -111,34 +112,34 @@ pub enum RenderError {
         /// The length of the positions or vertices.
         needed: usize,
     },
-    /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices} vertices")]
+    /// A triangle refers to a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {vertex}, but the mesh has only {vertices} vertices")]
     Index {
         /// Index of the triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex it refers to.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// Too many pictures were submitted and none collected.
-    #[error("{limit} pictures are already in flight; collect one before the next is submitted")]
+    /// The largest number of pictures is already in flight.
+    #[error("{limit} pictures are already in flight; collect one before submitting the next")]
     FramesInFlight {
-        /// Most pictures that may be under way.
+        /// Largest number of pictures in flight.
         limit: usize,
     },
-    /// The ticket belongs to another target.
-    #[error("{ticket:?} was not given by this target")]
+    /// The ticket was issued by another target.
+    #[error("{ticket:?} belongs to another target")]
     UnknownTicket {
-        /// The ticket that was shown.
+        /// The ticket.
         ticket: Ticket,
     },
-    /// The device went away or ran out of memory while a picture was under way.
+    /// The device was lost or ran out of memory while a picture was in flight.
     #[error(
-        "the graphics device was lost or ran out of memory ({reason}); open it again, or make the picture smaller"
+        "the graphics device was lost or ran out of memory ({reason}); open it again, or reduce the size of the picture"
     )]
     DeviceLost {
-        /// What the driver said.
+        /// The reason given by the driver.
         reason: String,
     },
 }

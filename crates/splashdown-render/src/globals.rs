@@ -1,4 +1,4 @@
-//! What every shader of a frame reads: the Rust twin of `Globals` in `shared/globals.wgsl`.
+//! Uniforms of every shader of a frame; mirrors `Globals` in `shared/globals.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -11,7 +11,7 @@ pub(crate) struct EdgeGlobals {
     pub dashes: f32,
 }
 
-/// Meanings and units stand in the WGSL; names and offsets are compared by a test.
+/// The WGSL file documents meanings and units. A test compares names and offsets.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub(crate) struct Globals {
@@ -46,8 +46,8 @@ pub(crate) struct Globals {
     pub liquid_colour: [f32; 3],
     pub liquid_roughness: f32,
     pub splat_radius: f32,
-    pub amount_radius: f32,
-    pub amount: f32,
+    pub thickness_radius: f32,
+    pub particle_thickness: f32,
     pub slice_quantity: u32,
     pub slice_axis: u32,
     pub slice_position: f32,
@@ -61,7 +61,7 @@ pub(crate) struct Globals {
 }
 
 impl Globals {
-    /// Metres of fluid that a particle of this radius adds to a texel of the shadow map.
+    /// Sets the path length that a particle of this radius adds to a texel of the shadow map.
     pub fn set_shadow_of_particles(&mut self, radius: f32) {
         let texel_area = self.shadow_size[0] * self.shadow_size[1] / (crate::shadow::SIDE as f32).powi(2);
         self.shadow_particle_path = (2.0 * radius).powi(3) / (texel_area * self.sun[1]);
@@ -81,7 +81,9 @@ mod tests {
     fn wgsl_layout(source: &str, name: &str) -> (Vec<(String, usize)>, usize) {
         let module = naga::front::wgsl::parse_str(source).unwrap();
         let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
-        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+        let naga::TypeInner::Struct { members, span } = &found.inner else {
+            panic!("{name} is not a struct")
+        };
         let named = |member: &naga::StructMember| (member.name.clone().unwrap(), member.offset as usize);
         (members.iter().map(named).collect(), *span as usize)
     }
@@ -91,7 +93,7 @@ mod tests {
             liquid_film sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
-            splat_radius amount_radius amount slice_quantity slice_axis slice_position slice_support_radius
+            splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
             slice_full slice_low slice_scale splat_margin foam_radius edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
@@ -102,10 +104,10 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree() {
-        // The declarations alone: what uses them would not compile under the changed names.
+        // Only the declarations: the functions below them do not compile with the changed names.
         let source = include_str!("shared/globals.wgsl").split("@group").next().unwrap();
         assert!(same(source));
-        // Negative controls: a member that is renamed, moved or gone.
+        // Negative controls: a renamed, a moved and a removed member.
         assert!(!same(&source.replace("near: f32", "nearest: f32")));
         assert!(!same(&source.replace("shadow_size: vec2f,", "shadow_size: vec3f,")));
         assert!(!same(&source.replace("    line_width: f32,", "    ")));

@@ -1,4 +1,4 @@
-//! Pictures of particles and liquid surfaces, drawn with wgpu into any texture.
+//! Rendering of particles and liquid surfaces with wgpu, into any texture.
 //!
 //! ```no_run
 //! use splashdown_render::*;
@@ -11,42 +11,45 @@
 //! let particles = UploadedParticles::new(&device, &[[0.5, 0.1, 0.5]], &[[1.0, 0.0, 0.0]], &[], &[])?;
 //! let domain = Domain::closed([0.0; 3], [1.0; 3]);
 //! let camera = Camera::framing(&domain, 30.0, 20.0, 35.0, 16.0 / 9.0);
-//! let frame = Frame {
-//!     particles: Some(DrawnParticles {
-//!         buffers: particles.buffers(),
-//!         radius: 0.05,
-//!         colouring: Colouring {
-//!             quantity: Quantity::Speed,
-//!             range: [0.0, 2.0],
-//!             map: ColourMap::Water,
-//!             colour_bar: true,
-//!         },
-//!     }),
-//!     caption: Some("t = 0.00 s"),
-//!     ..Frame::new(camera, domain)
-//! };
+//! let colouring = Colouring::new(Quantity::Speed, [0.0, 2.0]);
+//! let frame = Frame::new(camera, domain)
+//!     .with_particles(DrawnParticles::new(particles.buffers(), 0.05, colouring))
+//!     .with_caption("t = 0.00 s");
 //! let rgba: Vec<u8> = target.render_to_rgba(&mut renderer, &frame)?;
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! [`ParticleBuffers`] and [`SurfaceBuffers`] name GPU buffers that a simulation has filled; nothing is copied.
-//! [`UploadedParticles`] and [`UploadedSurface`] put host slices into such buffers. [`Renderer::draw`] records into the
-//! caller's encoder and texture, for windows; [`Offscreen`] reads pictures back.
+//! # Input and output
 //!
-//! The fluid can be seen as spheres coloured by a quantity ([`DrawnParticles`]), as liquid from a mesh, with or
-//! without its lines ([`DrawnSurface`]), as liquid straight from the particles ([`DrawnLiquidParticles`]), and
-//! as a plane of colours ([`DrawnSlice`]); foam, spray and bubbles go with all of them ([`DrawnFoam`]).
-//! `examples/ways.rs` draws all of them side by side and compares their times.
+//! [`ParticleBuffers`] and [`SurfaceBuffers`] refer to GPU buffers that a simulation has filled;
+//! nothing is copied. [`UploadedParticles`] and [`UploadedSurface`] upload host slices into such
+//! buffers. [`Renderer::draw`] records into the caller's encoder and texture, for windows.
+//! [`Offscreen`] reads pictures back to the host.
 //!
-//! Each thing drawn is a folder with its Rust and its WGSL, which opens with how it works and why not otherwise. Only
-//! what WebGPU guarantees is asked for: at most 3 storage buffers per stage, 16-bit floats to blend into, 4 samples.
+//! # Rendering modes
+//!
+//! * spheres coloured by a quantity ([`DrawnParticles`]);
+//! * a liquid from a surface mesh, with or without its wireframe ([`DrawnSurface`]);
+//! * a liquid directly from the particles, in screen space ([`DrawnLiquidParticles`]);
+//! * a plane through the fluid coloured by a quantity ([`DrawnSlice`]);
+//! * foam, spray and bubbles, combined with any other mode ([`DrawnFoam`]).
+//!
+//! `examples/modes.rs` draws all of them side by side and compares their times.
+//!
+//! # Structure
+//!
+//! Each rendering mode is a folder with its Rust and WGSL code; the module documentation describes
+//! the method and the alternatives. The crate needs only what WebGPU guarantees: at most 3 storage
+//! buffers per stage, blendable 16-bit float targets, and 4 samples.
 
 mod background;
 mod bodies;
 mod buffers;
 mod camera;
+mod chunks;
 mod colour_map;
+mod colouring;
 #[cfg(not(target_arch = "wasm32"))]
 mod device;
 mod domain;
@@ -66,27 +69,31 @@ mod screen_space;
 mod shader;
 mod shadow;
 mod slice;
-mod solids;
 mod surface;
 mod targets;
 mod timer;
+mod uploads;
 
-pub use buffers::{
-    BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers, UploadedFoam, UploadedParticles,
-    UploadedSurface,
-};
+/// The version of wgpu whose types appear in this crate's interface.
+pub use wgpu;
+
+pub use bodies::{PlacedBody, UploadedBodies};
+pub use buffers::{BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
+pub use colouring::{Colouring, Quantity};
 #[cfg(not(target_arch = "wasm32"))]
 pub use device::open_device;
 pub use domain::Domain;
 pub use error::RenderError;
 pub use foam::DrawnFoam;
-pub use frame::{Colouring, DrawnParticles, DrawnSurface, Frame, Quantity, SurfaceStyle};
+pub use frame::Frame;
 pub use liquid::Liquid;
 pub use offscreen::{Offscreen, Ticket};
+pub use particles::DrawnParticles;
 pub use renderer::Renderer;
 pub use screen_space::DrawnLiquidParticles;
 pub use slice::{Axis, DrawnSlice};
-pub use solids::{PlacedBody, UploadedBodies};
+pub use surface::{DrawnSurface, SurfaceStyle};
 pub use timer::PassTime;
+pub use uploads::{UploadedFoam, UploadedParticles, UploadedSurface};

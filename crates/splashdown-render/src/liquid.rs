@@ -1,33 +1,36 @@
-//! How a liquid looks.
+//! Optical properties of liquids.
 
 use crate::RenderError;
 use crate::globals::Globals;
 
-/// Optical properties of a liquid in a picture.
+/// Optical properties of a liquid.
 ///
-/// Real water is nearly colourless over a metre: it absorbs 0.3 of the red and next to nothing of the blue
-/// light (Pope and Fry 1997). Pictures of tanks have always been tinted more than that, and so the constructors
-/// take the `size` over which the colour should show: the height or half the width of the box is a good choice.
+/// Real water is nearly colourless over one metre: it absorbs 30 % of red and almost none of blue
+/// light (Pope and Fry 1997). Pictures of water usually exaggerate the tint, so the constructors
+/// take the length `size` in metres over which the colour becomes visible, for example the height
+/// or half the width of the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Liquid {
-    /// Share of the light lost per metre, for red, green and blue (Beer and Lambert: `exp(-absorption * path)`).
+    /// Absorption coefficient for red, green and blue, 1/m (Beer-Lambert: `exp(-absorption *
+    /// path)`).
     pub absorption: [f32; 3],
-    /// Per metre, how quickly what lies behind gives way to the liquid's own colour.
+    /// Rate at which the liquid's own colour replaces the background, 1/m.
     pub scattering: f32,
-    /// Share of the liquid's own colour even in the thinnest places. 0 is what Beer and Lambert say; a little
-    /// more keeps drops and the tank's edges visible, where light really runs a longer way by reflection
-    /// inside.
+    /// Smallest fraction of the liquid's own colour, in arbitrarily thin layers. Beer-Lambert gives
+    /// 0; a larger value keeps drops and the edges of the tank visible, where internal reflection
+    /// lengthens the real path.
     pub film: f32,
-    /// The liquid's own colour where it is deep, linear RGB.
+    /// The liquid's own colour at large depth, linear RGB.
     pub colour: [f32; 3],
-    /// 1.333 for water; sets how much is mirrored and how much bent.
+    /// Refractive index, 1.333 for water.
     pub refractive_index: f32,
-    /// Roughness of the mirror for the sun's glint, between 0.02 (sharp) and 1 (none).
+    /// Roughness of the surface for the highlight of the sun, from 0.02 (sharp) to 1 (diffuse).
     pub roughness: f32,
 }
 
 impl Liquid {
-    /// Water, turquoise in thin places and blue in deep ones.
+    /// Water: turquoise where it is shallow, blue where it is deep.
     pub fn water(size: f32) -> Liquid {
         Liquid::tinted(size, [2.80, 0.50, 0.20], 1.05, [0.006, 0.128, 0.260], 1.333)
     }
@@ -47,7 +50,7 @@ impl Liquid {
         Liquid::tinted(size, [0.22, 1.25, 4.80], 0.90, [0.50, 0.175, 0.010], 1.49)
     }
 
-    /// The liquid of that name: `water`, `oil`, `glycerin` or `honey`.
+    /// The liquid with a name: `water`, `oil`, `glycerin` or `honey`.
     pub fn from_name(name: &str, size: f32) -> Option<Liquid> {
         match name {
             "water" => Some(Liquid::water(size)),
@@ -58,18 +61,20 @@ impl Liquid {
         }
     }
 
-    /// Refuses looks that would draw nonsense, and hands the others to the shaders.
+    /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         let Liquid { absorption, scattering, film, colour, refractive_index, roughness } = *self;
-        let sound = absorption.iter().chain(&[scattering]).chain(&colour).all(|&x| x.is_finite() && x >= 0.0)
-            && (0.0..=1.0).contains(&film)
-            && (1.0..=3.0).contains(&refractive_index)
-            && (0.02..=1.0).contains(&roughness);
-        if !sound {
+        let is_valid =
+            absorption.iter().chain(&[scattering]).chain(&colour).all(|&x| x.is_finite() && x >= 0.0)
+                && (0.0..=1.0).contains(&film)
+                && (1.0..=3.0).contains(&refractive_index)
+                && (0.02..=1.0).contains(&roughness);
+        if !is_valid {
             return Err(RenderError::Value {
-                what: "the liquid's look",
+                what: "the liquid",
                 given: format!("{:?}", self),
-                allowed: "finite positive numbers, a film of 0 to 1, a refractive index of 1 to 3, a roughness of 0.02 to 1",
+                allowed: "finite non-negative numbers, a film of 0 to 1, a refractive index of 1 to 3, a roughness of \
+                          0.02 to 1",
             });
         }
         globals.liquid_absorption = absorption;
@@ -78,7 +83,7 @@ impl Liquid {
         globals.liquid_colour = colour;
         globals.refractive_index = refractive_index;
         globals.liquid_roughness = roughness;
-        // The shadow of a clear liquid is bright and tinted; scattering takes light of all colours away.
+        // Absorption tints the shadow; scattering darkens all colours.
         globals.shadow_absorption = absorption.map(|a| 0.45 * a + 0.9 * scattering);
         Ok(())
     }
@@ -90,7 +95,7 @@ impl Liquid {
         colour: [f32; 3],
         refractive_index: f32,
     ) -> Liquid {
-        // A size of zero would make the colour infinitely strong.
+        // Avoids a division by zero.
         let size = size.max(1e-6);
         Liquid {
             absorption: absorption.map(|per_size| per_size / size),

@@ -1,4 +1,4 @@
-//! Pictures without a window: drawn into a texture and read back while the next ones are under way.
+//! Pictures without a window: drawn into a texture and read back asynchronously.
 
 use crate::renderer::check_size;
 use crate::{Frame, RenderError, Renderer};
@@ -9,10 +9,10 @@ use wgpu::{
     TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
 };
 
-/// A texture to draw into and the buffers its pictures come back through.
+/// A texture to draw into, and buffers to read pictures back.
 ///
-/// Up to [`Offscreen::FRAMES_IN_FLIGHT`] pictures may be submitted before the first is collected, so that the GPU draws
-/// while the host simulates, encodes or writes.
+/// Up to [`Offscreen::FRAMES_IN_FLIGHT`] pictures can be submitted before the first is collected,
+/// so that the GPU draws while the host simulates, encodes or writes.
 #[derive(Debug)]
 pub struct Offscreen {
     device: Device,
@@ -25,9 +25,9 @@ pub struct Offscreen {
     in_flight: Vec<InFlight>,
 }
 
-/// The right to collect one submitted picture.
+/// Identifies a submitted picture, to collect it.
 #[derive(Debug, PartialEq, Eq)]
-#[must_use = "a picture that is never collected blocks its place among those in flight"]
+#[must_use = "a picture that is not collected continues to count as in flight"]
 pub struct Ticket {
     target: u64,
     number: u64,
@@ -42,25 +42,25 @@ struct InFlight {
 }
 
 impl Offscreen {
-    /// Format of the texture; [`Renderer::new`] must be given the same.
+    /// Format of the texture; create the [`Renderer`] with the same format.
     pub const FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-    /// Most pictures that may be submitted and not collected.
+    /// Largest number of pictures that are submitted and not yet collected.
     pub const FRAMES_IN_FLIGHT: usize = 3;
 
-    /// A target of `size` pixels.
+    /// Creates a target of `size` (width, height) pixels.
     ///
     /// # Errors
-    /// [`RenderError::PictureSize`] if a side is 0 or beyond the device's limit, [`RenderError::DeviceLost`] if
-    /// there is no memory for it.
+    /// [`RenderError::PictureSize`] if a side is 0 or exceeds the limit of the device,
+    /// [`RenderError::DeviceLost`] if the device is out of memory.
     pub fn new(device: &Device, queue: &Queue, size: [u32; 2]) -> Result<Offscreen, RenderError> {
         static IDENTITIES: AtomicU64 = AtomicU64::new(0);
         check_size(device, size)?;
-        watched(device, || {
-            Ok(Offscreen::make(device, queue, size, IDENTITIES.fetch_add(1, Ordering::Relaxed)))
+        with_error_scopes(device, || {
+            Ok(Offscreen::allocate(device, queue, size, IDENTITIES.fetch_add(1, Ordering::Relaxed)))
         })
     }
 
-    fn make(device: &Device, queue: &Queue, size: [u32; 2], identity: u64) -> Offscreen {
+    fn allocate(device: &Device, queue: &Queue, size: [u32; 2], identity: u64) -> Offscreen {
         let bytes = u64::from(padded_row(size[0])) * u64::from(size[1]);
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("offscreen"),
@@ -97,12 +97,13 @@ impl Offscreen {
         self.size
     }
 
-    /// Starts a picture and returns at once.
+    /// Submits a picture without waiting for it.
     ///
     /// # Errors
-    /// [`RenderError::FramesInFlight`] if a picture has to be collected first, [`RenderError::Format`] if the
-    /// renderer was made for another format, [`RenderError::DeviceLost`] if the device is gone or out of
-    /// memory, and those of [`Renderer::draw`].
+    /// [`RenderError::FramesInFlight`] if a picture must be collected first,
+    /// [`RenderError::Format`] if the renderer was created for another format,
+    /// [`RenderError::DeviceLost`] if the device is lost or out of memory, and the errors of
+    /// [`Renderer::draw`].
     pub fn submit(&mut self, renderer: &mut Renderer, frame: &Frame<'_>) -> Result<Ticket, RenderError> {
         if renderer.format() != Offscreen::FORMAT {
             return Err(RenderError::Format { renderer: renderer.format(), target: Offscreen::FORMAT });
@@ -110,7 +111,7 @@ impl Offscreen {
         let Some(buffer) = self.free.last() else {
             return Err(RenderError::FramesInFlight { limit: Offscreen::FRAMES_IN_FLIGHT });
         };
-        let submission = watched(&self.device, || {
+        let submission = with_error_scopes(&self.device, || {
             let mut encoder = self
                 .device
                 .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
@@ -128,7 +129,7 @@ impl Offscreen {
 
         let (sender, mapped) = channel();
         buffer.map_async(MapMode::Read, .., move |result| {
-            // Nobody listens any more if the target was dropped meanwhile.
+            // Sending fails only if the target has been dropped.
             let _ = sender.send(result);
         });
         let number = self.submitted;
@@ -139,23 +140,24 @@ impl Offscreen {
         Ok(Ticket { target: self.identity, number })
     }
 
-    /// Waits for a submitted picture: RGBA with 8 bits each, sRGB, row by row from the upper left, without padding.
+    /// Waits for a submitted picture. The result is 8-bit RGBA, sRGB-encoded, row by row from the
+    /// upper left, without padding.
     ///
     /// # Errors
-    /// [`RenderError::UnknownTicket`] for another target's ticket, [`RenderError::DeviceLost`] if the picture was lost
-    /// with the device.
+    /// [`RenderError::UnknownTicket`] for the ticket of another target, [`RenderError::DeviceLost`]
+    /// if the device was lost.
     pub fn collect(&mut self, ticket: Ticket) -> Result<Vec<u8>, RenderError> {
-        let place = self.in_flight.iter().position(|picture| picture.number == ticket.number);
-        let Some(place) = place.filter(|_| ticket.target == self.identity) else {
+        let index = self.in_flight.iter().position(|picture| picture.number == ticket.number);
+        let Some(index) = index.filter(|_| ticket.target == self.identity) else {
             return Err(RenderError::UnknownTicket { ticket });
         };
-        let InFlight { buffer, submission, mapped, .. } = self.in_flight.remove(place);
+        let InFlight { buffer, submission, mapped, .. } = self.in_flight.remove(index);
         let lost = |reason: String| RenderError::DeviceLost { reason };
         let waiting = PollType::Wait { submission_index: Some(submission), timeout: None };
         self.device.poll(waiting).map_err(|error| lost(error.to_string()))?;
         mapped
             .recv()
-            .map_err(|_| lost("the read-back was given up".to_owned()))?
+            .map_err(|_| lost("the read-back was cancelled".to_owned()))?
             .map_err(|error| lost(error.to_string()))?;
         let pixels = {
             let padded = buffer.get_mapped_range(..).map_err(|error| lost(error.to_string()))?;
@@ -169,10 +171,10 @@ impl Offscreen {
         Ok(pixels)
     }
 
-    /// Draws a picture and waits for it; see [`Offscreen::collect`] for the bytes.
+    /// Draws a picture and waits for it; see [`Offscreen::collect`] for the layout of the result.
     ///
     /// # Errors
-    /// Those of [`Offscreen::submit`] and [`Offscreen::collect`].
+    /// The errors of [`Offscreen::submit`] and [`Offscreen::collect`].
     pub fn render_to_rgba(
         &mut self,
         renderer: &mut Renderer,
@@ -183,13 +185,16 @@ impl Offscreen {
     }
 }
 
-/// Turns what the device reports while `work` is done into an error; without this, wgpu would panic.
+/// Returns errors that the device reports during `work`; without error scopes, wgpu panics.
 #[cfg(not(target_arch = "wasm32"))]
-fn watched<T>(device: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+fn with_error_scopes<T>(
+    device: &Device,
+    work: impl FnOnce() -> Result<T, RenderError>,
+) -> Result<T, RenderError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
-    // Both are popped before either is looked at, inner one first.
+    // Both scopes must be popped, the inner one first.
     let (validation, memory) = (pollster::block_on(validation.pop()), pollster::block_on(memory.pop()));
     match memory.or(validation) {
         Some(error) => Err(RenderError::DeviceLost { reason: error.to_string() }),
@@ -197,9 +202,9 @@ fn watched<T>(device: &Device, work: impl FnOnce() -> Result<T, RenderError>) ->
     }
 }
 
-/// In a browser nobody may wait for an error scope; errors go to the page's console.
+/// A browser cannot wait for an error scope; errors appear in the console of the page.
 #[cfg(target_arch = "wasm32")]
-fn watched<T>(_: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+fn with_error_scopes<T>(_: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
     work()
 }
 
@@ -207,7 +212,7 @@ fn extent([width, height]: [u32; 2]) -> Extent3d {
     Extent3d { width, height, depth_or_array_layers: 1 }
 }
 
-/// Bytes of a row in a buffer that a texture is copied to.
+/// Bytes per row of a texture-to-buffer copy.
 fn padded_row(width: u32) -> u32 {
     (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }

@@ -1,4 +1,5 @@
-//! One way to make the render pipelines, so that what differs between them is all that is written where they are used.
+//! Construction of render pipelines and bind groups. Each user specifies only what differs from the
+//! defaults.
 
 use crate::shader::Shader;
 use wgpu::{
@@ -11,9 +12,9 @@ use wgpu::{
 /// Format of the depth buffer.
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 
-/// What sets a pipeline apart. The defaults: triangles, both sides, no depth, no blending, one sample.
+/// Description of a pipeline. Defaults: triangles, no culling, no depth, no blending, one sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Recipe<'a> {
+pub(crate) struct PipelineDesc<'a> {
     pub shader: Shader,
     pub layouts: &'a [&'a BindGroupLayout],
     pub format: TextureFormat,
@@ -27,7 +28,7 @@ pub(crate) struct Recipe<'a> {
     pub constants: &'a [(&'a str, f64)],
 }
 
-/// What a pipeline does with the depth buffer; nearer is greater.
+/// Use of the depth buffer. Depth is reversed: nearer is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Depth {
     Write,
@@ -35,9 +36,13 @@ pub(crate) enum Depth {
     Test,
 }
 
-impl<'a> Recipe<'a> {
-    pub fn new(shader: Shader, layouts: &'a [&'a BindGroupLayout], format: TextureFormat) -> Recipe<'a> {
-        Recipe {
+impl<'a> PipelineDesc<'a> {
+    pub fn new(
+        shader: Shader,
+        layouts: &'a [&'a BindGroupLayout],
+        format: TextureFormat,
+    ) -> PipelineDesc<'a> {
+        PipelineDesc {
             shader,
             layouts,
             format,
@@ -118,7 +123,7 @@ impl<'a> Recipe<'a> {
     }
 }
 
-/// Sums what is drawn.
+/// Additive blending.
 pub(crate) const ADD: BlendState = {
     let component = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::One,
@@ -128,7 +133,7 @@ pub(crate) const ADD: BlendState = {
     BlendState { color: component, alpha: component }
 };
 
-/// Lays straight alpha over an opaque picture, which stays opaque.
+/// Alpha blending (straight alpha) over an opaque picture, which stays opaque.
 pub(crate) const OVER: BlendState = BlendState {
     color: wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::SrcAlpha,
@@ -142,20 +147,20 @@ pub(crate) const OVER: BlendState = BlendState {
     },
 };
 
-/// A kind of binding.
+/// The kind of a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Bind {
     Uniform,
     Storage,
-    /// Read by the vertex shader, texel by texel.
+    /// A texture loaded by the vertex shader without a sampler.
     VertexTexture,
     Texture,
-    /// A texture of any float format, read texel by texel without a sampler.
+    /// A texture of any float format, loaded without a sampler.
     Texels,
     Sampler,
 }
 
-/// A layout whose bindings are numbered from 0.
+/// A layout with bindings numbered from 0.
 pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind]) -> BindGroupLayout {
     let entries: Vec<BindGroupLayoutEntry> = (0..)
         .zip(bindings)
@@ -186,7 +191,7 @@ fn buffer(ty: BufferBindingType) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
 }
 
-/// A bind group whose entries are numbered from 0.
+/// A bind group with entries numbered from 0.
 pub(crate) fn bind_group(
     device: &Device,
     label: &str,
@@ -200,7 +205,7 @@ pub(crate) fn bind_group(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// Bilinear, clamped at the border.
+/// A bilinear sampler, clamped at the border.
 pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("linear"),

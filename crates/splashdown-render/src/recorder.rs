@@ -1,4 +1,4 @@
-//! One way to begin the passes of a picture.
+//! Recording of the render passes of a picture.
 
 use crate::targets::Targets;
 use crate::timer::Timer;
@@ -14,22 +14,22 @@ pub(crate) struct Recorder<'a> {
     timer: Option<&'a mut Timer>,
 }
 
-/// What a pass finds in its samples and depths.
+/// Contents of the samples and depths at the start of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
     Clear,
     Load,
 }
 
-/// Whether a later pass goes on with the samples and depths.
+/// Whether the samples and depths are stored for a later pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    Keep,
+    Store,
     Discard,
 }
 
 impl<'a> Recorder<'a> {
-    /// Starts a picture; with a timer its passes are measured.
+    /// Begins a picture; if there is a timer, it measures the passes.
     pub fn new(
         device: &Device,
         encoder: &'a mut CommandEncoder,
@@ -48,7 +48,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// A pass whose result lands in `result`, by way of the samples where there are several.
+    /// A pass into `result`; with several samples per pixel, they are resolved into it.
     pub fn picture(
         &mut self,
         label: &'static str,
@@ -57,9 +57,9 @@ impl<'a> Recorder<'a> {
         start: Start,
         end: End,
     ) -> RenderPass<'_> {
-        let keep = if end == End::Keep { StoreOp::Store } else { StoreOp::Discard };
+        let store_samples = if end == End::Store { StoreOp::Store } else { StoreOp::Discard };
         let (view, resolve_target, store) = match &targets.samples {
-            Some(samples) => (samples, Some(result), keep),
+            Some(samples) => (samples, Some(result), store_samples),
             None => (result, None, StoreOp::Store),
         };
         let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::BLACK) };
@@ -70,7 +70,11 @@ impl<'a> Recorder<'a> {
             resolve_target,
             ops: Operations { load, store },
         };
-        self.begin(label, colour, Some((&targets.depth, Operations { load: load_depth, store: keep })))
+        self.begin(
+            label,
+            colour,
+            Some((&targets.depth, Operations { load: load_depth, store: store_samples })),
+        )
     }
 
     /// A pass into a texture that is cleared first.
@@ -78,7 +82,8 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Clear(clear)), None)
     }
 
-    /// A pass into a texture that is cleared first, with depths of its own that nobody reads afterwards.
+    /// A pass into a texture that is cleared first, with a depth buffer that is discarded
+    /// afterwards.
     pub fn cleared_with_depth(
         &mut self,
         label: &'static str,
@@ -90,7 +95,7 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Clear(clear)), Some((depth, operations)))
     }
 
-    /// A pass over what is there already.
+    /// A pass over the existing contents of a texture.
     pub fn over(&mut self, label: &'static str, view: &TextureView) -> RenderPass<'_> {
         self.begin(label, colour(view, LoadOp::Load), None)
     }

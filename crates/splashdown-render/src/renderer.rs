@@ -1,10 +1,10 @@
-//! The order in which a picture comes together.
+//! The passes of a picture and their order.
 
 use crate::background::Background;
 use crate::bodies::Bodies;
 use crate::colour_map::ColourTextures;
 use crate::edges::Edges;
-use crate::foam::{Foam, Part};
+use crate::foam::{Foam, Kinds};
 use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
@@ -21,15 +21,17 @@ use wgpu::{
     TextureFormat, TextureView,
 };
 
-/// Draws frames into textures of one format. Make one and keep it: it holds the pipelines.
+/// Draws frames into textures of one format. It owns the pipelines, so create it once and reuse it.
 ///
-/// The passes of a picture, in their order:
+/// The passes of a picture, in order:
 ///
-/// 1. the fluid's shadow on the floor (256 x 256, blurred);
+/// 1. the shadow of the fluid on the floor (256 x 256, blurred);
 /// 2. the sums of a slice;
-/// 3. background, hidden edges, solids, particles, slice; with a liquid also bubbles and a copy to look through, the liquid's thickness, then its
-///    surface, from a mesh or from smoothed distances; its lines; foam and spray; near edges; several samples per pixel, resolved into the target;
-/// 4. colour bar and caption, pixel on pixel.
+/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid, bubbles too,
+///    and the result is copied to a texture that the liquid refracts;
+/// 4. with a liquid, its thickness, and then its surface from a mesh or from smoothed distances;
+/// 5. wireframe, foam and spray, and the near edges; all samples are resolved into the target;
+/// 6. colour bar and caption.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
@@ -52,8 +54,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Builds the pipelines for targets of `format` (8-bit RGBA or BGRA, with or without sRGB encoding) with 1 or 4
-    /// samples per pixel. Targets themselves always have one sample; the others are resolved into it.
+    /// Creates the pipelines for targets of `format` (8-bit RGBA or BGRA, with or without sRGB
+    /// encoding) with 1 or 4 samples per pixel. Targets always have one sample; several samples are
+    /// resolved into it.
     ///
     /// # Errors
     /// [`RenderError::SampleCount`] for other numbers of samples.
@@ -91,13 +94,13 @@ impl Renderer {
         })
     }
 
-    /// Format of the textures this renderer draws into.
+    /// Format of the targets.
     pub fn format(&self) -> TextureFormat {
         self.format
     }
 
-    /// Starts or stops measuring the time of each pass; returns whether it is measured now. That needs a device with
-    /// [`wgpu::Features::TIMESTAMP_QUERY`].
+    /// Switches the timing of passes on or off; returns whether it is on. Timing needs a device
+    /// with [`wgpu::Features::TIMESTAMP_QUERY`].
     pub fn set_timing(&mut self, on: bool) -> bool {
         if !on {
             self.timer = None;
@@ -107,26 +110,26 @@ impl Renderer {
         self.timer.is_some()
     }
 
-    /// Times of the passes of a picture in their order, of the latest one whose times have come back; empty
-    /// before that, and without [`Renderer::set_timing`].
+    /// Times of the passes in order, of the latest picture whose times have been read back; empty
+    /// before the first, and if timing is off.
     ///
-    /// Nobody waits for them: they come some pictures late, and only if the device is polled, which every
-    /// submission does.
+    /// The read-back is asynchronous: times arrive a few pictures late, and only if the device is
+    /// polled, which every submission does.
     pub fn pass_times(&mut self) -> &[PassTime] {
         self.timer.as_mut().map(Timer::latest).unwrap_or_default()
     }
 
-    /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of this renderer's format
-    /// with the usage [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
+    /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of
+    /// this renderer's format with the usage [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
     ///
-    /// The encoder must be submitted to the queue this renderer was made with. Pictures of several targets may
-    /// be recorded before any is submitted.
+    /// Submit the encoder to the queue of this renderer. Several pictures can be recorded before
+    /// any is submitted.
     ///
     /// # Errors
     /// [`RenderError::PictureSize`] for an empty or too large picture, and [`RenderError::Camera`],
     /// [`RenderError::Value`], [`RenderError::TwoLiquids`], [`RenderError::BufferTooShort`],
-    /// [`RenderError::BufferTooLong`] or [`RenderError::BufferUsage`] if the frame cannot be drawn. Nothing is
-    /// recorded then.
+    /// [`RenderError::BufferTooLong`] or [`RenderError::BufferUsage`] if the frame cannot be drawn.
+    /// In case of an error nothing is recorded.
     pub fn draw(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -173,14 +176,14 @@ impl Renderer {
                 self.slice.record(pass, group);
             }
             if has_liquid {
-                self.foam.record(pass, &foam, Part::UnderWater);
+                self.foam.record(pass, &foam, Kinds::UnderWater);
             }
         };
         if has_liquid {
-            scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Keep));
-            // Further than anything, in 16 bits.
-            let nothing = Color { r: 60_000.0, ..Color::TRANSPARENT };
-            let mut pass = recorder.cleared("distance of bodies", &targets.solid, nothing);
+            scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Store));
+            // Beyond all bodies, and representable as a 16-bit float.
+            let no_body = Color { r: 60_000.0, ..Color::TRANSPARENT };
+            let mut pass = recorder.cleared("distance of bodies", &targets.solid, no_body);
             if let Some(bodies) = &frame.bodies {
                 pass.set_bind_group(0, &globals, &[]);
                 self.bodies.record_distance(&mut pass, bodies);
@@ -194,9 +197,9 @@ impl Renderer {
         } else if let Some(drawn) = &frame.liquid_particles {
             let chunks = self.screen_space.bind(&self.device, &drawn.buffers);
             {
-                let mut pass = recorder.cleared("amount", &targets.thickness, Color::TRANSPARENT);
+                let mut pass = recorder.cleared("particle thickness", &targets.thickness, Color::TRANSPARENT);
                 pass.set_bind_group(0, &globals, &[]);
-                self.screen_space.record_amount(&self.device, &mut pass, targets, &chunks);
+                self.screen_space.record_thickness(&self.device, &mut pass, targets, &chunks);
             }
             let space = &mut self.screen_space;
             Some(space.record_distances(&self.device, &mut recorder, targets, &globals, &chunks))
@@ -204,11 +207,12 @@ impl Renderer {
             None
         };
         {
-            // With one sample the scene went into a texture of its own and has to be drawn again.
-            let goes_on = liquid.is_some() && targets.samples.is_some();
-            let start = if goes_on { Start::Load } else { Start::Clear };
+            // With several samples, the samples still hold the scene. With one sample, the scene
+            // was drawn into its own texture and is drawn again here.
+            let has_scene = liquid.is_some() && targets.samples.is_some();
+            let start = if has_scene { Start::Load } else { Start::Clear };
             let mut pass = recorder.picture("picture", targets, target, start, End::Discard);
-            if !goes_on {
+            if !has_scene {
                 scene(&mut pass);
             }
             pass.set_bind_group(0, &globals, &[]);
@@ -221,8 +225,8 @@ impl Renderer {
             if let Some(drawn) = &frame.surface {
                 self.surface.record_lines(&self.device, &mut pass, drawn);
             }
-            let part = if has_liquid { Part::OverWater } else { Part::All };
-            self.foam.record(&mut pass, &foam, part);
+            let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
+            self.foam.record(&mut pass, &foam, kinds);
             self.edges.record(&mut pass, behind..12);
         }
         self.overlay.record(&mut recorder, target);
@@ -230,7 +234,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// A buffer of its own for each picture: several may be recorded before the first is submitted.
+    /// Creates a new buffer for each picture, because several can be recorded before the first is
+    /// submitted.
     fn bind_globals(&self, bytes: &[u8]) -> BindGroup {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("globals"),
@@ -243,7 +248,7 @@ impl Renderer {
     }
 }
 
-/// Refuses pictures that the device cannot hold.
+/// Refuses sizes that the device does not support.
 pub(crate) fn check_size(device: &Device, [width, height]: [u32; 2]) -> Result<(), RenderError> {
     let limit = device.limits().max_texture_dimension_2d;
     match (1..=limit).contains(&width) && (1..=limit).contains(&height) {

@@ -1,12 +1,14 @@
-//! Shaders as data: which WGSL files make up each of them.
+//! The WGSL files of each shader.
 
-/// A shader of this crate: its files in the order in which they are put together.
+/// A shader of this crate: its files in the order of their concatenation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     pub label: &'static str,
     pub parts: &'static [&'static str],
 }
 
+pub(crate) const EYE_DISTANCE: &str = include_str!("shared/eye_distance.wgsl");
+pub(crate) const FULLSCREEN: &str = include_str!("shared/fullscreen.wgsl");
 pub(crate) const GLOBALS: &str = include_str!("shared/globals.wgsl");
 pub(crate) const ENVIRONMENT: &str = include_str!("shared/environment.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
@@ -41,9 +43,9 @@ mod tests {
         crate::surface::THICKNESS,
         crate::surface::SHADER,
         crate::screen_space::SPLAT,
-        crate::screen_space::AMOUNT,
+        crate::screen_space::PARTICLE_THICKNESS,
         crate::screen_space::SMOOTH,
-        crate::screen_space::CLEAN,
+        crate::screen_space::CLEANUP,
         crate::screen_space::COMPOSE,
         crate::surface::LINES,
         crate::slice::GATHER,
@@ -55,8 +57,8 @@ mod tests {
         crate::foam::SHADER,
     ];
 
-    /// What is wrong with a shader, by naga, under the capabilities of a browser.
-    fn fault(source: &str) -> Option<String> {
+    /// The error that naga reports for a shader without optional capabilities, as in a browser.
+    fn validation_error(source: &str) -> Option<String> {
         let module = match naga::front::wgsl::parse_str(source) {
             Ok(module) => module,
             Err(error) => return Some(error.emit_to_string(source)),
@@ -71,18 +73,19 @@ mod tests {
     #[test]
     fn naga_accepts_every_shader() {
         for shader in ALL {
-            if let Some(fault) = fault(&shader.source()) {
-                panic!("{}: {fault}", shader.label);
+            if let Some(error) = validation_error(&shader.source()) {
+                panic!("{}: {error}", shader.label);
             }
         }
-        // Negative control: a type error is found.
-        let broken =
-            crate::background::SHADER.source().replace("let stretch = length(ray);", "let stretch = ray;");
-        assert!(fault(&broken).is_some());
+        // Negative control: a type error is reported.
+        let broken = crate::background::SHADER
+            .source()
+            .replace("let ray_length = length(ray);", "let ray_length = ray;");
+        assert!(validation_error(&broken).is_some());
     }
 
     #[test]
-    fn every_wgsl_on_disk_is_in_the_table() {
+    fn every_wgsl_file_is_used() {
         fn wgsl_below(folder: &Path, found: &mut Vec<PathBuf>) {
             for entry in std::fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();
@@ -97,8 +100,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 6,
-            "each shader has a file of its own, and six are shared: {files:?}"
+            ALL.len() + 8,
+            "each shader has its own file, and eight are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

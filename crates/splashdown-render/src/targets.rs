@@ -1,4 +1,4 @@
-//! The textures that depend on the picture's size.
+//! Textures that depend on the size of the picture.
 
 use crate::pipeline::DEPTH;
 use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
@@ -8,14 +8,14 @@ pub(crate) const THICKNESS_FORMAT: TextureFormat = TextureFormat::R16Float;
 #[derive(Debug)]
 pub(crate) struct Targets {
     pub size: [u32; 2],
-    /// The picture with several samples per pixel; absent where one is enough.
+    /// The picture with several samples per pixel; absent with one sample.
     pub samples: Option<TextureView>,
     pub depth: TextureView,
     /// The picture without the liquid.
     pub scene: TextureView,
-    /// Metres of liquid, at half the resolution.
+    /// Length of the view ray inside the liquid, at half resolution.
     pub thickness: TextureView,
-    /// Distance of the nearest solid, at half the resolution.
+    /// Relative distance of the nearest body, at half resolution.
     pub solid: TextureView,
 }
 
@@ -36,6 +36,7 @@ impl Targets {
     }
 }
 
+/// A two-dimensional texture without mip maps.
 pub(crate) fn texture(
     device: &Device,
     label: &str,

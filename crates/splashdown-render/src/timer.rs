@@ -1,14 +1,14 @@
 //! How long each pass of a picture took on the GPU.
 //!
 //! # How it works
-//! Every pass writes a timestamp at its beginning and at its end. Behind the last pass they are copied into a
-//! buffer that is mapped once the caller has submitted the picture; a later picture finds it ready and reads
-//! it. Nobody ever waits, so times come some pictures late. While all buffers are under way, pictures go
-//! without being measured.
+//! Every pass writes a timestamp at its beginning and at its end. Behind the last pass they are
+//! copied into a buffer that is mapped once the caller has submitted the picture; a later picture
+//! finds it ready and reads it. Nobody ever waits, so times come some pictures late. While all
+//! buffers are under way, pictures go without being measured.
 //!
 //! # Why not the other way
-//! Waiting for each picture would be simpler and would let the device run dry between pictures, which changes what is
-//! measured.
+//! Waiting for each picture would be simpler and would let the device run dry between pictures,
+//! which changes what is measured.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -21,7 +21,8 @@ use wgpu::{
 const MOST_PASSES: u32 = 32;
 /// Buffers for pictures under way.
 const SLOTS: usize = 4;
-/// After this many pictures without a free buffer, those under way belong to encoders that were never submitted.
+/// After this many pictures without a free buffer, those under way belong to encoders that were
+/// never submitted.
 const PATIENCE: u32 = 60;
 const BYTES: u64 = 2 * 8 * MOST_PASSES as u64;
 

@@ -1,27 +1,30 @@
-//! Pictures whose pixels can be worked out by hand.
+//! Pictures whose pixels are known.
 
 mod common;
 
-use common::{Picture, Studio, sample};
+use common::{Harness, Picture, sample, with};
 use splashdown_render::*;
 
 const SIZE: [u32; 2] = [200, 160];
-const RED: Colouring =
-    Colouring { quantity: Quantity::Speed, range: [0.0, 1.0], map: ColourMap::BlueRed, colour_bar: false };
 
-/// A box far larger than what is drawn in it, seen from +z, so that its edges and floor stay out of the way.
+/// Speed in the blue-red map.
+fn red() -> Colouring {
+    Colouring::new(Quantity::Speed, [0.0, 1.0]).with_map(ColourMap::BlueRed).with_colour_bar(false)
+}
+
+/// A frame of a very large box seen from +z, so that its edges and floor are outside the picture.
 fn level_frame(distance: f32) -> Frame<'static> {
     let camera = Camera::orbit([0.0; 3], distance, 0.0, 0.0, 40.0);
     Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
 }
 
-/// Particles at rest are blue in the blue-red map, those that move by 1 m/s are red.
-fn spheres(studio: &mut Studio, places: &[([f32; 3], f32)], radius: f32, frame: Frame<'_>) -> Picture {
+/// Particles at rest are blue, particles with a speed of 1 m/s are red.
+fn spheres(harness: &mut Harness, places: &[([f32; 3], f32)], radius: f32, frame: Frame<'_>) -> Picture {
     let positions: Vec<[f32; 3]> = places.iter().map(|(place, _)| *place).collect();
     let velocities: Vec<[f32; 3]> = places.iter().map(|(_, speed)| [0.0, *speed, 0.0]).collect();
-    let particles = UploadedParticles::new(&studio.device, &positions, &velocities, &[], &[]).unwrap();
-    let drawn = DrawnParticles { buffers: particles.buffers(), radius, colouring: RED };
-    studio.draw(SIZE, &Frame { particles: Some(drawn), ..frame })
+    let particles = UploadedParticles::new(&harness.device, &positions, &velocities, &[], &[]).unwrap();
+    let drawn = DrawnParticles::new(particles.buffers(), radius, red());
+    harness.draw(SIZE, &frame.with_particles(drawn))
 }
 
 fn changed(picture: &Picture, empty: &Picture) -> Vec<[u32; 2]> {
@@ -43,11 +46,12 @@ fn is_blue([r, _, b]: [u8; 3]) -> bool {
 
 #[test]
 fn a_sphere_covers_its_disc() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let (distance, radius) = (4.0f32, 0.5f32);
-    let empty = studio.draw(SIZE, &level_frame(distance));
-    let picture = spheres(&mut studio, &[([0.0; 3], 1.0)], radius, level_frame(distance));
-    // The cone that touches the sphere, on a picture whose half height is tan 20 degrees at unit distance.
+    let empty = harness.draw(SIZE, &level_frame(distance));
+    let picture = spheres(&mut harness, &[([0.0; 3], 1.0)], radius, level_frame(distance));
+    // The tangent cone of the sphere; the half height of the picture is tan 20 degrees at unit
+    // distance.
     let outline = radius / (distance * distance - radius * radius).sqrt() / 20f32.to_radians().tan() * 80.0;
     let covered = changed(&picture, &empty);
     let area = std::f32::consts::PI * outline * outline;
@@ -62,10 +66,10 @@ fn a_sphere_covers_its_disc() {
     let row: Vec<[u8; 3]> = (0..SIZE[1]).map(|y| picture.pixel([100 - (0.7 * outline) as u32, y])).collect();
     assert!(row.iter().any(|pixel| is_red(*pixel)));
     let hard = {
-        let mut renderer = Renderer::new(&studio.device, &studio.queue, Offscreen::FORMAT, 1).unwrap();
-        std::mem::swap(&mut renderer, &mut studio.renderer);
-        let hard = spheres(&mut studio, &[([0.0; 3], 1.0)], radius, level_frame(distance));
-        std::mem::swap(&mut renderer, &mut studio.renderer);
+        let mut renderer = Renderer::new(&harness.device, &harness.queue, Offscreen::FORMAT, 1).unwrap();
+        std::mem::swap(&mut renderer, &mut harness.renderer);
+        let hard = spheres(&mut harness, &[([0.0; 3], 1.0)], radius, level_frame(distance));
+        std::mem::swap(&mut renderer, &mut harness.renderer);
         hard
     };
     let between = |picture: &Picture| {
@@ -84,74 +88,79 @@ fn a_sphere_covers_its_disc() {
 
 #[test]
 fn nearer_spheres_hide_farther_ones_in_either_order() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let (near, far) = (([0.0, 0.0, 1.0], 1.0), ([0.0, 0.0, -1.0], 0.0));
     for places in [[near, far], [far, near]] {
-        let picture = spheres(&mut studio, &places, 0.5, level_frame(5.0));
+        let picture = spheres(&mut harness, &places, 0.5, level_frame(5.0));
         assert!(is_red(picture.pixel([100, 80])));
     }
-    // Negative control: seen from behind, the other one is in front.
-    let behind = Frame { camera: Camera::orbit([0.0; 3], 5.0, 180.0, 0.0, 40.0), ..level_frame(5.0) };
-    assert!(is_blue(spheres(&mut studio, &[near, far], 0.5, behind).pixel([100, 80])));
+    // Negative control: from behind, the other sphere is in front.
+    let behind = with(level_frame(5.0), |f| f.camera = Camera::orbit([0.0; 3], 5.0, 180.0, 0.0, 40.0));
+    assert!(is_blue(spheres(&mut harness, &[near, far], 0.5, behind).pixel([100, 80])));
 }
 
 #[test]
-fn spheres_cut_into_each_other_where_they_should() {
-    let Some(mut studio) = common::studio() else { return };
-    // Side by side and overlapping: the seam is the plane between the centres, which faces the eye edge on.
+fn overlapping_spheres_intersect_at_the_right_place() {
+    let Some(mut harness) = common::harness() else { return };
+    // Two overlapping spheres side by side: the seam is the plane between the centres, seen
+    // edge-on.
     let picture =
-        spheres(&mut studio, &[([-0.3, 0.0, 0.0], 1.0), ([0.3, 0.0, 0.0], 0.0)], 0.6, level_frame(5.0));
+        spheres(&mut harness, &[([-0.3, 0.0, 0.0], 1.0), ([0.3, 0.0, 0.0], 0.0)], 0.6, level_frame(5.0));
     for y in [70, 80, 90] {
         assert!(is_red(picture.pixel([97, y])) && is_blue(picture.pixel([103, y])), "row {y}");
     }
 }
 
 #[test]
-fn broken_particles_are_left_out() {
-    let Some(mut studio) = common::studio() else { return };
-    let empty = studio.draw(SIZE, &level_frame(5.0));
+fn non_finite_particles_are_not_drawn() {
+    let Some(mut harness) = common::harness() else { return };
+    let empty = harness.draw(SIZE, &level_frame(5.0));
     let nan = ([f32::NAN, 0.0, 0.0], 1.0);
     let far = ([f32::INFINITY, 0.0, 0.0], 1.0);
     let around_the_eye = ([0.0, 0.0, 5.1], 1.0);
-    let picture = spheres(&mut studio, &[nan, far, around_the_eye], 0.5, level_frame(5.0));
+    let picture = spheres(&mut harness, &[nan, far, around_the_eye], 0.5, level_frame(5.0));
     assert_eq!(changed(&picture, &empty).len(), 0);
-    let picture = spheres(&mut studio, &[nan, ([0.0; 3], 1.0)], 0.5, level_frame(5.0));
+    let picture = spheres(&mut harness, &[nan, ([0.0; 3], 1.0)], 0.5, level_frame(5.0));
     assert!(changed(&picture, &empty).len() > 500, "negative control: a sound one is drawn");
 }
 
 #[test]
 fn a_surface_hides_and_is_hidden() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 0.5, 32);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    // Nearly opaque, so that what lies behind does not show.
-    let ink =
-        Liquid { absorption: [40.0; 3], scattering: 40.0, colour: [0.0, 0.4, 0.0], ..Liquid::water(1.0) };
-    let surface = Some(DrawnSurface { buffers: ball.buffers(), liquid: ink, style: SurfaceStyle::Liquid });
-    let frame = Frame { surface, ..level_frame(5.0) };
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    // Nearly opaque, so that nothing behind is visible.
+    let ink = with(Liquid::water(1.0), |l| {
+        l.absorption = [40.0; 3];
+        l.scattering = 40.0;
+        l.colour = [0.0, 0.4, 0.0];
+    });
+    let surface = DrawnSurface::new(ball.buffers(), ink);
+    let frame = level_frame(5.0).with_surface(surface);
     let centre = [100, 80];
-    let front = spheres(&mut studio, &[([0.0, 0.0, 1.0], 1.0)], 0.2, frame);
+    let front = spheres(&mut harness, &[([0.0, 0.0, 1.0], 1.0)], 0.2, frame);
     assert!(is_red(front.pixel(centre)));
-    let behind = spheres(&mut studio, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame);
+    let behind = spheres(&mut harness, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame);
     let [r, g, b] = behind.pixel(centre);
     assert!(g > r && g > b, "{:?}", behind.pixel(centre));
-    // Clear liquid lets the same particle through.
-    let clear = Liquid { absorption: [0.0; 3], scattering: 0.0, film: 0.0, ..Liquid::water(1.0) };
-    let frame = Frame {
-        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: clear, style: SurfaceStyle::Liquid }),
-        ..frame
-    };
-    assert!(is_red(spheres(&mut studio, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame).pixel(centre)));
+    // The same particle is visible through clear liquid.
+    let clear = with(Liquid::water(1.0), |l| {
+        l.absorption = [0.0; 3];
+        l.scattering = 0.0;
+        l.film = 0.0;
+    });
+    let frame = frame.with_surface(DrawnSurface::new(ball.buffers(), clear));
+    assert!(is_red(spheres(&mut harness, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame).pixel(centre)));
 }
 
 #[test]
 fn indirect_draws_equal_direct_ones() {
     use wgpu::util::DeviceExt;
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 0.5, 32);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let arguments = |index_count: u32| {
-        studio.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        harness.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
             contents: bytemuck::cast_slice(&[7, 7, index_count, 1, 0, 0, 0]),
             usage: wgpu::BufferUsages::INDIRECT,
@@ -161,8 +170,8 @@ fn indirect_draws_equal_direct_ones() {
         (arguments(3 * mesh.triangles.len() as u32), arguments(3 * mesh.triangles.len() as u32 / 2));
     let mut draw = |draw| {
         let buffers = SurfaceBuffers { draw, ..ball.buffers() };
-        let surface = Some(DrawnSurface { buffers, liquid: Liquid::water(1.0), style: SurfaceStyle::Liquid });
-        studio.draw(SIZE, &Frame { surface, ..level_frame(5.0) })
+        let surface = DrawnSurface::new(buffers, Liquid::water(1.0));
+        harness.draw(SIZE, &level_frame(5.0).with_surface(surface))
     };
     let direct = draw(ball.buffers().draw);
     assert_eq!(draw(Draw::Indirect(&all, 8)).rgba, direct.rgba);
@@ -170,16 +179,15 @@ fn indirect_draws_equal_direct_ones() {
 }
 
 #[test]
-fn the_colour_bar_ends_in_the_map_s_colours() {
-    let Some(mut studio) = common::studio() else { return };
+fn the_colour_bar_ends_with_the_colours_of_the_map() {
+    let Some(mut harness) = common::harness() else { return };
     let size = [640, 360];
-    let particles = UploadedParticles::new(&studio.device, &[[0.0; 3]], &[], &[], &[]).unwrap();
+    let particles = UploadedParticles::new(&harness.device, &[[0.0; 3]], &[], &[], &[]).unwrap();
     for map in ColourMap::ALL {
-        let colouring =
-            Colouring { quantity: Quantity::Density, range: [990.0, 1010.0], map, colour_bar: true };
-        let drawn = DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring };
-        let picture = studio.draw(size, &Frame { particles: Some(drawn), ..level_frame(5.0) });
-        // The longest run of rows in which a column follows the map from the upper to the lower end.
+        let colouring = Colouring::new(Quantity::Density, [990.0, 1010.0]).with_map(map);
+        let drawn = DrawnParticles::new(particles.buffers(), 0.1, colouring);
+        let picture = harness.draw(size, &level_frame(5.0).with_particles(drawn));
+        // Searches for a column of pixels that follows the map from its upper to its lower end.
         let near = |pixel: [u8; 3], t: f32| pixel.iter().zip(map.sample(t)).all(|(a, b)| a.abs_diff(b) <= 1);
         let found = (size[0] / 2..size[0]).any(|x| {
             let Some(top) = (0..size[1] - 140).find(|&y| {
@@ -195,31 +203,27 @@ fn the_colour_bar_ends_in_the_map_s_colours() {
 
 #[test]
 fn one_sample_and_unencoded_targets_show_the_same_picture() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0, 0.0, 0.0], 0.8, 48);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    let surface = Some(DrawnSurface {
-        buffers: ball.buffers(),
-        liquid: Liquid::water(1.0),
-        style: SurfaceStyle::Liquid,
-    });
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let surface = DrawnSurface::new(ball.buffers(), Liquid::water(1.0));
     let domain = Domain::closed([-1.0; 3], [1.0; 3]);
-    let frame = Frame { surface, domain, ..level_frame(6.0) };
-    let four = studio.draw(SIZE, &frame);
-    studio.renderer = Renderer::new(&studio.device, &studio.queue, Offscreen::FORMAT, 1).unwrap();
-    let one = studio.draw(SIZE, &frame);
+    let frame = with(level_frame(6.0), |f| f.domain = domain).with_surface(surface);
+    let four = harness.draw(SIZE, &frame);
+    harness.renderer = Renderer::new(&harness.device, &harness.queue, Offscreen::FORMAT, 1).unwrap();
+    let one = harness.draw(SIZE, &frame);
     let difference = one.difference(&four);
-    assert!(difference.mean < 1.5 && difference.share < 0.06, "{difference:?}");
+    assert!(difference.mean < 1.5 && difference.fraction < 0.06, "{difference:?}");
 
-    // A target that stores what it is given: the shaders encode.
-    let plain = draw_into(&studio, wgpu::TextureFormat::Rgba8Unorm, &frame);
+    // A target without sRGB encoding: the shaders encode.
+    let plain = draw_into(&harness, wgpu::TextureFormat::Rgba8Unorm, &frame);
     let difference = plain.difference(&four);
-    assert!(difference.mean < 1.5 && difference.share < 0.03, "{difference:?}");
+    assert!(difference.mean < 1.5 && difference.fraction < 0.03, "{difference:?}");
 }
 
-/// Draws into a texture of any 8-bit format and reads its bytes as they are.
-fn draw_into(studio: &Studio, format: wgpu::TextureFormat, frame: &Frame<'_>) -> Picture {
-    let Studio { device, queue, .. } = studio;
+/// Draws into a texture of any 8-bit format and returns its bytes unchanged.
+fn draw_into(harness: &Harness, format: wgpu::TextureFormat, frame: &Frame<'_>) -> Picture {
+    let Harness { device, queue, .. } = harness;
     let mut renderer = Renderer::new(device, queue, format, 4).unwrap();
     let size = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
     let texture = device.create_texture(&wgpu::TextureDescriptor {

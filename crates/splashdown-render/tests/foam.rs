@@ -1,8 +1,8 @@
-//! Foam, spray and bubbles, where pixels can be worked out by hand.
+//! Foam, spray and bubbles, in cases where the pixels are known.
 
 mod common;
 
-use common::{Picture, Studio, sample};
+use common::{Harness, Picture, sample, with};
 use splashdown_render::*;
 
 const SIZE: [u32; 2] = [200, 160];
@@ -10,7 +10,7 @@ const MIDDLE: [u32; 2] = [100, 80];
 const SPRAY: u32 = 0;
 const FOAM: u32 = 1;
 const BUBBLE: u32 = 2;
-/// Half the spacing of particles: discs are smaller, 0.1 to 0.2 m.
+/// Half the particle spacing. The discs are smaller, 0.1 to 0.2 m.
 const RADIUS: f32 = 0.25;
 
 fn frame() -> Frame<'static> {
@@ -18,10 +18,10 @@ fn frame() -> Frame<'static> {
     Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
 }
 
-fn draw(studio: &mut Studio, places: &[[f32; 3]], lifetime: f32, kind: u32, frame: Frame<'_>) -> Picture {
+fn draw(harness: &mut Harness, places: &[[f32; 3]], lifetime: f32, kind: u32, frame: Frame<'_>) -> Picture {
     let n = places.len();
-    let foam = UploadedFoam::new(&studio.device, places, &vec![lifetime; n], &[], &vec![kind; n]).unwrap();
-    studio.draw(SIZE, &Frame { foam: Some(DrawnFoam { buffers: foam.buffers(), radius: RADIUS }), ..frame })
+    let foam = UploadedFoam::new(&harness.device, places, &vec![lifetime; n], &[], &vec![kind; n]).unwrap();
+    harness.draw(SIZE, &frame.with_foam(DrawnFoam::new(foam.buffers(), RADIUS)))
 }
 
 /// How much brighter a pixel is than in another picture, summed over its channels.
@@ -29,109 +29,105 @@ fn brighter(a: &Picture, b: &Picture, pixel: [u32; 2]) -> i32 {
     a.pixel(pixel).iter().zip(b.pixel(pixel)).map(|(a, b)| i32::from(*a) - i32::from(b)).sum()
 }
 
-/// Black ink before the middle, as a mesh: a ball of this radius.
-fn ink(studio: &Studio, radius: f32, clear: bool) -> (UploadedSurface, Liquid) {
+/// A ball of black or clear liquid in the middle, as a mesh.
+fn ink(harness: &Harness, radius: f32, clear: bool) -> (UploadedSurface, Liquid) {
     let ball = sample::ball([0.0; 3], radius, 48);
-    let ball = UploadedSurface::new(&studio.device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
+    let ball = UploadedSurface::new(&harness.device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
     let per_metre = if clear { 0.0 } else { 400.0 };
-    let black = Liquid {
-        absorption: [per_metre; 3],
-        scattering: per_metre,
-        film: 0.0,
-        colour: [0.0; 3],
-        ..Liquid::water(1.0)
-    };
+    let black = with(Liquid::water(1.0), |l| {
+        l.absorption = [per_metre; 3];
+        l.scattering = per_metre;
+        l.film = 0.0;
+        l.colour = [0.0; 3];
+    });
     (ball, black)
 }
 
-/// A large dark ball far behind the middle: against the horizon white is hardly seen.
-fn backdrop(studio: &Studio) -> UploadedParticles {
-    UploadedParticles::new(&studio.device, &[[0.0, 0.0, -8.0]], &[], &[], &[]).unwrap()
+/// A particle far behind the middle, to be drawn as a large dark ball: white foam has little
+/// contrast against the horizon.
+fn backdrop(harness: &Harness) -> UploadedParticles {
+    UploadedParticles::new(&harness.device, &[[0.0, 0.0, -8.0]], &[], &[], &[]).unwrap()
 }
 
-fn dark(ball: &UploadedParticles, radius: f32) -> Option<DrawnParticles<'_>> {
-    let colouring = Colouring {
-        quantity: Quantity::Speed,
-        range: [0.0, 1.0],
-        map: ColourMap::Inferno,
-        colour_bar: false,
-    };
-    Some(DrawnParticles { buffers: ball.buffers(), radius, colouring })
+fn dark(ball: &UploadedParticles, radius: f32) -> DrawnParticles<'_> {
+    let colouring =
+        Colouring::new(Quantity::Speed, [0.0, 1.0]).with_map(ColourMap::Inferno).with_colour_bar(false);
+    DrawnParticles::new(ball.buffers(), radius, colouring)
 }
 
 #[test]
 fn each_kind_is_a_white_disc_and_fades() {
-    let Some(mut studio) = common::studio() else { return };
-    let behind = backdrop(&studio);
-    let frame = Frame { particles: dark(&behind, 4.0), ..frame() };
-    let empty = studio.draw(SIZE, &frame);
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
     for kind in [SPRAY, FOAM, BUBBLE] {
-        let picture = draw(&mut studio, &[[0.0; 3]], 3.0, kind, frame);
+        let picture = draw(&mut harness, &[[0.0; 3]], 3.0, kind, frame);
         let here = brighter(&picture, &empty, MIDDLE);
         assert!(here > 40, "kind {kind}: {here}");
         let [r, g, b] = picture.pixel(MIDDLE);
         assert!(r.abs_diff(b) < 60 && g > empty.pixel(MIDDLE)[1], "kind {kind}: {r} {g} {b}");
-        // Its last hundredth of a second; and where none is.
-        let fading = draw(&mut studio, &[[0.0; 3]], 0.01, kind, frame);
+        // In its last hundredth of a second, and away from it.
+        let fading = draw(&mut harness, &[[0.0; 3]], 0.01, kind, frame);
         assert!(brighter(&fading, &empty, MIDDLE) < here / 3);
         assert!(brighter(&picture, &empty, [160, 80]).abs() < 6);
     }
 }
 
 #[test]
-fn solid_things_hide_it() {
-    let Some(mut studio) = common::studio() else { return };
-    let ball = UploadedParticles::new(&studio.device, &[[0.0; 3]], &[], &[], &[]).unwrap();
-    let with_ball = Frame { particles: dark(&ball, 0.6), ..frame() };
-    let alone = studio.draw(SIZE, &with_ball);
+fn spheres_hide_foam() {
+    let Some(mut harness) = common::harness() else { return };
+    let ball = UploadedParticles::new(&harness.device, &[[0.0; 3]], &[], &[], &[]).unwrap();
+    let with_ball = frame().with_particles(dark(&ball, 0.6));
+    let alone = harness.draw(SIZE, &with_ball);
     for kind in [SPRAY, FOAM, BUBBLE] {
-        let behind = draw(&mut studio, &[[0.0, 0.0, -1.5]], 3.0, kind, with_ball);
-        assert!(brighter(&behind, &alone, MIDDLE).abs() < 6, "kind {kind} shines through");
-        let before = draw(&mut studio, &[[0.0, 0.0, 1.5]], 3.0, kind, with_ball);
+        let behind = draw(&mut harness, &[[0.0, 0.0, -1.5]], 3.0, kind, with_ball);
+        assert!(brighter(&behind, &alone, MIDDLE).abs() < 6, "kind {kind} is visible");
+        let before = draw(&mut harness, &[[0.0, 0.0, 1.5]], 3.0, kind, with_ball);
         assert!(brighter(&before, &alone, MIDDLE) > 20, "kind {kind} is hidden");
     }
 }
 
 #[test]
-fn bubbles_are_seen_through_water_and_hidden_by_ink() {
-    let Some(mut studio) = common::studio() else { return };
-    let behind = backdrop(&studio);
+fn bubbles_are_visible_through_clear_liquid_and_hidden_by_ink() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
     for (clear, seen) in [(true, true), (false, false)] {
-        let (ball, liquid) = ink(&studio, 0.8, clear);
-        let surface = DrawnSurface { buffers: ball.buffers(), liquid, style: SurfaceStyle::Liquid };
-        let with_liquid = Frame { surface: Some(surface), particles: dark(&behind, 4.0), ..frame() };
-        let alone = studio.draw(SIZE, &with_liquid);
-        let inside = draw(&mut studio, &[[0.0; 3]], 3.0, BUBBLE, with_liquid);
+        let (ball, liquid) = ink(&harness, 0.8, clear);
+        let surface = DrawnSurface::new(ball.buffers(), liquid);
+        let with_liquid = frame().with_surface(surface).with_particles(dark(&behind, 4.0));
+        let alone = harness.draw(SIZE, &with_liquid);
+        let inside = draw(&mut harness, &[[0.0; 3]], 3.0, BUBBLE, with_liquid);
         let here = brighter(&inside, &alone, MIDDLE);
-        assert_eq!(here > 15, seen, "through {liquid:?} a bubble is {here} brighter");
-        // Spray and foam that far inside are hidden by the surface.
+        assert_eq!(here > 15, seen, "through {liquid:?}, the pixel of a bubble is brighter by {here}");
+        // The surface hides spray and foam at that depth.
         for kind in [SPRAY, FOAM] {
-            let inside = draw(&mut studio, &[[0.0, 0.0, -0.3]], 3.0, kind, with_liquid);
+            let inside = draw(&mut harness, &[[0.0, 0.0, -0.3]], 3.0, kind, with_liquid);
             assert!(brighter(&inside, &alone, MIDDLE).abs() < 6);
         }
     }
 }
 
 #[test]
-fn foam_in_the_surface_is_whole() {
-    let Some(mut studio) = common::studio() else { return };
-    let (ball, liquid) = ink(&studio, 0.8, false);
-    let surface = DrawnSurface { buffers: ball.buffers(), liquid, style: SurfaceStyle::Liquid };
-    let with_liquid = Frame { surface: Some(surface), ..frame() };
-    let alone = studio.draw(SIZE, &with_liquid);
-    // Half a spacing under the skin, where foam is and spray is not.
+fn foam_in_the_surface_is_not_cut() {
+    let Some(mut harness) = common::harness() else { return };
+    let (ball, liquid) = ink(&harness, 0.8, false);
+    let surface = DrawnSurface::new(ball.buffers(), liquid);
+    let with_liquid = frame().with_surface(surface);
+    let alone = harness.draw(SIZE, &with_liquid);
+    // Half a particle spacing below the surface, foam is visible and spray is not.
     let sunk = [[0.0, 0.0, 0.8 - RADIUS]];
-    let foam = draw(&mut studio, &sunk, 3.0, FOAM, with_liquid);
+    let foam = draw(&mut harness, &sunk, 3.0, FOAM, with_liquid);
     assert!(brighter(&foam, &alone, MIDDLE) > 100);
-    let spray = draw(&mut studio, &sunk, 3.0, SPRAY, with_liquid);
+    let spray = draw(&mut harness, &sunk, 3.0, SPRAY, with_liquid);
     assert!(brighter(&spray, &alone, MIDDLE).abs() < 6);
 }
 
 #[test]
 fn lists_of_different_lengths_are_refused() {
-    let Some(studio) = common::studio() else { return };
-    let error = UploadedFoam::new(&studio.device, &[[0.0; 3]; 2], &[], &[], &[0]).unwrap_err();
+    let Some(harness) = common::harness() else { return };
+    let error = UploadedFoam::new(&harness.device, &[[0.0; 3]; 2], &[], &[], &[0]).unwrap_err();
     assert!(error.to_string().contains("kinds"), "{error}");
-    assert!(UploadedFoam::new(&studio.device, &[[0.0; 3]; 2], &[1.0], &[], &[0, 1]).is_err());
-    assert!(UploadedFoam::new(&studio.device, &[], &[], &[], &[]).is_ok());
+    assert!(UploadedFoam::new(&harness.device, &[[0.0; 3]; 2], &[1.0], &[], &[0, 1]).is_err());
+    assert!(UploadedFoam::new(&harness.device, &[], &[], &[], &[]).is_ok());
 }

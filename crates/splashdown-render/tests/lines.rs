@@ -1,8 +1,8 @@
-//! The lines of a mesh, and the times of passes.
+//! The wireframe of a mesh, and the times of passes.
 
 mod common;
 
-use common::{Picture, Studio, sample};
+use common::{Harness, Picture, sample};
 use splashdown_render::*;
 
 const SIZE: [u32; 2] = [400, 320];
@@ -16,25 +16,23 @@ fn brightness(picture: &Picture, [x, y]: [u32; 2]) -> i32 {
     picture.pixel([x, y]).iter().map(|&channel| i32::from(channel)).sum()
 }
 
-/// By how much a picture is darker than another in the darkest of the pixels around a place.
+/// The largest decrease in brightness from `base` to `picture` among the pixels around a position.
 fn darkest(picture: &Picture, base: &Picture, [x, y]: [f32; 2]) -> i32 {
     let around = (0..9).map(|n| [x as u32 + n % 3 - 1, y as u32 + n / 3 - 1]);
     around.map(|pixel| brightness(base, pixel) - brightness(picture, pixel)).max().unwrap()
 }
 
 #[test]
-fn lines_lie_on_the_edges_of_the_front_alone() {
-    let Some(mut studio) = common::studio() else { return };
+fn lines_lie_on_the_edges_of_front_faces() {
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 1.0, 8);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    let drawn = |style| Frame {
-        surface: Some(DrawnSurface { buffers: ball.buffers(), liquid: Liquid::water(4.0), style }),
-        ..frame()
-    };
-    let plain = studio.draw(SIZE, &drawn(SurfaceStyle::Liquid));
-    let lined = studio.draw(SIZE, &drawn(SurfaceStyle::LiquidWithLines));
-    let alone = studio.draw(SIZE, &drawn(SurfaceStyle::Lines));
-    let empty = studio.draw(SIZE, &frame());
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let drawn =
+        |style| frame().with_surface(DrawnSurface::new(ball.buffers(), Liquid::water(4.0)).with_style(style));
+    let plain = harness.draw(SIZE, &drawn(SurfaceStyle::Liquid));
+    let lined = harness.draw(SIZE, &drawn(SurfaceStyle::LiquidWithLines));
+    let alone = harness.draw(SIZE, &drawn(SurfaceStyle::Lines));
+    let empty = harness.draw(SIZE, &frame());
     let view = frame();
     let project = |p: [f32; 3]| view.camera.project(p, SIZE).unwrap().unwrap();
     let mean = |points: &[[f32; 3]]| -> [f32; 3] {
@@ -44,7 +42,7 @@ fn lines_lie_on_the_edges_of_the_front_alone() {
     for corners in &mesh.triangles {
         let corners = corners.map(|corner| mesh.vertices[corner as usize]);
         let centre = mean(&corners);
-        // Large and well in front, or the nearest edge of another triangle is too near.
+        // Only large triangles that face the camera: at others, edges of neighbours are too close.
         if centre[2] < 0.55 || centre[1].abs() > 0.7 {
             continue;
         }
@@ -52,14 +50,14 @@ fn lines_lie_on_the_edges_of_the_front_alone() {
         for [a, b] in [[0, 1], [1, 2], [2, 0]] {
             let at = project(mean(&[corners[a], corners[b]]));
             let (over, alone) = (darkest(&lined, &plain, at), darkest(&alone, &empty, at));
-            assert!(over > 30 && alone > 60, "an edge at {at:?} is only {over} and {alone} darker");
+            assert!(over > 30 && alone > 60, "an edge at {at:?} is darker by only {over} and {alone}");
         }
         let at = project(centre);
         let apart = darkest(&lined, &plain, at);
-        assert!(apart <= 6, "the middle of a triangle at {at:?} is {apart} darker");
+        assert!(apart <= 6, "the middle of a triangle at {at:?} is darker by {apart}");
     }
     assert!(counted > 20, "{counted} triangles");
-    // The far side shows through the lines alone, and only there.
+    // Edges of back faces are visible only in the style without the liquid.
     let darker = |picture: &Picture, base: &Picture| {
         let pairs = picture.rgba.chunks_exact(4).zip(base.rgba.chunks_exact(4));
         pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| b.saturating_sub(*a) > 12)).count()
@@ -71,11 +69,11 @@ fn lines_lie_on_the_edges_of_the_front_alone() {
 #[test]
 fn lines_can_be_drawn_from_indirect_arguments() {
     use wgpu::util::DeviceExt;
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 1.0, 8);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let mut draw = |count: Option<u32>| {
-        let arguments = studio.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let arguments = harness.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
             contents: bytemuck::cast_slice(&[7, count.unwrap_or(0), 1, 0, 0, 0]),
             usage: wgpu::BufferUsages::INDIRECT,
@@ -84,8 +82,8 @@ fn lines_can_be_drawn_from_indirect_arguments() {
             Some(_) => SurfaceBuffers { draw: Draw::Indirect(&arguments, 4), ..ball.buffers() },
             None => ball.buffers(),
         };
-        let drawn = DrawnSurface { buffers, liquid: Liquid::water(4.0), style: SurfaceStyle::Lines };
-        studio.draw(SIZE, &Frame { surface: Some(drawn), ..frame() }).rgba
+        let drawn = DrawnSurface::new(buffers, Liquid::water(4.0)).with_style(SurfaceStyle::Lines);
+        harness.draw(SIZE, &frame().with_surface(drawn)).rgba
     };
     let direct = draw(None);
     let all = 3 * mesh.triangles.len() as u32;
@@ -94,8 +92,8 @@ fn lines_can_be_drawn_from_indirect_arguments() {
 }
 
 #[test]
-fn lines_need_buffers_that_shaders_may_read() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn lines_need_storage_buffers() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 1.0, 8);
     let ball = UploadedSurface::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let vertices = device.create_buffer(&wgpu::BufferDescriptor {
@@ -107,8 +105,8 @@ fn lines_need_buffers_that_shaders_may_read() {
     let buffers = SurfaceBuffers { vertices: &vertices, ..ball.buffers() };
     let mut target = Offscreen::new(&device, &queue, [30, 20]).unwrap();
     let mut draw = |style| {
-        let drawn = DrawnSurface { buffers, liquid: Liquid::water(4.0), style };
-        target.render_to_rgba(&mut renderer, &Frame { surface: Some(drawn), ..frame() })
+        let drawn = DrawnSurface::new(buffers, Liquid::water(4.0)).with_style(style);
+        target.render_to_rgba(&mut renderer, &frame().with_surface(drawn))
     };
     let error = draw(SurfaceStyle::Lines).unwrap_err();
     assert!(error.to_string().contains("vertices lacks the usage"), "{error}");
@@ -116,17 +114,16 @@ fn lines_need_buffers_that_shaders_may_read() {
 }
 
 #[test]
-fn times_of_passes_come_back_by_themselves() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn times_of_passes_are_read_back() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut target = Offscreen::new(&device, &queue, SIZE).unwrap();
     let particles = UploadedParticles::new(&device, &[[0.0; 3]; 64], &[], &[], &[]).unwrap();
-    let drawn =
-        DrawnLiquidParticles { buffers: particles.buffers(), radius: 0.1, liquid: Liquid::water(1.0) };
-    let view = Frame { liquid_particles: Some(drawn), ..frame() };
+    let drawn = DrawnLiquidParticles::new(particles.buffers(), 0.1, Liquid::water(1.0));
+    let view = frame().with_liquid_particles(drawn);
     target.render_to_rgba(&mut renderer, &view).unwrap();
-    assert!(renderer.pass_times().is_empty(), "nobody asked for times");
+    assert!(renderer.pass_times().is_empty(), "timing is off");
     if !renderer.set_timing(true) {
-        eprintln!("SKIPPED: the adapter has no timestamps");
+        eprintln!("SKIPPED: the adapter has no timestamp queries");
         return;
     }
     let start = std::time::Instant::now();
@@ -141,22 +138,22 @@ fn times_of_passes_come_back_by_themselves() {
         "shadow blur",
         "scene",
         "distance of bodies",
-        "amount",
+        "particle thickness",
         "splat",
         "smooth",
-        "clean",
+        "cleanup",
         "picture",
     ];
     assert_eq!(labels, expected);
     let sum: f32 = times.iter().map(|time| time.milliseconds).sum();
-    assert!(sum > 0.0 && sum < wall, "{sum} ms in one of six pictures that took {wall} ms");
-    // Another picture has other passes; they replace the old ones.
+    assert!(sum > 0.0 && sum < wall, "{sum} ms in one of six pictures with a total of {wall} ms");
+    // The passes of another picture replace them.
     for _ in 0..6 {
         target.render_to_rgba(&mut renderer, &frame()).unwrap();
     }
     let labels: Vec<&str> = renderer.pass_times().iter().map(|time| time.label).collect();
     assert_eq!(labels, ["shadow", "picture"]);
-    // Encoders that are thrown away do not stop the clock for good.
+    // Encoders that are never submitted do not stop the timing.
     let view = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
@@ -172,7 +169,7 @@ fn times_of_passes_come_back_by_themselves() {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         renderer.draw(&mut encoder, &view, [8, 8], &frame()).unwrap();
     }
-    let lit = Frame { caption: Some("t = 1 s"), ..frame() };
+    let lit = frame().with_caption("t = 1 s");
     for _ in 0..6 {
         target.render_to_rgba(&mut renderer, &lit).unwrap();
     }

@@ -1,8 +1,8 @@
-//! Read-back, several pictures in flight, and everything that is refused.
+//! Read-back, several pictures in flight, and invalid input.
 
 mod common;
 
-use common::Studio;
+use common::{Harness, with};
 use splashdown_render::*;
 
 fn frame(azimuth: f32) -> Frame<'static> {
@@ -13,51 +13,47 @@ fn frame(azimuth: f32) -> Frame<'static> {
 
 #[test]
 fn pictures_in_flight_keep_their_own_content() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
-    // A width whose rows are padded on their way back.
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
+    // A width whose rows are padded in the copy.
     let mut target = Offscreen::new(&device, &queue, [99, 66]).unwrap();
     let angles = [10.0, 40.0, 70.0];
     let caption = |angle: f32| format!("{angle}");
     let alone: Vec<Vec<u8>> = angles
         .iter()
         .map(|&angle| {
-            target
-                .render_to_rgba(&mut renderer, &Frame { caption: Some(&caption(angle)), ..frame(angle) })
-                .unwrap()
+            target.render_to_rgba(&mut renderer, &frame(angle).with_caption(&caption(angle))).unwrap()
         })
         .collect();
     assert_eq!(alone[0].len(), 4 * 99 * 66);
     assert_ne!(alone[0], alone[1]);
     let tickets: Vec<Ticket> = angles
         .iter()
-        .map(|&angle| {
-            target.submit(&mut renderer, &Frame { caption: Some(&caption(angle)), ..frame(angle) }).unwrap()
-        })
+        .map(|&angle| target.submit(&mut renderer, &frame(angle).with_caption(&caption(angle))).unwrap())
         .collect();
     let error = target.submit(&mut renderer, &frame(0.0)).unwrap_err();
     assert!(matches!(error, RenderError::FramesInFlight { limit: 3 }), "{error}");
-    // Collected in another order than submitted.
+    // Collected in reverse order.
     for (ticket, expected) in tickets.into_iter().zip(&alone).rev() {
         assert_eq!(&target.collect(ticket).unwrap(), expected);
     }
-    assert!(target.submit(&mut renderer, &frame(0.0)).is_ok(), "the places are free again");
+    assert!(target.submit(&mut renderer, &frame(0.0)).is_ok(), "no picture is in flight");
 }
 
 #[test]
-fn a_ticket_is_good_for_its_own_target_only() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn a_ticket_is_valid_for_its_own_target_only() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut first = Offscreen::new(&device, &queue, [30, 20]).unwrap();
     let mut second = Offscreen::new(&device, &queue, [30, 20]).unwrap();
     let ticket = first.submit(&mut renderer, &frame(0.0)).unwrap();
     let _other = second.submit(&mut renderer, &frame(0.0)).unwrap();
     let error = second.collect(ticket).unwrap_err();
     let RenderError::UnknownTicket { ticket } = error else { panic!("{error}") };
-    assert!(first.collect(ticket).is_ok(), "the error hands the ticket back");
+    assert!(first.collect(ticket).is_ok(), "the error returns the ticket");
 }
 
 #[test]
-fn impossible_pictures_are_refused_with_the_limit() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn unsupported_sizes_are_refused_with_the_limit() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let limit = device.limits().max_texture_dimension_2d;
     for size in [[0, 20], [20, 0], [limit + 1, 20]] {
         let error = Offscreen::new(&device, &queue, size).unwrap_err();
@@ -72,64 +68,56 @@ fn impossible_pictures_are_refused_with_the_limit() {
 }
 
 #[test]
-fn unsound_frames_are_refused_and_leave_the_target_usable() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn invalid_frames_are_refused_and_leave_the_target_usable() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut target = Offscreen::new(&device, &queue, [30, 20]).unwrap();
     let particles = UploadedParticles::new(&device, &[[0.5; 3]; 4], &[], &[], &[]).unwrap();
-    let colouring =
-        Colouring { quantity: Quantity::Speed, range: [0.0, 1.0], map: ColourMap::Water, colour_bar: false };
-    let good = DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring };
+    let colouring = Colouring::new(Quantity::Speed, [0.0, 1.0]).with_colour_bar(false);
+    let good = DrawnParticles::new(particles.buffers(), 0.1, colouring);
     let buffer = |usage, size| {
         device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     };
     let (short, wrong) = (buffer(wgpu::BufferUsages::STORAGE, 48), buffer(wgpu::BufferUsages::VERTEX, 64));
-    let told = |renderer: &mut Renderer, target: &mut Offscreen, particles| {
-        target.submit(renderer, &Frame { particles: Some(particles), ..frame(0.0) }).unwrap_err().to_string()
+    let message = |renderer: &mut Renderer, target: &mut Offscreen, particles| {
+        target.submit(renderer, &frame(0.0).with_particles(particles)).unwrap_err().to_string()
     };
-    let with = |positions| DrawnParticles { buffers: ParticleBuffers { positions, ..good.buffers }, ..good };
-    let text = told(&mut renderer, &mut target, with(&short));
+    let with_positions = |positions| with(good, |drawn| drawn.buffers.positions = positions);
+    let text = message(&mut renderer, &mut target, with_positions(&short));
     assert!(text.contains("positions holds 48 bytes, 64 are needed"), "{text}");
-    let text = told(&mut renderer, &mut target, with(&wrong));
+    let text = message(&mut renderer, &mut target, with_positions(&wrong));
     assert!(text.contains("lacks the usage"), "{text}");
-    let text = told(&mut renderer, &mut target, DrawnParticles { radius: 0.0, ..good });
+    let text = message(&mut renderer, &mut target, with(good, |drawn| drawn.radius = 0.0));
     assert!(text.contains("radius is 0 m"), "{text}");
     let camera = Camera { eye: [0.0; 3], target: [0.0; 3], ..frame(0.0).camera };
     assert!(matches!(
-        target.submit(&mut renderer, &Frame { camera, ..frame(0.0) }),
+        target.submit(&mut renderer, &with(frame(0.0), |f| f.camera = camera)),
         Err(RenderError::Camera { .. })
     ));
     for _ in 0..4 {
-        target.render_to_rgba(&mut renderer, &Frame { particles: Some(good), ..frame(0.0) }).unwrap();
+        target.render_to_rgba(&mut renderer, &frame(0.0).with_particles(good)).unwrap();
     }
 }
 
 #[test]
-fn empty_input_is_a_picture_of_the_empty_box() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+fn empty_input_gives_a_picture_of_the_empty_box() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut target = Offscreen::new(&device, &queue, [60, 40]).unwrap();
     let empty = target.render_to_rgba(&mut renderer, &frame(0.0)).unwrap();
     let particles = UploadedParticles::new(&device, &[], &[], &[], &[]).unwrap();
     let mesh = UploadedSurface::new(&device, &[], &[], &[]).unwrap();
-    let colouring =
-        Colouring { quantity: Quantity::Speed, range: [0.0, 0.0], map: ColourMap::Water, colour_bar: false };
-    let both = Frame {
-        particles: Some(DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring }),
-        surface: Some(DrawnSurface {
-            buffers: mesh.buffers(),
-            liquid: Liquid::water(1.0),
-            style: SurfaceStyle::Liquid,
-        }),
-        ..frame(0.0)
-    };
+    let colouring = Colouring::new(Quantity::Speed, [0.0, 0.0]).with_colour_bar(false);
+    let both = frame(0.0)
+        .with_particles(DrawnParticles::new(particles.buffers(), 0.1, colouring))
+        .with_surface(DrawnSurface::new(mesh.buffers(), Liquid::water(1.0)));
     let drawn = target.render_to_rgba(&mut renderer, &both).unwrap();
     assert!(empty.iter().zip(&drawn).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
 
 #[test]
-fn bad_meshes_are_refused() {
-    let Some(Studio { device, .. }) = common::studio() else { return };
+fn invalid_meshes_are_refused() {
+    let Some(Harness { device, .. }) = common::harness() else { return };
     let error = UploadedSurface::new(&device, &[[0.0; 3]; 3], &[], &[[0, 1, 3]]).unwrap_err();
-    assert!(error.to_string().contains("triangle 0 names vertex 3, but there are only 3"), "{error}");
+    assert!(error.to_string().contains("triangle 0 refers to vertex 3, but the mesh has only 3"), "{error}");
     assert!(matches!(
         UploadedParticles::new(&device, &[[0.0; 3]; 3], &[[0.0; 3]; 2], &[], &[]),
         Err(RenderError::Length { what: "velocities", given: 2, needed: 3 })
@@ -138,12 +126,12 @@ fn bad_meshes_are_refused() {
 
 #[test]
 fn a_lost_device_is_an_error() {
-    let Some(Studio { device, queue, mut renderer }) = common::studio() else { return };
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut target = Offscreen::new(&device, &queue, [30, 20]).unwrap();
     let before = target.submit(&mut renderer, &frame(0.0)).unwrap();
     device.destroy();
     let after = target.submit(&mut renderer, &frame(0.0)).and_then(|ticket| target.collect(ticket));
     assert!(matches!(after, Err(RenderError::DeviceLost { .. })), "{after:?}");
-    // What was submitted in time may have come through or not; either way there is no panic.
+    // The earlier picture may have been completed or not; there is no panic either way.
     let _ = target.collect(before);
 }

@@ -1,11 +1,11 @@
-//! Small pictures against committed ones, each with a wrong picture that must be told from it.
+//! Small pictures compared with reference pictures, each with negative controls.
 
 mod common;
 
-use common::sample;
+use common::{sample, with};
 use splashdown_render::*;
 
-/// Small enough to commit.
+/// Small, because the references are committed.
 const SIZE: [u32; 2] = [160, 120];
 /// Large enough for the colour bar.
 const WITH_BAR: [u32; 2] = [240, 160];
@@ -18,15 +18,15 @@ fn frame(domain: Domain) -> Frame<'static> {
 }
 
 fn moved(frame: Frame<'_>) -> Frame<'_> {
-    Frame { camera: Camera::framing(&frame.domain, 30.0, 18.0, 35.0, ASPECT_RATIO), ..frame }
+    with(frame, |f| f.camera = Camera::framing(&f.domain, 30.0, 18.0, 35.0, ASPECT_RATIO))
 }
 
 #[test]
 fn particles() {
-    let Some(mut studio) = common::studio() else { return };
-    let cloud = sample::slump([2.0, 1.0, 1.0], 0.05);
+    let Some(mut harness) = common::harness() else { return };
+    let cloud = sample::collapsing_column([2.0, 1.0, 1.0], 0.05);
     let particles = UploadedParticles::new(
-        &studio.device,
+        &harness.device,
         &cloud.positions,
         &cloud.velocities,
         &cloud.densities,
@@ -39,138 +39,112 @@ fn particles() {
         (Quantity::Pressure, [0.0, 9000.0], ColourMap::Inferno, "particles-pressure", SIZE),
     ];
     for (quantity, range, map, name, size) in quantities {
-        let colouring = Colouring { quantity, range, map, colour_bar: size == WITH_BAR };
-        let drawn = DrawnParticles { buffers: particles.buffers(), radius: 0.025, colouring };
-        let good = Frame {
-            particles: Some(drawn),
-            caption: Some("t = 0.42 s"),
-            ..frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]))
-        };
-        let picture = studio.draw(size, &good);
+        let colouring = Colouring::new(quantity, range).with_map(map).with_colour_bar(size == WITH_BAR);
+        let drawn = DrawnParticles::new(particles.buffers(), 0.025, colouring);
+        let good =
+            frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0])).with_particles(drawn).with_caption("t = 0.42 s");
+        let picture = harness.draw(size, &good);
         picture.expect(name);
 
-        assert!(!studio.draw(size, &moved(good)).difference(&picture).is_small(), "a moved camera");
-        let other_map = Colouring { map: ColourMap::BlueRed, ..colouring };
-        let wrong = Frame { particles: Some(DrawnParticles { colouring: other_map, ..drawn }), ..good };
-        assert!(!studio.draw(size, &wrong).difference(&picture).is_small(), "another colour map");
-        let wrong = Frame { particles: Some(DrawnParticles { radius: 0.015, ..drawn }), ..good };
-        assert!(!studio.draw(size, &wrong).difference(&picture).is_small(), "smaller particles");
+        assert!(!harness.draw(size, &moved(good)).difference(&picture).is_small(), "a moved camera");
+        let wrong = good.with_particles(with(drawn, |d| d.colouring.map = ColourMap::BlueRed));
+        assert!(!harness.draw(size, &wrong).difference(&picture).is_small(), "another colour map");
+        let wrong = good.with_particles(with(drawn, |d| d.radius = 0.015));
+        assert!(!harness.draw(size, &wrong).difference(&picture).is_small(), "smaller particles");
     }
 }
 
 #[test]
 fn surfaces() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::waves([0.0; 3], [2.0, 1.0, 1.0], 96);
-    let waves = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let waves =
+        UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     for name in ["water", "honey"] {
         let liquid = Liquid::from_name(name, 1.0).unwrap();
-        let drawn = DrawnSurface { buffers: waves.buffers(), liquid, style: SurfaceStyle::Liquid };
-        let good = Frame { surface: Some(drawn), ..frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0])) };
-        let picture = studio.draw(SIZE, &good);
+        let drawn = DrawnSurface::new(waves.buffers(), liquid);
+        let good = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0])).with_surface(drawn);
+        let picture = harness.draw(SIZE, &good);
         picture.expect(&format!("surface-{name}"));
 
-        assert!(!studio.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
-        let wrong = Frame { surface: Some(DrawnSurface { liquid: Liquid::oil(1.0), ..drawn }), ..good };
-        assert!(!studio.draw(SIZE, &wrong).difference(&picture).is_small(), "another liquid");
+        assert!(!harness.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
+        let wrong = good.with_surface(with(drawn, |d| d.liquid = Liquid::oil(1.0)));
+        assert!(!harness.draw(SIZE, &wrong).difference(&picture).is_small(), "another liquid");
         let flat: Vec<[f32; 3]> = vec![[0.0, 1.0, 0.0]; mesh.vertices.len()];
-        let flat = UploadedSurface::new(&studio.device, &mesh.vertices, &flat, &mesh.triangles).unwrap();
-        let wrong = Frame {
-            surface: Some(DrawnSurface { buffers: flat.buffers(), liquid, style: SurfaceStyle::Liquid }),
-            ..good
-        };
-        assert!(!studio.draw(SIZE, &wrong).difference(&picture).is_small(), "wrong normals");
+        let flat = UploadedSurface::new(&harness.device, &mesh.vertices, &flat, &mesh.triangles).unwrap();
+        let wrong = good.with_surface(DrawnSurface::new(flat.buffers(), liquid));
+        assert!(!harness.draw(SIZE, &wrong).difference(&picture).is_small(), "wrong normals");
     }
 }
 
 #[test]
 fn surface_and_particles_together_in_a_half_open_box() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.5, 0.5, 0.5], 0.4, 48);
-    let ball = UploadedSurface::new(&studio.device, &mesh.vertices, &[], &mesh.triangles).unwrap();
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &[], &mesh.triangles).unwrap();
     let places = [[0.5, 0.5, 0.5], [0.9, 0.1, 0.9], [0.1, 0.1, 0.2]];
-    let particles = UploadedParticles::new(&studio.device, &places, &[], &[], &[]).unwrap();
-    let colouring = Colouring {
-        quantity: Quantity::Speed,
-        range: [0.0, 1.0],
-        map: ColourMap::Inferno,
-        colour_bar: false,
-    };
+    let particles = UploadedParticles::new(&harness.device, &places, &[], &[], &[]).unwrap();
+    let colouring =
+        Colouring::new(Quantity::Speed, [0.0, 1.0]).with_map(ColourMap::Inferno).with_colour_bar(false);
     let domain =
         Domain { closed: [false, true, true, false, true, true], ..Domain::closed([0.0; 3], [1.0; 3]) };
-    let good = Frame {
-        particles: Some(DrawnParticles { buffers: particles.buffers(), radius: 0.1, colouring }),
-        surface: Some(DrawnSurface {
-            buffers: ball.buffers(),
-            liquid: Liquid::water(1.0),
-            style: SurfaceStyle::Liquid,
-        }),
-        ..frame(domain)
-    };
-    let picture = studio.draw(SIZE, &good);
+    let good = frame(domain)
+        .with_particles(DrawnParticles::new(particles.buffers(), 0.1, colouring))
+        .with_surface(DrawnSurface::new(ball.buffers(), Liquid::water(1.0)));
+    let picture = harness.draw(SIZE, &good);
     picture.expect("both");
-    assert!(!studio.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
+    assert!(!harness.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
     assert!(
-        !studio.draw(SIZE, &Frame { particles: None, ..good }).difference(&picture).is_small(),
+        !harness.draw(SIZE, &with(good, |f| f.particles = None)).difference(&picture).is_small(),
         "no particles"
     );
 }
 
 #[test]
 fn liquid_from_particles() {
-    let Some(mut studio) = common::studio() else { return };
-    let cloud = sample::slump([2.0, 1.0, 1.0], 0.04);
-    let particles = UploadedParticles::new(&studio.device, &cloud.positions, &[], &[], &[]).unwrap();
-    let drawn =
-        DrawnLiquidParticles { buffers: particles.buffers(), radius: 0.02, liquid: Liquid::water(1.0) };
+    let Some(mut harness) = common::harness() else { return };
+    let cloud = sample::collapsing_column([2.0, 1.0, 1.0], 0.04);
+    let particles = UploadedParticles::new(&harness.device, &cloud.positions, &[], &[], &[]).unwrap();
+    let drawn = DrawnLiquidParticles::new(particles.buffers(), 0.02, Liquid::water(1.0));
     let empty = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]));
-    let good = Frame { liquid_particles: Some(drawn), ..empty };
-    let picture = studio.draw(WITH_BAR, &good);
+    let good = empty.with_liquid_particles(drawn);
+    let picture = harness.draw(WITH_BAR, &good);
     picture.expect("screen-space");
 
-    assert!(!studio.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
-    for wrong in [
-        DrawnLiquidParticles { liquid: Liquid::oil(1.0), ..drawn },
-        DrawnLiquidParticles { radius: 0.012, ..drawn },
-    ] {
-        let wrong = studio.draw(WITH_BAR, &Frame { liquid_particles: Some(wrong), ..empty });
+    assert!(!harness.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
+    for wrong in [with(drawn, |d| d.liquid = Liquid::oil(1.0)), with(drawn, |d| d.radius = 0.012)] {
+        let wrong = harness.draw(WITH_BAR, &empty.with_liquid_particles(wrong));
         assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
     }
 }
 
 #[test]
 fn slices_and_lines() {
-    let Some(mut studio) = common::studio() else { return };
+    let Some(mut harness) = common::harness() else { return };
     let empty = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]));
-    let cloud = sample::slump([2.0, 1.0, 1.0], 0.05);
+    let cloud = sample::collapsing_column([2.0, 1.0, 1.0], 0.05);
     let particles =
-        UploadedParticles::new(&studio.device, &cloud.positions, &[], &cloud.densities, &cloud.pressures)
+        UploadedParticles::new(&harness.device, &cloud.positions, &[], &cloud.densities, &cloud.pressures)
             .unwrap();
-    let colouring = Colouring {
-        quantity: Quantity::Pressure,
-        range: [0.0, 9000.0],
-        map: ColourMap::Viridis,
-        colour_bar: true,
-    };
+    let colouring = Colouring::new(Quantity::Pressure, [0.0, 9000.0]).with_map(ColourMap::Viridis);
     let buffers = particles.buffers();
-    let slice =
-        DrawnSlice { buffers, axis: Axis::Z, position: 0.5, support_radius: 0.1, radius: 0.025, colouring };
-    let good = Frame { slice: Some(slice), ..empty };
-    let picture = studio.draw(WITH_BAR, &good);
+    let slice = DrawnSlice::new(buffers, Axis::Z, 0.5, 0.025, colouring);
+    let good = empty.with_slice(slice);
+    let picture = harness.draw(WITH_BAR, &good);
     picture.expect("slice");
-    for wrong in [
-        DrawnSlice { position: 0.6, ..slice },
-        DrawnSlice { colouring: Colouring { quantity: Quantity::Density, ..colouring }, ..slice },
-    ] {
-        let wrong = studio.draw(WITH_BAR, &Frame { slice: Some(wrong), ..empty });
+    for wrong in
+        [with(slice, |s| s.position = 0.6), with(slice, |s| s.colouring.quantity = Quantity::Density)]
+    {
+        let wrong = harness.draw(WITH_BAR, &empty.with_slice(wrong));
         assert!(!wrong.difference(&picture).is_small(), "another place, another quantity");
     }
 
     let mesh = sample::waves([0.0; 3], [2.0, 1.0, 1.0], 24);
-    let waves = UploadedSurface::new(&studio.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let waves =
+        UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let mut draw = |style| {
-        let drawn = DrawnSurface { buffers: waves.buffers(), liquid: Liquid::water(1.0), style };
-        studio.draw(SIZE, &Frame { surface: Some(drawn), ..empty })
+        let drawn = DrawnSurface::new(waves.buffers(), Liquid::water(1.0)).with_style(style);
+        harness.draw(SIZE, &empty.with_surface(drawn))
     };
     let picture = draw(SurfaceStyle::LiquidWithLines);
     picture.expect("surface-lines");

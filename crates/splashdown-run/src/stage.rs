@@ -1,7 +1,7 @@
 //! Camera, box, liquid and colouring of a scene, as the pictures of a run and the window draw them.
 
 use splashdown::scene::{ColourBy, Derived, Scene};
-use splashdown_render::{Camera, ColourMap, Colouring, Domain, Liquid, Quantity};
+use splashdown_render::{Camera, Colouring, Domain, Liquid, Quantity};
 
 /// The scene's camera at a simulated time in s.
 pub fn camera(scene: &Scene, time: f64) -> Camera {
@@ -40,5 +40,5 @@ pub fn colouring(scene: &Scene, colour_by: ColourBy) -> Colouring {
         ColourBy::Pressure => (Quantity::Pressure, [0.0, density * scene.gravity.length() * derived.head]),
     };
     let own = scene.output.colour_range.filter(|_| scene.output.colour_by == colour_by);
-    Colouring { quantity, range: own.unwrap_or(expected), map: ColourMap::Water, colour_bar: true }
+    Colouring::new(quantity, own.unwrap_or(expected))
 }

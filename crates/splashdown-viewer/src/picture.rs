@@ -5,8 +5,8 @@ use std::sync::Arc;
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_render::{
-    Axis, Camera, Colouring, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
-    Frame, PassTime, PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
+    Axis, Camera, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
+    PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 use splashdown_run::stage;
 
@@ -75,27 +75,23 @@ impl Picture {
         }
         let Some(target) = &self.target else { return Ok(()) };
         let scene = &snapshot.opened.scene;
-        let colouring = Colouring { map: look.map, ..stage::colouring(scene, look.colour_by) };
+        let colouring = stage::colouring(scene, look.colour_by).with_map(look.map);
         let drawn = &snapshot.drawn;
-        let balls = || DrawnParticles {
-            buffers: drawn.particles(),
-            radius: scene.fluid.particle_radius(),
-            colouring,
-        };
-        let mut frame = Frame {
-            bodies: self.placed.as_ref().map(|placed| placed.uploaded.buffers()),
-            foam: drawn.foam().map(|buffers| DrawnFoam { buffers, radius: scene.fluid.particle_radius() }),
-            ..Frame::new(camera, stage::domain(scene))
-        };
+        let radius = scene.fluid.particle_radius();
+        let mut frame = Frame::new(camera, stage::domain(scene));
+        frame.bodies = self.placed.as_ref().map(|placed| placed.uploaded.buffers());
+        frame.foam = drawn.foam().map(|buffers| DrawnFoam::new(buffers, radius));
         match (look.way, drawn.mesh()) {
-            (Way::Particles, _) => frame.particles = Some(balls()),
+            (Way::Particles, _) => {
+                frame.particles = Some(DrawnParticles::new(drawn.particles(), radius, colouring));
+            }
             (Way::Surface | Way::Mesh, Some(mesh)) => {
                 let style = match look.way {
                     Way::Mesh => SurfaceStyle::Lines,
                     _ => SurfaceStyle::Liquid,
                 };
                 let (buffers, liquid) = (mesh.buffers(), stage::liquid(scene));
-                frame.surface = Some(DrawnSurface { buffers, liquid, style });
+                frame.surface = Some(DrawnSurface::new(buffers, liquid).with_style(style));
             }
             (Way::Slice, _) => {
                 let (axis, low, high) = match look.slice_axis {
@@ -103,22 +99,13 @@ impl Picture {
                     Axis::Y => (Axis::Y, scene.domain.min.y, scene.domain.max.y),
                     Axis::Z => (Axis::Z, scene.domain.min.z, scene.domain.max.z),
                 };
-                frame.slice = Some(DrawnSlice {
-                    buffers: drawn.particles(),
-                    axis,
-                    position: low + look.slice_at * (high - low),
-                    support_radius: 2.0 * scene.fluid.particle_spacing,
-                    radius: scene.fluid.particle_radius(),
-                    colouring,
-                });
+                let position = low + look.slice_at * (high - low);
+                frame.slice = Some(DrawnSlice::new(drawn.particles(), axis, position, radius, colouring));
             }
             // Until the first surface comes, what the particles say of it.
             (Way::Fluid | Way::Surface | Way::Mesh, _) => {
-                frame.liquid_particles = Some(DrawnLiquidParticles {
-                    buffers: drawn.particles(),
-                    radius: scene.fluid.particle_radius(),
-                    liquid: stage::liquid(scene),
-                });
+                let (buffers, liquid) = (drawn.particles(), stage::liquid(scene));
+                frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
             }
         }
         let mut encoder = self

@@ -1,4 +1,4 @@
-// The box as lines of constant width on the screen. Needs globals.wgsl.
+// The edges of the box as lines of constant width on the screen. Needs globals.wgsl.
 
 struct Varying {
     @builtin(position) position: vec4f,
@@ -10,7 +10,7 @@ struct Varying {
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) edge: u32) -> Varying {
     let line = globals.edges[edge];
-    // Both ends are brought in front of the near plane before the division.
+    // Both ends are clipped to the near plane before the perspective division.
     let start_distance = dot(line.start - globals.eye, globals.forward);
     let end_distance = dot(line.end - globals.eye, globals.forward);
     var s = 0.0;
@@ -36,7 +36,7 @@ fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) edge:
     var clip = select(a, b, at_end);
     let push = normal * side * reach + tangent * select(-0.5, 0.5, at_end) * globals.line_width;
     clip = vec4f(clip.xy + push / half_size * clip.w, clip.z, clip.w);
-    // A touch nearer than the wall it outlines, or the fluid that leans on that wall would cut the line to pieces.
+    // Depth bias: fluid in contact with the wall would otherwise hide parts of the line.
     clip.z *= 1.002;
 
     var out: Varying;

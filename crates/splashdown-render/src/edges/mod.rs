@@ -1,20 +1,21 @@
-//! The box as thin lines.
+//! The edges of the box as thin lines.
 //!
 //! # How it works
-//! Each edge is a quad that the vertex shader widens on the screen to a constant number of pixels, with one
-//! more pixel on each side over which it fades; so lines are smooth with and without multisampling. Edges that
-//! fluid in the box can hide, those whose two walls turn their inside to the eye, are drawn before the fluid
-//! and are then mirrored and bent by it like the floor; all others lie on the convex box's near side and are
-//! drawn last. So every edge is drawn once.
+//! Each edge is a quad that the vertex shader expands on the screen to a constant width in pixels,
+//! plus one pixel on each side over which it fades. Lines are therefore smooth with and without
+//! multisampling. Edges that fluid in the box can hide are those whose two walls face the eye with
+//! their inside. They are drawn before the fluid, which then reflects and refracts them like the
+//! floor. All other edges lie on the near side of the convex box and are drawn last. So every edge
+//! is drawn once.
 //!
 //! # Why not the other way
-//! Line primitives are one pixel wide everywhere on WebGPU. Drawing all edges before and again after the fluid would
-//! darken those that do not touch it.
+//! WebGPU line primitives are always one pixel wide. Drawing all edges before and again after the
+//! fluid would darken those that do not touch it.
 //!
 //! # Things we might try
-//! Glass: a faint mirror on the front walls.
+//! Glass: faint reflections on the front walls.
 
-use crate::pipeline::{Depth, OVER, Recipe};
+use crate::pipeline::{Depth, OVER, PipelineDesc};
 use crate::shader::{GLOBALS, Shader};
 use std::ops::Range;
 use wgpu::{BindGroupLayout, Device, PrimitiveTopology, RenderPass, RenderPipeline, TextureFormat};
@@ -33,17 +34,17 @@ impl Edges {
         format: TextureFormat,
         samples: u32,
     ) -> Edges {
-        let recipe = Recipe {
+        let desc = PipelineDesc {
             samples,
             depth: Some(Depth::Test),
             blend: Some(OVER),
             topology: PrimitiveTopology::TriangleStrip,
-            ..Recipe::new(SHADER, &layouts, format)
+            ..PipelineDesc::new(SHADER, &layouts, format)
         };
-        Edges { pipeline: recipe.build(device) }
+        Edges { pipeline: desc.build(device) }
     }
 
-    /// Draws some of the twelve edges. Group 0 (globals) is set.
+    /// Draws some of the twelve edges. Expects group 0 (globals) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, edges: Range<u32>) {
         pass.set_pipeline(&self.pipeline);
         pass.draw(0..4, edges);

@@ -1,53 +1,52 @@
 //! Foam, spray and bubbles.
 //!
 //! # How it works
-//! Every diffuse particle is a soft white disc that faces the eye, laid over the picture. All are nearly
-//! equally white, so that their order hardly matters and nothing is sorted. Depth is tested and not written.
-//! Where there is liquid, bubbles are drawn before it, into the picture that it is looked through: so they are
-//! bent, tinted and hidden as all else under water. Foam and spray come after it.
+//! Every diffuse particle is a soft white billboard, blended over the picture. All are nearly
+//! equally white, so their order hardly matters and no sorting is necessary. Depth is tested and
+//! not written. If the frame has a liquid, bubbles are drawn before it, into the picture that the
+//! liquid refracts: they are bent, tinted and hidden like everything else under water. Foam and
+//! spray are drawn after the liquid.
 //!
-//! Foam lies in the surface, which would cut each disc in two; its depth is a little nearer than its place.
-//! Discs that would be smaller than a pixel are drawn as large as one and as much fainter.
+//! Foam lies in the surface, which would cut each disc in two; a depth offset moves it slightly
+//! towards the eye. Discs smaller than a pixel are enlarged to one pixel and their opacity is
+//! reduced accordingly.
 //!
 //! # Why not the other way
-//! A volume of foam's density that rays are marched through (Ihmsen et al. 2012 draw so, off line) has
-//! self-shadowing, for the cost of all else in the picture together. Additive discs would be brighter than any
-//! white.
+//! Ray marching through a volume of foam density (Ihmsen et al. 2012 do so off line) includes
+//! self-shadowing, at the cost of all other passes together. Additive discs would exceed white.
 //!
 //! # Things we might try
-//! Shadows of foam on the floor; a mirror image of spray in the water.
+//! Shadows of foam on the floor; reflections of spray in the water.
 
+use crate::chunks::{Chunk, bind_chunks};
 use crate::frame::check_radius;
 use crate::globals::Globals;
-use crate::particles::{chunks_of, part};
-use crate::pipeline::{Bind, Depth, OVER, Recipe, bind_group, bind_group_layout};
+use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout};
 use crate::shader::{ENVIRONMENT, GLOBALS, SPHERE, Shader};
 use crate::{FoamBuffers, RenderError};
-use wgpu::{BindGroup, BindGroupLayout, Device, RenderPass, RenderPipeline, TextureFormat};
+use wgpu::{BindGroupLayout, Device, RenderPass, RenderPipeline, TextureFormat};
 
 pub(crate) const SHADER: Shader =
     Shader { label: "foam", parts: &[GLOBALS, ENVIRONMENT, SPHERE, include_str!("foam.wgsl")] };
 
-/// Bytes of a diffuse particle.
-const STRIDE: u64 = 32;
-
-/// Foam, spray and bubbles, and how to draw them.
+/// Foam, spray and bubbles drawn as billboards.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct DrawnFoam<'a> {
-    /// Where they are.
+    /// The diffuse particles.
     pub buffers: FoamBuffers<'a>,
-    /// Half the spacing of the fluid's particles in metres; what is drawn is smaller.
+    /// Half the particle spacing of the fluid in metres. The billboards are smaller.
     pub radius: f32,
 }
 
-/// What is drawn of it.
+/// The kinds of diffuse particles that a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum Kinds {
     /// Bubbles, before the liquid.
     UnderWater,
-    /// Foam and spray, after it.
+    /// Foam and spray, after the liquid.
     OverWater,
-    /// All, where there is no liquid.
+    /// All kinds, in a frame without liquid.
     All,
 }
 
@@ -57,7 +56,13 @@ pub(crate) struct Foam {
     layout: BindGroupLayout,
 }
 
-impl DrawnFoam<'_> {
+impl<'a> DrawnFoam<'a> {
+    /// Diffuse particles in a fluid of a particle radius in metres, half the particle spacing.
+    pub fn new(buffers: FoamBuffers<'a>, radius: f32) -> DrawnFoam<'a> {
+        DrawnFoam { buffers, radius }
+    }
+
+    /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
         check_radius(self.radius)?;
@@ -75,40 +80,34 @@ impl Foam {
     ) -> Foam {
         let layout = bind_group_layout(device, "foam", &[Bind::Storage]);
         let layouts = [globals, environment, &layout];
+        // In the order of `Kinds`: a mask with a bit per kind.
         let pipelines = [4.0, 3.0, 7.0].map(|kinds| {
             let constants = [("KINDS", kinds)];
-            let recipe = Recipe {
+            let desc = PipelineDesc {
                 samples,
                 depth: Some(Depth::Test),
                 blend: Some(OVER),
                 constants: &constants,
-                ..Recipe::new(SHADER, &layouts, format)
+                ..PipelineDesc::new(SHADER, &layouts, format)
             };
-            recipe.build(device)
+            desc.build(device)
         });
         Foam { pipelines, layout }
     }
 
-    /// Binds the particles, in as many pieces as the device's largest binding asks for.
-    pub fn bind(&self, device: &Device, drawn: &DrawnFoam<'_>) -> Vec<(BindGroup, u32)> {
-        let FoamBuffers { particles, count } = drawn.buffers;
-        chunks_of(device, count, STRIDE)
-            .map(|(start, count)| {
-                let resources = [part(particles, STRIDE, start, count)];
-                (bind_group(device, "foam", &self.layout, &resources), count)
-            })
-            .collect()
+    /// Binds the particles as group 2.
+    pub fn bind(&self, device: &Device, drawn: &DrawnFoam<'_>) -> Vec<Chunk> {
+        bind_chunks(device, "foam", &self.layout, drawn.buffers.count, &[drawn.buffers.column()], &[])
     }
 
-    /// Groups 0 (globals) and 1 (environment) are set.
-    pub fn record(&self, pass: &mut RenderPass<'_>, chunks: &[(BindGroup, u32)], part: Part) {
+    /// Draws some kinds. Expects groups 0 (globals) and 1 (environment) to be bound.
+    pub fn record(&self, pass: &mut RenderPass<'_>, chunks: &[Chunk], kinds: Kinds) {
         if chunks.is_empty() {
             return;
         }
-        pass.set_pipeline(&self.pipelines[part as usize]);
-        for (group, count) in chunks {
-            pass.set_bind_group(2, group, &[]);
-            pass.draw(0..6 * count, 0..1);
+        pass.set_pipeline(&self.pipelines[kinds as usize]);
+        for chunk in chunks {
+            chunk.draw(pass, 2, 6);
         }
     }
 }

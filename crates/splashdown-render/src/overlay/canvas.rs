@@ -1,4 +1,4 @@
-//! A small image painted on the host: rectangles and text.
+//! A small image drawn on the host: rectangles and text.
 
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
@@ -10,10 +10,9 @@ pub(crate) struct Canvas {
     pixels: Vec<[u8; 4]>,
 }
 
-/// Ubuntu Light, the typeface of egui; part of the program, so that text looks the same on every system.
+/// Ubuntu Light, the font of egui. It is embedded, so that text looks the same on every system.
 fn font() -> FontRef<'static> {
-    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
-        .expect("the built-in font is sound, a test reads it")
+    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("a test parses the embedded font")
 }
 
 impl Canvas {
@@ -30,7 +29,7 @@ impl Canvas {
         bytemuck::cast_slice(&self.pixels)
     }
 
-    /// Lays a colour over a pixel; outside of the canvas nothing happens.
+    /// Blends a colour over a pixel; pixels outside the canvas are ignored.
     fn blend(&mut self, x: i32, y: i32, [r, g, b]: [u8; 3], opacity: f32) {
         if x < 0 || y < 0 || x >= self.width as i32 || y >= self.height as i32 || opacity <= 0.0 {
             return;
@@ -52,20 +51,21 @@ impl Canvas {
         }
     }
 
-    /// Fills the whole canvas but its rounded corners.
+    /// Fills the whole canvas as a rectangle with rounded corners.
     pub fn panel(&mut self, radius: f32, colour: [u8; 3], opacity: f32) {
         let [width, height] = self.size().map(|side| side as f32);
         for y in 0..self.height as i32 {
             for x in 0..self.width as i32 {
-                // Distance into the corner's circle; 0 along the straight sides.
-                let into = |at: f32, side: f32| (radius - at).max(at - (side - radius)).max(0.0);
-                let corner = into(x as f32 + 0.5, width).hypot(into(y as f32 + 0.5, height));
+                // Distance from the centre of the corner's circle along an axis; 0 along the
+                // straight sides.
+                let offset = |at: f32, side: f32| (radius - at).max(at - (side - radius)).max(0.0);
+                let corner = offset(x as f32 + 0.5, width).hypot(offset(y as f32 + 0.5, height));
                 self.blend(x, y, colour, opacity * (radius + 0.5 - corner).clamp(0.0, 1.0));
             }
         }
     }
 
-    /// Writes a line of text with its lower left corner at `x` and the given baseline.
+    /// Draws a line of text that starts at `x` on the given baseline.
     pub fn text(&mut self, [x, baseline]: [f32; 2], height: f32, colour: [u8; 3], text: &str) {
         let font = font();
         for glyph in glyphs(&font, height, text) {
@@ -74,7 +74,7 @@ impl Canvas {
             if let Some(outline) = font.outline_glyph(placed) {
                 let corner = outline.px_bounds().min;
                 outline.draw(|dx, dy, coverage| {
-                    // The light typeface gains from a little more ink.
+                    // The font is thin; this makes it slightly bolder.
                     let ink = coverage.clamp(0.0, 1.0).powf(0.7);
                     self.blend(corner.x as i32 + dx as i32, corner.y as i32 + dy as i32, colour, ink);
                 });
@@ -95,7 +95,7 @@ pub(crate) fn text_width(height: f32, text: &str) -> f32 {
     glyphs(&font, height, text).last().map_or(0.0, |last| last.position.x + scaled.h_advance(last.id))
 }
 
-/// The glyphs of a line, from x = 0 on.
+/// The glyphs of a line, starting at x = 0.
 fn glyphs(font: &FontRef<'_>, height: f32, text: &str) -> Vec<Glyph> {
     let scale = PxScale::from(height);
     let scaled = font.as_scaled(scale);
@@ -116,16 +116,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_font_knows_the_letters_we_need() {
+    fn the_font_has_all_required_characters() {
         let font = font();
         for character in "abcXYZ0123456789.,-+/[](){}³²°µ·×−".chars() {
             assert!(font.glyph_id(character).0 != 0, "no glyph for {character}");
         }
-        assert_eq!(font.glyph_id('\u{4e00}').0, 0, "negative control: a letter that is not there");
+        assert_eq!(font.glyph_id('\u{4e00}').0, 0, "negative control: a character that the font lacks");
     }
 
     #[test]
-    fn text_leaves_ink_where_it_is_written_and_nowhere_else() {
+    fn text_is_drawn_at_its_position_and_nowhere_else() {
         let mut canvas = Canvas::new([120, 40]);
         let width = text_width(20.0, "speed");
         canvas.text([10.0, 30.0], 20.0, [0, 0, 0], "speed");
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn painting_outside_does_nothing() {
+    fn drawing_outside_the_canvas_is_ignored() {
         let mut canvas = Canvas::new([4, 3]);
         canvas.fill([-2, -2], [3, 3], [10, 20, 30], 1.0);
         canvas.text([-50.0, 100.0], 30.0, [0, 0, 0], "beyond");

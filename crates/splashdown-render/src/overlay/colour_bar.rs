@@ -1,4 +1,4 @@
-//! The colour bar on the right, and the caption in the lower left corner.
+//! The colour bar at the right border, and the caption in the lower left corner.
 
 use super::canvas::{Canvas, text_width};
 use super::ticks::{label, ticks};
@@ -7,7 +7,7 @@ use crate::{Colouring, Quantity};
 const INK: [u8; 3] = [22, 32, 44];
 const PAPER: [u8; 3] = [255, 255, 255];
 
-/// Sizes in pixels, worked out from the picture's height.
+/// Sizes in pixels, derived from the height of the picture.
 struct Layout {
     text: f32,
     pad: f32,
@@ -30,7 +30,7 @@ impl Layout {
     }
 }
 
-/// Title line, and the factor from SI values to the numbers shown.
+/// Title, and the factor from SI units to the displayed unit.
 fn title(quantity: Quantity, range: [f32; 2]) -> (&'static str, f64) {
     let largest = range[0].abs().max(range[1].abs());
     match quantity {
@@ -42,9 +42,9 @@ fn title(quantity: Quantity, range: [f32; 2]) -> (&'static str, f64) {
     }
 }
 
-/// Paints the bar with title, unit and ticks; its corner in the picture and the image, or nothing where it would fill
-/// most of a small picture.
-pub(crate) fn paint(
+/// Draws the bar with title, unit and ticks. Returns its corner in the picture and the image, or
+/// `None` if the picture is too small for it.
+pub(crate) fn draw_colour_bar(
     colouring: &Colouring,
     range: [f32; 2],
     picture_size: [u32; 2],
@@ -61,7 +61,7 @@ pub(crate) fn paint(
     let inner_width = scale_width.max(text_width(layout.text, title));
     let top = layout.pad + 1.5 * layout.text;
     let width = (inner_width + 2.0 * layout.pad).ceil() as u32;
-    // Half a line below the bar holds the lower half of the lowest number.
+    // The space below the bar holds the lower half of the lowest label.
     let height = (top + bar_height as f32 + 0.4 * layout.text + layout.pad).ceil() as u32;
     let margin = (1.5 * layout.pad) as u32;
     if 2 * width + margin > picture_size[0] || height + 2 * margin > picture_size[1] {
@@ -79,8 +79,8 @@ pub(crate) fn paint(
     }
     let right = left + bar_width + 1;
     for (value, text) in values.iter().zip(&numbers) {
-        let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
-        let y = top as f32 + (1.0 - share as f32) * (bar_height - 1) as f32;
+        let fraction = ((value - low) / (high - low)).clamp(0.0, 1.0);
+        let y = top as f32 + (1.0 - fraction as f32) * (bar_height - 1) as f32;
         canvas.fill([right, y.round() as i32], [layout.tick, 1], INK, 0.9);
         let x = (right + layout.tick) as f32 + 0.25 * layout.text;
         canvas.text([x, y + 0.32 * layout.text], layout.text, INK, text);
@@ -88,8 +88,9 @@ pub(crate) fn paint(
     Some(([picture_size[0] - width - margin, (picture_size[1] - height) / 2], canvas))
 }
 
-/// Paints a line of text; its corner in the picture and the image, or nothing if the picture is too small for it.
-pub(crate) fn paint_caption(text: &str, picture_size: [u32; 2]) -> Option<([u32; 2], Canvas)> {
+/// Draws a line of text. Returns its corner in the picture and the image, or `None` if the picture
+/// is too small for it.
+pub(crate) fn draw_caption(text: &str, picture_size: [u32; 2]) -> Option<([u32; 2], Canvas)> {
     let layout = Layout::new(picture_size);
     let margin = (1.5 * layout.pad) as u32;
     let width = (text_width(layout.text, text) + 2.0 * layout.pad).ceil() as u32;
@@ -109,12 +110,12 @@ mod tests {
     use crate::ColourMap;
 
     fn colouring(quantity: Quantity) -> Colouring {
-        Colouring { quantity, range: [0.0, 2.0], map: ColourMap::Viridis, colour_bar: true }
+        Colouring::new(quantity, [0.0, 2.0]).with_map(ColourMap::Viridis)
     }
 
     #[test]
-    fn the_bar_runs_from_the_lower_to_the_upper_end_s_colour() {
-        let ([x, y], canvas) = paint(&colouring(Quantity::Speed), [0.0, 2.0], [1280, 720]).unwrap();
+    fn the_bar_spans_the_whole_colour_map() {
+        let ([x, y], canvas) = draw_colour_bar(&colouring(Quantity::Speed), [0.0, 2.0], [1280, 720]).unwrap();
         let [width, height] = canvas.size();
         assert!(x > 1000 && x + width < 1280 && y > 0 && y + height < 720);
         let column: Vec<[u8; 4]> = (0..height).map(|row| canvas.pixel(22, row)).collect();
@@ -123,23 +124,23 @@ mod tests {
             column.iter().position(|&pixel| pixel == [r, g, b, 255])
         };
         let (upper, lower) = (of(1.0).unwrap(), of(0.0).unwrap());
-        assert_eq!(lower - upper, 279, "280 rows from end to end");
-        // Negative control: the other map's end is not there.
+        assert_eq!(lower - upper, 279, "the bar has 280 rows");
+        // Negative control: the bar does not contain the end of another map.
         let [r, g, b] = ColourMap::Inferno.sample(1.0);
         assert!(!column.contains(&[r, g, b, 255]));
     }
 
     #[test]
-    fn pressures_are_written_in_a_unit_that_fits() {
+    fn the_unit_of_pressure_follows_the_range() {
         assert_eq!(title(Quantity::Pressure, [0.0, 900.0]).0, "pressure [Pa]");
         assert_eq!(title(Quantity::Pressure, [-20_000.0, 900.0]), ("pressure [kPa]", 1e-3));
         assert_eq!(title(Quantity::Pressure, [0.0, 2e6]).0, "pressure [MPa]");
     }
 
     #[test]
-    fn small_pictures_go_without() {
-        assert!(paint(&colouring(Quantity::Density), [0.0, 1.0], [40, 20]).is_none());
-        assert!(paint_caption("t = 1.000 s, 65536 particles", [40, 20]).is_none());
-        assert!(paint_caption("t = 1.000 s, 65536 particles", [640, 360]).is_some());
+    fn small_pictures_have_no_labels() {
+        assert!(draw_colour_bar(&colouring(Quantity::Density), [0.0, 1.0], [40, 20]).is_none());
+        assert!(draw_caption("t = 1.000 s, 65536 particles", [40, 20]).is_none());
+        assert!(draw_caption("t = 1.000 s, 65536 particles", [640, 360]).is_some());
     }
 }

@@ -1,22 +1,23 @@
-//! Colour bar and caption, laid over the finished picture.
+//! Colour bar and caption, drawn over the finished picture.
 //!
 //! # How it works
-//! Each is painted on the host into a small image ([`Canvas`]) when its content changes, uploaded into a texture of its
-//! own and drawn as a quad whose texels fall on pixels. A new texture for each content means that a picture still
-//! under way keeps its old one.
+//! Each is drawn on the host into a small image ([`Canvas`]) when its content changes, uploaded
+//! into a new texture and drawn as a quad with one texel per pixel. Pictures in flight keep their
+//! old texture.
 //!
 //! # Why not the other way
-//! A glyph atlas and a quad per letter save the upload of some 100 KB when a caption changes, which takes less than a
-//! millisecond, and cost an atlas, its packing and a layout pass. Text drawn under multisampling would be blurred.
+//! A glyph atlas with a quad per character would save an upload of about 100 KB when a caption
+//! changes, which takes less than a millisecond, and would need an atlas, its packing and a layout
+//! pass. Multisampled text would be blurred.
 //!
 //! # Things we might try
-//! A scale bar of the scene's length.
+//! A scale bar with the length of the scene.
 
 mod canvas;
 mod colour_bar;
 mod ticks;
 
-use crate::pipeline::{Bind, OVER, Recipe, bind_group, bind_group_layout};
+use crate::pipeline::{Bind, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::shader::Shader;
 use crate::{Frame, RenderError};
@@ -38,19 +39,19 @@ pub(crate) struct Overlay {
     caption: Option<Label>,
 }
 
-/// A painted rectangle on the GPU.
+/// A labelled rectangle on the GPU.
 #[derive(Debug)]
 struct Label {
-    /// What it shows and in which picture size; painted anew when this changes.
+    /// Text and size of the picture; when this changes the label is redrawn.
     content: String,
-    /// Absent where the picture is too small for it.
+    /// Absent if the picture is too small for the label.
     group: Option<BindGroup>,
 }
 
-/// Twin of `Place` in overlay.wgsl.
+/// Mirrors `Placement` in overlay.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Place {
+struct Placement {
     corner: [f32; 2],
     size: [f32; 2],
     picture_size: [f32; 2],
@@ -62,16 +63,16 @@ impl Overlay {
     pub fn new(device: &Device, format: TextureFormat) -> Overlay {
         let layout = bind_group_layout(device, "overlay", &[Bind::Uniform, Bind::Texture]);
         let layouts = [&layout];
-        let recipe = Recipe {
+        let desc = PipelineDesc {
             blend: Some(OVER),
             topology: PrimitiveTopology::TriangleStrip,
-            ..Recipe::new(SHADER, &layouts, format)
+            ..PipelineDesc::new(SHADER, &layouts, format)
         };
-        let pipeline = recipe.build(device);
+        let pipeline = desc.build(device);
         Overlay { pipeline, layout, encode_srgb: !format.is_srgb(), colour_bar: None, caption: None }
     }
 
-    /// Paints what has changed since the last picture.
+    /// Redraws the labels that have changed since the last picture.
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -90,31 +91,31 @@ impl Overlay {
 
         let old = self.colour_bar.take();
         self.colour_bar = bar.zip(colouring).map(|((content, range), colouring)| {
-            let paint = || colour_bar::paint(&colouring, range, size);
-            self.keep_or_paint(device, queue, size, old, content, paint)
+            let draw = || colour_bar::draw_colour_bar(&colouring, range, size);
+            self.reuse_or_draw(device, queue, size, old, content, draw)
         });
         let old = self.caption.take();
         self.caption = caption.map(|text| {
             let content = format!("{size:?} {text}");
-            self.keep_or_paint(device, queue, size, old, content, || colour_bar::paint_caption(text, size))
+            self.reuse_or_draw(device, queue, size, old, content, || colour_bar::draw_caption(text, size))
         });
         Ok(())
     }
 
-    fn keep_or_paint(
+    fn reuse_or_draw(
         &self,
         device: &Device,
         queue: &Queue,
         picture_size: [u32; 2],
         old: Option<Label>,
         content: String,
-        paint: impl FnOnce() -> Option<([u32; 2], Canvas)>,
+        draw: impl FnOnce() -> Option<([u32; 2], Canvas)>,
     ) -> Label {
         if let Some(old) = old.filter(|old| old.content == content) {
             return old;
         }
-        let group = paint().map(|(corner, canvas)| {
-            let place = Place {
+        let group = draw().map(|(corner, canvas)| {
+            let placement = Placement {
                 corner: corner.map(|x| x as f32),
                 size: canvas.size().map(|x| x as f32),
                 picture_size: picture_size.map(|x| x as f32),
@@ -122,12 +123,12 @@ impl Overlay {
                 pad: 0,
             };
             let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("overlay place"),
-                size: size_of::<Place>() as u64,
+                label: Some("overlay placement"),
+                size: size_of::<Placement>() as u64,
                 usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&place));
+            queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&placement));
             let texture = upload_texture(device, queue, "overlay", canvas.size(), canvas.bytes());
             let resources = [uniform.as_entire_binding(), BindingResource::TextureView(&texture)];
             bind_group(device, "overlay", &self.layout, &resources)
@@ -135,7 +136,7 @@ impl Overlay {
         Label { content, group }
     }
 
-    /// Lays the labels over the finished picture.
+    /// Draws the labels over the finished picture.
     pub fn record(&self, recorder: &mut Recorder<'_>, target: &TextureView) {
         let groups: Vec<&BindGroup> = [&self.colour_bar, &self.caption]
             .into_iter()
@@ -154,7 +155,7 @@ impl Overlay {
     }
 }
 
-/// A texture of sRGB bytes.
+/// Uploads sRGB bytes into a texture.
 pub(crate) fn upload_texture(
     device: &Device,
     queue: &Queue,

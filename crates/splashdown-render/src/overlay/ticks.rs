@@ -1,9 +1,9 @@
-//! Round numbers along an axis, and how to write them.
+//! Round tick values along an axis, and their labels.
 
-/// Round values between `low` and `high`, at most `most` of them, a step of 1, 2, 2.5 or 5 times a power of ten apart;
-/// with that step.
-pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
-    let rough = (high - low) / most.max(2) as f64;
+/// About `count` round values between `low` and `high`, and their step: 1, 2, 2.5 or 5 times a
+/// power of ten.
+pub(crate) fn ticks(low: f64, high: f64, count: usize) -> (Vec<f64>, f64) {
+    let rough = (high - low) / count.max(2) as f64;
     let power = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 2.5, 5.0, 10.0]
         .map(|factor| factor * power)
@@ -15,7 +15,7 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     ((first..=last).map(|i| i as f64 * step).collect(), step)
 }
 
-/// A number with as many decimals as its step needs; a true minus sign.
+/// A number with as many decimals as its step needs, with U+2212 as minus sign.
 pub(crate) fn label(value: f64, step: f64) -> String {
     let mut decimals = 0;
     while decimals < 9
@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn round_numbers_with_the_decimals_they_need() {
+    fn ticks_are_round_and_labels_have_the_required_decimals() {
         assert_eq!(labels(0.0, 5.0), ["0", "1", "2", "3", "4", "5"]);
         assert_eq!(labels(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(990.0, 1030.0), ["990", "1000", "1010", "1020", "1030"]);
@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn never_more_than_asked_for_and_at_least_one() {
+    fn the_number_of_ticks_is_bounded() {
         for i in 0..400 {
             let high = 1.07f64.powi(i - 200);
             for low in [0.0, -high, 0.9 * high] {

@@ -1,7 +1,7 @@
-// Spheres as impostors: a quad around the outline, the hit worked out per pixel. Needs globals.wgsl,
-// sphere.wgsl, quantity.wgsl.
+// Sphere impostors: a quad around the outline, with the intersection computed per pixel. Needs
+// globals.wgsl, sphere.wgsl, quantity.wgsl.
 
-@group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
+@group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz; w is 0 for active particles
 @group(2) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored
 @group(2) @binding(2) var<storage, read> densities: array<vec2f>;   // density, pressure
 @group(2) @binding(3) var colour_map: texture_2d<f32>;              // 256 x 1
@@ -11,8 +11,8 @@ override SAMPLES: u32 = 4u;
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the sphere's outline
-    @location(1) ray: vec3f,           // from the eye to the quad
-    @location(2) @interpolate(flat) centre: vec4f,  // from the eye, and its distance
+    @location(1) ray: vec3f,           // from the eye to a point of the quad
+    @location(2) @interpolate(flat) centre: vec4f,  // xyz: centre relative to the eye, w: distance
     @location(3) @interpolate(flat) base: vec3f,    // colour
 }
 
@@ -38,7 +38,8 @@ struct Output {
     @builtin(sample_mask) covered: u32,
 }
 
-// Which of the pixel's samples the disc covers: WebGPU's places of four samples, in sixteenths of a pixel.
+// Mask of the pixel's samples that the disc covers. WebGPU defines the positions of four samples,
+// here in sixteenths of a pixel.
 fn coverage(across: vec2f, right: vec2f, down: vec2f) -> u32 {
     if SAMPLES == 1u {
         return select(0u, 1u, dot(across, across) <= 1.0);
@@ -64,10 +65,10 @@ fn fragment_main(in: Varying) -> Output {
     let to_eye = -in.centre.xyz / distance;
     let sun = max(dot(normal, globals.sun), 0.0);
     let facing = max(dot(normal, to_eye), 0.0);
-    // Sky from above, a little light from the floor, the sun; darker towards the outline, so that neighbours
-    // stand apart.
+    // Sky light from above, some light from the floor, and the sun; darker towards the outline, so
+    // that neighbouring spheres can be distinguished.
     let light = (0.68 + 0.20 * normal.y + 0.30 * sun) * (0.48 + 0.52 * facing);
-    // Blinn's highlight with exponent 32, by squaring.
+    // Blinn-Phong highlight with exponent 32, by repeated squaring.
     let half_way = globals.sun + to_eye;
     let aligned = max(dot(normal, half_way), 0.0) * inverseSqrt(max(dot(half_way, half_way), 1e-6));
     let a4 = aligned * aligned * aligned * aligned;

@@ -1,36 +1,31 @@
-// Lights the smoothed distances and lays them over the picture. Needs globals.wgsl, environment.wgsl, liquid.wgsl.
+// Shades the smoothed distances and blends them over the picture. Needs globals.wgsl,
+// environment.wgsl, liquid.wgsl, fullscreen.wgsl.
 
-@group(2) @binding(3) var distances: texture_2d<f32>;      // distance along the view's direction, share of liquid around
+@group(2) @binding(3) var distances: texture_2d<f32>;      // distance along the view direction, liquid fraction
 
-const NOTHING = 1e30;
-// Share of liquid around a pixel at the outline, and the deviation of the average, in radii of the splats. A
-// straight edge has a share of 0.5; the middle of a single drop has 0.75.
+const NO_LIQUID = 1e30;
+// Liquid fraction at the outline, and the standard deviation of its average, in radii of the
+// splats. The fraction is 0.5 at a straight edge and 0.75 in the middle of a single drop.
 const OUTLINE = 0.66;
-const SHARE_DEVIATION = 0.6;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(corner * 4.0 - 1.0, 0.0, 1.0);
-}
+const FRACTION_DEVIATION = 0.6;
 
 fn sample_distance(texel: vec2i) -> f32 {
-    let place = texel + vec2i(i32(globals.splat_margin));
+    let shifted = texel + vec2i(i32(globals.splat_margin));
     let size = vec2i(textureDimensions(distances));
-    if any(place < vec2i(0)) || any(place >= size) {
-        return NOTHING;
+    if any(shifted < vec2i(0)) || any(shifted >= size) {
+        return NO_LIQUID;
     }
-    return textureLoad(distances, place, 0).r;
+    return textureLoad(distances, shifted, 0).r;
 }
 
-// Where the liquid is in a pixel, from the eye.
-fn place(texel: vec2i, distance: f32) -> vec3f {
+// Position of the liquid in a pixel, relative to the eye.
+fn position_at(texel: vec2i, distance: f32) -> vec3f {
     return view_ray(vec2f(texel) + 0.5) * distance;
 }
 
-// The surface's slope along an axis of the picture, from the differences to both sides. Over an edge one of
-// them is large and wrong, so each counts the less the larger it is; a switch from one to the other would leave
-// dotted rims.
+// Slope of the surface along an axis of the picture, from the differences to both sides. At an edge
+// one of them is large and wrong, so the larger difference has the smaller weight. Switching
+// between the two would produce dotted rims.
 fn slope(texel: vec2i, axis: vec2i, here: vec3f) -> vec3f {
     let ahead = sample_distance(texel + axis);
     let behind = sample_distance(texel - axis);
@@ -38,14 +33,15 @@ fn slope(texel: vec2i, axis: vec2i, here: vec3f) -> vec3f {
     let least = 0.2 * globals.splat_radius;
     let rise = max(abs(ahead - middle), least);
     let fall = max(abs(behind - middle), least);
-    // Squares of the smaller over the larger: 1 where both are alike, 0 for the one at an edge.
-    let share_ahead = min(fall / rise, 1.0);
-    let share_behind = min(rise / fall, 1.0);
-    let weight_ahead = share_ahead * share_ahead;
-    let weight_behind = share_behind * share_behind;
-    // Nothing is so far away that its difference could not be multiplied by 0.
-    let forth = place(texel + axis, min(ahead, 2.0 * middle)) - here;
-    let back = here - place(texel - axis, min(behind, 2.0 * middle));
+    // Squared ratio of the smaller to the larger difference: 1 if both are equal, near 0 at an
+    // edge.
+    let ratio_ahead = min(fall / rise, 1.0);
+    let ratio_behind = min(rise / fall, 1.0);
+    let weight_ahead = ratio_ahead * ratio_ahead;
+    let weight_behind = ratio_behind * ratio_behind;
+    // NO_LIQUID is clamped, so that its product with a zero weight is zero.
+    let forth = position_at(texel + axis, min(ahead, 2.0 * middle)) - here;
+    let back = here - position_at(texel - axis, min(behind, 2.0 * middle));
     return (weight_ahead * forth + weight_behind * back) / (weight_ahead + weight_behind);
 }
 
@@ -59,17 +55,18 @@ fn fragment_main(@builtin(position) position: vec4f) -> Output {
     let pixel = vec2i(position.xy);
     let own = textureLoad(distances, pixel + vec2i(i32(globals.splat_margin)), 0);
     let distance = own.r;
-    if distance >= NOTHING {
+    if distance >= NO_LIQUID {
         discard;
     }
-    // The outline is where the share of liquid around falls below a bound. That trims the spheres' bumps; and
-    // as the share falls over known pixels, it also says how much of the pixel is inside.
-    let deviation = max(SHARE_DEVIATION * globals.splat_radius / (distance * globals.pixel_angle), 0.6);
+    // The outline is the level set of the liquid fraction at a threshold, which removes the bumps
+    // of the spheres. The fraction falls linearly over a known number of pixels, so it also gives
+    // the coverage.
+    let deviation = max(FRACTION_DEVIATION * globals.splat_radius / (distance * globals.pixel_angle), 0.6);
     let covered = clamp((own.g - OUTLINE) * 2.5 * deviation + 0.5, 0.0, 1.0);
     if covered == 0.0 {
         discard;
     }
-    let here = place(pixel, distance);
+    let here = position_at(pixel, distance);
     let across = slope(pixel, vec2i(1, 0), here);
     let down = slope(pixel, vec2i(0, 1), here);
     var normal = cross(down, across);

@@ -1,47 +1,54 @@
-//! The liquid straight from its particles, without a mesh.
+//! The surface of the liquid in screen space, directly from the particles, without a mesh.
 //!
 //! # How it works
-//! *Splat*: every particle is a sphere a little larger than its share of space, so that neighbours merge; the
-//! nearest one in each pixel leaves its distance. *Smooth*: the narrow-range filter (Truong and Yuksel 2018)
-//! turns the heap of spheres into a surface. It averages with a Gaussian whose width in pixels follows the
-//! distance, along one axis and then the other, twice over, and at last in a small square against the streaks
-//! that this leaves. Samples in front of a narrow range around the middle are left out together with their
-//! mirror image, so that near liquid has no halo in the far; samples behind it count as lying just behind the
-//! middle, which rounds the rim; and the range grows with every sample inside it, so that slopes stay.
-//! *Amount*: every particle adds its volume over a soft disc, in half resolution. *Compose*: normals from the
-//! distances' differences, the smaller one at edges; then the light of `shared/liquid.wgsl`, which the mesh has
-//! too.
+//! 1. *Splat*: every particle is a sphere slightly larger than its volume, so that neighbours
+//!    overlap. The distance of the nearest sphere in each pixel is stored.
+//! 2. *Smooth*: the narrow-range filter (Truong and Yuksel 2018) turns the spheres into a surface.
+//!    It averages with a Gaussian whose width in pixels follows the distance, along one axis and
+//!    then the other, twice, and finally in a small square, which removes the streaks of the
+//!    separable passes. Samples in front of a narrow range around the centre are skipped together
+//!    with their mirror image, so that near liquid leaves no halo on far liquid. Samples behind the
+//!    range are clamped to slightly behind the centre, which rounds the rim. The range grows with
+//!    every sample inside it, so that slopes are preserved.
+//! 3. *Thickness*: every particle adds its volume over a soft disc, at half resolution.
+//! 4. *Compose*: normals from the differences of the distances, weighted towards the smaller one at
+//!    edges; then the shading of `shared/liquid.wgsl`, which the mesh uses too.
 //!
-//! Distances are drawn with a margin around the picture: smoothing that knows nothing of what lies beyond the
+//! The distance texture is larger than the picture by a margin: smoothing without data beyond the
 //! border would bend the surface there.
 //!
-//! The outline of a heap of spheres is bumpy, and no filter of distances mends it. So the first round of
-//! smoothing also averages the share of pixels that have liquid, and the outline is drawn where that falls
-//! below a bound: bumps are cut off, and the same number says how much of a pixel is inside. Depth is that of
-//! the smoothed surface, so solids and the box's lines cut it as they do the mesh.
+//! The outline of a set of spheres is bumpy, and no filter of distances can change it. So the first
+//! round of smoothing also averages the fraction of pixels that contain liquid, and the outline is
+//! the level set of this fraction at a threshold: this removes the bumps and gives the coverage of
+//! a pixel. The depth is that of the smoothed surface, so bodies and the lines of the box intersect
+//! it as they do the mesh.
 //!
-//! 16-bit floats hold the amount to a thousandth; where more than a thousand particles lie behind each other,
-//! the sum stops growing, long after the liquid has become opaque.
+//! 16-bit floats store the thickness with a relative precision of 1e-3. Where more than a thousand
+//! particles lie behind each other the sum stops growing; the liquid is opaque long before.
 //!
-//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores, 63,000 particles, 1280 x 720, four samples, all in one
-//! run of `examples/ways.rs`: 1.4 times as long as the same particles as spheres, 1.2 times a mesh of 298,000
-//! triangles; a quarter each for amount, splats and smoothing. With one sample, where spheres need half the
-//! time, 2.7 and 2.4 times.
+//! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples and 63,000
+//! particles, in one run of `examples/modes.rs`: 1.4 times the time of the same particles as
+//! spheres, 1.2 times that of a mesh of 298,000 triangles; thickness, splats and smoothing take a
+//! quarter each. With one sample, where spheres take half the time, the ratios are 2.7 and 2.4.
 //!
 //! # Why not the other way
-//! Curvature flow (van der Laan et al. 2009) needs some fifty passes for the same smoothness. A bilateral filter keeps
-//! the spheres of thin layers and rounds steps into each other. Ellipsoids from the neighbours' covariance are smoother
-//! still and cost a visit of the neighbours. Depths with four samples would mean four pictures to smooth.
+//! Curvature flow (van der Laan et al. 2009) needs about fifty passes for the same smoothness. A
+//! bilateral filter leaves the spheres of thin layers visible and blends steps into each other.
+//! Ellipsoids from the covariance of the neighbours are smoother but need a neighbour loop.
+//! Distances with four samples would mean smoothing four pictures.
 //!
 //! # Things we might try
-//! Smoothing in half resolution for very large pictures; outlines of liquid in front of liquid, which stay bumpy.
+//! Smoothing at half resolution for very large pictures; smoother outlines of liquid in front of
+//! liquid.
 
+use crate::chunks::{Chunk, bind_chunks};
 use crate::frame::check_radius;
 use crate::globals::Globals;
-use crate::particles::{chunks, part};
-use crate::pipeline::{ADD, Bind, DEPTH, Depth, OVER, Recipe, bind_group, bind_group_layout, linear_sampler};
+use crate::pipeline::{
+    ADD, Bind, DEPTH, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler,
+};
 use crate::recorder::Recorder;
-use crate::shader::{ENVIRONMENT, GLOBALS, LIQUID, SPHERE, Shader};
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, SPHERE, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets, texture};
 use crate::{Liquid, ParticleBuffers, RenderError};
 use wgpu::{
@@ -52,48 +59,53 @@ use wgpu::{
 const NARROW_RANGE: &str = include_str!("narrow_range.wgsl");
 pub(crate) const SPLAT: Shader =
     Shader { label: "splat", parts: &[GLOBALS, SPHERE, include_str!("splat.wgsl")] };
-pub(crate) const AMOUNT: Shader =
-    Shader { label: "amount", parts: &[GLOBALS, SPHERE, include_str!("amount.wgsl")] };
+pub(crate) const PARTICLE_THICKNESS: Shader = Shader {
+    label: "particle thickness",
+    parts: &[GLOBALS, SPHERE, include_str!("particle_thickness.wgsl")],
+};
 pub(crate) const SMOOTH: Shader =
-    Shader { label: "smooth", parts: &[GLOBALS, NARROW_RANGE, include_str!("smooth.wgsl")] };
-pub(crate) const CLEAN: Shader =
-    Shader { label: "clean", parts: &[GLOBALS, NARROW_RANGE, include_str!("clean.wgsl")] };
-pub(crate) const COMPOSE: Shader =
-    Shader { label: "compose", parts: &[GLOBALS, ENVIRONMENT, LIQUID, include_str!("compose.wgsl")] };
+    Shader { label: "smooth", parts: &[GLOBALS, FULLSCREEN, NARROW_RANGE, include_str!("smooth.wgsl")] };
+pub(crate) const CLEANUP: Shader =
+    Shader { label: "cleanup", parts: &[GLOBALS, FULLSCREEN, NARROW_RANGE, include_str!("cleanup.wgsl")] };
+pub(crate) const COMPOSE: Shader = Shader {
+    label: "compose",
+    parts: &[GLOBALS, FULLSCREEN, ENVIRONMENT, LIQUID, include_str!("compose.wgsl")],
+};
 
-/// Distances need all their bits: a normal is a difference of neighbours.
+/// Distances need full precision: a normal is a difference of neighbouring distances.
 const DISTANCE_FORMAT: TextureFormat = TextureFormat::Rg32Float;
-/// Distance where there is no liquid; `NOTHING` in the shaders.
-const NOTHING: Color = Color { r: 1e30, ..Color::TRANSPARENT };
-/// Reach of the two rounds of smoothing, in radii of the splats. The second one removes what the first leaves where its
-/// samples stand apart.
+/// Distance of pixels without liquid; equals `NO_LIQUID` in the shaders.
+const NO_LIQUID: Color = Color { r: 1e30, ..Color::TRANSPARENT };
+/// Filter radius of the two rounds of smoothing, in radii of the splats. The second round removes
+/// artefacts of the first where its samples are more than a pixel apart.
 const REACH: [f64; 2] = [1.9, 0.9];
-/// Radius of the splats, in particle radii. Spheres on a lattice close the gaps between four of them from 1.42
-/// on; larger ones have a smoother outline, of which compose.wgsl cuts off what is too much.
+/// Radius of the splats, in particle radii. From 1.42 on, spheres on a lattice leave no gaps.
+/// Larger spheres have a smoother outline; compose.wgsl removes the excess.
 const SPLAT_REACH: f32 = 1.7;
-/// Radius of the discs that the amount is spread over, in particle radii.
-const AMOUNT_REACH: f32 = 3.0;
+/// Radius of the discs over which the volume is distributed, in particle radii.
+const THICKNESS_REACH: f32 = 3.0;
 
-/// Particles to be drawn as liquid.
+/// Particles drawn as a liquid in screen space.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct DrawnLiquidParticles<'a> {
-    /// Where they are; velocities and densities are not read.
+    /// The particles; velocities and densities are not read.
     pub buffers: ParticleBuffers<'a>,
-    /// Half the particle spacing in metres. The spheres that are merged are a little larger.
+    /// Half the particle spacing in metres. The splatted spheres are slightly larger.
     pub radius: f32,
-    /// How the liquid looks.
+    /// Optical properties of the liquid.
     pub liquid: Liquid,
 }
 
-/// As many pixels as the filter looks at on each side, where its samples do not stand apart.
+/// Margin of the distance texture in pixels: the largest number of taps of the filter on each side.
 const MARGIN: u32 = 24;
 
 #[derive(Debug)]
 pub(crate) struct ScreenSpace {
     splat: RenderPipeline,
-    amount: RenderPipeline,
+    thickness: RenderPipeline,
     smooth: [RenderPipeline; 4],
-    clean: RenderPipeline,
+    cleanup: RenderPipeline,
     compose: RenderPipeline,
     particles_layout: BindGroupLayout,
     solid_layout: BindGroupLayout,
@@ -103,7 +115,7 @@ pub(crate) struct ScreenSpace {
     maps: Option<Maps>,
 }
 
-/// Textures of the picture's size and a margin.
+/// Textures of the size of the picture plus a margin.
 #[derive(Debug)]
 struct Maps {
     size: [u32; 2],
@@ -124,31 +136,35 @@ impl ScreenSpace {
         let compose_bindings = [Bind::Texture, Bind::Texture, Bind::Sampler, Bind::Texels];
         let compose_layout = bind_group_layout(device, "compose", &compose_bindings);
         let splat_layouts = [globals, &particles_layout];
-        let splat = Recipe {
+        let splat = PipelineDesc {
             depth: Some(Depth::TestAndWrite),
-            ..Recipe::new(SPLAT, &splat_layouts, DISTANCE_FORMAT)
+            ..PipelineDesc::new(SPLAT, &splat_layouts, DISTANCE_FORMAT)
         };
-        let amount_layouts = [globals, &solid_layout, &particles_layout];
-        let amount = Recipe { blend: Some(ADD), ..Recipe::new(AMOUNT, &amount_layouts, THICKNESS_FORMAT) };
+        let thickness_layouts = [globals, &solid_layout, &particles_layout];
+        let thickness = PipelineDesc {
+            blend: Some(ADD),
+            ..PipelineDesc::new(PARTICLE_THICKNESS, &thickness_layouts, THICKNESS_FORMAT)
+        };
         let filter_layouts = [globals, &distances_layout];
         let smooth = [(1.0, 0.0, 0), (0.0, 1.0, 0), (1.0, 0.0, 1), (0.0, 1.0, 1)].map(|(x, y, round)| {
-            let share = if round == 0 { 1.0 } else { 0.0 };
-            let constants = [("STEP_X", x), ("STEP_Y", y), ("REACH", REACH[round]), ("SHARE", share)];
-            let recipe = Recipe::new(SMOOTH, &filter_layouts, DISTANCE_FORMAT);
-            Recipe { constants: &constants, ..recipe }.build(device)
+            let average = if round == 0 { 1.0 } else { 0.0 };
+            let constants =
+                [("STEP_X", x), ("STEP_Y", y), ("REACH", REACH[round]), ("AVERAGE_FRACTION", average)];
+            let desc = PipelineDesc::new(SMOOTH, &filter_layouts, DISTANCE_FORMAT);
+            PipelineDesc { constants: &constants, ..desc }.build(device)
         });
         let compose_layouts = [globals, environment, &compose_layout];
-        let compose = Recipe {
+        let compose = PipelineDesc {
             samples,
             depth: Some(Depth::TestAndWrite),
             blend: Some(OVER),
-            ..Recipe::new(COMPOSE, &compose_layouts, format)
+            ..PipelineDesc::new(COMPOSE, &compose_layouts, format)
         };
         ScreenSpace {
             splat: splat.build(device),
-            amount: amount.build(device),
+            thickness: thickness.build(device),
             smooth,
-            clean: Recipe::new(CLEAN, &filter_layouts, DISTANCE_FORMAT).build(device),
+            cleanup: PipelineDesc::new(CLEANUP, &filter_layouts, DISTANCE_FORMAT).build(device),
             compose: compose.build(device),
             sampler: linear_sampler(device),
             particles_layout,
@@ -159,64 +175,59 @@ impl ScreenSpace {
         }
     }
 
-    /// Binds the particles, in as many pieces as the device's largest binding asks for.
-    pub fn bind(&self, device: &Device, buffers: &ParticleBuffers<'_>) -> Vec<(BindGroup, u32)> {
-        chunks(device, buffers.count)
-            .map(|(start, count)| {
-                let positions = [part(buffers.positions, 16, start, count)];
-                (bind_group(device, "liquid particles", &self.particles_layout, &positions), count)
-            })
-            .collect()
+    /// Binds the positions of the particles.
+    pub fn bind(&self, device: &Device, buffers: &ParticleBuffers<'_>) -> Vec<Chunk> {
+        let positions = [buffers.position_column()];
+        bind_chunks(device, "liquid particles", &self.particles_layout, buffers.count, &positions, &[])
     }
 
-    /// Sums up the liquid on every view ray. Group 0 (globals) is set.
-    pub fn record_amount(
+    /// Sums the thickness of the liquid on every view ray. Expects group 0 (globals) to be bound.
+    pub fn record_thickness(
         &self,
         device: &Device,
         pass: &mut RenderPass<'_>,
         targets: &Targets,
-        chunks: &[(BindGroup, u32)],
+        chunks: &[Chunk],
     ) {
         let solid = [BindingResource::TextureView(&targets.solid)];
         let solid = bind_group(device, "solid", &self.solid_layout, &solid);
-        pass.set_pipeline(&self.amount);
+        pass.set_pipeline(&self.thickness);
         pass.set_bind_group(1, &solid, &[]);
-        for (group, count) in chunks {
-            pass.set_bind_group(2, group, &[]);
-            pass.draw(0..6 * count, 0..1);
+        for chunk in chunks {
+            chunk.draw(pass, 2, 6);
         }
     }
 
-    /// Splats the particles and smooths their distances; the group that composing needs.
+    /// Splats the particles and smooths their distances; returns the bind group for
+    /// [`ScreenSpace::record`].
     pub fn record_distances(
         &mut self,
         device: &Device,
         recorder: &mut Recorder<'_>,
         targets: &Targets,
         globals: &BindGroup,
-        chunks: &[(BindGroup, u32)],
+        chunks: &[Chunk],
     ) -> BindGroup {
         let size = targets.size.map(|side| side + 2 * margin(device, targets.size));
         let kept = self.maps.take().filter(|maps| maps.size == size);
         let maps = kept.unwrap_or_else(|| Maps::new(device, size));
-        // Made anew each time: the thickness belongs to the picture's other textures.
+        // Not cached, because the thickness texture is owned by `targets`.
         let sources = maps.distances.each_ref().map(|view| {
             let views = [view, &targets.thickness].map(BindingResource::TextureView);
             bind_group(device, "distances", &self.distances_layout, &views)
         });
         {
-            let mut pass = recorder.cleared_with_depth("splat", &maps.distances[0], NOTHING, &maps.depth);
+            let mut pass = recorder.cleared_with_depth("splat", &maps.distances[0], NO_LIQUID, &maps.depth);
             pass.set_pipeline(&self.splat);
             pass.set_bind_group(0, globals, &[]);
-            for (group, count) in chunks {
-                pass.set_bind_group(1, group, &[]);
-                pass.draw(0..6 * count, 0..1);
+            for chunk in chunks {
+                chunk.draw(&mut pass, 1, 6);
             }
         }
-        let filters = self.smooth.iter().map(|filter| ("smooth", filter)).chain([("clean", &self.clean)]);
+        let filters = self.smooth.iter().map(|filter| ("smooth", filter)).chain([("cleanup", &self.cleanup)]);
         for (index, (label, filter)) in filters.enumerate() {
             let source = index % 2;
-            let mut pass = recorder.cleared(label, &maps.distances[1 - source], NOTHING);
+            let mut pass = recorder.cleared(label, &maps.distances[1 - source], NO_LIQUID);
             pass.set_pipeline(filter);
             pass.set_bind_group(0, globals, &[]);
             pass.set_bind_group(1, &sources[source], &[]);
@@ -233,7 +244,8 @@ impl ScreenSpace {
         group
     }
 
-    /// Lays the liquid over the picture. Groups 0 (globals) and 1 (environment) are set.
+    /// Blends the liquid over the picture. Expects groups 0 (globals) and 1 (environment) to be
+    /// bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, group: &BindGroup) {
         pass.set_pipeline(&self.compose);
         pass.set_bind_group(2, group, &[]);
@@ -241,7 +253,7 @@ impl ScreenSpace {
     }
 }
 
-/// Pixels by which the distances' picture is wider on each side than the picture.
+/// Margin of the distance texture on each side, in pixels, within the limit of the device.
 pub(crate) fn margin(device: &Device, [width, height]: [u32; 2]) -> u32 {
     let limit = device.limits().max_texture_dimension_2d;
     MARGIN.min((limit - limit.min(width.max(height))) / 2)
@@ -257,17 +269,22 @@ impl Maps {
     }
 }
 
-impl DrawnLiquidParticles<'_> {
-    /// Checks the numbers and hands them to the shaders.
+impl<'a> DrawnLiquidParticles<'a> {
+    /// A liquid of particles of a radius in metres, half the particle spacing.
+    pub fn new(buffers: ParticleBuffers<'a>, radius: f32, liquid: Liquid) -> DrawnLiquidParticles<'a> {
+        DrawnLiquidParticles { buffers, radius, liquid }
+    }
+
+    /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
         check_radius(self.radius)?;
         self.liquid.fill(globals)?;
         globals.splat_radius = SPLAT_REACH * self.radius;
-        globals.amount_radius = AMOUNT_REACH * self.radius;
-        // The weights of a disc have a mean of a third.
-        let area = std::f32::consts::PI * globals.amount_radius.powi(2) / 3.0;
-        globals.amount = (2.0 * self.radius).powi(3) / area;
+        globals.thickness_radius = THICKNESS_REACH * self.radius;
+        // The mean weight of a disc is one third.
+        let area = std::f32::consts::PI * globals.thickness_radius.powi(2) / 3.0;
+        globals.particle_thickness = (2.0 * self.radius).powi(3) / area;
         globals.set_shadow_of_particles(self.radius);
         Ok(())
     }

@@ -1,30 +1,31 @@
-// The narrow-range filter's weights, shared by its passes. Needs globals.wgsl.
+// Narrow-range filter, shared by its passes. Needs globals.wgsl.
 //
-// N. Truong and C. Yuksel, "A narrow-range filter for screen-space fluid rendering", Proceedings of the ACM on Computer
-// Graphics and Interactive Techniques 1(1), 2018. Distances grow away from the eye here.
+// N. Truong and C. Yuksel, "A narrow-range filter for screen-space fluid rendering", Proceedings of
+// the ACM on Computer Graphics and Interactive Techniques 1(1), 2018. Distances are positive away
+// from the eye.
 
-@group(1) @binding(0) var distances: texture_2d<f32>;      // distance along the view's direction, share of liquid around
-@group(1) @binding(1) var thickness: texture_2d<f32>;      // metres of liquid along the view ray, in half resolution
+@group(1) @binding(0) var distances: texture_2d<f32>;      // distance along the view direction, liquid fraction
+@group(1) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, half resolution
 
-// Where there is no liquid.
-const NOTHING = 1e30;
-// Range of the filter, and how far behind the middle a sample beyond the range is taken to be, in radii of the
-// splats. The authors' range is 10.5; less of it keeps milky rims off liquid that has other liquid not far
-// behind it.
+// Distance of pixels without liquid.
+const NO_LIQUID = 1e30;
+// Range of the filter, and the distance behind the centre that replaces samples beyond the range,
+// in radii of the splats. The authors use a range of 10.5. The smaller range avoids milky rims
+// where other liquid lies a short distance behind.
 const RANGE = 4.0;
-const PUSH = 1.0;
+const CLAMPED_OFFSET = 1.0;
 
 struct Filter {
-    middle: f32,
-    nearest: f32,           // samples nearer than this belong to liquid in front
-    farthest: f32,          // samples farther than this are the rim or liquid behind
+    centre: f32,
+    nearest: f32,           // nearer samples belong to liquid in front
+    farthest: f32,          // farther samples belong to the rim or to liquid behind
     sum: f32,
     weights: f32,
 }
 
-fn filter_begin(middle: f32) -> Filter {
+fn filter_begin(centre: f32) -> Filter {
     let range = RANGE * globals.splat_radius;
-    return Filter(middle, middle - range, middle + range, middle, 1.0);
+    return Filter(centre, centre - range, centre + range, centre, 1.0);
 }
 
 fn load(texel: vec2i) -> vec2f {
@@ -32,8 +33,8 @@ fn load(texel: vec2i) -> vec2f {
     return textureLoad(distances, clamp(texel, vec2i(0), last), 0).rg;
 }
 
-// As a sample of the filter: outside of the texture it counts as liquid in front, so that its mirror image is
-// left out too and the surface goes on as it comes.
+// A sample for the filter. A sample outside the texture counts as liquid in front: the filter then
+// also skips its mirror image, and the surface continues without a bend.
 fn sample_distance(texel: vec2i) -> f32 {
     let size = vec2i(textureDimensions(distances));
     if any(texel < vec2i(0)) || any(texel >= size) {
@@ -42,8 +43,9 @@ fn sample_distance(texel: vec2i) -> f32 {
     return textureLoad(distances, texel, 0).r;
 }
 
-// Adds two samples that lie opposite to each other; from the inside outward, because the range widens with what
-// it holds. Where one of them is in front, both are left out: with one alone the surface would tilt.
+// Adds two samples on opposite sides. Call it from the inside outwards, because the range widens
+// with the samples inside it. If one sample is in front, both are skipped: one alone would tilt the
+// surface.
 fn filter_add(state: ptr<function, Filter>, a: f32, b: f32, weight: f32) {
     let nearest = (*state).nearest;
     let farthest = (*state).farthest;
@@ -53,10 +55,10 @@ fn filter_add(state: ptr<function, Filter>, a: f32, b: f32, weight: f32) {
     }
     let range = RANGE * globals.splat_radius;
     let beyond = pair > vec2f(farthest);
-    let taken = select(pair, vec2f((*state).middle + PUSH * globals.splat_radius), beyond);
+    let clamped = select(pair, vec2f((*state).centre + CLAMPED_OFFSET * globals.splat_radius), beyond);
     // Clamped samples lie within the range and cannot widen it.
-    (*state).nearest = min(nearest, min(taken.x, taken.y) - range);
-    (*state).farthest = max(farthest, max(taken.x, taken.y) + range);
-    (*state).sum += weight * (taken.x + taken.y);
+    (*state).nearest = min(nearest, min(clamped.x, clamped.y) - range);
+    (*state).farthest = max(farthest, max(clamped.x, clamped.y) + range);
+    (*state).sum += weight * (clamped.x + clamped.y);
     (*state).weights += 2.0 * weight;
 }

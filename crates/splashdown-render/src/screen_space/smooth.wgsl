@@ -1,24 +1,21 @@
-// One direction of the narrow-range filter; the first two also work out how much of the neighbourhood is liquid.
-// Needs globals.wgsl, narrow_range.wgsl.
+// One direction of the narrow-range filter. The first two passes also compute the liquid fraction:
+// the weighted fraction of neighbouring pixels that contain liquid. Needs globals.wgsl,
+// narrow_range.wgsl, fullscreen.wgsl.
 
 override STEP_X: f32 = 1.0;
 override STEP_Y: f32 = 0.0;
-// Reach of the filter, in radii of the splats; the Gaussian's deviation is a third of it.
+// Radius of the filter, in radii of the splats; the standard deviation of the Gaussian is a third
+// of it.
 override REACH: f32 = 3.0;
-// 1 where the share of liquid is averaged along this direction, 0 where it is handed on.
-override SHARE: u32 = 1u;
+// 1: averages the liquid fraction along this direction. 0: copies it.
+override AVERAGE_FRACTION: u32 = 1u;
 
-const MOST_TAPS = 24.0;
-// Reach of the average of the share of liquid, in radii of the splats; the deviation is half of it.
-const SHARE_REACH = 1.2;
+const MAX_TAPS = 24.0;
+// Radius of the average of the liquid fraction, in radii of the splats; the standard deviation is
+// half of it.
+const FRACTION_REACH = 1.2;
 
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(corner * 4.0 - 1.0, 0.0, 1.0);
-}
-
-// Pixels of a length seen from a distance.
+// Projected length in pixels at a distance.
 fn pixels(length: f32, distance: f32) -> f32 {
     return length / (distance * globals.pixel_angle);
 }
@@ -27,11 +24,11 @@ fn offset(i: f32) -> vec2i {
     return vec2i(round(i * vec2f(STEP_X, STEP_Y)));
 }
 
-// The average of the share of liquid around a pixel, with a Gaussian that suits a distance.
-fn share_around(here: vec2i, distance: f32) -> f32 {
-    // At least the deviation that softens an outline over a pixel.
-    let reach = max(pixels(SHARE_REACH * globals.splat_radius, distance), 1.2);
-    let taps = ceil(clamp(reach, 1.0, MOST_TAPS));
+// Gaussian average of the liquid fraction around a pixel; the width follows from the distance.
+fn average_fraction(here: vec2i, distance: f32) -> f32 {
+    // The minimum smooths the outline over one pixel.
+    let reach = max(pixels(FRACTION_REACH * globals.splat_radius, distance), 1.2);
+    let taps = ceil(clamp(reach, 1.0, MAX_TAPS));
     let stride = max(reach / taps, 1.0);
     let falloff = -2.0 * stride * stride / (reach * reach);
     var sum = load(here).g;
@@ -44,18 +41,20 @@ fn share_around(here: vec2i, distance: f32) -> f32 {
     return sum / weights;
 }
 
-// The distance of the nearest liquid in this direction that is near enough to count for a pixel without any.
+// Distance of the nearest liquid along this direction within the filter radius, for a pixel without
+// liquid.
 fn neighbour(here: vec2i) -> f32 {
-    for (var i = 1.0; i <= MOST_TAPS; i += 1.0) {
+    for (var i = 1.0; i <= MAX_TAPS; i += 1.0) {
         let distance = min(load(here + offset(i)).r, load(here - offset(i)).r);
-        if distance < NOTHING {
+        if distance < NO_LIQUID {
             return distance;
         }
     }
-    return NOTHING;
+    return NO_LIQUID;
 }
 
-// Discs of volume reach farther than spheres: where there is none, no sphere is near.
+// True if the thickness is positive. The discs of the thickness are larger than the spheres, so
+// where this is false no sphere is near.
 fn liquid_is_near(here: vec2i) -> bool {
     let seen = here - vec2i(i32(globals.splat_margin));
     let last = vec2i(globals.picture_size) - 1;
@@ -66,22 +65,22 @@ fn liquid_is_near(here: vec2i) -> bool {
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = vec2i(position.xy);
     let own = load(here);
-    var share = own.g;
-    if own.r >= NOTHING {
-        if SHARE == 1u && liquid_is_near(here) {
+    var fraction = own.g;
+    if own.r >= NO_LIQUID {
+        if AVERAGE_FRACTION == 1u && liquid_is_near(here) {
             let distance = neighbour(here);
-            if distance < NOTHING {
-                share = share_around(here, distance);
+            if distance < NO_LIQUID {
+                fraction = average_fraction(here, distance);
             }
         }
-        return vec4f(NOTHING, share, 0.0, 0.0);
+        return vec4f(NO_LIQUID, fraction, 0.0, 0.0);
     }
-    if SHARE == 1u {
-        share = share_around(here, own.r);
+    if AVERAGE_FRACTION == 1u {
+        fraction = average_fraction(here, own.r);
     }
-    // Seen from near, the reach is many pixels; then samples stand apart.
+    // At close range the radius spans many pixels; samples are then more than one pixel apart.
     let reach = pixels(REACH * globals.splat_radius, own.r);
-    let taps = ceil(clamp(reach, 1.0, MOST_TAPS));
+    let taps = ceil(clamp(reach, 1.0, MAX_TAPS));
     let stride = max(reach / taps, 1.0);
     let falloff = -4.5 * stride * stride / (reach * reach);
     var state = filter_begin(own.r);
@@ -90,5 +89,5 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let weight = exp(falloff * i * i);
         filter_add(&state, sample_distance(here + away), sample_distance(here - away), weight);
     }
-    return vec4f(state.sum / state.weights, share, 0.0, 0.0);
+    return vec4f(state.sum / state.weights, fraction, 0.0, 0.0);
 }

@@ -1,19 +1,20 @@
-// The nearest sphere in each pixel: its distance along the view's direction, and a 1 for liquid. Needs
+// The nearest sphere in each pixel: its distance along the view direction, and 1 for liquid. Needs
 // globals.wgsl, sphere.wgsl.
 
-@group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
+@group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz; w is 0 for active particles
 
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the sphere's outline
-    @location(1) ray: vec3f,           // from the eye to the quad
+    @location(1) ray: vec3f,           // from the eye to a point of the quad
     @location(2) @interpolate(flat) distance: f32,  // from the eye to the centre
 }
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let corner = sphere_corner(positions[index / 6u], globals.splat_radius, index);
-    // The picture is a little larger than what is seen, so that smoothing knows what lies beyond the border.
+    // The texture extends beyond the picture by a margin, so that smoothing has data outside the
+    // border.
     let shrink = globals.picture_size / (globals.picture_size + 2.0 * globals.splat_margin);
     let position = vec4f(corner.position.xy * shrink, corner.position.zw);
     return Varying(position, corner.across, corner.ray, corner.centre.w);

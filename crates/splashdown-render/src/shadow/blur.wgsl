@@ -1,4 +1,5 @@
-// One direction of a Gaussian blur of the shadow map, so that shadows have the soft edge of a broad light.
+// One direction of a separable Gaussian blur of the shadow map, which gives soft shadows. Needs
+// fullscreen.wgsl.
 
 @group(0) @binding(0) var source: texture_2d<f32>;
 
@@ -8,11 +9,6 @@ override STEP_Y: i32 = 0;
 const REACH = 6;
 const SIGMA = 2.6;
 
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(corner * 4.0 - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,23 +1,26 @@
-//! The fluid's shadow on the floor.
+//! The shadow of the fluid on the floor.
 //!
 //! # How it works
-//! A small texture lies on the part of the floor that the box can throw a shadow on. Every vertex or particle is moved
-//! along the sun's rays to the floor, and blending sums the metres of fluid above each texel: a closed mesh adds the
-//! heights of its upper faces and subtracts those of its lower ones, a particle adds its volume over the texel's area.
-//! Two one-dimensional Gaussian blurs give the soft edge, and the floor loses light after Beer and Lambert, so a clear
-//! liquid throws a bright and coloured shadow and spheres a dark one.
+//! A small texture covers the part of the floor on which the box can cast a shadow. Every vertex or
+//! particle is projected along the rays of the sun onto the floor, and blending sums the path
+//! length in fluid above each texel: a closed mesh adds the heights of its upper faces and
+//! subtracts those of its lower ones, a particle adds its volume divided by the area of the texel.
+//! Two one-dimensional Gaussian blurs soften the edge. The floor is then darkened by absorption
+//! (Beer-Lambert), so a clear liquid casts a bright and tinted shadow, and spheres a dark one.
 //!
 //! # Why not the other way
-//! A depth map from the sun knows only "lit" or "not lit", which is wrong for water, and needs a bias. This map knows
-//! nothing of shadows on the fluid itself; those would be the depth map's gain.
+//! A shadow map with depths distinguishes only lit and unlit, which is wrong for water, and needs a
+//! bias. The map used here does not model shadows on the fluid itself, which a depth map would.
 //!
 //! # Things we might try
-//! Caustics: bend each vertex's ray at the surface and divide by the area it lands on.
+//! Caustics: refract the ray of each vertex at the surface and divide by the area it illuminates.
 
-use crate::pipeline::{ADD, Bind, Recipe, bind_group, bind_group_layout, linear_sampler};
+use crate::chunks::bind_chunks;
+use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::recorder::Recorder;
-use crate::shader::{GLOBALS, Shader};
-use crate::{DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame, bodies, particles, surface};
+use crate::shader::{FULLSCREEN, GLOBALS, Shader};
+use crate::targets::texture;
+use crate::{DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, RenderPipeline,
     TextureFormat, TextureUsages, TextureView,
@@ -31,7 +34,8 @@ pub(crate) const FROM_SURFACE: Shader =
     Shader { label: "surface shadow", parts: &[GLOBALS, include_str!("surface_shadow.wgsl")] };
 pub(crate) const FROM_PARTICLES: Shader =
     Shader { label: "particle shadow", parts: &[GLOBALS, include_str!("particle_shadow.wgsl")] };
-pub(crate) const BLUR: Shader = Shader { label: "shadow blur", parts: &[include_str!("blur.wgsl")] };
+pub(crate) const BLUR: Shader =
+    Shader { label: "shadow blur", parts: &[FULLSCREEN, include_str!("blur.wgsl")] };
 
 #[derive(Debug)]
 pub(crate) struct Shadow {
@@ -41,39 +45,43 @@ pub(crate) struct Shadow {
     particles_layout: BindGroupLayout,
     blurs: [RenderPipeline; 2],
     blur_sources: [BindGroup; 2],
-    /// The sum, and what lies between the two blurs.
+    /// The sum, and the intermediate result between the two blurs.
     maps: [TextureView; 2],
-    /// Layout and group 1 of every shader that knows the environment.
+    /// Layout and bind group of group 1, for every shader that uses the environment.
     pub environment_layout: BindGroupLayout,
     pub environment: BindGroup,
 }
 
 impl Shadow {
     pub fn new(device: &Device, globals: &BindGroupLayout) -> Shadow {
-        let maps = ["shadow", "shadow between blurs"].map(|label| map(device, label));
+        let maps = ["shadow", "shadow between blurs"].map(|label| {
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+            texture(device, label, [SIDE; 2], FORMAT, 1, usage)
+        });
         let blur_layout = bind_group_layout(device, "shadow blur", &[Bind::Texture]);
         let blur_sources = [0, 1].map(|source: usize| {
             bind_group(device, "shadow blur", &blur_layout, &[BindingResource::TextureView(&maps[source])])
         });
         let blurs = [(1.0, 0.0), (0.0, 1.0)].map(|(x, y)| {
             let constants = [("STEP_X", x), ("STEP_Y", y)];
-            Recipe { constants: &constants, ..Recipe::new(BLUR, &[&blur_layout], FORMAT) }.build(device)
+            PipelineDesc { constants: &constants, ..PipelineDesc::new(BLUR, &[&blur_layout], FORMAT) }
+                .build(device)
         });
         let surface_layouts = [globals];
-        let from_surface = Recipe {
+        let from_surface = PipelineDesc {
             blend: Some(ADD),
             vertex_buffers: 1,
-            ..Recipe::new(FROM_SURFACE, &surface_layouts, FORMAT)
+            ..PipelineDesc::new(FROM_SURFACE, &surface_layouts, FORMAT)
         };
-        // A hundred metres of water let nothing through.
+        // A body absorbs like a hundred times as much water, which makes it opaque.
         let solid = [("WEIGHT", 100.0)];
-        let from_bodies = Recipe { constants: &solid, ..from_surface };
+        let from_bodies = PipelineDesc { constants: &solid, ..from_surface };
         let particles_layout = bind_group_layout(device, "particle shadow", &[Bind::Storage]);
         let particle_layouts = [globals, &particles_layout];
-        let from_particles = Recipe {
+        let from_particles = PipelineDesc {
             blend: Some(ADD),
             topology: PrimitiveTopology::PointList,
-            ..Recipe::new(FROM_PARTICLES, &particle_layouts, FORMAT)
+            ..PipelineDesc::new(FROM_PARTICLES, &particle_layouts, FORMAT)
         };
         let environment_layout = bind_group_layout(device, "environment", &[Bind::Texture, Bind::Sampler]);
         let sampler = linear_sampler(device);
@@ -91,7 +99,8 @@ impl Shadow {
         }
     }
 
-    /// Fills the map; from the surface where there is one, because its shadow holds that of its particles.
+    /// Draws the map. If there is a surface, particles are skipped: they lie within the shadow of
+    /// the surface.
     pub fn record(
         &self,
         device: &Device,
@@ -109,21 +118,20 @@ impl Shadow {
             pass.set_bind_group(0, globals, &[]);
             if let Some(DrawnSurface { buffers, .. }) = &frame.surface {
                 pass.set_pipeline(&self.from_surface);
-                surface::draw(&mut pass, buffers);
+                buffers.draw(&mut pass);
             } else if let Some(buffers) = particles {
                 pass.set_pipeline(&self.from_particles);
-                for (start, count) in particles::chunks(device, buffers.count) {
-                    let positions = particles::part(buffers.positions, 16, start, count);
-                    let group = bind_group(device, "particle shadow", &self.particles_layout, &[positions]);
-                    pass.set_bind_group(1, &group, &[]);
-                    pass.draw(0..count, 0..1);
+                let positions = [buffers.position_column()];
+                let layout = &self.particles_layout;
+                for chunk in bind_chunks(device, "particle shadow", layout, buffers.count, &positions, &[]) {
+                    chunk.draw(&mut pass, 1, 1);
                 }
             } else if frame.bodies.is_none() {
                 return;
             }
             if let Some(buffers) = &frame.bodies {
                 pass.set_pipeline(&self.from_bodies);
-                bodies::draw(&mut pass, buffers);
+                buffers.draw(&mut pass);
             }
         }
         for (blur, source) in self.blurs.iter().zip([0, 1]) {
@@ -133,18 +141,4 @@ impl Shadow {
             pass.draw(0..3, 0..1);
         }
     }
-}
-
-fn map(device: &Device, label: &str) -> TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: FORMAT,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -1,4 +1,5 @@
-// Metres of fluid between the sun and each point of the floor, one point per particle. Needs globals.wgsl.
+// Path length in fluid between the sun and each point of the floor, one point primitive per
+// particle. Needs globals.wgsl.
 
 @group(1) @binding(0) var<storage, read> positions: array<vec4f>;
 
@@ -8,7 +9,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let p = particle.xyz;
     let on_floor = p.xz - globals.sun.xz * ((p.y - globals.floor_height) / globals.sun.y);
     let uv = (on_floor - globals.shadow_min) / globals.shadow_size;
-    // Written so that NaN falls outside.
+    // The negated condition is also true for NaN.
     if !(all(uv > vec2f(0.0)) && all(uv < vec2f(1.0)) && particle.w == 0.0) {
         return vec4f(2.0, 2.0, 2.0, 1.0);
     }

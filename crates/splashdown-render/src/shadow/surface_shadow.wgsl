@@ -1,6 +1,7 @@
-// Metres of liquid between the sun and each point of the floor, from a closed mesh. Needs globals.wgsl.
+// Path length in liquid between the sun and each point of the floor, from a closed mesh. Needs
+// globals.wgsl.
 
-// Metres of liquid that a metre counts for: solids are darker.
+// Factor on the path length. It is larger for bodies, which are opaque.
 override WEIGHT: f32 = 1.0;
 
 struct Varying {
@@ -21,6 +22,6 @@ fn vertex_main(@location(0) vertex: vec4f) -> Varying {
 
 @fragment
 fn fragment_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    // Seen from the sun, fronts are the upper ends of each stretch of liquid and backs the lower ones.
+    // As seen from the sun, liquid begins at front faces and ends at back faces.
     return vec4f(WEIGHT * select(-in.height, in.height, front), 0.0, 0.0, 0.0);
 }

@@ -1,5 +1,5 @@
-// The world around the fluid as a function of a ray: sky, sun and floor. Background, reflections and the light of the
-// particles all ask here, so that they agree. Needs globals.wgsl.
+// Procedural environment as a function of a ray: sky, sun and floor. Background and reflections use
+// the same functions and therefore agree. Needs globals.wgsl.
 
 @group(1) @binding(0) var shadow_map: texture_2d<f32>;
 @group(1) @binding(1) var shadow_sampler: sampler;
@@ -29,7 +29,7 @@ fn clouds(direction: vec3f) -> f32 {
     return smoothstep(0.48, 0.80, density) * smoothstep(0.04, 0.30, direction.y);
 }
 
-// Sky in a unit direction; below the horizon the colour of the horizon.
+// Colour of the sky in a unit direction; below the horizon, the colour of the horizon.
 fn sky(direction: vec3f) -> vec3f {
     let height = max(direction.y, 0.0);
     var colour = mix(HORIZON, vec3f(0.25, 0.47, 0.76), smoothstep(0.0, 0.36, height));
@@ -41,7 +41,8 @@ fn sky(direction: vec3f) -> vec3f {
     return colour + SUN_LIGHT * (0.25 * pow(glow, 24.0) + 1.5 * pow(glow, 600.0));
 }
 
-// A checkerboard averaged over a square of the given width (in tiles), so that it never flickers; 0.5 far away.
+// Checkerboard averaged over a square of the given width (in tiles), which prevents aliasing; 0.5
+// far away.
 fn checker(p: vec2f, width: f32) -> f32 {
     let w = vec2f(max(width, 1e-4));
     let a = abs(fract((p - 0.5 * w) * 0.5) - 0.5);
@@ -50,7 +51,7 @@ fn checker(p: vec2f, width: f32) -> f32 {
     return 0.5 - 0.5 * wave.x * wave.y;
 }
 
-// Share of the sun's light that reaches a point of the floor through the fluid.
+// Fraction of the sunlight that reaches a point of the floor through the fluid.
 fn sunlight_on_floor(p: vec2f) -> vec3f {
     let uv = (p - globals.shadow_min) / globals.shadow_size;
     let path = textureSampleLevel(shadow_map, shadow_sampler, uv, 0.0).r;
@@ -58,7 +59,8 @@ fn sunlight_on_floor(p: vec2f) -> vec3f {
     return exp(-globals.shadow_absorption * max(path, 0.0) * inside);
 }
 
-// Colour of the floor where a ray of unit direction meets it after `distance`. `spread` is the ray's angular width.
+// Colour of the floor where a ray of unit direction hits it after `distance`. `spread`: angular
+// width of the ray.
 fn floor_colour(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> vec3f {
     let p = (origin + direction * distance).xz;
     let width = distance * spread / (max(-direction.y, 0.02) * globals.tile_size);
@@ -70,13 +72,13 @@ fn floor_colour(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> 
     return mix(albedo * light, HORIZON, fog);
 }
 
-// Distance along a ray to the floor, or -1 if the ray does not meet it.
+// Distance along a ray to the floor, or -1 if the ray does not hit it.
 fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
     let distance = (globals.floor_height - origin.y) / direction.y;
     return select(-1.0, distance, direction.y < -1e-5 && distance > 0.0);
 }
 
-// What a ray of unit direction sees if there is no fluid in its way.
+// Colour of the environment in the unit direction of a ray, without the fluid.
 fn environment(origin: vec3f, direction: vec3f, spread: f32) -> vec3f {
     let distance = floor_distance(origin, direction);
     if distance > 0.0 {

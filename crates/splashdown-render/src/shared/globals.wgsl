@@ -1,10 +1,11 @@
-// What every shader of a frame reads. The Rust twin is `Globals` in globals.rs; a test compares the two layouts.
+// Uniforms of every shader of a frame. Mirrors `Globals` in globals.rs; a test compares the two
+// layouts.
 
 struct Edge {
     start: vec3f,
     opacity: f32,
     end: vec3f,
-    dashes: f32,            // dashes along the edge; 0 draws a full line
+    dashes: f32,            // number of dashes along the edge; 0: a solid line
 }
 
 struct Globals {
@@ -12,11 +13,11 @@ struct Globals {
     eye: vec3f,
     near: f32,
     right: vec3f,           // half the picture's width at unit distance
-    pixel_angle: f32,       // radians seen by one pixel in the middle of the picture
+    pixel_angle: f32,       // angle of one pixel in the middle of the picture, radians
     up: vec3f,              // half the picture's height at unit distance
-    encode_srgb: u32,       // 1 where the target does not encode by itself
-    forward: vec3f,         // unit length
-    liquid_film: f32,       // share of the liquid's own colour even where it is thin
+    encode_srgb: u32,       // 1: the target format does not encode sRGB, so the shader does
+    forward: vec3f,         // unit vector
+    liquid_film: f32,       // minimum fraction of the liquid's own colour
     sun: vec3f,             // unit vector towards the sun
     floor_height: f32,
     box_min: vec3f,
@@ -29,7 +30,7 @@ struct Globals {
     line_width: f32,        // pixels
     particle_radius: f32,
     shadow_absorption: vec3f, // per metre of fluid along the sun's ray
-    shadow_particle_path: f32, // metres of fluid that one particle adds to one texel of the shadow map
+    shadow_particle_path: f32, // path length that one particle adds to one texel of the shadow map, m
     quantity: u32,          // 0 speed, 1 density, 2 pressure
     range_low: f32,
     range_scale: f32,       // 1 / (high - low)
@@ -38,18 +39,18 @@ struct Globals {
     liquid_scattering: f32, // per metre
     liquid_colour: vec3f,
     liquid_roughness: f32,
-    splat_radius: f32,      // of the spheres that the liquid is merged from
-    amount_radius: f32,     // of the disc that a particle's volume is spread over
-    amount: f32,            // metres of liquid in the middle of such a disc
+    splat_radius: f32,      // radius of the spheres of the screen-space surface
+    thickness_radius: f32,  // radius of the disc over which a particle's volume is distributed
+    particle_thickness: f32, // thickness of the liquid in the middle of such a disc, m
     slice_quantity: u32,    // as `quantity`
-    slice_axis: u32,        // the plane is perpendicular to: 0 x, 1 y, 2 z
+    slice_axis: u32,        // normal of the plane: 0 x, 1 y, 2 z
     slice_position: f32,    // along that axis
     slice_support_radius: f32,
-    slice_full: f32,        // sum of the kernel's weights inside the fluid, where its middle is 1
+    slice_full: f32,        // sum of the kernel weights inside the fluid, for a kernel with W(0) = 1
     slice_low: f32,
     slice_scale: f32,       // 1 / (high - low)
-    splat_margin: f32,      // pixels by which the distances' picture is wider on each side
-    foam_radius: f32,       // half the spacing of the particles that foam
+    splat_margin: f32,      // extra pixels on each side of the distance texture
+    foam_radius: f32,       // radius of the fluid's particles
     edges: array<Edge, 12>,
 }
 
@@ -62,7 +63,8 @@ fn view_ray(pixel: vec2f) -> vec3f {
     return globals.forward + x * globals.right + y * globals.up;
 }
 
-// Depth buffer value at a distance along `forward`: reversed, 1 at the near plane and 0 at infinity.
+// Depth buffer value at a distance along `forward`. Reversed depth: 1 at the near plane, 0 at
+// infinity.
 fn depth_of(distance: f32) -> f32 {
     return globals.near / distance;
 }
@@ -77,7 +79,7 @@ fn linear_from_srgb(c: vec3f) -> vec3f {
     return select(high, c / 12.92, c <= vec3f(0.04045));
 }
 
-// Linear colour to what the target stores.
+// Converts a linear colour to the encoding of the target.
 fn encode(linear: vec3f) -> vec3f {
     if globals.encode_srgb == 1u {
         return srgb_from_linear(linear);
@@ -85,7 +87,7 @@ fn encode(linear: vec3f) -> vec3f {
     return linear;
 }
 
-// What the target stores back to linear colour.
+// Converts a colour from the encoding of the target to linear.
 fn decode(stored: vec3f) -> vec3f {
     if globals.encode_srgb == 1u {
         return linear_from_srgb(stored);
@@ -93,8 +95,9 @@ fn decode(stored: vec3f) -> vec3f {
     return stored;
 }
 
-// Bends everything above 0.75 softly below 1, so that highlights keep their shape; leaves the rest as it is.
-fn soften(linear: vec3f) -> vec3f {
+// Tone mapping of highlights: compresses values above 0.75 smoothly below 1, leaves all others
+// unchanged.
+fn compress_highlights(linear: vec3f) -> vec3f {
     let over = max(linear - 0.75, vec3f(0.0));
     return min(linear, vec3f(0.75)) + 0.25 * (1.0 - exp(-over / 0.25));
 }

@@ -1,14 +1,14 @@
-// Sums of W and W q over the particles around a plane, by blending: each particle is the disc in which the
-// plane cuts its kernel. Needs globals.wgsl, quantity.wgsl.
+// Sums of W and W q over the particles near a plane, by blending. Each particle is drawn as the
+// disc in which the plane intersects the support of its kernel. Needs globals.wgsl, quantity.wgsl.
 
-@group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz, and w: 0 in play
+@group(1) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz; w is 0 for active particles
 @group(1) @binding(1) var<storage, read> velocities: array<vec4f>;  // xyz, w ignored
 @group(1) @binding(2) var<storage, read> densities: array<vec2f>;   // density, pressure
 
 struct Varying {
     @builtin(position) position: vec4f,
-    @location(0) away: vec2f,          // from the particle within the plane, in support radii
-    @location(1) @interpolate(flat) height: f32,    // of the particle over the plane, in support radii
+    @location(0) away: vec2f,          // offset from the particle within the plane, in support radii
+    @location(1) @interpolate(flat) height: f32,    // of the particle above the plane, in support radii
     @location(2) @interpolate(flat) value: f32,     // 0 and 1 at the ends of the colour map
 }
 
@@ -19,29 +19,30 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let corner = (0xDA4u >> (2u * (index % 6u))) & 3u;
     let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
     let axis = globals.slice_axis;
-    var place = positions[particle];
+    var position = positions[particle];
     var out: Varying;
-    out.height = (place[axis] - globals.slice_position) / globals.slice_support_radius;
+    out.height = (position[axis] - globals.slice_position) / globals.slice_support_radius;
     // Also false for NaN.
-    if !(abs(out.height) < 1.0 && place.w == 0.0) {
+    if !(abs(out.height) < 1.0 && position.w == 0.0) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }
     out.away = side * sqrt(1.0 - out.height * out.height);
     let reach = out.away * globals.slice_support_radius;
-    place[axis] = globals.slice_position;
-    place[(axis + 1u) % 3u] += reach.x;
-    place[(axis + 2u) % 3u] += reach.y;
-    out.position = globals.clip_from_world * vec4f(place.xyz, 1.0);
+    position[axis] = globals.slice_position;
+    position[(axis + 1u) % 3u] += reach.x;
+    position[(axis + 2u) % 3u] += reach.y;
+    out.position = globals.clip_from_world * vec4f(position.xyz, 1.0);
     let quantity = quantity_of(globals.slice_quantity, velocities[particle], densities[particle]);
-    // Far beyond the colours, so that means stay right near their ends, and within what 16-bit floats resolve.
+    // Limits the value to what 16-bit floats resolve. The limit is far outside the colour map, so
+    // that averages near its ends remain correct.
     out.value = clamp((quantity - globals.slice_low) * globals.slice_scale, -8.0, 8.0);
     return out;
 }
 
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {
-    // Wendland's C2 kernel, 1 in the middle.
+    // Wendland C2 kernel, scaled to W(0) = 1.
     let q = min(sqrt(dot(in.away, in.away) + in.height * in.height), 1.0);
     let rest = 1.0 - q;
     let weight = rest * rest * rest * rest * (1.0 + 4.0 * q);

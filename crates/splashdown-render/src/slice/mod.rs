@@ -1,28 +1,28 @@
 //! A plane through the fluid, coloured by density, speed or pressure.
 //!
 //! # How it works
-//! Every particle nearer to the plane than the support radius is drawn as the disc in which the plane cuts its
-//! kernel; blending adds up the kernel's weights and the weighted quantity, in the picture's own pixels. Their
-//! quotient is the quantity's mean (Shepard 1968), which is a colour of the map. The weights alone, against
-//! what they are inside the fluid, say where the fluid ends: there the plane is left out. The plane has depth,
-//! so solids and particles cut it.
+//! Every particle within the support radius of the plane is drawn as the disc in which the plane
+//! intersects the support of its kernel. Blending sums the kernel weights and the weighted quantity
+//! at the resolution of the picture; their quotient is the weighted average of the quantity
+//! (Shepard 1968), which is looked up in the colour map. The sum of the weights, relative to its
+//! value inside the fluid, marks the boundary of the fluid: the plane is transparent outside. The
+//! plane has depth, so bodies and particles intersect it correctly.
 //!
-//! It costs next to nothing beside the background: a fifth of drawing all particles as spheres (see
-//! `examples/ways.rs`).
+//! It costs a fifth of drawing all particles as spheres (see `examples/modes.rs`).
 //!
 //! # Why not the other way
-//! The sum of m W alone would be the density once more, with dips along walls and surface that are none of the
-//! fluid's; the quotient shows what the solver has. A texture fixed to the plane would be blurred from near and
-//! wasteful from far.
+//! The sum of m W alone is a density, but with artificial dips along walls and free surfaces; the
+//! quotient shows the values of the solver. A texture fixed to the plane would be blurred at close
+//! range and wasteful at a distance.
 //!
 //! # Things we might try
-//! Arrows or streaks for velocity; planes of any direction.
+//! Arrows or streaks for velocity; planes of arbitrary orientation.
 
+use crate::chunks::bind_chunks;
 use crate::colour_map::ColourTextures;
 use crate::frame::check_radius;
 use crate::globals::Globals;
-use crate::particles::{chunks, part};
-use crate::pipeline::{ADD, Bind, Depth, OVER, Recipe, bind_group, bind_group_layout};
+use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::shader::{GLOBALS, QUANTITY, Shader};
 use crate::targets::{Targets, texture};
@@ -38,31 +38,35 @@ pub(crate) const SHADER: Shader = Shader { label: "slice", parts: &[GLOBALS, inc
 
 const SUMS_FORMAT: TextureFormat = TextureFormat::Rg16Float;
 
-/// Direction that a plane is perpendicular to.
+/// Normal of an axis-aligned plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axis {
-    /// The plane holds y and z.
+    /// The plane is parallel to y and z.
     X,
-    /// The plane is level.
+    /// The plane is horizontal.
     Y,
-    /// The plane holds x and y.
+    /// The plane is parallel to x and y.
     Z,
 }
 
-/// A plane through the fluid and how to draw it.
+/// A plane through the fluid, coloured by a quantity.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct DrawnSlice<'a> {
-    /// Where the particles are, and what they carry.
+    /// The particles.
     pub buffers: ParticleBuffers<'a>,
-    /// Direction that the plane is perpendicular to.
+    /// Normal of the plane.
     pub axis: Axis,
-    /// Where the plane is along the axis, metres.
+    /// Position of the plane along the axis, metres.
     pub position: f32,
-    /// Where a particle's weight becomes zero, metres: usually two particle spacings.
+    /// Distance in metres at which the weight of a particle becomes zero: usually two particle
+    /// spacings.
     pub support_radius: f32,
-    /// Half the particle spacing in metres; says how many particles make up full fluid.
+    /// Half the particle spacing in metres, which determines the sum of the weights inside the
+    /// fluid.
     pub radius: f32,
-    /// The colours. The colour bar is that of the particles if those are drawn with one too.
+    /// The colours. If the frame also has particles with a colour bar, the picture shows that
+    /// colour bar.
     pub colouring: Colouring,
 }
 
@@ -87,19 +91,20 @@ impl Slice {
         let bindings = [Bind::Storage, Bind::Storage, Bind::Storage];
         let particles_layout = bind_group_layout(device, "slice particles", &bindings);
         let gather_layouts = [globals, &particles_layout];
-        let gather = Recipe { blend: Some(ADD), ..Recipe::new(GATHER, &gather_layouts, SUMS_FORMAT) };
+        let gather =
+            PipelineDesc { blend: Some(ADD), ..PipelineDesc::new(GATHER, &gather_layouts, SUMS_FORMAT) };
         let layout = bind_group_layout(device, "slice", &[Bind::Texels, Bind::Texels]);
         let layouts = [globals, environment, &layout];
-        let recipe = Recipe {
+        let desc = PipelineDesc {
             samples,
             depth: Some(Depth::TestAndWrite),
             blend: Some(OVER),
             topology: PrimitiveTopology::TriangleStrip,
-            ..Recipe::new(SHADER, &layouts, format)
+            ..PipelineDesc::new(SHADER, &layouts, format)
         };
         Slice {
             gather: gather.build(device),
-            pipeline: recipe.build(device),
+            pipeline: desc.build(device),
             particles_layout,
             layout,
             colours,
@@ -107,7 +112,8 @@ impl Slice {
         }
     }
 
-    /// Sums up the particles around the plane; the group that drawing it needs.
+    /// Records the sums over the particles near the plane; returns the bind group for
+    /// [`Slice::record`].
     pub fn gather(
         &mut self,
         device: &Device,
@@ -125,16 +131,11 @@ impl Slice {
             let mut pass = recorder.cleared("slice gather", sums, Color::TRANSPARENT);
             pass.set_pipeline(&self.gather);
             pass.set_bind_group(0, globals, &[]);
-            let ParticleBuffers { positions, velocities, densities, count } = drawn.buffers;
-            for (start, count) in chunks(device, count) {
-                let resources = [
-                    part(positions, 16, start, count),
-                    part(velocities, 16, start, count),
-                    part(densities, 8, start, count),
-                ];
-                let group = bind_group(device, "slice particles", &self.particles_layout, &resources);
-                pass.set_bind_group(1, &group, &[]);
-                pass.draw(0..6 * count, 0..1);
+            let ParticleBuffers { count, .. } = drawn.buffers;
+            let columns = drawn.buffers.columns();
+            for chunk in bind_chunks(device, "slice particles", &self.particles_layout, count, &columns, &[])
+            {
+                chunk.draw(&mut pass, 1, 6);
             }
         }
         let colours = self.colours.of(drawn.colouring.map);
@@ -142,7 +143,7 @@ impl Slice {
         bind_group(device, "slice", &self.layout, &resources)
     }
 
-    /// Groups 0 (globals) and 1 (environment) are set.
+    /// Draws the plane. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, group: &BindGroup) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(2, group, &[]);
@@ -150,8 +151,20 @@ impl Slice {
     }
 }
 
-impl DrawnSlice<'_> {
-    /// Checks the numbers and hands them to the shaders.
+impl<'a> DrawnSlice<'a> {
+    /// A plane perpendicular to `axis` at `position` (metres), through particles of a radius in
+    /// metres (half the particle spacing). The support radius is two particle spacings.
+    pub fn new(
+        buffers: ParticleBuffers<'a>,
+        axis: Axis,
+        position: f32,
+        radius: f32,
+        colouring: Colouring,
+    ) -> DrawnSlice<'a> {
+        DrawnSlice { buffers, axis, position, support_radius: 4.0 * radius, radius, colouring }
+    }
+
+    /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
         check_radius(self.radius)?;
@@ -159,7 +172,7 @@ impl DrawnSlice<'_> {
             return Err(RenderError::Value {
                 what: "the slice's support radius",
                 given: format!("{} m", self.support_radius),
-                allowed: "a finite number of at least a particle spacing, twice the radius",
+                allowed: "a finite number of at least one particle spacing (twice the radius)",
             });
         }
         if !self.position.is_finite() {
@@ -180,7 +193,8 @@ impl DrawnSlice<'_> {
         globals.slice_quantity = self.colouring.quantity.index();
         globals.slice_low = low;
         globals.slice_scale = 1.0 / (high - low);
-        // Wendland's C2 kernel is 21 / (2 pi H^3) in its middle and has a volume of 1; here it is 1 in its middle.
+        // The Wendland C2 kernel has W(0) = 21 / (2 pi H^3) and an integral of 1; the shader uses
+        // W(0) = 1.
         let volume = std::f32::consts::TAU * self.support_radius.powi(3) / 21.0;
         globals.slice_full = volume / (2.0 * self.radius).powi(3);
         Ok(())

@@ -1,48 +1,101 @@
-//! The liquid's surface.
+//! The surface of the liquid from a mesh.
 //!
 //! # How it works
-//! Three things meet in a pixel of the surface. *Mirror*: the reflected ray asks the same procedural world as the
-//! background. *Passage*: the picture without the liquid was resolved to a texture; the refracted ray runs through as
-//! much liquid as there is on the view ray, and the texture is read where it comes out. Light is lost on the way after
-//! Beer and Lambert, and the liquid's own colour comes in with depth. *Fresnel*: the exact formula for a dielectric,
-//! unpolarised, says how much of each. A rough glint of the sun (GGX, Walter et al. 2007) is added.
+//! The colour of a pixel combines three parts.
 //!
-//! The liquid on the view ray is summed beforehand in half the resolution: back faces add their distance from
-//! the eye, front faces subtract it, in any order, by blending. In a closed mesh a constant cancels, so the
-//! distance of the box's middle is taken off first, and 16-bit floats are exact to about a millimetre over a
-//! metre.
+//! * *Reflection*: the reflected ray samples the same procedural environment as the background.
+//! * *Refraction*: the picture without the liquid was resolved to a texture. The refracted ray runs
+//!   through as much liquid as there is on the view ray, and the texture is sampled where the ray
+//!   leaves the liquid. Light is absorbed along the path (Beer-Lambert), and the liquid's own
+//!   colour increases with depth.
+//! * *Fresnel*: the exact equations for a dielectric and unpolarised light weight the two. A rough
+//!   highlight of the sun (GGX, Walter et al. 2007) is added.
 //!
-//! *Lines*: the edges of the triangles, for those who want to see the mesh. WebGPU fills triangles and nothing
-//! else, so the vertex shader pulls each corner by its index and hands on which corner it is; the weights of
-//! the corners, over their slope on the screen, are the pixels to the three edges. Small triangles get fainter
-//! lines, or a fine mesh would be black.
+//! The length of the view ray inside the liquid is summed beforehand at half resolution: by
+//! blending, back faces add their distance from the eye and front faces subtract it, in any order.
+//! In a closed mesh a constant cancels, so the distance of the middle of the box is subtracted
+//! first; 16-bit floats are then precise to about a millimetre per metre.
 //!
-//! Software Vulkan (lavapipe, Mesa 22.3.6) on two cores draws 298,000 triangles with background, shadow and
-//! four samples at 1280 x 720 in 0.26 s, the empty box in 0.03 s.
+//! *Wireframe*: WebGPU only fills triangles. The vertex shader loads each corner by its index and
+//! outputs barycentric coordinates; these, divided by their gradient on the screen, are the
+//! distances to the three edges in pixels. The lines of small triangles are fainter; otherwise a
+//! fine mesh would be black.
+//!
+//! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples, background
+//! and shadow: 298,000 triangles in 0.26 s, the empty box in 0.03 s.
 //!
 //! # Why not the other way
-//! Ray tracing the mesh would be right for drops in front of drops, and too slow without a GPU. Depth peeling needs a
-//! pass per layer. Only the nearest layer is lit; those behind it count in the sum.
+//! Ray tracing the mesh would be correct for drops in front of drops, but is too slow without a
+//! GPU. Depth peeling needs a pass per layer. Here only the nearest layer is shaded; the layers
+//! behind it contribute to the sum.
 //!
 //! # Things we might try
-//! Foam from the particles' speed; total reflection on the inner side; a second bend where the ray leaves.
+//! Foam from the speed of the particles; total internal reflection; a second refraction where the
+//! ray leaves the liquid.
 
-use crate::pipeline::{ADD, Bind, Depth, OVER, Recipe, bind_group, bind_group_layout, linear_sampler};
-use crate::shader::{ENVIRONMENT, GLOBALS, LIQUID, Shader};
+use crate::globals::Globals;
+use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
+use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIQUID, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets};
-use crate::{Draw, DrawnSurface, SurfaceBuffers, SurfaceStyle};
+use crate::{Draw, Liquid, RenderError, SurfaceBuffers};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Device, Face, IndexFormat, RenderPass, RenderPipeline,
-    Sampler, TextureFormat,
+    BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPass, RenderPipeline, Sampler,
+    TextureFormat,
 };
 
 pub(crate) const SHADER: Shader =
     Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, LIQUID, include_str!("surface.wgsl")] };
 pub(crate) const THICKNESS: Shader =
-    Shader { label: "thickness", parts: &[GLOBALS, include_str!("thickness.wgsl")] };
-
+    Shader { label: "thickness", parts: &[GLOBALS, EYE_DISTANCE, include_str!("thickness.wgsl")] };
 pub(crate) const LINES: Shader =
     Shader { label: "lines", parts: &[GLOBALS, ENVIRONMENT, include_str!("lines.wgsl")] };
+
+/// The surface of a liquid, drawn from a mesh.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct DrawnSurface<'a> {
+    /// The mesh.
+    pub buffers: SurfaceBuffers<'a>,
+    /// Optical properties of the liquid.
+    pub liquid: Liquid,
+    /// Whether the liquid, the wireframe or both are drawn.
+    pub style: SurfaceStyle,
+}
+
+/// What is drawn of a surface.
+///
+/// The wireframe needs vertex and index buffers with [`wgpu::BufferUsages::STORAGE`], and draw
+/// arguments with a base vertex of 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SurfaceStyle {
+    /// The liquid.
+    #[default]
+    Liquid,
+    /// The liquid and its wireframe.
+    LiquidWithLines,
+    /// The wireframe alone; edges of back faces are fainter.
+    Lines,
+}
+
+impl<'a> DrawnSurface<'a> {
+    /// A liquid without wireframe.
+    pub fn new(buffers: SurfaceBuffers<'a>, liquid: Liquid) -> DrawnSurface<'a> {
+        DrawnSurface { buffers, liquid, style: SurfaceStyle::Liquid }
+    }
+
+    /// The same in another style.
+    #[must_use]
+    pub fn with_style(self, style: SurfaceStyle) -> DrawnSurface<'a> {
+        DrawnSurface { style, ..self }
+    }
+
+    /// Checks the values and writes the uniforms.
+    pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
+        self.buffers.check()?;
+        self.liquid.fill(globals)
+    }
+}
 
 #[derive(Debug)]
 pub(crate) struct Surface {
@@ -65,38 +118,38 @@ impl Surface {
     ) -> Surface {
         let layout = bind_group_layout(device, "surface", &[Bind::Texture, Bind::Texture, Bind::Sampler]);
         let layouts = [globals, environment, &layout];
-        let recipe = Recipe {
+        let desc = PipelineDesc {
             samples,
             depth: Some(Depth::TestAndWrite),
             cull: Some(Face::Back),
             vertex_buffers: 2,
-            ..Recipe::new(SHADER, &layouts, format)
+            ..PipelineDesc::new(SHADER, &layouts, format)
         };
         let solid_layout = bind_group_layout(device, "solid", &[Bind::Texture]);
         let thickness_layouts = [globals, &solid_layout];
-        let thickness = Recipe {
+        let thickness = PipelineDesc {
             blend: Some(ADD),
             vertex_buffers: 1,
-            ..Recipe::new(THICKNESS, &thickness_layouts, THICKNESS_FORMAT)
+            ..PipelineDesc::new(THICKNESS, &thickness_layouts, THICKNESS_FORMAT)
         };
         let lines_layout = bind_group_layout(device, "lines", &[Bind::Storage, Bind::Storage]);
         let lines_layouts = [globals, environment, &lines_layout];
         let lines = |over: bool| {
             let constants = [("OVER_SURFACE", if over { 1.0 } else { 0.0 })];
-            let recipe = Recipe {
+            let desc = PipelineDesc {
                 samples,
                 depth: Some(Depth::Test),
                 blend: Some(OVER),
                 cull: over.then_some(Face::Back),
                 constants: &constants,
-                ..Recipe::new(LINES, &lines_layouts, format)
+                ..PipelineDesc::new(LINES, &lines_layouts, format)
             };
-            recipe.build(device)
+            desc.build(device)
         };
         Surface {
             lines_over: lines(true),
             lines_alone: lines(false),
-            pipeline: recipe.build(device),
+            pipeline: desc.build(device),
             thickness: thickness.build(device),
             sampler: linear_sampler(device),
             lines_layout,
@@ -114,7 +167,7 @@ impl Surface {
         bind_group(device, "surface", &self.layout, &resources)
     }
 
-    /// Group 0 (globals) is set.
+    /// Sums the thickness of the liquid on every view ray. Expects group 0 (globals) to be bound.
     pub fn record_thickness(
         &self,
         device: &Device,
@@ -126,18 +179,18 @@ impl Surface {
         let group = bind_group(device, "solid", &self.solid_layout, &solid);
         pass.set_pipeline(&self.thickness);
         pass.set_bind_group(1, &group, &[]);
-        draw(pass, buffers);
+        buffers.draw(pass);
     }
 
-    /// Groups 0 (globals) and 1 (environment) are set.
+    /// Draws the liquid. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, group: &BindGroup, buffers: &SurfaceBuffers<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(2, group, &[]);
         pass.set_vertex_buffer(1, buffers.normals.slice(..));
-        draw(pass, buffers);
+        buffers.draw(pass);
     }
 
-    /// Draws the triangles' edges. Groups 0 (globals) and 1 (environment) are set.
+    /// Draws the wireframe. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record_lines(&self, device: &Device, pass: &mut RenderPass<'_>, drawn: &DrawnSurface<'_>) {
         let pipeline = match drawn.style {
             SurfaceStyle::Liquid => return,
@@ -151,19 +204,10 @@ impl Surface {
         pass.set_bind_group(2, &group, &[]);
         match drawn.buffers.draw {
             Draw::Direct { index_count } => pass.draw(0..index_count, 0..1),
-            // Arguments of an indexed draw read as those of a plain one: the indices count vertices, one
-            // instance, from the first index on, and the base vertex, 0, is the first instance.
+            // The arguments of an indexed draw are read as those of a non-indexed one: the index
+            // count becomes the vertex count, the first index the first vertex, and the base vertex
+            // (0) the first instance.
             Draw::Indirect(arguments, offset) => pass.draw_indirect(arguments, offset),
         }
-    }
-}
-
-/// Draws the mesh with its vertices in slot 0.
-pub(crate) fn draw(pass: &mut RenderPass<'_>, buffers: &SurfaceBuffers<'_>) {
-    pass.set_vertex_buffer(0, buffers.vertices.slice(..));
-    pass.set_index_buffer(buffers.indices.slice(..), IndexFormat::Uint32);
-    match buffers.draw {
-        Draw::Direct { index_count } => pass.draw_indexed(0..index_count, 0, 0..1),
-        Draw::Indirect(arguments, offset) => pass.draw_indexed_indirect(arguments, offset),
     }
 }

@@ -1,8 +1,8 @@
-// The liquid's surface from a mesh. Needs globals.wgsl, environment.wgsl, liquid.wgsl.
+// The surface of the liquid from a mesh. Needs globals.wgsl, environment.wgsl, liquid.wgsl.
 
 struct Varying {
     @builtin(position) position: vec4f,
-    // At the covered part of the pixel, or normals run past the outline and glitter.
+    // Centroid interpolation: extrapolated normals would cause bright pixels along the outline.
     @location(0) @interpolate(perspective, centroid) world: vec3f,
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
 }

@@ -1,28 +1,14 @@
-// How much liquid a view ray crosses: distances to back faces minus distances to front faces, summed by blending.
-// Needs globals.wgsl.
+// Length of the view ray inside the liquid: distances to back faces minus distances to front faces,
+// summed by blending. Needs globals.wgsl, eye_distance.wgsl.
 
-@group(1) @binding(0) var solid: texture_2d<f32>;   // distance of the nearest solid, from the middle of the box
-
-struct Varying {
-    @builtin(position) position: vec4f,
-    @location(0) from_eye: vec3f,
-}
-
-@vertex
-fn vertex_main(@location(0) vertex: vec4f) -> Varying {
-    var out: Varying;
-    out.position = globals.clip_from_world * vec4f(vertex.xyz, 1.0);
-    out.from_eye = vertex.xyz - globals.eye;
-    return out;
-}
+@group(1) @binding(0) var solid: texture_2d<f32>;   // relative distance of the nearest body
 
 @fragment
 fn fragment_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    // A closed surface has as many fronts as backs on every ray, so a constant cancels; with distances taken from the
-    // middle of the box, half floats suffice.
-    let middle = 0.5 * (globals.box_min + globals.box_max);
-    // Liquid behind a solid is not seen: its front and its back both count as the solid, and cancel.
+    // On every ray a closed surface has as many front faces as back faces, so the constant
+    // subtracted by relative_distance cancels. Liquid behind a body is invisible: its front and
+    // back faces both take the distance of the body, and cancel.
     let behind = textureLoad(solid, vec2u(in.position.xy), 0).r;
-    let distance = min(length(in.from_eye) - length(middle - globals.eye), behind);
+    let distance = min(relative_distance(in.from_eye), behind);
     return vec4f(select(distance, -distance, front), 0.0, 0.0, 0.0);
 }

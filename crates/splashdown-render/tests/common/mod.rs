@@ -1,4 +1,5 @@
-//! What the picture tests share: a device or a loud skip, and the comparison with committed pictures.
+//! Shared by the picture tests: a device or a reported skip, and the comparison with reference
+//! pictures.
 
 #![expect(dead_code, reason = "each test binary uses its own part of this module")]
 
@@ -7,19 +8,19 @@ pub mod sample;
 use splashdown_render::*;
 use std::path::{Path, PathBuf};
 
-/// Everything to draw with.
-pub struct Studio {
+/// A device and a renderer.
+pub struct Harness {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub renderer: Renderer,
 }
 
-/// Opens a device, or says why the test is skipped. In CI a missing driver is a failure.
-pub fn studio() -> Option<Studio> {
+/// Opens a device, or reports that the test is skipped. In CI a missing driver is a failure.
+pub fn harness() -> Option<Harness> {
     match open_device() {
         Ok((device, queue, _)) => {
             let renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, 4).unwrap();
-            Some(Studio { device, queue, renderer })
+            Some(Harness { device, queue, renderer })
         }
         Err(error) => {
             assert!(std::env::var("CI").is_err(), "CI must have a Vulkan driver: {error}");
@@ -29,33 +30,39 @@ pub fn studio() -> Option<Studio> {
     }
 }
 
-impl Studio {
+impl Harness {
     pub fn draw(&mut self, size: [u32; 2], frame: &Frame<'_>) -> Picture {
         let mut target = Offscreen::new(&self.device, &self.queue, size).unwrap();
         Picture { size, rgba: target.render_to_rgba(&mut self.renderer, frame).unwrap() }
     }
 }
 
-/// RGBA bytes and their size.
+/// A copy of a value with a change.
+pub fn with<T>(mut value: T, change: impl FnOnce(&mut T)) -> T {
+    change(&mut value);
+    value
+}
+
+/// RGBA bytes and the size of the picture.
 pub struct Picture {
     pub size: [u32; 2],
     pub rgba: Vec<u8>,
 }
 
-/// How far two pictures are apart.
+/// The difference of two pictures.
 #[derive(Debug, Clone, Copy)]
 pub struct Difference {
-    /// Mean over pixels and channels, of 255.
+    /// Mean over pixels and channels, from 0 to 255.
     pub mean: f64,
-    /// Share of the pixels that are more than 24 of 255 off in some channel.
-    pub share: f64,
+    /// Fraction of the pixels that differ by more than 24 of 255 in some channel.
+    pub fraction: f64,
 }
 
 impl Difference {
-    /// Drivers round differently and may put an outline half a pixel aside: that is well below these bounds. A camera
-    /// moved by two degrees is well above, as each test checks.
+    /// Drivers round differently and may shift an outline by half a pixel, which is well below
+    /// these bounds. A camera moved by two degrees is well above, as each test verifies.
     pub fn is_small(&self) -> bool {
-        self.mean < 1.0 && self.share < 0.012
+        self.mean < 1.0 && self.fraction < 0.012
     }
 }
 
@@ -72,7 +79,7 @@ impl Picture {
         let sum: u64 = self.rgba.iter().zip(&other.rgba).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
         Difference {
             mean: sum as f64 / self.rgba.len() as f64,
-            share: pairs().filter(|pair| far(*pair)).count() as f64 / pairs().count() as f64,
+            fraction: pairs().filter(|pair| far(*pair)).count() as f64 / pairs().count() as f64,
         }
     }
 
@@ -83,13 +90,13 @@ impl Picture {
 
     fn save(&self, path: &Path) {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        // Without the alpha, which is 255 everywhere; a third of the reference files less.
+        // Alpha is 255 everywhere; omitting it makes the files smaller.
         let rgb: Vec<u8> =
             self.rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         image::save_buffer(path, &rgb, self.size[0], self.size[1], image::ExtendedColorType::Rgb8).unwrap();
     }
 
-    /// Compares with the committed picture of that name; `UPDATE_EXPECT=1` replaces it.
+    /// Compares with the reference picture of a name; `UPDATE_EXPECT=1` replaces the reference.
     pub fn expect(&self, name: &str) {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let reference_path = root.join("tests/reference").join(format!("{name}.png"));
@@ -99,13 +106,13 @@ impl Picture {
         }
         let actual_path: PathBuf = root.join("../../target/pictures").join(format!("{name}.png"));
         let advice = format!(
-            "compare {} with {}; if the new one is right, run the test with UPDATE_EXPECT=1",
+            "compare {} with {}; if the new picture is correct, run the test with UPDATE_EXPECT=1",
             actual_path.display(),
             reference_path.display()
         );
         let Some(reference) = Picture::load(&reference_path) else {
             self.save(&actual_path);
-            panic!("there is no reference picture; {advice}");
+            panic!("the reference picture is missing; {advice}");
         };
         let difference = self.difference(&reference);
         if !difference.is_small() {

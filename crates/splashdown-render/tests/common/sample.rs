@@ -1,4 +1,4 @@
-//! Sample input of our own making: a slumping block of particles, a wavy tank of water, a ball.
+//! Synthetic input: a collapsing column of particles, a tank of water with waves, a ball.
 
 use std::f32::consts::TAU;
 
@@ -11,27 +11,26 @@ pub struct Cloud {
     pub pressures: Vec<f32>,
 }
 
-/// A closed triangle mesh, counterclockwise from outside.
+/// A closed triangle mesh, counterclockwise as seen from outside.
 pub struct Mesh {
     pub vertices: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A column of water that has begun to slump: a lattice under a profile that falls from left to right.
-pub fn slump(size: [f32; 3], spacing: f32) -> Cloud {
+/// A collapsing column of water: a lattice below a profile that falls from left to right.
+pub fn collapsing_column(size: [f32; 3], spacing: f32) -> Cloud {
     let mut cloud = Cloud::default();
     let count = size.map(|side| (side / spacing) as usize);
     for k in 0..count[2] {
         for i in 0..count[0] {
             let (x, z) = ((i as f32 + 0.5) * spacing, (k as f32 + 0.5) * spacing);
-            let share = x / size[0];
-            let top = size[1]
-                * ((1.0 - share).powi(2) * 0.85 + 0.03 * (9.0 * share + 4.0 * z).sin() * share + 0.06);
+            let u = x / size[0];
+            let top = size[1] * ((1.0 - u).powi(2) * 0.85 + 0.03 * (9.0 * u + 4.0 * z).sin() * u + 0.06);
             for j in 0..((top / spacing) as usize).max(1) {
                 let y = (j as f32 + 0.5) * spacing;
                 cloud.positions.push([x, y, z]);
-                cloud.velocities.push([3.0 * share, -1.2 * (1.0 - share) * y / size[1], 0.0]);
+                cloud.velocities.push([3.0 * u, -1.2 * (1.0 - u) * y / size[1], 0.0]);
                 let pressure = 9810.0 * (top - y).max(0.0);
                 cloud.pressures.push(pressure);
                 cloud.densities.push(1000.0 * (1.0 + pressure / 1e6));
@@ -52,7 +51,7 @@ pub fn waves(min: [f32; 3], size: [f32; 3], cells: usize) -> Mesh {
     let at = |i: usize, k: usize| [i as f32 / cells as f32, k as f32 / cells as f32];
     let mut mesh = Mesh { vertices: Vec::new(), normals: Vec::new(), triangles: Vec::new() };
     let step = 1e-3;
-    // Upper face, with the height field's normals.
+    // Upper face, with the normals of the height field.
     for k in 0..side {
         for i in 0..side {
             let [u, v] = at(i, k);
@@ -69,7 +68,7 @@ pub fn waves(min: [f32; 3], size: [f32; 3], cells: usize) -> Mesh {
             mesh.triangles.extend([[a, c, b], [b, c, d]]);
         }
     }
-    // Walls and bottom: strips of their own vertices, so that edges stay sharp.
+    // Walls and bottom: strips with separate vertices, so that edges stay sharp.
     let rim: Vec<([usize; 2], [f32; 3])> = (0..=cells)
         .map(|i| ([i, 0], [0.0, 0.0, -1.0]))
         .chain((0..=cells).map(|k| ([cells, k], [1.0, 0.0, 0.0])))
@@ -98,7 +97,7 @@ pub fn waves(min: [f32; 3], size: [f32; 3], cells: usize) -> Mesh {
     mesh
 }
 
-/// A ball of `rings` rings of latitude.
+/// A ball with `rings` rings of latitude.
 pub fn ball(centre: [f32; 3], radius: f32, rings: usize) -> Mesh {
     let columns = 2 * rings;
     let mut mesh = Mesh { vertices: Vec::new(), normals: Vec::new(), triangles: Vec::new() };

@@ -1,12 +1,13 @@
-//! Draws the same fluid in every way there is, to be looked at side by side, and compares their times.
+//! Draws the same fluid in every rendering mode and compares the times.
 //!
-//! `cargo run --release -p splashdown-render --example ways -- [FOLDER] [PARTICLES.ply SURFACE.ply PARTICLE_SPACING]`
+//! `cargo run --release -p splashdown-render --example modes -- [FOLDER] [PARTICLES.ply SURFACE.ply
+//! PARTICLE_SPACING]`
 //!
-//! The files are those that `splashdown run` writes. Without them a column that has begun to slump is drawn, 63,000
-//! particles, beside a mesh of 298,000 triangles that has nothing to do with it.
+//! The files are those that `splashdown run` writes. Without files, the example draws a synthetic
+//! collapsing column of 63,000 particles, and an unrelated mesh of 298,000 triangles.
 
 #[path = "../tests/common/sample.rs"]
-#[expect(dead_code, reason = "the ball is for others")]
+#[expect(dead_code, reason = "only the tests draw the ball")]
 mod sample;
 
 use splashdown_render::*;
@@ -19,7 +20,7 @@ const REPETITIONS: u32 = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let folder = PathBuf::from(arguments.first().map_or("out/ways", String::as_str));
+    let folder = PathBuf::from(arguments.first().map_or("out/modes", String::as_str));
     std::fs::create_dir_all(&folder)?;
     let (device, queue, info) = open_device()?;
     let (cloud, mesh, spacing) = match &arguments[..] {
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         _ => {
             let size = [2.0, 1.0, 1.0];
-            (sample::slump(size, 0.0218), sample::waves([0.0; 3], size, 384), 0.0218)
+            (sample::collapsing_column(size, 0.0218), sample::waves([0.0; 3], size, 384), 0.0218)
         }
     };
     eprintln!(
@@ -61,47 +62,31 @@ fn main() -> Result<(), Box<dyn Error>> {
     let liquid = Liquid::water(domain.max[1] - domain.min[1]);
     let radius = 0.5 * spacing;
     let buffers = particles.buffers();
-    let colouring =
-        Colouring { quantity: Quantity::Speed, range: [0.0, 3.0], map: ColourMap::Water, colour_bar: true };
+    let colouring = Colouring::new(Quantity::Speed, [0.0, 3.0]);
     let empty = Frame::new(far, domain);
-    let slice = DrawnSlice {
-        buffers,
-        axis: Axis::Z,
-        position: middle[2],
-        support_radius: 2.0 * spacing,
-        radius,
-        colouring: Colouring {
-            quantity: Quantity::Density,
-            range: [990.0, 1010.0],
-            map: ColourMap::Viridis,
-            colour_bar: true,
-        },
-    };
-    let meshed =
-        |style| Frame { surface: Some(DrawnSurface { buffers: surface.buffers(), liquid, style }), ..empty };
-    let ways = [
-        ("particles", Frame { particles: Some(DrawnParticles { buffers, radius, colouring }), ..empty }),
+    let density = Colouring::new(Quantity::Density, [990.0, 1010.0]).with_map(ColourMap::Viridis);
+    let slice = DrawnSlice::new(buffers, Axis::Z, middle[2], radius, density);
+    let meshed = |style| empty.with_surface(DrawnSurface::new(surface.buffers(), liquid).with_style(style));
+    let modes = [
+        ("particles", empty.with_particles(DrawnParticles::new(buffers, radius, colouring))),
         ("empty", empty),
         ("surface", meshed(SurfaceStyle::Liquid)),
         ("surface-lines", meshed(SurfaceStyle::LiquidWithLines)),
         ("lines", meshed(SurfaceStyle::Lines)),
-        ("slice", Frame { slice: Some(slice), ..empty }),
-        (
-            "screen-space",
-            Frame { liquid_particles: Some(DrawnLiquidParticles { buffers, radius, liquid }), ..empty },
-        ),
+        ("slice", empty.with_slice(slice)),
+        ("screen-space", empty.with_liquid_particles(DrawnLiquidParticles::new(buffers, radius, liquid))),
     ];
     for samples in [4, 1] {
         let mut renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, samples)?;
         renderer.set_timing(true);
         let mut target = Offscreen::new(&device, &queue, SIZE)?;
-        let mut particles_take = f64::NAN;
-        for (name, frame) in &ways {
+        let mut particles_milliseconds = f64::NAN;
+        for (name, frame) in &modes {
             let rgba = target.render_to_rgba(&mut renderer, frame)?;
             if samples == 4 {
                 save(&folder.join(format!("{name}-far.png")), &rgba)?;
                 for (view, camera) in &views[1..] {
-                    let rgba = target.render_to_rgba(&mut renderer, &Frame { camera: *camera, ..*frame })?;
+                    let rgba = target.render_to_rgba(&mut renderer, &seen_from(*camera, *frame))?;
                     save(&folder.join(format!("{name}-{view}.png")), &rgba)?;
                 }
             }
@@ -111,16 +96,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             let milliseconds = 1e3 * start.elapsed().as_secs_f64() / f64::from(REPETITIONS);
             if *name == "particles" {
-                particles_take = milliseconds;
+                particles_milliseconds = milliseconds;
             }
             let passes: Vec<String> = renderer
                 .pass_times()
                 .iter()
                 .map(|PassTime { label, milliseconds }| format!("{label} {milliseconds:.0}"))
                 .collect();
-            let ratio = milliseconds / particles_take;
+            let ratio = milliseconds / particles_milliseconds;
             eprintln!(
-                "{samples} samples, {name}: {ratio:.2} times the particles, {milliseconds:.0} ms: {}",
+                "{samples} samples, {name}: {milliseconds:.0} ms ({ratio:.2} times the particles): {}",
                 passes.join(", ")
             );
         }
@@ -128,11 +113,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+fn seen_from(camera: Camera, mut frame: Frame<'_>) -> Frame<'_> {
+    frame.camera = camera;
+    frame
+}
+
 fn save(path: &Path, rgba: &[u8]) -> Result<(), image::ImageError> {
     image::save_buffer(path, rgba, SIZE[0], SIZE[1], image::ExtendedColorType::Rgba8)
 }
 
-/// The box around all particles.
+/// The bounding box of all particles.
 fn domain_of(positions: &[[f32; 3]], margin: f32) -> Domain {
     let bound = |start: f32, choose: fn(f32, f32) -> f32| -> [f32; 3] {
         std::array::from_fn(|axis| positions.iter().map(|p| p[axis]).fold(start, choose))
@@ -141,11 +131,11 @@ fn domain_of(positions: &[[f32; 3]], margin: f32) -> Domain {
     Domain::closed(low.map(|x| x - margin), high.map(|x| x + margin))
 }
 
-/// The numbers of a binary .ply file's header, and what follows it.
+/// The element counts in the header of a binary .ply file, and the data after the header.
 fn open_ply(path: &Path) -> Result<(Vec<usize>, Vec<u8>), Box<dyn Error>> {
     let bytes = std::fs::read(path)?;
     let end = b"end_header\n";
-    let header = bytes.windows(end.len()).position(|window| window == end).ok_or("no end of the header")?;
+    let header = bytes.windows(end.len()).position(|window| window == end).ok_or("the header has no end")?;
     let counts = String::from_utf8_lossy(&bytes[..header])
         .lines()
         .filter(|line| line.starts_with("element"))
@@ -161,7 +151,7 @@ fn float(bytes: &[u8], index: usize) -> f32 {
 fn read_particles(path: &Path) -> Result<sample::Cloud, Box<dyn Error>> {
     let (_, bytes) = open_ply(path)?;
     let mut cloud = sample::Cloud::default();
-    // Place, velocity, density, pressure and a number.
+    // Position, velocity, density, pressure and id.
     for particle in bytes.chunks_exact(36) {
         cloud.positions.push([0, 1, 2].map(|axis| float(particle, axis)));
         cloud.velocities.push([3, 4, 5].map(|axis| float(particle, axis)));
@@ -173,10 +163,10 @@ fn read_particles(path: &Path) -> Result<sample::Cloud, Box<dyn Error>> {
 
 fn read_mesh(path: &Path) -> Result<sample::Mesh, Box<dyn Error>> {
     let (counts, bytes) = open_ply(path)?;
-    let vertices = counts.first().copied().ok_or("no vertices")?;
+    let vertices = counts.first().copied().ok_or("the header has no vertices")?;
     let (points, faces) = bytes.split_at(24 * vertices);
     let points = || points.chunks_exact(24);
-    // A byte for the number of corners, then three of them.
+    // One byte with the number of corners, then three indices.
     let corner = |face: &[u8], index: usize| float(&face[1..], index).to_bits();
     Ok(sample::Mesh {
         vertices: points().map(|point| [0, 1, 2].map(|axis| float(point, axis))).collect(),

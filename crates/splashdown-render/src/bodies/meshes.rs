@@ -1,17 +1,18 @@
-//! Solids from the host: their triangles with crisp edges, placed in the world.
+//! Meshes of bodies, with sharp edges preserved, and their upload.
 
 use std::collections::HashMap;
 
 use glam::{Quat, Vec3};
 use wgpu::{Buffer, BufferUsages, Device};
 
-use crate::buffers::upload;
+use crate::uploads::{check_indices, upload};
 use crate::{BodyBuffers, Draw, RenderError};
 
-/// Edges sharper than this stay sharp: the cosine of 35 degrees.
+/// Cosine of the crease angle, 35 degrees: edges with a larger angle between their faces stay
+/// sharp.
 const CREASE: f32 = 0.82;
 
-/// A solid's triangles, ready to be placed in any number of frames.
+/// The mesh of a body in its own frame, to be placed in any number of frames.
 #[derive(Clone, Debug)]
 pub struct PlacedBody {
     vertices: Vec<Vec3>,
@@ -21,22 +22,18 @@ pub struct PlacedBody {
 }
 
 impl PlacedBody {
-    /// A quiet warm grey, linear.
+    /// The default colour, a warm grey (linear RGB).
     pub const COLOUR: [f32; 3] = [0.46, 0.43, 0.38];
 
-    /// From a mesh in m, in its own frame, and a linear colour. Faces that meet in less than 35 degrees are
-    /// shaded as one round piece.
+    /// Prepares a mesh (metres, in the frame of the body) with a linear RGB colour. Faces whose
+    /// normals differ by less than 35 degrees get smooth shading.
     ///
     /// # Errors
-    /// [`RenderError::Index`] if a triangle names a vertex that does not exist.
+    /// [`RenderError::Index`] if a triangle refers to a vertex that does not exist.
     pub fn new(vertices: &[[f32; 3]], triangles: &[[u32; 3]], colour: [f32; 3]) -> Result<Self, RenderError> {
-        for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertices.len()) {
-                return Err(RenderError::Index { triangle, vertex, vertices: vertices.len() });
-            }
-        }
+        check_indices(triangles, vertices.len())?;
         let corner = |v: u32| Vec3::from(vertices[v as usize]);
-        // Twice the area long.
+        // The length is twice the area, which weights the averages below.
         let faces: Vec<Vec3> =
             triangles.iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a))).collect();
         let mut around: Vec<Vec<u32>> = vec![Vec::new(); vertices.len()];
@@ -67,7 +64,7 @@ impl PlacedBody {
     }
 }
 
-/// All solids of one frame.
+/// All bodies of one frame.
 #[derive(Debug)]
 pub struct UploadedBodies {
     vertices: Buffer,
@@ -78,7 +75,8 @@ pub struct UploadedBodies {
 }
 
 impl UploadedBodies {
-    /// Places solids: each with the position of its origin in m and its rotation as a quaternion (x, y, z, w).
+    /// Uploads bodies, each with the position of its origin in metres and its rotation as a
+    /// quaternion (x, y, z, w).
     pub fn new<'a>(
         device: &Device,
         bodies: impl IntoIterator<Item = (&'a PlacedBody, [f32; 3], [f32; 4])>,
@@ -103,7 +101,7 @@ impl UploadedBodies {
         }
     }
 
-    /// The buffers, to be drawn.
+    /// The buffers, for [`Frame::bodies`](crate::Frame::bodies).
     pub fn buffers(&self) -> BodyBuffers<'_> {
         BodyBuffers {
             vertices: &self.vertices,
@@ -120,8 +118,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sharp_edges_are_split_and_gentle_ones_are_not() {
-        // A roof: two rectangles that meet along x, first steep, then flat.
+    fn sharp_edges_are_split_and_smooth_edges_are_not() {
+        // A roof of two rectangles that share an edge along x, first steep, then flat.
         let roof = |height: f32| {
             let vertices = [
                 [0.0, 0.0, -1.0],
