@@ -13,7 +13,7 @@ use toml::de::{DeTable, DeValue};
 use super::choice::Choice;
 use super::errors::SceneProblem;
 use super::source::Source;
-use super::spec::{Kind, Table};
+use super::spec::{Key, Kind, Table};
 use super::suggest;
 use super::values::{
     Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_scale, one_word, several,
@@ -93,12 +93,13 @@ impl<'r> Section<'r> {
 
     fn check_keys(&self) {
         let Some(table) = self.table else { return };
-        for name in table.keys() {
-            if self.spec.key(name.get_ref()).is_none() {
-                self.report_unknown(name);
+        for name in table.keys().filter(|name| self.spec.key(name.get_ref()).is_none()) {
+            match self.spec.key_formerly(name.get_ref()) {
+                Some(key) => self.report_former(name, key),
+                None => self.report_unknown(name),
             }
         }
-        for key in self.spec.keys.iter().filter(|key| key.required && !table.contains_key(key.name)) {
+        for key in self.spec.keys.iter().filter(|key| key.required && !self.has(key.name)) {
             let (what, hint) = match key.kind {
                 Kind::Table(inner) => (format!("the section [{}] is missing", key.name), Some(list_required(inner))),
                 Kind::Tables(..) => (
@@ -116,6 +117,24 @@ impl<'r> Section<'r> {
             problem.allowed = (!matches!(key.kind, Kind::Table(_))).then(|| describe(key));
             problem.hint = hint;
             self.reader.report(problem);
+        }
+    }
+
+    /// Warns of a key's former name, and refuses it beside the present one.
+    fn report_former(&self, name: &Spanned<std::borrow::Cow<'r, str>>, key: &Key) {
+        let (former, present) = (self.key_path(name.get_ref()), self.key_path(key.name));
+        let is_twice = self.table.is_some_and(|table| table.contains_key(key.name));
+        let message = if is_twice {
+            format!("{former} is the former name of {present}, which is given as well")
+        } else {
+            format!("{former} is deprecated: the key is now called {present}")
+        };
+        let mut problem = self.reader.source.problem(name.span(), former, message);
+        problem.hint = Some(format!("write {present}"));
+        if is_twice {
+            self.reader.report(problem);
+        } else {
+            self.reader.warnings.borrow_mut().push(problem);
         }
     }
 
@@ -166,7 +185,11 @@ impl<'r> Section<'r> {
     }
 
     fn value(&self, name: &str) -> Option<&'r Spanned<DeValue<'r>>> {
-        self.table.and_then(|table| table.get(name))
+        let table = self.table?;
+        table.get(name).or_else(|| {
+            let key = self.spec.key(name)?;
+            key.formerly.iter().find_map(|former| table.get(*former))
+        })
     }
 
     /// Where a key stands, or the section if it is absent.

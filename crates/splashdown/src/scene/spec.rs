@@ -74,6 +74,8 @@ pub(crate) struct Key {
     pub about: &'static str,
     /// Names that people try for it.
     pub also: &'static [&'static str],
+    /// Former names, which files may still use; each use is a warning.
+    pub formerly: &'static [&'static str],
 }
 
 impl Key {
@@ -91,6 +93,11 @@ impl Key {
         self.also = names;
         self
     }
+
+    pub const fn formerly(mut self, names: &'static [&'static str]) -> Self {
+        self.formerly = names;
+        self
+    }
 }
 
 /// A section of the file.
@@ -104,10 +111,15 @@ impl Table {
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.name == name)
     }
+
+    /// The key that once had this name.
+    pub fn key_formerly(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.formerly.contains(&name))
+    }
 }
 
 pub(crate) const fn key(name: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key { name, kind, required: false, default: "", about, also: &[] }
+    Key { name, kind, required: false, default: "", about, also: &[], formerly: &[] }
 }
 
 pub(crate) const fn range(least: f64, most: f64, unit: &'static str) -> Range {

@@ -203,3 +203,21 @@ fn every_error_has_its_line_and_comes_in_the_order_of_lines() {
     assert_eq!(json["given"], "0");
     assert!(json["allowed"].as_str().is_some_and(|allowed| allowed.contains("3600")));
 }
+
+/// Files of earlier versions stay valid; the warning names the present key.
+#[test]
+fn a_former_key_is_accepted_with_a_warning() {
+    let oscillation = "oscillation = { amplitude = [0.1, 0, 0], period = 2.0 }";
+    let present = changed("[domain]", &format!("[domain]\n{oscillation}"));
+    let former = present.replace("oscillation", "shake");
+    let [present, former] = [present, former].map(|text| parse(&text).unwrap());
+    assert_eq!(present.domain, former.domain);
+    assert!(present.warnings.is_empty(), "{:?}", present.warnings);
+    let warning = former.warnings[0].to_string();
+    assert!(warning.contains("domain.shake is deprecated"), "{warning}");
+    assert!(warning.contains("write domain.oscillation"), "{warning}");
+    // Both at once are an error.
+    let both = oscillation.replace("oscillation", "shake");
+    let errors = words(&changed("[domain]", &format!("[domain]\n{oscillation}\n{both}")));
+    assert!(errors.contains("former name of domain.oscillation"), "{errors}");
+}

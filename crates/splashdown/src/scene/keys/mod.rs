@@ -84,11 +84,17 @@ static DOMAIN: Table = Table {
             "Sides without a wall; particles that leave there are removed.",
         )
         .default("[]"),
-        key("shake", Kind::Table(&SHAKE), "Moves the domain by amplitude * sin(2 pi t / period)."),
+        key(
+            "oscillation",
+            Kind::Table(&OSCILLATION),
+            "Moves the domain by amplitude * sin(2 pi t / period).",
+        )
+        .also(&["sway", "motion"])
+        .formerly(&["shake"]),
     ],
 };
 
-static SHAKE: Table = Table {
+static OSCILLATION: Table = Table {
     about: "Harmonic motion of the domain: amplitude * sin(2 pi t / period).",
     keys: &[
         key("amplitude", a_vector(100.0, "m"), "Amplitude along each axis.").required(),

@@ -203,7 +203,7 @@ fn read_domain(section: &Section<'_>) -> Part<Domain> {
     let max = section.numbers("max");
     let open = section.choices::<Side>("open");
     let shake = section
-        .section("shake")
+        .section("oscillation")
         .and_then(|shake| if shake.exists() { read_shake(&shake).map(Some) } else { Ok(None) });
     let (min, max): (Vec3, Vec3) = (needed(min)?.into(), needed(max)?.into());
     let mut closed = [[true; 2]; 3];
