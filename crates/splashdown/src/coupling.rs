@@ -3,7 +3,7 @@
 use splashdown_gpu::{Grid as DispatchSize, Recording};
 
 use crate::cells::Cells;
-use crate::fields::Fields;
+use crate::state::Fields;
 
 /// A place in a step where couplings act, in the order of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

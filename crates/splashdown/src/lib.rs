@@ -12,7 +12,7 @@
 //!
 //! Whole runs, with the surface of every frame, come as one stream of events: [`Run`].
 //!
-//! A step is a list of passes ([`solver`]), each of which is one folder ([`mod@passes`]) with its equation, its
+//! A step is a list of passes ([`schemes`]), each of which is one folder ([`mod@passes`]) with its equation, its
 //! WGSL and its Rust; the list runs on the GPU or on the CPU ([`splashdown_gpu::Executor`]).
 
 pub mod bodies;
@@ -22,10 +22,10 @@ mod checkpoint;
 pub mod coupling;
 mod device;
 mod error;
-mod fields;
 pub mod flow;
 pub mod foam;
 pub mod kernel;
+pub(crate) mod marching_cubes;
 mod memory;
 pub mod models;
 pub mod mouse_force;
@@ -39,6 +39,7 @@ pub mod schemes;
 pub mod simd;
 mod simulation;
 pub mod solid;
+pub mod state;
 mod stats;
 pub mod surface;
 
@@ -46,7 +47,6 @@ pub use bodies::{BodyMesh, BodyState};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use device::Device;
 pub use error::SimulationError;
-pub use fields::Fields;
 pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam};
 pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
 pub use mouse_force::MouseForce;
@@ -54,6 +54,7 @@ pub use reconstruct::reconstruct;
 pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
 pub use scene::{Scene, SceneBuilder, SceneErrors};
 pub use simulation::Simulation;
+pub use state::Fields;
 pub use stats::Stats;
 pub use surface::{Surface, SurfaceParams, SurfaceStats};
 pub use {glam, splashdown_gpu::Executor, splashdown_io::Mesh, splashdown_io::Particles};
@@ -61,6 +62,8 @@ pub use {glam, splashdown_gpu::Executor, splashdown_io::Mesh, splashdown_io::Par
 /// Every pass of this crate.
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
     [
+        state::passes(),
+        cells::passes(),
         passes::passes(),
         bodies::passes(),
         flow::passes(),

@@ -114,23 +114,24 @@ mod tests {
     use splashdown_gpu::{CpuExecutor, Executor};
 
     use super::*;
-    use crate::boundary::KernelPair;
+    use crate::boundary::{KernelPair, wall_table};
     use crate::cells::Cells;
-    use crate::fields::Fields;
-    use crate::passes::Params;
     use crate::scene::{Derived, SurfaceSettings};
+    use crate::state::Fields;
+    use crate::state::Params;
     use crate::{Device, Simulation};
 
     /// Bytes in all buffers of this many particles in one grid.
     fn in_arrays(particles: u32, normals: bool, sort: Sort) -> u64 {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = Params { particle_count: particles, ..bytemuck::Zeroable::zeroed() };
-        let mut fields = Fields::new(&mut executor, &params, KernelPair::WendlandC2, normals).unwrap();
+        let mut fields =
+            Fields::new(&mut executor, &params, &wall_table(KernelPair::WendlandC2), normals).unwrap();
         if normals {
             fields.make_accelerations(&mut executor).unwrap();
         }
         let grid = Grid::new(Vec3::ZERO, Vec3::ONE, 0.1).unwrap();
-        Cells::new(&mut executor, grid, particles, sort).unwrap();
+        Cells::new(&mut executor, grid, particles, sort.into()).unwrap();
         executor.bytes()
     }
 

@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use proptest::prelude::*;
-use splashdown::boundary::KernelPair;
-use splashdown::cells::{Cells, Grid};
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
-use splashdown::scene::{Scene, Sort};
-use splashdown::{Fields, schemes};
+use splashdown::boundary::{KernelPair, wall_table};
+use splashdown::cells::{Cells, Grid, Sort};
+use splashdown::scene::Scene;
+use splashdown::schemes;
+use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Fields, Params, StepCounters, StepState};
 use splashdown_gpu::{CpuExecutor, Executor, Recording, bytemuck, testing};
 
 const SUPPORT: f32 = 0.1;
@@ -75,7 +75,7 @@ fn id(i: usize, n: usize) -> u32 {
 fn sort(executor: &mut Executor, points: &[Vec3], way: Sort) -> Sorted {
     let n = points.len();
     let params = params(n as u32);
-    let fields = Fields::new(executor, &params, KernelPair::WendlandC2, false).unwrap();
+    let fields = Fields::new(executor, &params, &wall_table(KernelPair::WendlandC2), false).unwrap();
     let cells = Cells::new(executor, grid(), n as u32, way).unwrap();
     let positions: Vec<Vec4> = points.iter().map(|p| p.extend(0.0)).collect();
     let velocities: Vec<Vec4> = (0..n).map(|i| Vec4::new(i as f32, -(i as f32), 0.5, 1000.0)).collect();
@@ -234,7 +234,7 @@ fn both_ways_of_sorting_on_both_executors_agree_with_brute_force() {
             for way in [Sort::Counting, Sort::Bitonic] {
                 let sorted = sort(&mut executor, &points, way);
                 if let Some(reference) = &reference {
-                    assert!(&sorted == reference, "{name}, {device}, {way}: other bits than the first way");
+                    assert!(&sorted == reference, "{name}, {device}, {way:?}: other bits than the first way");
                 } else {
                     check(&sorted, &points, sample).unwrap_or_else(|what| panic!("{name}: {what}"));
                     reference = Some(sorted);
@@ -249,7 +249,7 @@ fn nothing_to_sort_is_no_error() {
     for (device, mut executor) in testing::executors("nothing_to_sort_is_no_error") {
         for way in [Sort::Counting, Sort::Bitonic] {
             let sorted = sort(&mut executor, &[], way);
-            assert!(sorted.cell_start.iter().all(|&start| start == 0), "{device}, {way}");
+            assert!(sorted.cell_start.iter().all(|&start| start == 0), "{device}, {way:?}");
             assert_eq!((sorted.ids.len(), sorted.living()), (0, 0));
         }
     }

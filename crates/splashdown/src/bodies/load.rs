@@ -8,9 +8,9 @@ use splashdown_io::{IoError, Mesh};
 use super::types::{Body, Contact};
 use crate::boundary::{KernelPair, wall_offset};
 use crate::models;
-use crate::passes::Params;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
 use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
+use crate::state::Params;
 
 /// Why a mesh could not be used: of a body, an outlet, a sink or a piece of fluid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -36,9 +36,9 @@ use crate::SimulationError;
 use crate::boundary::KernelPair;
 use crate::checkpoint::{BodyKey, CheckpointError, hash};
 use crate::coupling::{Coupling, Stage, StepRecorder};
-use crate::passes::Params;
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
+use crate::state::Params;
 use rigid::Rigid;
 
 /// Five vectors and a quaternion.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{WallTerms, law, part};
-use crate::passes::Params;
+use crate::state::Params;
 
 impl WallTerms {
     /// The acceleration in m/s^2 of a particle by its neighbours and the walls, without body forces.

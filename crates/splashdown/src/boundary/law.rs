@@ -2,7 +2,7 @@
 //!
 //! Velocities are relative to the boundary. The WGSL side is `law.wgsl`.
 
-use crate::passes::Params;
+use crate::state::Params;
 
 /// The part of a spacing that a boundary keeps free: a particle that would come nearer within a step loses the
 /// velocity that would carry it there.

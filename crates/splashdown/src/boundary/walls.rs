@@ -14,6 +14,7 @@
 use glam::{Vec3, Vec4};
 
 use crate::kernel::{CubicSpline, Kernel, Poly6, Spiky, WendlandC2};
+use crate::state::Params;
 
 /// Steps of the table along each axis; it has one node more.
 pub const TABLE_STEPS: usize = 32;
@@ -243,6 +244,20 @@ pub struct Walls {
     pub support_radius: f32,
     /// The kernels.
     pub kernels: KernelPair,
+}
+
+impl Params {
+    /// The closed sides of the domain for these kernels.
+    pub fn walls(&self, kernels: KernelPair) -> Walls {
+        Walls {
+            min: self.domain_min,
+            max: self.domain_max,
+            closed: self.closed,
+            offset: self.wall_offset,
+            support_radius: self.support_radius,
+            kernels,
+        }
+    }
 }
 
 /// What the walls contribute at a point, per axis; the box is wider than two supports, so that at most one side per

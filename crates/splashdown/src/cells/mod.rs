@@ -24,11 +24,21 @@ pub use grid::{Grid, WGSL as GRID};
 use glam::UVec2;
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::sort::Sort as BitonicSort;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording};
+use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
 
-use crate::fields::Fields;
-use crate::scene::Sort;
-use crate::schemes::end_step;
+use crate::state::{Fields, end_step};
+
+/// `row_range`: how the GPU visits neighbours.
+pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
+
+/// How particles are sorted into cells. The results are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sort {
+    /// Counting sort: a histogram, a scan, a scatter.
+    Counting,
+    /// Bitonic sort.
+    Bitonic,
+}
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
@@ -105,7 +115,7 @@ impl Cells {
     }
 
     /// Appends the sort of the persistent arrays, whose particles have been counted, into the sorted ones, ids
-    /// into `sorted_ids`; and the settling of the step before, if there is one.
+    /// into `sorted_ids`; and ends the step before, if there is one.
     pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
         let (state, grid, ids) = (fields.state.id(), self.grid_uniform.id(), fields.ids.id());
         let (cell_counts, cell_start, entries) =
@@ -121,7 +131,7 @@ impl Cells {
                 );
             }
             Way::Bitonic { sort, pairs } => {
-                recording.append(&end_step(fields));
+                recording.append(&end_step::record(fields));
                 recording.dispatch(&keys::KEYS, self.all(), &[grid, state, cell_counts, pairs.id()]);
                 sort.record(recording, *pairs);
                 let one_more = Extent::Items(self.particles + 1);
@@ -149,7 +159,7 @@ impl Cells {
         );
     }
 
-    /// An invocation per particle; one where there is none, so that steps are settled and time goes on.
+    /// An invocation per particle; one where there is none, so that steps end and time advances.
     fn all(&self) -> Extent {
         Extent::Items(self.particles.max(1))
     }

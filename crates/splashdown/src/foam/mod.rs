@@ -45,11 +45,10 @@ use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recor
 use splashdown_io::Particles;
 
 use crate::SimulationError;
-use crate::cells::{Cells, GRID};
-use crate::fields::Fields;
+use crate::cells::{Cells, GRID, ROWS};
 use crate::kernel;
-use crate::passes::{PARAMS, Params, ROWS, STATE};
 use crate::scene::FoamSettings;
+use crate::state::{Fields, PARAMS, Params, STATE};
 
 /// The WGSL side of [`FoamParams`], [`FoamState`] and [`Diffuse`].
 pub(crate) const FOAM: WgslModule = WgslModule { name: "sph/foam", source: include_str!("foam.wgsl") };

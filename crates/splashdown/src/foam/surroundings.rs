@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use crate::cells::Grid;
 use crate::kernel::{Kernel, WendlandC2};
-use crate::passes::Params;
+use crate::state::Params;
 
 /// The sorted fluid.
 pub(super) struct Around<'a> {

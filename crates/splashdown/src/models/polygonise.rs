@@ -1,7 +1,7 @@
 //! Triangles of a shape that is given by its signed distance.
 //!
 //! Marching cubes on a grid gives a closed, manifold, oriented mesh, whatever the function (see
-//! `surface::tables`), but slivers too. So the vertices are then moved along the surface towards the middle of
+//! `marching_cubes`), but slivers too. So the vertices are then moved along the surface towards the middle of
 //! their neighbours and back onto the surface by Newton's method, a few rounds; the normals are the gradients.
 //!
 //! Grid nodes in blocks that the surface cannot reach are not evaluated one by one: a distance changes by no more
@@ -11,7 +11,7 @@ use glam::{UVec3, Vec3, uvec3, vec3};
 use rayon::prelude::*;
 use splashdown_io::Mesh;
 
-use crate::surface::tables::TRIANGLES;
+use crate::marching_cubes::TRIANGLES;
 
 /// Nodes along an edge of a block.
 const BLOCK: u32 = 4;

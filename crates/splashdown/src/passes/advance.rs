@@ -4,10 +4,10 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
-use super::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use crate::boundary::{closed_bounds, law};
 use crate::cells::Grid;
 use crate::cells::cell_counts::{self, CellCounter};
+use crate::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 
 /// The WGSL side.
 pub const WGSL: WgslModule = WgslModule { name: "sph/advance", source: include_str!("advance.wgsl") };

@@ -21,10 +21,9 @@ pub use step::{Couplings, Step};
 use splashdown_gpu::{Grid as DispatchSize, Recording};
 
 use crate::boundary::KernelPair;
-use crate::cells::Cells;
-use crate::fields::Fields;
-use crate::passes::{begin, end_step};
-use crate::scene::{DensityMode, KernelKind, Method, Scene, SurfaceTension};
+use crate::cells::{self, Cells};
+use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
+use crate::state::{Fields, begin};
 
 /// A scheme with the choices of a scene's `[solver]` section that select passes.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +65,7 @@ impl Scheme {
         self.method == Method::Wcsph && !self.has_tension
     }
 
-    /// Records one step. [`begin_frame`] precedes the first step of a frame, and [`end_step`](fn@end_step) follows the
+    /// Records one step. [`begin_frame`] precedes the first step of a frame, and [`end_step`](crate::state::end_step::record) follows the
     /// last step of a submission. Needs a buffer of accelerations unless the scheme [is fused](Self::is_fused) and there
     /// are no couplings.
     pub fn step(
@@ -107,10 +106,11 @@ pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
     recording
 }
 
-/// Ends the last step of a submission: afterwards the host, or another step, may read the state.
-pub fn end_step(fields: &Fields) -> Recording {
-    let mut recording = Recording::new("end_step");
-    let buffers = [fields.params.id(), fields.state.id(), fields.counters.id()];
-    recording.dispatch(&end_step::END_STEP, DispatchSize::Groups(1), &buffers);
-    recording
+impl From<scene::Sort> for cells::Sort {
+    fn from(sort: scene::Sort) -> Self {
+        match sort {
+            scene::Sort::Counting => Self::Counting,
+            scene::Sort::Bitonic => Self::Bitonic,
+        }
+    }
 }

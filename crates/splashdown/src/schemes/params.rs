@@ -2,8 +2,8 @@
 
 use super::{Scheme, mueller2003, wcsph};
 use crate::boundary::wall_offset;
-use crate::passes::Params;
 use crate::scene::{Derived, Method, NegativePressure, Scene, SurfaceTension};
+use crate::state::Params;
 
 /// The constants of a scene with this number of particles.
 pub fn params(scene: &Scene, particles: u32) -> Params {

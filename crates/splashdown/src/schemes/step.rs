@@ -6,7 +6,6 @@ use super::Scheme;
 use crate::bodies::Bodies;
 use crate::cells::Cells;
 use crate::coupling::{Coupling, Stage, StepRecorder};
-use crate::fields::Fields;
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
@@ -14,6 +13,7 @@ use crate::passes::{
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method};
+use crate::state::Fields;
 
 /// The couplings of a simulation.
 #[derive(Clone, Copy, Default)]

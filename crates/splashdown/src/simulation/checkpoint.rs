@@ -7,7 +7,7 @@ use splashdown_io::{Archive, NpyElement};
 use super::Simulation;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
 use crate::flow::LoadedFlow;
-use crate::passes::StepCounters;
+use crate::state::StepCounters;
 use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
@@ -140,7 +140,7 @@ impl Simulation {
             let reason = "its entry `tally` contradicts its counts of particles".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
-        // A step that is not settled would be settled twice.
+        // A step that has not ended would end twice.
         if counters[StepCounters::MOVED] != 0 {
             let reason = "its entry `tally` is of the middle of a step".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
@@ -173,14 +173,14 @@ impl Simulation {
 #[derive(Clone, Copy)]
 enum Words {
     Plain(Buffer<u32>),
-    State(Buffer<crate::passes::StepState>),
+    State(Buffer<crate::state::StepState>),
 }
 
 impl Words {
     fn words(self) -> usize {
         match self {
             Self::Plain(buffer) => buffer.len() as usize,
-            Self::State(_) => size_of::<crate::passes::StepState>() / 4,
+            Self::State(_) => size_of::<crate::state::StepState>() / 4,
         }
     }
 

@@ -5,7 +5,7 @@ use splashdown_gpu::{Readback, block_on};
 
 use super::Simulation;
 use crate::bodies::Bodies;
-use crate::passes::{DEAD_NON_FINITE, StepCounters, StepState};
+use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
 /// Most steps in one submission to a device: a bound on how long it does not answer.

@@ -6,8 +6,8 @@ use splashdown_gpu::block_on;
 use super::Simulation;
 use crate::bodies::{BodyState, LoadedBody};
 use crate::mouse_force::{MouseForce, MouseForceCoupling};
-use crate::passes::{Params, StepState};
 use crate::scene::{Motion, Scene, Solver};
+use crate::state::{Params, StepState};
 use crate::{SimulationError, sample, schemes};
 
 impl Simulation {

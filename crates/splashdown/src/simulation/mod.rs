@@ -15,13 +15,12 @@ use self::frame::FrameInProgress;
 use crate::Stats;
 use crate::bodies::{Bodies, BodyMesh};
 use crate::cells::Cells;
-use crate::fields::Fields;
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
-use crate::passes::Params;
 use crate::probes::{ProbeRows, Probes};
 use crate::scene::Scene;
 use crate::solid::RepairReport;
+use crate::state::{Fields, Params};
 
 /// A fluid in its box, with everything that moves it, on one device.
 ///

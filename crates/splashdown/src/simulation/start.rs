@@ -9,15 +9,15 @@ use splashdown_io::Particles;
 use super::Simulation;
 use super::frame::MOST_STEPS;
 use crate::bodies::{Bodies, LoadedBody};
+use crate::boundary::wall_table;
 use crate::cells::{Cells, Grid};
-use crate::fields::Fields;
 use crate::flow::{Flow, LoadedFlow};
-use crate::passes::{DEAD_UNBORN, Params, StepState};
 use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::schemes::{self, Couplings, Scheme};
 use crate::solid;
-use crate::{Device, SimulationError, Stats, bodies, memory, sample};
+use crate::state::{DEAD_UNBORN, Fields, Params, StepState};
+use crate::{Device, SimulationError, Stats, bodies, memory, sample, state};
 
 impl Simulation {
     /// Places a scene's particles on a device.
@@ -136,8 +136,9 @@ impl Simulation {
                 allowed: 1 << 31,
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
-        let fields = Fields::new(&mut executor, &params, scheme.walls(), scheme.needs_normals())?;
-        let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort)?;
+        let fields =
+            Fields::new(&mut executor, &params, &wall_table(scheme.walls()), scheme.needs_normals())?;
+        let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {
             None
         } else {
@@ -200,13 +201,13 @@ impl Simulation {
             self.fields.make_accelerations(&mut self.executor)?;
         }
         let step = scheme.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
-        let end_step = schemes::end_step(&self.fields);
+        let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done));
         self.batches = (0..=MOST_STEPS.ilog2())
             .map(|power| {
                 let mut batch = Recording::new(format!("{} steps", 1 << power));
                 batch.repeat(&step, 1 << power, done);
-                // The step before is settled by the one that follows; behind the last one nothing follows.
+                // The next step ends the step before it; nothing follows the last one.
                 batch.append(&end_step);
                 batch
             })

@@ -6,8 +6,9 @@ use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording, block_on};
 use splashdown_io::Mesh;
 
 use super::params::{Lattice, NODES, ROWS, Status, SurfaceParams};
-use super::{SurfaceError, blocks, field, march, smooth, tables, volume};
+use super::{SurfaceError, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
+use crate::marching_cubes;
 
 /// The particles whose surface is wanted, where the simulation keeps them.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +96,7 @@ impl Buffers {
         let e = executor;
         Ok(Self {
             lattice: e.create_uniform("surface lattice", lattice)?,
-            cases: e.create_from("surface cases", &tables::packed())?,
+            cases: e.create_from("surface cases", &marching_cubes::packed())?,
             samples: e.create("surface samples", 0)?,
             crowding: e.create("surface crowding", 0)?,
             marks: e.create("surface marks", 0)?,

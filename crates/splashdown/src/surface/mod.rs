@@ -11,7 +11,7 @@
 //! 5. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), where asked for.
 //!
 //! The mesh is closed, manifold and oriented outwards for any set of particles: which vertices exist and how
-//! triangles join them follows from the nodes' signs alone (see `tables`), each node's sign is computed
+//! triangles join them follows from the nodes' signs alone (see [`marching_cubes`](crate::marching_cubes)), each node's sign is computed
 //! once, and the nodes at the rim of the marked blocks are outside. The same particles give the same bits on
 //! the same device, with any number of threads.
 //!
@@ -50,7 +50,6 @@ mod parts;
 mod reconstruct;
 mod smooth;
 mod spline;
-pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 mod volume;

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
+use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown_gpu::{Grid as Extent, testing};
 
 use super::harness::{Case, Check, Compare, Data, close, exact, wide};

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::flow::{EmissionSchedule, Nozzle, SinkShape};
-use splashdown::passes::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
+use splashdown::state::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
 use splashdown_gpu::Grid as Extent;
 
 use super::harness::{Case, Data, close, exact, wide};

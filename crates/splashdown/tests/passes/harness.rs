@@ -6,8 +6,8 @@ use splashdown::bodies::Body;
 use splashdown::cells::Grid;
 use splashdown::flow::{Nozzle, SinkShape};
 use splashdown::foam::{Diffuse, FoamParams, FoamState};
-use splashdown::passes::{Params, StepState};
 use splashdown::probes::ProbePoint;
+use splashdown::state::{Params, StepState};
 use splashdown_gpu::{
     Access, Buffer, BufferId, Executor, GpuElement, Grid as Extent, PassDesc, Recording, bytemuck,
 };

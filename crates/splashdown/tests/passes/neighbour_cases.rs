@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
-use splashdown::passes::{Params, StepCounters};
+use splashdown::state::{Params, StepCounters};
 use splashdown_gpu::{CpuExecutor, Grid as Extent};
 
 use super::cases::census_of;

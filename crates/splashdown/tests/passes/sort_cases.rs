@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
+use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 use splashdown_gpu::{Grid as Extent, PassDesc};
 
 use super::cases::{next_state, same_state, state_of};

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use splashdown::passes::Params;
+use splashdown::state::Params;
 
 use super::oracle::Kernel;
 

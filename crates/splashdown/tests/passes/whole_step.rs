@@ -1,12 +1,12 @@
 //! One whole step: the CPU up to a pass, the GPU from there, and the CPU to the end, compared once.
 
 use glam::{Vec2, Vec4};
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::cells::{Cells, Grid};
-use splashdown::passes::{StepCounters, StepState};
+use splashdown::sample;
 use splashdown::scene::Scene;
 use splashdown::schemes::{self, Couplings, Scheme};
-use splashdown::{Fields, sample};
+use splashdown::state::{self, Fields, StepCounters, StepState};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuElement, GpuExecutor, Recording, bytemuck, testing};
 
 fn scene(solver: &str) -> Scene {
@@ -46,13 +46,14 @@ impl Rig {
         let n = particles.positions.len() as u32;
         let (params, way) = (schemes::params(scene, n), Scheme::new(scene));
         let kernels: KernelPair = way.walls();
-        let mut fields = Fields::new(&mut executor, &params, kernels, way.needs_normals()).unwrap();
+        let mut fields =
+            Fields::new(&mut executor, &params, &wall_table(kernels), way.needs_normals()).unwrap();
         if !way.is_fused() {
             fields.make_accelerations(&mut executor).unwrap();
         }
         executor.write(fields.counters, &[0; StepCounters::WORDS]).unwrap();
         let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();
-        let cells = Cells::new(&mut executor, grid, n, scene.solver.sort).unwrap();
+        let cells = Cells::new(&mut executor, grid, n, scene.solver.sort.into()).unwrap();
         let nudge = |i: usize| 0.01 * (testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5);
         let (x, v) = (&particles.positions, &particles.velocities);
         let positions: Vec<Vec4> = (0..x.len())
@@ -75,7 +76,7 @@ impl Rig {
         cells.record_first_count(&mut count, &fields);
         executor.run(&count).unwrap();
         let mut step = way.step(&cells, &fields, &Couplings::default(), n);
-        step.append(&schemes::end_step(&fields));
+        step.append(&state::end_step::record(&fields));
         Self { executor, fields, cells, step }
     }
 

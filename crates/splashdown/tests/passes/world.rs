@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
-use splashdown::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState};
+use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepState};
 use splashdown_gpu::{bytemuck, testing};
 
 pub const SPACING: f32 = 0.05;

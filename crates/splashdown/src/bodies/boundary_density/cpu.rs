@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::bodies::types::{Body, Contact};
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 const CHUNK: usize = 4096;
 

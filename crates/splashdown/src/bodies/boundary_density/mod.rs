@@ -10,7 +10,7 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::types::{self, Body, Contact};
-use crate::passes::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// For densities that are summed.
 pub static SUMMATION: PassDesc = PassDesc {

@@ -5,7 +5,7 @@ use splashdown_gpu::{CpuWork, Slot};
 use super::quantum;
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
 use crate::boundary::{KernelPair, WallKernel, law, part};
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 const CHUNK: usize = 4096;
 

@@ -19,7 +19,7 @@ use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair, part};
 use crate::kernel;
-use crate::passes::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::PLANES, boundary::LAW, types::WGSL];
 

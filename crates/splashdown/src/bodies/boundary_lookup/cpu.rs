@@ -6,7 +6,7 @@ use crate::bodies::field;
 use crate::bodies::types::{Body, Contact};
 use crate::boundary::{KernelPair, WallKernel};
 use crate::kernel::Kernel;
-use crate::passes::{Params, StepCounters};
+use crate::state::{Params, StepCounters};
 
 /// Particles of a chunk lie near one another, so that most bodies are far from all of them.
 const CHUNK: usize = 128;

@@ -21,7 +21,7 @@ use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
-use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS};
 
 const IMPORTS: &[WgslModule] =
     &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, kernel::WGSL, boundary::PLANES, types::WGSL];

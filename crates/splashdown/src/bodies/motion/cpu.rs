@@ -3,7 +3,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::bodies::boundary_force::quantum;
 use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
-use crate::passes::{Params, StepCounters, StepState};
+use crate::state::{Params, StepCounters, StepState};
 
 pub(super) fn motion(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, scripts, bodies, sums, counters] = slots else { unreachable!() };

@@ -9,7 +9,7 @@ mod cpu;
 use splashdown_gpu::{PassDesc, read, uniform, write};
 
 use super::types::{self, Body, ScriptSample};
-use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static MOTION: PassDesc = PassDesc {

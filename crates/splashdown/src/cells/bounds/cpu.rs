@@ -2,7 +2,7 @@ use glam::UVec2;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
-use crate::passes::StepState;
+use crate::state::StepState;
 
 /// Serial: a baseline, and a small part of it.
 pub(super) fn bounds(_: CpuWork, slots: &mut [Slot<'_>]) {

@@ -6,7 +6,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::cells::cell_counts::{self, CellCounter};
-use crate::passes::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
+use crate::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 
 const CHUNK: usize = 4096;
 

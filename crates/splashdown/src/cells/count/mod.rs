@@ -11,7 +11,7 @@ use glam::Vec4;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{CELL_COUNTS, GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static COUNT: PassDesc = PassDesc {

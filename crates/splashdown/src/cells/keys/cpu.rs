@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
-use crate::passes::StepState;
+use crate::state::StepState;
 
 pub(super) fn keys(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [grid, state, cell_counts, pairs] = slots else { unreachable!() };

@@ -6,7 +6,7 @@ use glam::UVec2;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{GRID, Grid};
-use crate::passes::{STATE, StepState};
+use crate::state::{STATE, StepState};
 
 /// See the module.
 pub static KEYS: PassDesc = PassDesc {

@@ -4,8 +4,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::{Grid, cell_counts};
-use crate::passes::end_step::finish_step;
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState, finish_step};
 
 const CHUNK: usize = 4096;
 

@@ -3,7 +3,7 @@
 //! Each one takes itself off the cell_counts: what is left of its cell's number tells the place, and once all are placed all
 //! numbers are zero again, ready for the next count. So nothing has to be cleared, and no rank to be written and read.
 //!
-//! The first invocation settles the step before, which a dispatch of its own would do otherwise.
+//! The first invocation ends the step before, which would otherwise take a dispatch of its own.
 
 mod cpu;
 
@@ -11,7 +11,7 @@ use glam::UVec2;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
 
 /// See the module.
 pub static SCATTER: PassDesc = PassDesc {

@@ -2,7 +2,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 pub(super) fn emission_schedule(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, nozzles, schedules] = slots else { unreachable!() };

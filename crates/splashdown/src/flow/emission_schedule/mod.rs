@@ -10,7 +10,7 @@ use splashdown_gpu::{PassDesc, read, uniform, write};
 
 use super::{FLOW, Nozzle};
 use crate::cells::{GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// See the module.
 pub static EMISSION_SCHEDULE: PassDesc = PassDesc {

@@ -3,7 +3,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
-use crate::passes::Params;
+use crate::state::Params;
 
 /// Nothing is born nearer to another particle than this many spacings.
 const NEAREST: f32 = 0.7;

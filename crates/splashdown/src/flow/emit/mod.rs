@@ -10,8 +10,8 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{FLOW, Nozzle};
-use crate::cells::{GRID, Grid};
-use crate::passes::{PARAMS, Params, ROWS, STATE};
+use crate::cells::{GRID, Grid, ROWS};
+use crate::state::{PARAMS, Params, STATE};
 
 /// See the module.
 pub static EMIT: PassDesc = PassDesc {

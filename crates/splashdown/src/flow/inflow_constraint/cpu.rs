@@ -4,7 +4,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 pub(super) fn inflow_constraint(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [

@@ -4,7 +4,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::flow::SinkShape;
-use crate::passes::{DEAD_DRAINED, StepCounters, StepState};
+use crate::state::{DEAD_DRAINED, StepCounters, StepState};
 
 pub(super) fn sink(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [grid, state, cell_start, drains, drain_maps, sorted_positions, counters] = slots else {

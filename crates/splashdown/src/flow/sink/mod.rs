@@ -7,7 +7,7 @@ use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{FLOW, SinkShape};
 use crate::cells::{GRID, Grid};
-use crate::passes::{STATE, STEP_COUNTERS, StepState};
+use crate::state::{STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static SINK: PassDesc = PassDesc {

@@ -5,7 +5,7 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::{Diffuse, DiffuseKind, FoamParams, FoamState};
-use crate::passes::Params;
+use crate::state::Params;
 
 pub(super) fn advect(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, foam, foam_state, cell_start, positions, velocities, pool, moved, alive] = slots

@@ -22,7 +22,7 @@ use splashdown_gpu::{PassDesc, read, uniform, write};
 
 use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
 use crate::cells::Grid;
-use crate::passes::Params;
+use crate::state::Params;
 
 /// See the module.
 pub static ADVECT: PassDesc = PassDesc {

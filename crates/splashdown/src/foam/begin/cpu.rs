@@ -1,7 +1,7 @@
 use splashdown_gpu::{CpuWork, Slot, dispatch_groups};
 
 use crate::foam::{FoamParams, FoamState};
-use crate::passes::StepState;
+use crate::state::StepState;
 
 pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [foam, state, foam_state, groups] = slots else { unreachable!() };

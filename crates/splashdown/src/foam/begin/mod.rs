@@ -10,7 +10,7 @@ mod cpu;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{FOAM, FoamParams, FoamState};
-use crate::passes::{STATE, StepState};
+use crate::state::{STATE, StepState};
 
 /// See the module.
 pub static BEGIN: PassDesc = PassDesc {

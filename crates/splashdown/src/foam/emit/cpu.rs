@@ -6,7 +6,7 @@ use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::types::{place_of, seed_of, unit};
 use crate::foam::{Diffuse, FoamParams, FoamState};
-use crate::passes::Params;
+use crate::state::Params;
 
 /// Velocity away from the cylinder's axis at its side, over the particle's speed.
 const SPREAD: f32 = 0.1;

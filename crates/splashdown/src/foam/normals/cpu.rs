@@ -3,9 +3,9 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::foam::FoamState;
 use crate::kernel::{Kernel, WendlandC2};
-use crate::passes::Params;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
+use crate::state::Params;
 
 const LEAST_NORMAL: f32 = 0.5;
 

@@ -11,9 +11,9 @@ use glam::Vec4;
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{FOAM, FoamState};
-use crate::cells::{GRID, Grid};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel;
-use crate::passes::{PARAMS, Params, ROWS, STATE};
+use crate::state::{PARAMS, Params, STATE};
 
 /// See the module.
 pub static NORMALS: PassDesc = PassDesc {

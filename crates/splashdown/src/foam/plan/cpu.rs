@@ -3,7 +3,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::foam::types::place_of;
 use crate::foam::{FoamParams, FoamState};
-use crate::passes::Params;
+use crate::state::Params;
 
 pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, foam, starts, counted, foam_state] = slots else { unreachable!() };

@@ -8,7 +8,7 @@ mod cpu;
 use splashdown_gpu::{PassDesc, read, uniform, write};
 
 use super::{FOAM, FoamParams, FoamState};
-use crate::passes::{PARAMS, Params, STATE};
+use crate::state::{PARAMS, Params, STATE};
 
 /// See the module.
 pub static PLAN: PassDesc = PassDesc {

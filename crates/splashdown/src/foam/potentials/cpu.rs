@@ -3,9 +3,9 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::foam::{FoamParams, FoamState};
 use crate::kernel::{Kernel, WendlandC2};
-use crate::passes::Params;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
+use crate::state::Params;
 
 const FORWARDS: f32 = 0.6;
 

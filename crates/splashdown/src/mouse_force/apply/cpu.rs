@@ -4,7 +4,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
 use crate::mouse_force::MouseForce;
-use crate::passes::StepState;
+use crate::state::StepState;
 
 pub(super) fn apply(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [grid, state, cell_start, mouse_force, sorted_positions, sorted_velocities, accelerations] = slots

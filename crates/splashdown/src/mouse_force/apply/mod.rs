@@ -7,7 +7,7 @@ use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{MOUSE_FORCE, MouseForce};
 use crate::cells::{GRID, Grid};
-use crate::passes::{STATE, StepState};
+use crate::state::{STATE, StepState};
 
 /// See the module.
 pub static APPLY: PassDesc = PassDesc {

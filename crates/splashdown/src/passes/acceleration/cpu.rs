@@ -7,8 +7,8 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::boundary::{NearWalls, WallKernel, part};
 use crate::kernel::{Kernel, SMALLEST_Q};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
-use crate::passes::{Params, StepState};
 use crate::simd::{Lanes, Register};
+use crate::state::{Params, StepState};
 
 pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [

@@ -16,10 +16,11 @@ pub(crate) mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{FORCES, PARAMS, Params, ROWS, STATE, StepState};
+use super::FORCES;
 use crate::boundary::{self, KernelPair, part};
-use crate::cells::{GRID, Grid};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

@@ -6,8 +6,8 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
-use crate::passes::{Params, StepState};
 use crate::simd::Register;
+use crate::state::{Params, StepState};
 
 pub(super) fn continuity<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, positions, velocities, wall_table, densities] = slots else {

@@ -5,9 +5,9 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
-use crate::passes::Params;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
+use crate::state::Params;
 
 pub(super) fn density<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, cell_start, positions, wall_table, densities] = slots else { unreachable!() };

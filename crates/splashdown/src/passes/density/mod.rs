@@ -8,10 +8,10 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, ROWS, STATE};
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
+use crate::state::{PARAMS, Params, STATE};
 
 const IMPORTS: &[WgslModule] =
     &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::LAW, boundary::WGSL];

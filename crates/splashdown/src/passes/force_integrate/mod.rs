@@ -10,10 +10,11 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, uniform_array, wgsl, write};
 
-use super::{ADVANCE, FORCES, PARAMS, Params, ROWS, STATE, STEP_COUNTERS, StepState};
+use super::{ADVANCE, FORCES};
 use crate::boundary::{self, KernelPair};
-use crate::cells::{CELL_COUNTS, GRID, Grid};
+use crate::cells::{CELL_COUNTS, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

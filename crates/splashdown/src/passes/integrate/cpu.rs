@@ -1,8 +1,8 @@
 use glam::{Vec4, Vec4Swizzles};
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::passes::StepState;
 use crate::passes::advance::{Before, Persistent, advance_all};
+use crate::state::StepState;
 
 pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [

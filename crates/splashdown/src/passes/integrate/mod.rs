@@ -15,9 +15,10 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{ADVANCE, PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+use super::ADVANCE;
 use crate::boundary;
 use crate::cells::{CELL_COUNTS, GRID, Grid};
+use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// See the module.
 pub static INTEGRATE: PassDesc = PassDesc {

@@ -4,8 +4,8 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::boundary::{KernelPair, NearWalls, part};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
-use crate::passes::{Params, StepState};
 use crate::simd::Register;
+use crate::state::{Params, StepState};
 
 pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, positions, velocities, densities, wall_table, accelerations] =

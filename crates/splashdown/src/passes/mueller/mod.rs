@@ -10,10 +10,10 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, ROWS, STATE, StepState};
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, Kernel, Spiky};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// See the module.
 pub static MUELLER: PassDesc = PassDesc {

@@ -4,9 +4,9 @@ use glam::{Vec2, Vec3, Vec4};
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::kernel::Kernel;
-use crate::passes::Params;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
+use crate::state::Params;
 
 pub(super) fn normals<K: Kernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, cell_start, positions, densities, normals] = slots else { unreachable!() };

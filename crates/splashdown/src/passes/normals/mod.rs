@@ -6,9 +6,9 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, ROWS, STATE};
-use crate::cells::{GRID, Grid};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
+use crate::state::{PARAMS, Params, STATE};
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

@@ -21,9 +21,9 @@ use std::ops::Range;
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::Params;
 use crate::cells::Grid;
 use crate::simd::{Leaf, Register, Simd, run_with};
+use crate::state::Params;
 use candidates::{Candidates, Surroundings};
 use columns::Columns;
 pub(crate) use vector::{difference, dot, scaled, splat};

@@ -2,7 +2,7 @@ use glam::{Vec2, Vec4};
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 pub(super) fn state_equation(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, velocities, densities] = slots else { unreachable!() };

@@ -6,7 +6,7 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use super::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// See the module.
 pub static STATE_EQUATION: PassDesc = PassDesc {

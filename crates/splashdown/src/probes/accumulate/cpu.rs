@@ -1,8 +1,8 @@
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::bodies::Body;
-use crate::passes::{Params, StepState};
 use crate::probes::{Account, ProbePoint, ROW, VALUES};
+use crate::state::{Params, StepState};
 
 pub(super) fn accumulate(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, probes, bodies, values, counts, accounts, rows] = slots else { unreachable!() };

@@ -10,7 +10,7 @@ use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{PROBE, ProbePoint};
 use crate::bodies::{BODY, Body};
-use crate::passes::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// See the module.
 pub static ACCUMULATE: PassDesc = PassDesc {

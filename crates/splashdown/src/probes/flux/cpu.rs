@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use crate::cells::Grid;
-use crate::passes::StepState;
 use crate::probes::ProbePoint;
+use crate::state::StepState;
 
 pub(super) fn flux(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [grid, state, cell_start, probes, sorted_positions, positions, counts] = slots else {

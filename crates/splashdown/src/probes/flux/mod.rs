@@ -11,7 +11,7 @@ use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{PROBE, ProbePoint};
 use crate::cells::{GRID, Grid};
-use crate::passes::{STATE, StepState};
+use crate::state::{STATE, StepState};
 
 /// See the module.
 pub static FLUX: PassDesc = PassDesc {

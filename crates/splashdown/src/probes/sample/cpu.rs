@@ -5,8 +5,8 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use super::{COLUMN, WETTED};
 use crate::cells::Grid;
-use crate::passes::{Params, StepState};
 use crate::probes::{ProbePoint, VALUES};
+use crate::state::{Params, StepState};
 
 pub(super) fn sample(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, grid, state, cell_start, probes, sorted_positions, densities, accelerations, values] = slots

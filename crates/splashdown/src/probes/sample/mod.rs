@@ -18,7 +18,7 @@ use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
 use super::{PROBE, ProbePoint};
 use crate::cells::{GRID, Grid};
-use crate::passes::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, StepState};
 
 /// Below this share of fluid round a point its pressure fades to zero: a corner of three walls still has an eighth.
 pub const WETTED: f32 = 0.1;

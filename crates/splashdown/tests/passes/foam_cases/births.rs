@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec4};
 use splashdown::foam::{FoamParams, FoamState};
-use splashdown::passes::Params;
+use splashdown::state::Params;
 use splashdown_gpu::Grid as Extent;
 
 use super::super::harness::{Case, Data, exact};
@@ -15,7 +15,7 @@ use super::{foam, now, place, seed, speed, unit};
 
 pub(super) fn begin(
     name: &'static str,
-    change: fn(&mut splashdown::passes::StepState, &mut FoamState),
+    change: fn(&mut splashdown::state::StepState, &mut FoamState),
 ) -> Case {
     let mut step = state(1500);
     step.time = 0.7125;

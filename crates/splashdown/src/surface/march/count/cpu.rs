@@ -3,8 +3,8 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use super::super::halo::{cell_case, is_uniform, signs, upper_slots};
+use crate::marching_cubes::COUNTS;
 use crate::surface::params::{Lattice, ROWS, Status};
-use crate::surface::tables::COUNTS;
 
 pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, status, list, slot_of, sign_bits, _, rows, vertex_counts, triangle_counts] = slots else {

@@ -3,9 +3,9 @@ use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
 use super::super::halo::{cell_case, signs, upper_slots};
+use crate::marching_cubes;
 use crate::surface::params::{Lattice, NONE, Status};
 use crate::surface::parts::by_starts;
-use crate::surface::tables;
 
 pub(super) fn triangles(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, status, list, slot_of, rows, _, vertex_starts, triangle_starts, indices] = slots else {
@@ -26,7 +26,7 @@ pub(super) fn triangles(_: CpuWork, slots: &mut [Slot<'_>]) {
         let mut triangles = triangles.iter_mut();
         for cell in 0..512 {
             let (x, y, z) = (cell & 7, cell >> 3 & 7, cell >> 6);
-            for edges in &tables::TRIANGLES[cell_case(&signs, x, y, z)] {
+            for edges in &marching_cubes::TRIANGLES[cell_case(&signs, x, y, z)] {
                 let corners = edges.map(|edge| vertices.number([x, y, z], edge));
                 // Room for fewer triangles than there are: the rest is cut off, and reported by the status.
                 let Some(triangle) = triangles.next() else { return };

@@ -17,7 +17,7 @@ fn sign_bits(row: u32) -> u32 {
     return rows[row].x >> 24u;
 }
 
-// The number of the vertex on an edge (numbered as in tables.rs) of the cell at a node of the whole lattice.
+// The number of the vertex on an edge (numbered as in marching_cubes.rs) of the cell at a node of the whole lattice.
 fn vertex_on(cell: vec3<i32>, edge: u32) -> u32 {
     let axis = edge >> 2u;
     let a = i32(edge & 1u);

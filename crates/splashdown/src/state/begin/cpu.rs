@@ -1,6 +1,6 @@
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::passes::{Params, StepState};
+use crate::state::{Params, StepState};
 
 pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, duration, state] = slots else { unreachable!() };

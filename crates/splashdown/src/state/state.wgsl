@@ -1,4 +1,4 @@
-// Mirrors StepState in passes/mod.rs.
+// Mirrors StepState in step.rs.
 struct StepState {
     dt: f32,
     stable_dt: f32,

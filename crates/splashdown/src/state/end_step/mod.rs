@@ -5,17 +5,17 @@
 //! ends, so the choice is one step late; the limit on velocities of half a spacing per step catches the rest. Near the
 //! end of the frame the rest is split evenly, so that no tiny step is left over.
 //!
-//! A step that is to be settled says so by [`StepCounters::MOVED`], so settling twice does it once. The pass of this
-//! module runs once per submission; inside one, the next step's [`scatter`](crate::cells) settles the step
-//! before it, which saves a dispatch per step: nothing before it in a step looks at the state.
+//! [`StepCounters::MOVED`] marks a step that has not ended yet, so ending it twice has no effect. The pass of this
+//! module runs once per submission; inside one, the next step's [`scatter`](crate::cells) ends the step before
+//! it, which saves a dispatch per step: no earlier pass of a step reads the state.
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, uniform, write};
+use splashdown_gpu::{Grid as Extent, PassDesc, Recording, uniform, write};
 
 #[cfg(doc)]
 use super::StepCounters;
-use super::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
+use super::{Fields, PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
 
 pub(crate) use cpu::finish_step;
 
@@ -30,3 +30,11 @@ pub static END_STEP: PassDesc = PassDesc {
     bindings: &[uniform::<Params>("params"), write::<StepState>("state"), write::<u32>("counters")],
     cpu: cpu::end_step,
 };
+
+/// Ends the last step of a submission: afterwards the host, or another step's passes, may read the state.
+pub fn record(fields: &Fields) -> Recording {
+    let mut recording = Recording::new("end_step");
+    let buffers = [fields.params.id(), fields.state.id(), fields.counters.id()];
+    recording.dispatch(&END_STEP, Extent::Groups(1), &buffers);
+    recording
+}

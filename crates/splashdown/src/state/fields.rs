@@ -4,8 +4,7 @@ use bytemuck::Zeroable;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{Buffer, Executor, GpuError};
 
-use crate::boundary::{KernelPair, wall_table};
-use crate::passes::{Params, StepCounters, StepState};
+use super::{Params, StepCounters, StepState};
 
 /// Every buffer that passes share, but for those of the sort. One entry per particle unless said otherwise.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +17,7 @@ pub struct Fields {
     pub duration: Buffer<f32>,
     /// Counters and maxima, [`StepCounters::WORDS`] words.
     pub counters: Buffer<u32>,
-    /// Overlap of half-spaces; see [`wall_table`].
+    /// Overlap of half-spaces; see [`boundary::wall_table`](crate::boundary::wall_table).
     pub wall_table: Buffer<Vec4>,
     /// Persistent: position in metres, and 0 or why the particle is dead.
     pub positions: Buffer<Vec4>,
@@ -43,14 +42,14 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Makes the buffers.
+    /// Makes the buffers; `wall_table` is the table of the [overlaps](crate::boundary::wall_table).
     ///
     /// # Errors
     /// As [`Executor::create`].
     pub fn new(
         executor: &mut Executor,
         params: &Params,
-        walls: KernelPair,
+        wall_table: &[Vec4],
         normals: bool,
     ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
@@ -59,7 +58,7 @@ impl Fields {
             state: executor.create_small("state", &[StepState::zeroed()])?,
             duration: executor.create_from("duration", &[0.0])?,
             counters: executor.create_from("counters", &[0; StepCounters::WORDS])?,
-            wall_table: executor.create_small("wall_table", &wall_table(walls))?,
+            wall_table: executor.create_small("wall_table", wall_table)?,
             positions: executor.create("positions", n)?,
             velocities: executor.create("velocities", n)?,
             ids: executor.create("ids", n)?,

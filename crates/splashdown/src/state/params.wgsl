@@ -1,5 +1,5 @@
 #import sph/state
-// Mirrors Params in passes/mod.rs.
+// Mirrors Params in params.rs.
 struct Params {
     gravity: vec3<f32>,
     support_radius: f32,

@@ -1,5 +1,5 @@
 #import sph/step_counters
-// The end of a step; needs `params`, `state` and `counters` (not atomic). See passes/end_step.
+// The end of a step; needs `params`, `state` and `counters` (not atomic). See state/end_step.
 
 fn finish_step() {
     if (counters[COUNTER_MOVED] == 0u) {

@@ -1,4 +1,4 @@
-// The words of `counters`; see StepCounters in passes/mod.rs.
+// The words of `counters`; see StepCounters in counters.rs.
 const COUNTER_ESCAPED: u32 = 0u;
 const COUNTER_NON_FINITE: u32 = 1u;
 const COUNTER_CORRECTIONS: u32 = 2u;

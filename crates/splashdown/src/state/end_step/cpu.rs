@@ -1,13 +1,13 @@
 use splashdown_gpu::{CpuWork, Slot};
 
-use crate::passes::{Params, StepCounters, StepState};
+use crate::state::{Params, StepCounters, StepState};
 
 pub(super) fn end_step(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [params, state, counters] = slots else { unreachable!() };
     finish_step(&params.get(), &mut state.write::<StepState>()[0], counters.write());
 }
 
-/// Settles the step before, if there is one to end_step.
+/// Ends the previous step, unless it has ended already.
 pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut [u32]) {
     if std::mem::take(&mut counters[StepCounters::MOVED]) == 0 {
         return;

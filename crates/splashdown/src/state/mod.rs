@@ -1,0 +1,26 @@
+//! What every pass shares: the constants, the state of a step, its counters, and the buffers.
+//!
+//! This is the lowest module of the solver: it knows nothing of cells, walls or schemes. The two passes that
+//! only read and write the state are part of it: [`begin`] begins a frame, [`end_step`] ends a step.
+
+pub mod begin;
+mod counters;
+pub mod end_step;
+mod fields;
+mod params;
+mod step;
+
+pub use counters::{
+    DEAD_DRAINED, DEAD_ESCAPED, DEAD_NON_FINITE, DEAD_UNBORN, StepCounters, WGSL as STEP_COUNTERS,
+};
+pub(crate) use end_step::finish_step;
+pub use fields::Fields;
+pub use params::{Params, WGSL as PARAMS};
+pub use step::{STEPS, StepState, WGSL as STATE};
+
+use splashdown_gpu::PassDesc;
+
+/// The passes of this module.
+pub fn passes() -> Vec<&'static PassDesc> {
+    vec![&begin::BEGIN, &end_step::END_STEP]
+}

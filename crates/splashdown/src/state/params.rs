@@ -1,0 +1,90 @@
+//! The constants of a simulation.
+
+use glam::Vec3;
+use splashdown_gpu::{WgslModule, gpu_struct};
+
+/// The WGSL side of [`Params`]; imports [`STATE`](super::STATE).
+pub const WGSL: WgslModule = WgslModule { name: "sph/params", source: include_str!("params.wgsl") };
+
+gpu_struct! {
+    /// What does not change while a simulation runs. SI units.
+    pub struct Params {
+        /// Gravity in m/s^2.
+        gravity: Vec3,
+        /// Where the kernel becomes zero, in metres.
+        support_radius: f32,
+        /// Lower corner of the domain in metres.
+        domain_min: Vec3,
+        /// Distance of particles on the initial lattice in metres.
+        particle_spacing: f32,
+        /// Upper corner of the domain in metres.
+        domain_max: Vec3,
+        /// Mass of a particle in kg.
+        particle_mass: f32,
+        /// Amplitude of the tank's acceleration, as felt in the tank, in m/s^2.
+        shake: Vec3,
+        /// Its angular frequency in rad/s.
+        shake_rate: f32,
+        /// Density at rest in kg/m^3.
+        rest_density: f32,
+        /// Numerical speed of sound in m/s.
+        sound_speed: f32,
+        /// How far behind a closed side its solid begins, in metres: see [`wall_offset`](crate::boundary::wall_offset).
+        wall_offset: f32,
+        /// Exponent of the equation of state.
+        exponent: f32,
+        /// Kinematic viscosity in m^2/s.
+        viscosity: f32,
+        /// Coefficient alpha of the artificial viscosity.
+        artificial_viscosity: f32,
+        /// Coefficient delta of the density diffusion.
+        density_diffusion: f32,
+        /// Akinci's gamma in m^4/(kg s^2), or Mueller's sigma in N/m; 0 for none.
+        surface_tension: f32,
+        /// 0 for free slip at closed sides, 1 for no slip.
+        wall_friction: f32,
+        /// Factor of the time step's limits by sound and speed.
+        cfl_factor: f32,
+        /// Largest time step in seconds.
+        max_dt: f32,
+        /// Smallest time step in seconds.
+        min_dt: f32,
+        /// Bit 2 * axis + side is set if that side of the domain is closed.
+        closed: u32,
+        /// 1 if negative pressures count as zero.
+        clamp_pressure: u32,
+        /// Number of particles, dead ones included.
+        particle_count: u32,
+        /// Damping of the speed towards closed sides: 1 where the density is summed, 0 where it is integrated.
+        wall_damping: f32,
+    }
+}
+
+impl Params {
+    /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
+    #[inline(always)]
+    pub fn pressure_at(&self, density: f32) -> f32 {
+        let x = density / self.rest_density;
+        let stiffness = self.rest_density * self.sound_speed * self.sound_speed / self.exponent;
+        let p = if self.exponent == 7.0 {
+            let x2 = x * x;
+            stiffness * (x2 * x2 * x2 * x - 1.0)
+        } else if self.exponent == 1.0 {
+            stiffness * (x - 1.0)
+        } else {
+            stiffness * (x.powf(self.exponent) - 1.0)
+        };
+        if self.clamp_pressure == 1 { p.max(0.0) } else { p }
+    }
+
+    /// True of a finite point outside the domain.
+    #[inline]
+    pub fn is_outside(&self, x: Vec3) -> bool {
+        x.cmplt(self.domain_min).any() || x.cmpgt(self.domain_max).any()
+    }
+
+    /// Gravity and the tank's own motion, in m/s^2, at a time in seconds.
+    pub fn body_acceleration(&self, time: f32) -> Vec3 {
+        self.gravity + self.shake * (self.shake_rate * time).sin()
+    }
+}
