@@ -1,19 +1,22 @@
 //! The layers of `cargo xtask test`: each one runs even if an earlier one failed, and all are reported at the end.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 
+use crate::kill;
 use crate::process::{self, say};
 use crate::test_output::{Filter, MARK};
+use crate::watch::{SILENCE, Watch};
 
 /// How a layer ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// All well.
+    /// Success.
     Passed,
     /// Something is wrong; the text says what.
     Failed(String),
@@ -21,7 +24,7 @@ pub enum Outcome {
     Skipped(String),
 }
 
-/// What came of all layers.
+/// The outcomes of all layers.
 #[derive(Debug, Default)]
 pub struct Report {
     layers: Vec<(String, Outcome, Duration)>,
@@ -29,7 +32,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Runs one layer, whatever came before, and notes its time.
+    /// Runs one layer, whatever the earlier ones gave, and records its time.
     pub fn layer(&mut self, name: &str, body: impl FnOnce(&mut Filter) -> Result<Outcome>) {
         say(format!("\n=== {name}"));
         let start = Instant::now();
@@ -79,14 +82,28 @@ impl Report {
     }
 }
 
-/// A command whose success is the outcome.
+/// A command whose success is the outcome. It is killed if it does not end within [`SILENCE`].
 pub fn succeeds(command: &mut Command) -> Result<Outcome> {
-    process::run(command)?;
-    Ok(Outcome::Passed)
+    let words = process::line(command);
+    let mut child = command.spawn().with_context(|| format!("cannot start `{words}`"))?;
+    let start = Instant::now();
+    loop {
+        match child.try_wait()? {
+            Some(status) if status.success() => return Ok(Outcome::Passed),
+            Some(status) => return Ok(Outcome::Failed(format!("`{words}` failed ({status})"))),
+            None if start.elapsed() > SILENCE => {
+                kill::tree(child.id(), true);
+                child.wait()?;
+                let minutes = SILENCE.as_secs() / 60;
+                return Ok(Outcome::Failed(format!("`{words}` was killed after {minutes} minutes")));
+            }
+            None => thread::sleep(Duration::from_millis(50)),
+        }
+    }
 }
 
-/// A test run whose output goes through the filter.
-pub fn filtered(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
+/// A test run. Its output goes through the filter, and tests that hang are killed and named.
+pub fn tests(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
     let words = process::line(command);
     let mut child = command
         .stdout(Stdio::piped())
@@ -95,26 +112,64 @@ pub fn filtered(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
         .with_context(|| format!("cannot start `{words}`"))?;
     let stderr = child.stderr.take().context("the child has no stderr")?;
     let stdout = child.stdout.take().context("the child has no stdout")?;
-    // Cargo's own progress comes on stderr; a thread of its own, so that neither pipe fills up.
-    let echo = thread::Builder::new().name("stderr".to_owned()).spawn(move || {
-        let mut lines = Vec::new();
-        for line in BufReader::new(stderr).lines().map_while(std::io::Result::ok) {
-            eprintln!("{line}");
-            if line.contains(MARK) {
-                lines.push(line);
+    let (sender, lines) = mpsc::channel();
+    // One thread per pipe, so that neither fills up.
+    read(stdout, Source::Harness, sender.clone())?;
+    read(stderr, Source::Cargo, sender)?;
+    let mut watch = Watch::new(Instant::now());
+    let mut hung = Vec::new();
+    loop {
+        match lines.recv_timeout(Duration::from_secs(1)) {
+            Ok((source, line)) => {
+                watch.see(&line, Instant::now());
+                // Cargo's own progress is always shown.
+                if source == Source::Cargo {
+                    if line.contains(MARK) {
+                        filter.see(&line);
+                    }
+                    eprintln!("{line}");
+                } else if filter.see(&line) {
+                    say(&line);
+                }
             }
+            Err(RecvTimeoutError::Timeout) => {
+                if let Some(reason) = watch.hung(Instant::now()) {
+                    say(format!("KILLED: {reason}"));
+                    kill::tree(child.id(), false);
+                    watch.killed(Instant::now());
+                    hung.push(reason);
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
         }
-        lines
-    })?;
-    for line in BufReader::new(stdout).split(b'\n').map_while(std::io::Result::ok) {
-        let line = String::from_utf8_lossy(&line);
-        if filter.see(line.trim_end_matches('\r')) {
-            say(&line);
-        }
-    }
-    for line in echo.join().unwrap_or_default() {
-        filter.see(&line);
     }
     let status = child.wait()?;
+    if !hung.is_empty() {
+        return Ok(Outcome::Failed(format!("killed: {}", hung.join("; "))));
+    }
     if status.success() { Ok(Outcome::Passed) } else { Ok(Outcome::Failed(format!("`{words}` ({status})"))) }
+}
+
+/// Which pipe a line came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    Cargo,
+    Harness,
+}
+
+/// Sends the lines of a pipe from a thread of its own.
+fn read(
+    pipe: impl Read + Send + 'static,
+    source: Source,
+    lines: mpsc::Sender<(Source, String)>,
+) -> Result<()> {
+    thread::Builder::new().name(format!("{source:?}")).spawn(move || {
+        for line in BufReader::new(pipe).split(b'\n').map_while(std::io::Result::ok) {
+            let line = String::from_utf8_lossy(&line).trim_end_matches('\r').to_owned();
+            if lines.send((source, line)).is_err() {
+                break;
+            }
+        }
+    })?;
+    Ok(())
 }

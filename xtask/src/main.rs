@@ -4,6 +4,7 @@
 mod bench;
 mod demo;
 mod guide;
+mod kill;
 mod layers;
 mod page;
 mod peers;
@@ -16,6 +17,7 @@ mod setup;
 mod suite;
 mod test_output;
 mod validate;
+mod watch;
 mod web;
 
 use std::process::ExitCode;
@@ -25,7 +27,9 @@ Usage: cargo xtask <WORD> [OPTIONS]
 
   demo [ARGUMENTS]  check or install what is needed, build, and run the dam break into out/dam-break;
                     further arguments go to `splashdown run` (for example --frames 20)
-  test [--fast]     every test: format, lints, tests, documentation, other systems (--fast: the first three only)
+  test [--fast|--all]
+                    format, lints, tests, documentation, the web page, other systems (--fast: the first three only;
+                    --all, and with CI=true: Blender, the page as it is published, all code on other systems too)
   bench [--quick]   measure and write docs/bench.md (--quick: small sizes only, and nothing is written)
   bench --peers [--quick] [--particles FILE SPACING]
                     measure beside SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
@@ -37,7 +41,7 @@ Usage: cargo xtask <WORD> [OPTIONS]
   setup             check what demo and test need and install it where that is possible
   help              this text
 
-Environment: CI=true makes a missing Vulkan driver an error.
+Environment: CI=true makes a missing Vulkan driver an error and `test` run with --all.
 ";
 
 fn main() -> ExitCode {

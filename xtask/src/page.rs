@@ -13,7 +13,8 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "g
 const PACKAGES: [&str; 3] = ["chromium", "nodejs", "npm"];
 
 /// Builds the page and uses it as a person would; skipped only where there is no browser and none can be installed.
-pub fn test() -> Result<Outcome> {
+/// `published`: the page as it is published, which takes minutes to optimise; else one built quickly.
+pub fn test(published: bool) -> Result<Outcome> {
     let mut browser = browser();
     let missing = |browser: Option<&str>| browser.is_none() || !process::exists("npm", "--version");
     if missing(browser) && setup::can_install() {
@@ -28,7 +29,7 @@ pub fn test() -> Result<Outcome> {
             "it needs Chromium, node and npm (Debian and Ubuntu: `apt-get install chromium nodejs npm`)";
         return Ok(Outcome::Skipped(reason.to_owned()));
     };
-    let folder = web::build()?;
+    let folder = web::build(if published { web::PUBLISHED } else { web::QUICK })?;
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
     let install =
         ["install", "--prefix", "web/test", "--no-package-lock", "--no-audit", "--no-fund", "--silent"];

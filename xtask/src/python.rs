@@ -8,14 +8,16 @@ use anyhow::{Context, Result};
 
 use crate::process::{self, command, root, say, target};
 
-/// The lists of packages, the needed one first; each is one test of `splashdown-io`'s `foreign` less if it is missing.
-const LISTS: [&str; 2] = ["requirements.txt", "blender.txt"];
+/// The packages that the usual tests use.
+const USUAL: &str = "requirements.txt";
+/// Blender: a download of 370 MB, for two tests.
+const BLENDER: &str = "blender.txt";
 
-/// Makes the environment and installs what is not there yet. Where that is not possible the tests are skipped,
-/// and say so.
-pub fn ensure() {
+/// Makes the environment and installs what is missing; Blender only if `all` is asked for. Tests whose packages
+/// cannot be installed are skipped and print so.
+pub fn ensure(all: bool) {
     let folder = target().join("python");
-    for list in LISTS {
+    for list in [Some(USUAL), all.then_some(BLENDER)].into_iter().flatten() {
         let path = root().join("crates/splashdown-io/tests/foreign").join(list);
         if let Err(error) = install(&folder, &path) {
             say(format!(

@@ -2,26 +2,39 @@
 
 use anyhow::{Result, bail};
 
-use crate::layers::{Outcome, Report, filtered, succeeds};
-use crate::process::{cargo, command, say};
+use crate::layers::{self, Outcome, Report, succeeds};
+use crate::process::{self, cargo, command, say};
 use crate::{guide, page, python, setup};
 
-/// Systems that are checked without being there.
+/// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
     [("Windows", "x86_64-pc-windows-msvc"), ("macOS", "aarch64-apple-darwin")];
 
-/// The word `test`.
+/// How much is tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    /// Format, lints and tests.
+    Fast,
+    /// Documentation, the page and other systems too, with quick builds.
+    Usual,
+    /// Blender, the page as it is published, and all code on other systems too.
+    All,
+}
+
+/// The command `test`.
 pub fn run(arguments: &[String]) -> Result<()> {
-    let fast = match arguments {
-        [] => false,
-        [flag] if flag == "--fast" => true,
-        other => bail!("test takes --fast or nothing, got {}", other.join(" ")),
+    let extent = match arguments {
+        [] if process::is_ci() => Extent::All,
+        [] => Extent::Usual,
+        [flag] if flag == "--fast" => Extent::Fast,
+        [flag] if flag == "--all" => Extent::All,
+        other => bail!("test takes --fast, --all or nothing, got {}", other.join(" ")),
     };
     let mut report = Report::default();
     report.layer("requirements", |_| {
         setup::ensure_requirements()?;
         setup::ensure_screen();
-        python::ensure();
+        python::ensure(extent == Extent::All);
         Ok(Outcome::Passed)
     });
     report.layer("format", |_| succeeds(&mut cargo(["fmt", "--all", "--", "--check"])));
@@ -37,26 +50,27 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ]))
     });
     report.layer("tests", |filter| {
-        filtered(&mut cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]), filter)
+        layers::tests(&mut cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]), filter)
     });
-    if fast {
-        say("\n--fast: documentation and other systems were left out.");
+    if extent == Extent::Fast {
+        say("\n--fast: documentation, the page and other systems were left out.");
     } else {
         report.layer("documentation", |_| {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
             succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))
         });
-        report.layer("guide", |_| guide::test());
-        report.layer("web page", |_| page::test());
+        report.layer("guide", |_| guide::test(extent == Extent::All));
+        report.layer("web page", |_| page::test(extent == Extent::All));
         for (name, target) in OTHER_SYSTEMS {
-            report.layer(&format!("{name} ({target})"), |_| check_for(target));
+            report.layer(&format!("{name} ({target})"), |_| check_for(target, extent == Extent::All));
         }
     }
     report.close()
 }
 
-/// Type-checks everything for another system; skipped only where its standard library cannot be had.
-fn check_for(target: &str) -> Result<Outcome> {
+/// Lints the code for another system; skipped only where its standard library cannot be installed. The usual extent is
+/// the smallest command line: that checks the build without features too, and has 40 % of the crates.
+fn check_for(target: &str, all: bool) -> Result<Outcome> {
     let added = command("rustup").args(["target", "add", target]).output();
     match added {
         Err(error) => return Ok(Outcome::Skipped(format!("cannot start rustup ({error})"))),
@@ -67,5 +81,14 @@ fn check_for(target: &str) -> Result<Outcome> {
         }
         Ok(_) => {}
     }
-    succeeds(&mut cargo(["check", "--workspace", "--quiet", "--target", target]))
+    let smallest = cargo_clippy(target, &["--package", "splashdown-cli", "--no-default-features"])?;
+    if smallest != Outcome::Passed || !all {
+        return Ok(smallest);
+    }
+    cargo_clippy(target, &["--workspace"])
+}
+
+fn cargo_clippy(target: &str, extent: &[&str]) -> Result<Outcome> {
+    let mut clippy = cargo(["clippy", "--quiet", "--target", target]);
+    succeeds(clippy.args(extent).args(["--", "--deny", "warnings"]))
 }

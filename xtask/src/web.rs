@@ -11,6 +11,10 @@ use crate::serve;
 
 /// What the page may weigh, compressed, in bytes.
 const BUDGET: u64 = 5_000_000;
+/// The profile of the page as it is published.
+pub const PUBLISHED: &str = "web";
+/// The profile of the page in tests.
+pub const QUICK: &str = "dev";
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// The word `web`: `--build` only builds, `--port N` serves there.
@@ -30,7 +34,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
             other => bail!("web takes --build or --port N, got {other}"),
         }
     }
-    let folder = build()?;
+    let folder = build(PUBLISHED)?;
     if only_build {
         return Ok(());
     }
@@ -39,8 +43,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
     server.serve()
 }
 
-/// Builds the page; where it is.
-pub fn build() -> Result<PathBuf> {
+/// Builds the page with a profile and returns its folder. Only the published page is held against the budget.
+pub fn build(profile: &str) -> Result<PathBuf> {
     let added = command("rustup").args(["target", "add", TARGET]).output().context("cannot start rustup")?;
     ensure!(
         added.status.success(),
@@ -55,16 +59,20 @@ pub fn build() -> Result<PathBuf> {
         "--target",
         TARGET,
         "--profile",
-        "web",
+        profile,
     ]))?;
     let target = process::target();
     let folder = target.join("page");
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let module = target.join(TARGET).join("web/splashdown_web.wasm");
+    // Cargo names the folder of the profile `dev` after its older name.
+    let name = if profile == "dev" { "debug" } else { profile };
+    let module = target.join(TARGET).join(name).join("splashdown_web.wasm");
     let mut bindgen = cargo(["run", "--quiet", "--package", "splashdown-bindgen", "--"]);
     process::run(bindgen.arg(&module).arg(&folder))?;
     fs::copy(process::root().join("web/index.html"), folder.join("index.html"))?;
-    weigh(&folder)?;
+    if profile == PUBLISHED {
+        weigh(&folder)?;
+    }
     Ok(folder)
 }
 

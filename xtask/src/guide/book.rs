@@ -11,20 +11,29 @@ use crate::process::{self, command, root, say, target};
 /// The version that is installed. Any version of the same minor series on the search path is used instead.
 const VERSION: &str = "0.5.4";
 
+/// The program `mdbook` where it is installed: on the search path, or by [`program`].
+pub fn installed() -> Option<PathBuf> {
+    [PathBuf::from("mdbook"), own()].into_iter().find(is_suitable)
+}
+
+/// Where [`program`] installs it.
+fn own() -> PathBuf {
+    tools().join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX))
+}
+
+fn tools() -> PathBuf {
+    target().join("tools")
+}
+
 /// The program `mdbook`. The first call installs it: about a minute of compilation on two cores.
 ///
 /// # Errors
 /// If `cargo install` fails, for example without a network.
 pub fn program() -> Result<PathBuf> {
-    let system = PathBuf::from("mdbook");
-    if is_suitable(&system) {
-        return Ok(system);
-    }
-    let folder = target().join("tools");
-    let program = folder.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
-    if is_suitable(&program) {
+    if let Some(program) = installed() {
         return Ok(program);
     }
+    let folder = tools();
     say(format!("Installing mdBook {VERSION} into {} ...", folder.display()));
     let build = folder.join("mdbook");
     let mut install = process::cargo(["install", "mdbook", "--locked", "--debug", "--no-default-features"]);
@@ -32,7 +41,7 @@ pub fn program() -> Result<PathBuf> {
     process::run(install.arg("--target-dir").arg(&build))?;
     // Only the program is needed; its intermediate files take several hundred megabytes.
     let _ = fs::remove_dir_all(&build);
-    Ok(program)
+    Ok(own())
 }
 
 fn is_suitable(program: &PathBuf) -> bool {

@@ -70,7 +70,7 @@ pub fn read(test: &str, reader: &str, files: &[&Path]) -> Option<Vec<Found>> {
     }
     let skip = |reason: &str| {
         let _ =
-            writeln!(std::io::stderr(), "SKIPPED: {test}: {reason}; `cargo xtask test` installs what it can");
+            writeln!(std::io::stderr(), "SKIPPED: {test}: {reason}; `cargo xtask test --all` installs what it can");
         None
     };
     let output = match python.output() {
