@@ -2,6 +2,7 @@
 //! `anyhow`, so that it builds in a second on a machine that has only Rust.
 
 mod bench;
+mod build_times;
 mod demo;
 mod guide;
 mod kill;
@@ -34,6 +35,8 @@ Usage: cargo xtask <WORD> [OPTIONS]
   bench --peers [--quick] [--particles FILE SPACING]
                     measure beside SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
   guide             build the user guide as HTML into target/guide and check its links
+  build-times [--jobs N]
+                    measure first builds of the demo, the whole program and the library into an empty folder
   pictures [SCENE]  make the pictures of the README anew
   web [--build] [--port N]
                     the web page: build it and serve it on localhost (--build: build it only)
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         "demo" => demo::run(rest),
         "test" => suite::run(rest),
         "bench" => bench::run(rest),
+        "build-times" => build_times::run(rest),
         "pictures" => pictures::run(rest),
         "web" => web::run(rest),
         "validate" => validate::run(rest),
