@@ -27,7 +27,12 @@ pub fn run(arguments: &[String]) -> Result<()> {
     process::run(&mut cargo(["fetch"]))?;
     let mut rows = Vec::new();
     for (name, build) in builds {
-        rows.push(format!("| {name} | `cargo build {}` | {} | {:.0} s |", build.join(" "), crates(build)?, seconds(build, jobs)?));
+        rows.push(format!(
+            "| {name} | `cargo build {}` | {} | {:.0} s |",
+            build.join(" "),
+            crates(build)?,
+            seconds(build, jobs)?
+        ));
     }
     say(format!("\n{} threads\n", jobs.unwrap_or_else(report::threads)));
     say("| what | command | crates | wall time |\n|---|---|---:|---:|");
@@ -57,7 +62,8 @@ fn seconds(build: &[&str], jobs: Option<usize>) -> Result<f64> {
 
 /// Crates that a build compiles, build scripts' dependencies and own crates among them.
 fn crates(build: &[&str]) -> Result<usize> {
-    let mut tree = cargo(["tree", "--offline", "--edges", "normal,build", "--prefix", "none", "--format", "{p}"]);
+    let mut tree =
+        cargo(["tree", "--offline", "--edges", "normal,build", "--prefix", "none", "--format", "{p}"]);
     tree.args(build.iter().filter(|argument| **argument != "--release"));
     let output = tree.output()?;
     ensure!(output.status.success(), "`{}` failed ({})", process::line(&tree), output.status);

@@ -20,7 +20,9 @@ pub fn tree(process: u32, root: bool) {
 
 /// Every process with its parent.
 fn parents() -> Vec<(u32, u32)> {
-    let Ok(output) = Command::new("ps").args(["-A", "-o", "pid=,ppid="]).output() else { return proc_parents() };
+    let Ok(output) = Command::new("ps").args(["-A", "-o", "pid=,ppid="]).output() else {
+        return proc_parents();
+    };
     let text = String::from_utf8_lossy(&output.stdout);
     text.lines().filter_map(|line| pair(line.split_whitespace())).collect()
 }

@@ -102,8 +102,8 @@ pub fn succeeds(command: &mut Command) -> Result<Outcome> {
     }
 }
 
-/// A test run. Its output goes through the filter, and tests that hang are killed and named.
-pub fn tests(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
+/// A test run. Its output goes through the filter. With a watch, tests that hang are killed and named.
+pub fn tests(command: &mut Command, filter: &mut Filter, mut watch: Option<Watch>) -> Result<Outcome> {
     let words = process::line(command);
     let mut child = command
         .stdout(Stdio::piped())
@@ -116,12 +116,13 @@ pub fn tests(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
     // One thread per pipe, so that neither fills up.
     read(stdout, Source::Harness, sender.clone())?;
     read(stderr, Source::Cargo, sender)?;
-    let mut watch = Watch::new(Instant::now());
     let mut hung = Vec::new();
     loop {
         match lines.recv_timeout(Duration::from_secs(1)) {
             Ok((source, line)) => {
-                watch.see(&line, Instant::now());
+                if let Some(watch) = &mut watch {
+                    watch.see(&line, Instant::now());
+                }
                 // Cargo's own progress is always shown.
                 if source == Source::Cargo {
                     if line.contains(MARK) {
@@ -133,7 +134,9 @@ pub fn tests(command: &mut Command, filter: &mut Filter) -> Result<Outcome> {
                 }
             }
             Err(RecvTimeoutError::Timeout) => {
-                if let Some(reason) = watch.hung(Instant::now()) {
+                if let Some(watch) = &mut watch
+                    && let Some(reason) = watch.hung(Instant::now())
+                {
                     say(format!("KILLED: {reason}"));
                     kill::tree(child.id(), false);
                     watch.killed(Instant::now());
@@ -172,4 +175,40 @@ fn read(
         }
     })?;
     Ok(())
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::{Outcome, succeeds, tests};
+    use crate::process::command;
+    use crate::test_output::Filter;
+    use crate::watch::Watch;
+
+    #[test]
+    fn a_hung_test_is_killed_and_named_and_later_binaries_run() {
+        // What Cargo and two binaries print; the first one hangs.
+        let script = "echo '     Running tests/a.rs' >&2; echo 'test good ... ok'; \
+                      sh -c \"echo 'test deep::stuck has been running for over 60 seconds'; sleep 100\"; \
+                      : > \"$0\"; exit 101";
+        let later = std::env::temp_dir().join(format!("splashdown-later-{}", std::process::id()));
+        let watch = Watch::new(Instant::now()).with_limit(Duration::from_secs(60));
+        let mut filter = Filter::default();
+        let start = Instant::now();
+        let outcome =
+            tests(command("sh").args(["-c", script]).arg(&later), &mut filter, Some(watch)).unwrap();
+        assert!(start.elapsed() < Duration::from_secs(50));
+        let Outcome::Failed(reason) = outcome else { panic!("{outcome:?}") };
+        assert!(reason.contains("deep::stuck in tests/a.rs"), "{reason}");
+        std::fs::remove_file(&later).expect("the script continues after the kill");
+    }
+
+    #[test]
+    fn a_failing_command_is_a_failure() {
+        let outcome = succeeds(command("sh").args(["-c", "exit 3"])).unwrap();
+        assert!(matches!(outcome, Outcome::Failed(reason) if reason.contains('3')));
+        assert_eq!(succeeds(command("sh").args(["-c", "true"])).unwrap(), Outcome::Passed);
+    }
 }

@@ -1,9 +1,12 @@
 //! The second command of the README, and all of the continuous integration.
 
+use std::time::Instant;
+
 use anyhow::{Result, bail};
 
 use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
+use crate::watch::Watch;
 use crate::{guide, page, python, setup};
 
 /// Systems for which the code is type-checked without running it.
@@ -50,7 +53,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ]))
     });
     report.layer("tests", |filter| {
-        layers::tests(&mut cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]), filter)
+        let mut tests = cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]);
+        layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
     });
     if extent == Extent::Fast {
         say("\n--fast: documentation, the page and other systems were left out.");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-use crate::layers::{Report, filtered};
+use crate::layers::{self, Report};
 use crate::process::{self, say};
 
 /// Where the figures go.
@@ -47,7 +47,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
             ["test", "--release", "--package", "splashdown", "--test", "physics", "--", "--show-output"];
         let mut command = process::cargo(words);
         command.args(arguments);
-        filtered(command.env("SPLASHDOWN_FULL", "1").env("SPLASHDOWN_FIGURES", &folder), filter)
+        command.env("SPLASHDOWN_FULL", "1").env("SPLASHDOWN_FIGURES", &folder);
+        // Without a limit: a single case takes long at full resolution.
+        layers::tests(&mut command, filter, None)
     });
     say("\n=== Figures");
     for table in left(&folder, "txt") {

@@ -23,12 +23,19 @@ pub struct Watch {
     slow: BTreeMap<String, Instant>,
     binary: String,
     last_line: Instant,
+    limit: Duration,
 }
 
 impl Watch {
-    /// A run that starts now.
+    /// A run that starts now, with [`LIMIT`] for each test.
     pub fn new(now: Instant) -> Self {
-        Self { slow: BTreeMap::new(), binary: "the build".to_owned(), last_line: now }
+        Self { slow: BTreeMap::new(), binary: "the build".to_owned(), last_line: now, limit: LIMIT }
+    }
+
+    /// The same with another limit.
+    #[cfg(test)]
+    pub fn with_limit(self, limit: Duration) -> Self {
+        Self { limit, ..self }
     }
 
     /// Reads a line of the harness or of Cargo.
@@ -51,13 +58,13 @@ impl Watch {
 
     /// What hangs, with its binary; `None` while all is well.
     pub fn hung(&self, now: Instant) -> Option<String> {
-        let late = |start: Instant| now.duration_since(start) > LIMIT;
+        let late = |start: Instant| now.duration_since(start) > self.limit;
         let tests: Vec<&str> =
             self.slow.iter().filter(|(_, start)| late(**start)).map(|(name, _)| name.as_str()).collect();
         let binary = &self.binary;
         if !tests.is_empty() {
             let names = tests.join(", ");
-            return Some(format!("{names} in {binary} took more than {} minutes", LIMIT.as_secs() / 60));
+            return Some(format!("{names} in {binary} took more than {} minutes", self.limit.as_secs() / 60));
         }
         let silent = now.duration_since(self.last_line) > SILENCE;
         silent.then(|| format!("{binary} printed nothing for {} minutes", SILENCE.as_secs() / 60))

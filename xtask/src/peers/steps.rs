@@ -95,7 +95,7 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
     table.row(&wcsph.row("SPlisHSPlasH, WCSPH", at_least(each(&wcsph) / each(&ours), BAR)));
     table.row(&dfsph.row("SPlisHSPlasH, DFSPH", format!("{:.2}", each(&dfsph) / each(&ours))));
     page.add("## Time of a step");
-    page.add_anchored("step", &table.text());
+    page.add_anchored("step", table.text());
     page.add(
         "Scene: SPlisHSPlasH's `DamBreakModel.json` with twice the edge lengths, and a block that is one spacing longer, so that it has 40 \
          particles along every edge. WCSPH uses a stiffness of 50,000, an exponent of 7 and time steps of 0.1 ms.\n\n\

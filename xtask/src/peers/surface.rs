@@ -70,7 +70,7 @@ pub fn compare(sides: &Sides, given: Option<(PathBuf, f64)>, page: &mut Page) ->
         ]);
     }
     page.add("## Surface reconstruction");
-    page.add_anchored("surface", &table.text());
+    page.add_anchored("surface", table.text());
     let name = particles.file_name().unwrap_or_default().to_string_lossy();
     page.add(&format!(
         "Particles: `{name}`, {count} of them, radius r = {} m. Support four radii (smoothing length 2.0), threshold 0.6. Smoothed cases include \

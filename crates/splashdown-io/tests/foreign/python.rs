@@ -69,8 +69,10 @@ pub fn read(test: &str, reader: &str, files: &[&Path]) -> Option<Vec<Found>> {
         python.arg(reader).arg(file);
     }
     let skip = |reason: &str| {
-        let _ =
-            writeln!(std::io::stderr(), "SKIPPED: {test}: {reason}; `cargo xtask test --all` installs what it can");
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED: {test}: {reason}; `cargo xtask test --all` installs what it can"
+        );
         None
     };
     let output = match python.output() {
