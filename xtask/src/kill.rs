@@ -10,10 +10,9 @@ pub fn tree(process: u32, root: bool) {
         let _ = Command::new("taskkill").args(["/T", "/F", "/PID", &process.to_string()]).output();
         return;
     }
-    let mut doomed = below(process, &parents());
-    if root {
-        doomed.push(process);
-    }
+    // Parents first, so that none reacts to the end of its child.
+    let mut doomed = if root { vec![process] } else { Vec::new() };
+    doomed.extend(below(process, &parents()));
     let numbers: Vec<String> = doomed.iter().map(u32::to_string).collect();
     let _ = Command::new("sh").arg("-c").arg(format!("kill -KILL {}", numbers.join(" "))).output();
 }
