@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn a_hung_test_is_killed_and_named_and_later_binaries_run() {
         // What Cargo and two binaries print; the first one hangs.
-        let script = "echo '     Running tests/a.rs' >&2; echo 'test good ... ok'; \
+        let script = "echo '     Running tests/a.rs' >&2; echo 'test good ... ok'; sleep 0.5; \
                       sh -c \"echo 'test deep::stuck has been running for over 60 seconds'; sleep 100\"; \
                       : > \"$0\"; exit 101";
         let later = std::env::temp_dir().join(format!("splashdown-later-{}", std::process::id()));
