@@ -9,7 +9,7 @@ use splashdown::surface::SurfaceError;
 use splashdown::{CheckpointError, SimulationError};
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
-use splashdown_render::RenderError;
+use splashdown_run::RunError;
 #[cfg(feature = "window")]
 use splashdown_viewer::ViewerError;
 
@@ -117,9 +117,24 @@ impl From<IoError> for Failure {
     }
 }
 
-impl From<RenderError> for Failure {
-    fn from(error: RenderError) -> Self {
-        Self::new(Exit::Device, format!("the pictures cannot be drawn: {error}"))
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        let (exit, options) = match error {
+            RunError::Simulation(error) => return error.into(),
+            RunError::Gpu(_) | RunError::Render(_) => (Exit::Device, ""),
+            RunError::SurfaceRequired => {
+                (Exit::Usage, " (leave out --no-surface, or give --pictures particles)")
+            }
+            RunError::FolderInUse { .. } => (Exit::Usage, " (--out DIR)"),
+            RunError::AlreadyFinished { .. } => (Exit::Usage, " (--frames N)"),
+            RunError::Output(_) => (Exit::Usage, " (--out)"),
+            RunError::Input(_) => (Exit::Scene, ""),
+            RunError::NoCheckpoint { .. } => {
+                (Exit::Files, "; `--checkpoint-every N` writes them, and so does Ctrl-C")
+            }
+            _ => (Exit::Files, ""),
+        };
+        Self::new(exit, format!("{error}{options}"))
     }
 }
 

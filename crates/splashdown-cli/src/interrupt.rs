@@ -1,22 +1,13 @@
-//! Ctrl-C: the first asks the run to stop after the frame that is being computed, the second stops it at once.
+//! Ctrl-C: the first stops the run after the current frame, the second at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Counts how often the user asked to stop.
+use splashdown_run::Stop;
+
+/// Counts the requests to stop.
 #[derive(Clone, Debug)]
 pub struct Interrupt(Arc<AtomicU8>);
-
-/// What the user wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
-    /// Go on.
-    GoOn,
-    /// Finish the frame, then stop.
-    StopAfterFrame,
-    /// Stop now; what is queued is still written.
-    StopNow,
-}
 
 impl Interrupt {
     /// Listens for Ctrl-C and, on Unix, for SIGTERM and SIGHUP.
@@ -29,19 +20,19 @@ impl Interrupt {
                 crate::console::note("\nStopping after this frame; press Ctrl-C again to stop at once.");
             }
         };
-        // Without a handler Ctrl-C just ends the program, and every file on the disk is complete all the same.
+        // Without a handler Ctrl-C ends the program at once. Every file on the disk is complete then, too.
         if let Err(error) = ctrlc::set_handler(handler) {
             crate::console::note(format!("warning: Ctrl-C will stop without a summary: {error}"));
         }
         Self(count)
     }
 
-    /// What the user wants now.
-    pub fn wish(&self) -> Wish {
+    /// What the user has requested so far.
+    pub fn stop(&self) -> Stop {
         match self.0.load(Ordering::Relaxed) {
-            0 => Wish::GoOn,
-            1 => Wish::StopAfterFrame,
-            _ => Wish::StopNow,
+            0 => Stop::No,
+            1 => Stop::AfterFrame,
+            _ => Stop::Now,
         }
     }
 }

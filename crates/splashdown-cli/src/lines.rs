@@ -3,9 +3,9 @@
 use serde::Serialize;
 use splashdown::scene::SceneProblem;
 use splashdown::{Progress, Started, Stats, Summary};
+use splashdown_run::CompleteFrame;
 
 use crate::exit::Failure;
-use crate::files::CompleteFrame;
 
 /// One line. The first eleven keys are always there, null where nothing is known; the others only where they
 /// mean something.
@@ -103,11 +103,11 @@ impl Line {
     pub fn frame(frame: &CompleteFrame) -> Self {
         Self {
             event: "frame",
-            frame: Some(frame.account.index),
-            volume: frame.account.volume,
-            triangles: frame.account.triangles,
+            frame: Some(frame.summary.index),
+            volume: frame.summary.volume,
+            triangles: frame.summary.triangles,
             files: Some(frame.files.iter().map(|file| file.display().to_string()).collect()),
-            ..Self::of_stats(&frame.account.stats)
+            ..Self::of_stats(&frame.summary.stats)
         }
     }
 

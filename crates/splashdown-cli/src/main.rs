@@ -5,29 +5,20 @@
 
 mod args;
 mod attributes;
-mod checkpoints;
 mod commands;
 mod console;
 mod exit;
-mod files;
 mod human;
 mod interrupt;
-mod layout;
 mod lines;
-mod lock;
 mod memory;
-mod pictures;
 #[cfg(feature = "plot")]
 mod plot;
-mod probes;
 mod progress;
-mod report;
+mod reporter;
 mod scene_file;
-mod sequence;
 mod speed;
 mod summary;
-mod teller;
-mod wishes;
 
 use std::process::ExitCode;
 

@@ -2,11 +2,11 @@
 
 use std::collections::VecDeque;
 use std::io::IsTerminal;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use splashdown::{Listener, Progress};
+use splashdown::{Progress, ProgressFn};
 
 use crate::console::{self, Verbosity};
 use crate::human;
@@ -62,22 +62,22 @@ impl Bar {
         self.bar.set_message(text);
     }
 
-    /// Shows how far the distances of each body are, in a run that has not begun.
-    pub fn listener(&self) -> Listener {
+    /// Shows the progress of the bodies' distance fields, which are computed before a run starts.
+    pub fn preparation(&self) -> ProgressFn {
         let (bar, plain) = (self.bar.clone(), self.plain);
         let last_line = Mutex::new(Instant::now());
-        Listener(Arc::new(move |body, part| {
-            bar.set_position((part.clamp(0.0, 1.0) * LENGTH as f32) as u64);
+        ProgressFn::new(move |body, fraction| {
+            bar.set_position((fraction.clamp(0.0, 1.0) * LENGTH as f32) as u64);
             let text = format!("measuring the distances around {body:?}");
-            // Threads that meet here have the same to say.
+            // Other threads have nothing different to report.
             if let (true, Ok(mut last)) = (plain, last_line.try_lock())
                 && last.elapsed() >= PAUSE
             {
                 *last = Instant::now();
-                console::note(format!("{:3.0} %  {text}", part * 100.0));
+                console::note(format!("{:3.0} %  {text}", fraction * 100.0));
             }
             bar.set_message(text);
-        }))
+        })
     }
 
     /// Prints a line without disturbing the bar.

@@ -98,7 +98,7 @@ fn change(value: f64, reference: f64) -> String {
 }
 
 /// What was written where, a line per kind of file.
-pub fn files(root: &Path, files: &[WrittenFile], films: &[(std::path::PathBuf, u64)]) -> String {
+pub fn files(root: &Path, files: &[WrittenFile], films: &[WrittenFile]) -> String {
     let mut kinds: BTreeMap<String, (usize, u64)> = BTreeMap::new();
     for file in files {
         let below = file.path.strip_prefix(root).unwrap_or(&file.path);
@@ -116,7 +116,7 @@ pub fn files(root: &Path, files: &[WrittenFile], films: &[(std::path::PathBuf, u
         .into_iter()
         .map(|(kind, (count, bytes))| [kind, human::counted(count as u64, "file"), human::bytes(bytes)])
         .collect();
-    for (path, bytes) in films {
+    for WrittenFile { path, bytes } in films {
         let name = path.strip_prefix(root).unwrap_or(path).display().to_string();
         rows.push([name, human::counted(1, "film"), human::bytes(*bytes)]);
     }

@@ -1,3 +1,64 @@
-//! What the command line and the window share: how a scene's frames become pictures.
+//! A Splashdown run and its files.
+//!
+//! [`splashdown::Run`] computes frames. This crate turns them into an output folder: particles, meshes,
+//! checkpoints, probe tables, pictures, films and the report `run.json`. The command line and the window share it.
+//! It prints nothing: a [`Reporter`] receives every message.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use splashdown::scene::Scene;
+//! use splashdown_run::{RunEnd, RunRequest, RunSettings, Stop, run};
+//!
+//! # let text = include_str!("../../../scenes/dam-break-small.toml");
+//! let scene = Scene::parse(text, "dam-break-small.toml")?;
+//! let mut settings = RunSettings::default();
+//! settings.frames = Some(1);
+//! settings.pictures = Some(Vec::new());
+//! # settings.device = Some(splashdown::Device::Cpu);
+//! let mut request = RunRequest::new(scene, settings);
+//! # let folder = tempfile::tempdir()?;
+//! # let out = folder.path().to_owned();
+//! request.out = Some(out.clone());
+//! let outcome = run(request, &mut (), &|| Stop::No)?;
+//! assert!(matches!(outcome.end, RunEnd::Finished(_)));
+//! assert!(out.join("mesh/surface_0001.ply").exists() && out.join("run.json").exists());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Guarantees
+//!
+//! * Every file is complete or absent.
+//! * A [`RunRequest::resume`]d run is bit-identical to an uninterrupted one on the same device.
+//! * One run at a time writes into a folder.
 
-pub mod stage;
+pub mod appearance;
+mod checkpoints;
+mod error;
+pub mod export;
+pub mod films;
+mod folder;
+mod frames;
+mod lock;
+mod outcome;
+pub mod pictures;
+mod probe_files;
+mod recorder;
+mod report;
+mod reporter;
+mod request;
+pub mod sequence;
+mod session;
+mod settings;
+
+pub use checkpoints::{FoundCheckpoint, find_checkpoint, recent_checkpoints};
+pub use error::RunError;
+pub use folder::RunFolder;
+pub use frames::{CompleteFrame, FrameSummary};
+pub use outcome::{RunEnd, RunOutcome};
+pub use recorder::Recorder;
+pub use report::{PassNumbers, pass_numbers};
+pub use reporter::{Reporter, Stop};
+pub use request::RunRequest;
+pub use session::{Session, run};
+pub use settings::RunSettings;

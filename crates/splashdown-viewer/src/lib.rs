@@ -14,7 +14,7 @@ pub mod camera;
 mod edit;
 pub mod engine;
 mod error;
-mod keep;
+mod export;
 pub mod look;
 #[cfg(target_arch = "wasm32")]
 mod page;
@@ -22,8 +22,6 @@ pub mod panels;
 mod pick;
 pub mod picture;
 mod pixels;
-#[cfg(not(target_arch = "wasm32"))]
-mod record;
 pub mod save;
 pub mod state;
 mod thumbnails;

@@ -8,7 +8,7 @@ use splashdown_render::{
     Axis, Camera, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
     PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
-use splashdown_run::stage;
+use splashdown_run::appearance;
 
 use crate::engine::Snapshot;
 use crate::look::{Look, Way};
@@ -75,10 +75,10 @@ impl Picture {
         }
         let Some(target) = &self.target else { return Ok(()) };
         let scene = &snapshot.opened.scene;
-        let colouring = stage::colouring(scene, look.colour_by).with_map(look.map);
+        let colouring = appearance::colouring(scene, look.colour_by).with_map(look.map);
         let drawn = &snapshot.drawn;
         let radius = scene.fluid.particle_radius();
-        let mut frame = Frame::new(camera, stage::domain(scene));
+        let mut frame = Frame::new(camera, appearance::domain(scene));
         frame.bodies = self.placed.as_ref().map(|placed| placed.uploaded.buffers());
         frame.foam = drawn.foam().map(|buffers| DrawnFoam::new(buffers, radius));
         match (look.way, drawn.mesh()) {
@@ -90,7 +90,7 @@ impl Picture {
                     Way::Mesh => SurfaceStyle::Lines,
                     _ => SurfaceStyle::Liquid,
                 };
-                let (buffers, liquid) = (mesh.buffers(), stage::liquid(scene));
+                let (buffers, liquid) = (mesh.buffers(), appearance::liquid(scene));
                 frame.surface = Some(DrawnSurface::new(buffers, liquid).with_style(style));
             }
             (Way::Slice, _) => {
@@ -104,7 +104,7 @@ impl Picture {
             }
             // Until the first surface comes, what the particles say of it.
             (Way::Fluid | Way::Surface | Way::Mesh, _) => {
-                let (buffers, liquid) = (drawn.particles(), stage::liquid(scene));
+                let (buffers, liquid) = (drawn.particles(), appearance::liquid(scene));
                 frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
             }
         }

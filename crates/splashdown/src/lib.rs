@@ -51,7 +51,7 @@ pub use foam::{Diffuse, DiffuseKind, DiffuseParticles, Foam, FoamState, KeptFoam
 pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
 pub use mouse_force::MouseForce;
 pub use reconstruct::reconstruct;
-pub use run::{Event, Frame, Listener, Progress, Run, RunOptions, Started, Summary, Told};
+pub use run::{Event, Frame, Progress, ProgressFn, Run, RunOptions, Started, Summary};
 pub use scene::{Scene, SceneBuilder, SceneErrors};
 pub use simulation::Simulation;
 pub use state::Fields;

@@ -10,10 +10,10 @@ use splashdown_gpu::Executor;
 use splashdown_io::{
     IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_all, read_particles,
 };
+use splashdown_run::sequence::{self, Step};
 
 use crate::args::SurfaceArguments;
 use crate::exit::{Exit, Failure};
-use crate::sequence::{self, Step};
 use crate::{attributes, console, human, memory};
 
 /// How far a spacing may be from what the particles look like before it is taken for a mistake: a radius for a

@@ -2,12 +2,13 @@
 
 use splashdown::{Checkpoint, Device};
 use splashdown_gpu::DeviceRequest;
+use splashdown_run::find_checkpoint;
 use splashdown_viewer::ViewOptions;
 use splashdown_viewer::engine::Simulate;
 
 use crate::args::ViewArguments;
 use crate::exit::Failure;
-use crate::{checkpoints, scene_file};
+use crate::scene_file;
 
 /// Opens the window; returns when it is closed.
 ///
@@ -16,7 +17,7 @@ use crate::{checkpoints, scene_file};
 pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
     let path = &arguments.scene;
     let is_checkpoint = path.is_dir() || path.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
-    let checkpoint = if is_checkpoint { Some(checkpoints::find(path)?.checkpoint) } else { None };
+    let checkpoint = if is_checkpoint { Some(find_checkpoint(path)?.checkpoint) } else { None };
     let scene = match &checkpoint {
         Some(checkpoint) => checkpoint.scene()?,
         None => scene_file::load(path)?,

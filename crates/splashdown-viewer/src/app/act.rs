@@ -13,6 +13,8 @@ use crate::state::Action;
 const HAND_RATE: f32 = 14.0;
 /// Radius of the hand over the smallest edge of the box.
 const HAND_SIZE: f32 = 0.16;
+/// Checkpoints in the menu of files.
+const MENU_FILES: usize = 8;
 
 impl Viewer {
     pub(super) fn act(&mut self, action: Action, ctx: &Context) {
@@ -87,7 +89,7 @@ impl Viewer {
             Action::OpenFile(path) => self.open_file(&path, now),
             #[cfg(target_arch = "wasm32")]
             Action::OpenFile(_) => {}
-            Action::ShowFiles => self.state.files = super::files::checkpoints_at_hand(),
+            Action::ShowFiles => self.state.files = splashdown_run::recent_checkpoints(MENU_FILES),
             Action::Share => self.share(now),
             Action::Record => self.record_or_end(now),
             Action::SwapTheme => {

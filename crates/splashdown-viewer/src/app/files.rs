@@ -1,6 +1,6 @@
 //! Files that come to the window: scenes, checkpoints and meshes, dropped or chosen.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use egui::Context;
 #[cfg(not(target_arch = "wasm32"))]
@@ -107,18 +107,4 @@ fn open_scene(path: &Path, bytes: &[u8]) -> Result<Scene, String> {
         false => Scene::parse_beside(text, path),
     };
     scene.map_err(|error| error.to_string())
-}
-
-/// Checkpoints in this folder and in those of runs below it, the newest first.
-pub(super) fn checkpoints_at_hand() -> Vec<PathBuf> {
-    let in_folder = |folder: PathBuf| {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| entry.path()).filter(|path| ending(path) == Checkpoint::ENDING)
-    };
-    let runs = std::fs::read_dir("out").into_iter().flatten().flatten().map(|entry| entry.path());
-    let folders = std::iter::once(PathBuf::from(".")).chain(runs.map(|run| run.join("checkpoints")));
-    let mut files: Vec<PathBuf> = folders.flat_map(in_folder).collect();
-    files.sort_by_key(|path| std::cmp::Reverse(path.metadata().and_then(|data| data.modified()).ok()));
-    files.truncate(8);
-    files
 }

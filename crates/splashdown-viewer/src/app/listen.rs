@@ -9,7 +9,7 @@ use splashdown_gpu::GpuError;
 
 use super::Viewer;
 use crate::engine::{Command, Message, Purpose};
-use crate::{edit, keep, pick};
+use crate::{edit, export, pick};
 
 impl Viewer {
     /// Asks for what this way of seeing needs.
@@ -49,17 +49,16 @@ impl Viewer {
                 }
                 Message::Checkpoint(checkpoint, Purpose::Keep) => {
                     let name = format!("{}.{}", self.state.scene.name, Checkpoint::ENDING);
-                    let kept = checkpoint.to_bytes().map_err(|error| error.to_string());
-                    let kept = kept.and_then(|bytes| keep::bytes(&name, &bytes));
-                    self.tell_kept("the checkpoint", kept, now);
+                    let exported = export::checkpoint(&name, &checkpoint);
+                    self.report_export("the checkpoint", exported, now);
                 }
                 Message::Checkpoint(checkpoint, Purpose::Rescue) => self.rescue = Some(checkpoint),
                 Message::Preparing(body, part) => self.state.preparing = (part < 1.0).then_some((body, part)),
                 Message::Exported(mesh) => {
                     if std::mem::take(&mut self.seen.exporting) {
                         let name = format!("{}.ply", self.state.scene.name);
-                        let kept = keep::mesh(&name, &mesh);
-                        self.tell_kept("the mesh", kept, now);
+                        let exported = export::mesh(&name, &mesh);
+                        self.report_export("the mesh", exported, now);
                     }
                 }
             }

@@ -1,11 +1,11 @@
 //! The window: asks the panels what is to be done and does it.
 
 mod act;
+mod exporting;
 mod files;
-#[cfg(not(target_arch = "wasm32"))]
-mod film;
-mod keeping;
 mod listen;
+#[cfg(not(target_arch = "wasm32"))]
+mod recording;
 
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ pub struct Viewer {
     /// The picture's size in pixels at full resolution.
     size: [u32; 2],
     #[cfg(not(target_arch = "wasm32"))]
-    recording: Option<film::Recording>,
+    recording: Option<recording::Recording>,
 }
 
 /// What the picture shows.

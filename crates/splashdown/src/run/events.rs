@@ -25,20 +25,30 @@ pub struct RunOptions {
     pub vertex_velocities: bool,
     /// Measure the time of every pass.
     pub timing: bool,
-    /// Who hears of what takes time before the first event.
-    pub listener: Option<Listener>,
+    /// Called while the distance fields of bodies are computed, before the first event.
+    pub progress: Option<ProgressFn>,
 }
 
-/// What a [`Listener`] calls: with a body's name, and how far its distances are, in [0, 1].
-pub type Told = dyn Fn(&str, f32) + Send + Sync;
-
-/// Hears of the bodies whose distances are being computed before a run's first event.
+/// A callback for the progress of distance fields. Its arguments are a body's name and the completed fraction, in
+/// [0, 1]. Several threads may call it at once.
 #[derive(Clone)]
-pub struct Listener(pub Arc<Told>);
+pub struct ProgressFn(Arc<dyn Fn(&str, f32) + Send + Sync>);
 
-impl std::fmt::Debug for Listener {
+impl ProgressFn {
+    /// Wraps a function.
+    pub fn new(progress: impl Fn(&str, f32) + Send + Sync + 'static) -> Self {
+        Self(Arc::new(progress))
+    }
+
+    /// Calls it.
+    pub fn call(&self, body: &str, fraction: f32) {
+        (self.0)(body, fraction);
+    }
+}
+
+impl std::fmt::Debug for ProgressFn {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Listener")
+        f.write_str("ProgressFn")
     }
 }
 
@@ -52,15 +62,15 @@ impl RunOptions {
             foam: scene.foam.enabled,
             vertex_velocities: scene.output.formats.iter().any(|format| format.has_vertex_velocities()),
             timing: false,
-            listener: None,
+            progress: None,
         }
     }
 
-    /// Passes on to the listener, if there is one.
-    pub(super) fn told(&self) -> impl Fn(&str, f32) + Sync {
-        |body, part| {
-            if let Some(Listener(listener)) = &self.listener {
-                listener(body, part);
+    /// Calls the progress callback, if there is one.
+    pub(super) fn report_progress(&self) -> impl Fn(&str, f32) + Sync {
+        |body, fraction| {
+            if let Some(progress) = &self.progress {
+                progress.call(body, fraction);
             }
         }
     }

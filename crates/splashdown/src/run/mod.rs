@@ -4,7 +4,7 @@ mod events;
 mod resume;
 mod warnings;
 
-pub use events::{Event, Frame, Listener, Progress, RunOptions, Started, Summary, Told};
+pub use events::{Event, Frame, Progress, ProgressFn, RunOptions, Started, Summary};
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -100,7 +100,7 @@ impl Run {
     /// As [`Simulation::new`].
     pub fn new(scene: &Scene, options: RunOptions) -> Result<Self, SimulationError> {
         let started = Instant::now();
-        let simulation = Simulation::prepare(scene, options.device.executor()?, &options.told())?;
+        let simulation = Simulation::prepare(scene, options.device.executor()?, &options.report_progress())?;
         Self::of(simulation, scene, options, started)
     }
 

@@ -37,7 +37,8 @@ impl Run {
     ) -> Result<Self, SimulationError> {
         let started = Instant::now();
         let executor = options.device.executor()?;
-        let simulation = block_on(Simulation::resume_async(checkpoint, executor, &options.told()))?;
+        let simulation =
+            block_on(Simulation::resume_async(checkpoint, executor, &options.report_progress()))?;
         let time = simulation.stats().time;
         let mut run = Self::of(simulation, scene, options, started)?;
         if let (Some(foam), Some(kept)) = (&mut run.foam, checkpoint.foam()?) {

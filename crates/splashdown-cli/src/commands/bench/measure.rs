@@ -8,11 +8,11 @@ use splashdown::Simulation;
 use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
 use splashdown_gpu::floors::Floors;
+use splashdown_run::{PassNumbers, pass_numbers};
 
 use crate::args::BenchArguments;
 use crate::exit::{Exit, Failure};
 use crate::memory;
-use crate::report::{PassNumbers, passes};
 use crate::speed::seconds_per_step;
 
 /// Steps before the first measurement: the lattice gives way, pipelines are built, buffers find their size.
@@ -150,7 +150,7 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
         dispatch_seconds: floors.dispatch,
         dispatches_per_step: dispatches,
         timed_steps: timed_steps.into(),
-        passes: if arguments.no_passes { BTreeMap::new() } else { passes(&timings) },
+        passes: if arguments.no_passes { BTreeMap::new() } else { pass_numbers(&timings) },
         timings,
     })
 }

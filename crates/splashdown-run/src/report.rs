@@ -8,11 +8,11 @@ use splashdown::{Stats, Summary};
 use splashdown_gpu::Timings;
 use splashdown_io::{IoError, atomic};
 
-use crate::layout::Layout;
+use crate::RunFolder;
 
-/// What is known about a run.
+/// The content of `run.json`.
 #[derive(Debug, Default, Serialize)]
-pub struct Report {
+pub(crate) struct Report {
     /// `running`, `finished`, `interrupted` or `failed`.
     pub status: &'static str,
     /// Version of the program.
@@ -25,7 +25,7 @@ pub struct Report {
     pub device: Option<String>,
     /// Particle spacing in m.
     pub particle_spacing: f32,
-    /// Frames whose files are complete, the initial one counted.
+    /// Frames with complete files, including the initial one.
     pub complete_frames: usize,
     /// The end of the simulation.
     pub end: Option<End>,
@@ -43,7 +43,7 @@ pub struct Report {
 
 /// The last state.
 #[derive(Debug, Serialize)]
-pub struct End {
+pub(crate) struct End {
     time: f64,
     steps: u64,
     dt: f32,
@@ -59,7 +59,7 @@ pub struct End {
 
 /// The whole run in a few numbers.
 #[derive(Debug, Serialize)]
-pub struct Numbers {
+pub(crate) struct Numbers {
     frames: u32,
     wall: f64,
     step_wall: f64,
@@ -71,7 +71,7 @@ pub struct Numbers {
     particle_volume: f64,
 }
 
-/// The dispatches of one pass.
+/// How often a pass ran, and for how long in all.
 #[derive(Debug, Serialize)]
 pub struct PassNumbers {
     count: u64,
@@ -79,8 +79,8 @@ pub struct PassNumbers {
 }
 
 impl Report {
-    /// Of a run that begins.
-    pub fn begin(scene: &Scene) -> Self {
+    /// The report of a run that starts.
+    pub fn new(scene: &Scene) -> Self {
         Self {
             status: "running",
             version: env!("CARGO_PKG_VERSION"),
@@ -91,8 +91,8 @@ impl Report {
         }
     }
 
-    /// Takes in the last state.
-    pub fn end(&mut self, stats: &Stats) {
+    /// Sets the last state.
+    pub fn set_end(&mut self, stats: &Stats) {
         self.end = Some(End {
             time: stats.time,
             steps: stats.steps,
@@ -108,10 +108,10 @@ impl Report {
         });
     }
 
-    /// Takes in the library's summary.
-    pub fn summary(&mut self, summary: &Summary) {
-        self.end(&summary.stats);
-        self.passes = passes(&summary.timings);
+    /// Sets the summary of a finished run.
+    pub fn set_summary(&mut self, summary: &Summary) {
+        self.set_end(&summary.stats);
+        self.passes = pass_numbers(&summary.timings);
         self.summary = Some(Numbers {
             frames: summary.frames,
             wall: summary.wall,
@@ -125,21 +125,21 @@ impl Report {
         });
     }
 
-    /// Writes it, complete or not at all.
+    /// Writes the file, complete or not at all.
     ///
     /// # Errors
     /// [`IoError::Write`].
-    pub fn write(&self, layout: &Layout) -> Result<(), IoError> {
+    pub fn write(&self, folder: &RunFolder) -> Result<(), IoError> {
         let fill = |out: &mut dyn std::io::Write| {
             serde_json::to_writer_pretty(&mut *out, self)?;
             out.write_all(b"\n")
         };
-        atomic::write(&layout.report(), fill).map(|_| ())
+        atomic::write(&folder.report(), fill).map(|_| ())
     }
 }
 
-/// As plain numbers.
-pub fn passes(timings: &Timings) -> BTreeMap<&'static str, PassNumbers> {
+/// The times of the passes as plain numbers.
+pub fn pass_numbers(timings: &Timings) -> BTreeMap<&'static str, PassNumbers> {
     let numbers = |time: &splashdown_gpu::PassTime| PassNumbers {
         count: time.count,
         seconds: time.total.as_secs_f64(),

@@ -3,36 +3,34 @@
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
-use crate::exit::{Exit, Failure};
+use crate::RunError;
 
-/// Keeps other runs out of an output folder while it lives. The system lets go of it with the process, however that
-/// ends; what is left then is an empty file that holds nobody up.
+/// Excludes other runs from an output folder until it is dropped. The operating system releases the lock when the
+/// process ends in any way; the empty file that may remain then locks nothing.
 #[derive(Debug)]
-pub struct FolderLock {
+pub(crate) struct FolderLock {
     path: PathBuf,
     /// Holds the lock.
     _file: File,
 }
 
 impl FolderLock {
-    /// Takes the folder, which is there. Where the file system knows no locks nobody is kept out.
+    /// Locks an existing folder. On a file system without locks no run is excluded.
     ///
     /// # Errors
-    /// [`Exit::Usage`] while another run writes there; [`Exit::Files`] if nothing can be written.
-    pub fn take(folder: &Path) -> Result<Self, Failure> {
+    /// [`RunError::FolderInUse`] while another run writes there; [`RunError::Lock`] if nothing can be written.
+    pub fn take(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(".lock");
         loop {
-            let file =
-                File::options().create(true).truncate(false).write(true).open(&path).map_err(|error| {
-                    Failure::new(Exit::Files, format!("cannot write `{}`: {error}", path.display()))
-                })?;
+            let file = File::options()
+                .create(true)
+                .truncate(false)
+                .write(true)
+                .open(&path)
+                .map_err(|error| RunError::Lock { path: path.clone(), detail: error.to_string() })?;
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) => {
-                    let message = format!(
-                        "another run is writing into `{}`: wait until it is done or stop it, or choose another --out",
-                        folder.display()
-                    );
-                    return Err(Failure::new(Exit::Usage, message));
+                    return Err(RunError::FolderInUse { folder: folder.to_owned() });
                 }
                 Ok(()) if !is_at(&file, &path) => {}
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(Self { path, _file: file }),
@@ -41,8 +39,8 @@ impl FolderLock {
     }
 }
 
-/// False if a run that ended between the opening and the locking of the file has taken it away: whoever comes next would
-/// lock another of that name.
+/// False if a run that ended between opening and locking has removed the file: the next run would lock a new file of
+/// the same name.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -52,7 +50,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Elsewhere an open file cannot be taken away.
+/// On other systems an open file cannot be removed.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -60,7 +58,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 
 impl Drop for FolderLock {
     fn drop(&mut self) {
-        // One that stays is in nobody's way.
+        // A leftover file does no harm.
         let _ = fs::remove_file(&self.path);
     }
 }
@@ -68,17 +66,17 @@ impl Drop for FolderLock {
 #[cfg(test)]
 mod tests {
     use super::FolderLock;
-    use crate::exit::Exit;
+    use crate::RunError;
 
     #[test]
-    fn a_folder_is_taken_once_and_let_go() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_folder_is_locked_once_and_released() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
-        let first = FolderLock::take(folder.path()).map_err(|failure| failure.message)?;
-        let refused = FolderLock::take(folder.path()).err().map(|failure| failure.exit);
-        assert_eq!(refused, Some(Exit::Usage));
+        let first = FolderLock::take(folder.path())?;
+        let refused = FolderLock::take(folder.path());
+        assert!(matches!(refused, Err(RunError::FolderInUse { .. })));
         drop(first);
         assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
-        // What a killed process left is no obstacle.
+        // The file of a killed process does not lock.
         std::fs::write(folder.path().join(".lock"), "")?;
         assert!(FolderLock::take(folder.path()).is_ok());
         Ok(())
@@ -86,7 +84,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_file_that_was_taken_away_is_no_lock() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_removed_file_is_no_lock() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
         let path = folder.path().join(".lock");
         let file = std::fs::File::create(&path)?;

@@ -1,4 +1,4 @@
-//! Camera, box, liquid and colouring of a scene, as the pictures of a run and the window draw them.
+//! How a scene is drawn: camera, domain, liquid and colours, for the pictures of a run and for the window.
 
 use splashdown::scene::{ColourBy, Derived, Scene};
 use splashdown_render::{Camera, Colouring, Domain, Liquid, Quantity};
@@ -16,21 +16,21 @@ pub fn camera(scene: &Scene, time: f64) -> Camera {
     )
 }
 
-/// The scene's box.
+/// The scene's domain.
 pub fn domain(scene: &Scene) -> Domain {
     let [[x0, x1], [y0, y1], [z0, z1]] = scene.domain.closed;
     Domain { min: scene.domain.min.into(), max: scene.domain.max.into(), closed: [x0, x1, y0, y1, z0, z1] }
 }
 
-/// How the scene's fluid looks; one that is not known looks like water.
+/// The optical properties of the scene's fluid; those of water for an unknown material.
 pub fn liquid(scene: &Scene) -> Liquid {
     let size = scene.domain.size();
     let tint = size.y.min(0.5 * size.x.max(size.z));
     Liquid::from_name(&scene.fluid.material.name, tint).unwrap_or_else(|| Liquid::water(tint))
 }
 
-/// Colours by this quantity over the range of the scene, if it is the scene's own quantity and has one, or over
-/// the one to expect: the same in every frame, so that a film does not flicker.
+/// Colours by this quantity. The range is the scene's if it sets one for this quantity, else the expected one. It is
+/// the same in every frame, so that a film does not flicker.
 pub fn colouring(scene: &Scene, colour_by: ColourBy) -> Colouring {
     let derived = Derived::new(scene);
     let density = scene.fluid.material.rest_density;

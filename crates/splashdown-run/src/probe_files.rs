@@ -1,4 +1,4 @@
-//! What the scene's probes measure, each in a file of its own that grows while the simulation runs.
+//! The tables of the scene's probes: one CSV file each, extended after every frame.
 
 use std::fs;
 
@@ -6,31 +6,31 @@ use splashdown::scene::{Probe, Scene};
 use splashdown::{Frame, probes};
 use splashdown_io::{CsvLog, IoError, WrittenFile};
 
-use crate::layout::Layout;
+use crate::RunFolder;
 
 /// One file per probe, in the order of the scene.
 #[derive(Debug, Default)]
-pub struct ProbeFiles {
+pub(crate) struct ProbeFiles {
     logs: Vec<CsvLog>,
 }
 
 impl ProbeFiles {
-    /// Begins the files with the names of their columns.
+    /// Creates the files and writes the names of their columns.
     ///
     /// # Errors
     /// [`IoError::Write`].
-    pub fn create(scene: &Scene, layout: &Layout) -> Result<Self, IoError> {
-        let create = |probe: &Probe| CsvLog::create(&layout.probe(&probe.name), probes::columns(probe));
+    pub fn create(scene: &Scene, folder: &RunFolder) -> Result<Self, IoError> {
+        let create = |probe: &Probe| CsvLog::create(&folder.probe(&probe.name), probes::columns(probe));
         Ok(Self { logs: scene.probes.iter().map(create).collect::<Result<_, _>>()? })
     }
 
-    /// Goes on with files that held this many bytes each.
+    /// Continues files that had this many bytes each; what follows is cut off.
     ///
     /// # Errors
     /// [`IoError::Write`].
-    pub fn resume(scene: &Scene, layout: &Layout, bytes: &[u64]) -> Result<Self, IoError> {
+    pub fn resume(scene: &Scene, folder: &RunFolder, bytes: &[u64]) -> Result<Self, IoError> {
         let resume = |(index, probe): (usize, &Probe)| {
-            let path = layout.probe(&probe.name);
+            let path = folder.probe(&probe.name);
             match bytes.get(index) {
                 Some(&bytes) => CsvLog::resume(&path, probes::columns(probe), bytes),
                 None => CsvLog::create(&path, probes::columns(probe)),
@@ -44,10 +44,10 @@ impl ProbeFiles {
         self.logs.iter().map(CsvLog::bytes).collect()
     }
 
-    /// Appends what was measured up to a frame.
+    /// Appends the samples up to a frame.
     ///
     /// # Errors
-    /// [`IoError::Write`]; the rows before stay whole.
+    /// [`IoError::Write`]; earlier rows stay complete.
     pub fn write(&mut self, frame: &Frame) -> Result<(), IoError> {
         for (log, rows) in self.logs.iter_mut().zip(frame.probes.iter()) {
             for row in rows {
@@ -57,7 +57,7 @@ impl ProbeFiles {
         Ok(())
     }
 
-    /// The files as they are now.
+    /// The files with their sizes.
     pub fn finish(self) -> Vec<WrittenFile> {
         let file = |log: &CsvLog| {
             let bytes = fs::metadata(log.path()).map_or(0, |data| data.len());

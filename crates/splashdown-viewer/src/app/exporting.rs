@@ -1,4 +1,4 @@
-//! Keeping pictures, scenes and films.
+//! Exporting pictures, scenes and checkpoints.
 
 #[cfg(target_arch = "wasm32")]
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use super::Viewer;
 use crate::engine::{Command, Purpose};
 #[cfg(target_arch = "wasm32")]
 use crate::pixels;
-use crate::{keep, save};
+use crate::{export, save};
 
 impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
@@ -16,8 +16,8 @@ impl Viewer {
         self.draw_in_full();
         let size = self.picture.texture_drawn().map_or([0, 0], |(_, size)| size);
         let picture = self.picture.read().ok_or_else(|| "the device did not hand it out".to_owned());
-        let kept = picture.and_then(|rgba| keep::png(&name, size, rgba));
-        self.tell_kept("the picture", kept, now);
+        let exported = picture.and_then(|rgba| export::picture(&name, size, rgba));
+        self.report_export("the picture", exported, now);
     }
 
     /// The page gets the picture when the browser has it.
@@ -30,7 +30,7 @@ impl Viewer {
         wasm_bindgen_futures::spawn_local(async move {
             if let Some(rgba) = pixels::read(gpu, texture, size).await {
                 // It has been told already where it is; without it the browser says why.
-                let _ = keep::png(&name, size, rgba);
+                let _ = export::picture(&name, size, rgba);
             }
         });
     }
@@ -49,16 +49,16 @@ impl Viewer {
         let folder = self.state.scene.source.as_deref().and_then(std::path::Path::parent);
         let name = folder.unwrap_or(std::path::Path::new("")).join(format!("{}.toml", self.state.scene.name));
         let name = name.to_string_lossy().into_owned();
-        let kept =
-            save::scene(&self.state.scene, &self.state.orbit).and_then(|text| keep::text(&name, &text));
-        self.tell_kept("the scene", kept, now);
+        let exported =
+            save::scene(&self.state.scene, &self.state.orbit).and_then(|text| export::text(&name, &text));
+        self.report_export("the scene", exported, now);
     }
 
     /// Asks the engine for a checkpoint.
     pub(super) fn checkpoint(&mut self, purpose: Purpose, now: f64) {
         match save::scene(&self.state.scene, &self.state.orbit) {
             Ok(text) => self.engine.send(Command::Checkpoint(text, purpose)),
-            Err(reason) if purpose == Purpose::Keep => self.tell_kept("the checkpoint", Err(reason), now),
+            Err(reason) if purpose == Purpose::Keep => self.report_export("the checkpoint", Err(reason), now),
             // Nobody has asked for it.
             Err(_) => {}
         }
@@ -75,9 +75,8 @@ impl Viewer {
         #[cfg(not(target_arch = "wasm32"))]
         {
             let name = format!("{}.{}", self.state.scene.name, splashdown::Checkpoint::ENDING);
-            let kept = checkpoint.to_bytes().map_err(|error| error.to_string());
-            let kept = kept.and_then(|bytes| keep::bytes(&name, &bytes));
-            self.tell_kept("the fluid as it was some seconds ago, for `splashdown view`,", kept, now);
+            let exported = export::checkpoint(&name, &checkpoint);
+            self.report_export("the fluid as it was some seconds ago, for `splashdown view`,", exported, now);
         }
     }
 
@@ -97,7 +96,7 @@ impl Viewer {
                     now,
                 );
             }
-            Err(reason) => self.tell_kept("the link", Err(reason), now),
+            Err(reason) => self.report_export("the link", Err(reason), now),
         }
         #[cfg(not(target_arch = "wasm32"))]
         {
@@ -106,8 +105,8 @@ impl Viewer {
         }
     }
 
-    pub(super) fn tell_kept(&mut self, what: &str, kept: Result<String, String>, now: f64) {
-        match kept {
+    pub(super) fn report_export(&mut self, what: &str, exported: Result<String, String>, now: f64) {
+        match exported {
             Ok(place) => self.state.tell(format!("{what} is in {place}"), false, now),
             Err(reason) => self.state.tell(format!("{what} was not written: {reason}"), true, now),
         }

@@ -1,12 +1,14 @@
-//! Series of files on the command line: which files a pattern or a folder stands for, and how what is made of
-//! them is named.
+//! Series of files: which files a pattern or a folder stands for, and the names of the files made from them.
+
+mod list;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::exit::{Exit, Failure};
+use crate::RunError;
+use list::{folder, list, matches, parent};
 
-/// A file that is read and the one that is made of it.
+/// An input file and the output file made from it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Step {
     /// Read from here.
@@ -18,8 +20,8 @@ pub struct Step {
 /// The files that `given` stands for, each once, those of a pattern or folder in the order of their numbers.
 ///
 /// # Errors
-/// If there is none, or a folder holds files of several endings out of `endings` (with their dots).
-pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Failure> {
+/// [`RunError::Input`] if there is none, or a folder contains files with several of the `endings` (given with dots).
+pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, RunError> {
     let mut files = Vec::new();
     for path in given {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -28,7 +30,7 @@ pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Failu
         } else if name.contains(['*', '?']) && !path.exists() {
             let found = list(parent(path), |file| matches(name.as_bytes(), file.as_bytes()))?;
             if found.is_empty() {
-                return Err(wrong(format!("no file is named like `{}`", path.display())));
+                return Err(RunError::Input(format!("no file matches `{}`", path.display())));
             }
             files.extend(found);
         } else {
@@ -40,13 +42,13 @@ pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Failu
     Ok(files)
 }
 
-/// Names what is made of each of the files: `out` itself for one file; for several `out` with each file's
-/// number at the place of its star or before its ending. A folder, which for several files any name without
-/// star and ending is, gets files `surface_NUMBER.ply`.
+/// Names the output of each file. One file gives `out` itself. Several give `out` with each file's number in place of
+/// its star, or before its ending. A folder gets files `surface_NUMBER.ply`; for several files a name without star and
+/// ending is a folder.
 ///
 /// # Errors
-/// If a file would be read and written, or a star is in the name of a folder.
-pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
+/// [`RunError::Output`] if a file would be read and written, or the name of a folder contains a star.
+pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, RunError> {
     let single = inputs.len() == 1;
     let is_name =
         out.extension().is_some() || out.file_name().is_some_and(|name| name.to_string_lossy().contains('*'));
@@ -54,11 +56,10 @@ pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
         out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', '\\']) || !(single || is_name);
     let folder = if is_folder { Some(out) } else { out.parent() };
     if folder.is_some_and(|folder| folder.to_string_lossy().contains('*') && !folder.is_dir()) {
-        let message = format!(
-            "--out: `{}` has a star in the name of a folder; it stands for the number in the name of a file",
+        return Err(RunError::Output(format!(
+            "`{}` has a star in the name of a folder; a star stands for the number in the name of a file",
             out.display()
-        );
-        return Err(Failure::new(Exit::Usage, message));
+        )));
     }
     let pattern = if is_folder { out.join("surface_*.ply") } else { out.to_owned() };
     let name = pattern.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -80,16 +81,13 @@ pub fn steps(inputs: Vec<PathBuf>, out: &Path) -> Result<Vec<Step>, Failure> {
     match steps.iter().find(|step| steps.iter().any(|other| is_same(&other.input, &step.output))) {
         Some(step) => {
             let file = step.output.display();
-            Err(Failure::new(
-                Exit::Usage,
-                format!("`{file}` would be read and written: choose another --out"),
-            ))
+            Err(RunError::Output(format!("`{file}` would be read and written: choose another output")))
         }
         None => Ok(steps),
     }
 }
 
-/// Whether two paths name one file or folder, however they are spelled.
+/// Whether two paths name the same file or folder.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
@@ -97,12 +95,12 @@ pub fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The files' own numbers, if each has one that no other has; else they are counted.
+/// The numbers in the files' names if they are all different, else consecutive numbers.
 fn numbers(inputs: &[PathBuf]) -> Vec<String> {
     let own: Vec<String> = inputs.iter().filter_map(|input| last_number(&stem(input))).collect();
     let distinct: BTreeSet<&String> = own.iter().collect();
     if distinct.len() == inputs.len() {
-        // As wide as the widest, so that the made files sort as their numbers do.
+        // As wide as the widest, so that the output files sort by number.
         let width = own.iter().map(String::len).max().unwrap_or(0).max(4);
         return own.iter().map(|number| format!("{number:0>width$}")).collect();
     }
@@ -116,97 +114,13 @@ fn stem(path: &Path) -> String {
     name.split('.').next().unwrap_or_default().to_owned()
 }
 
-/// The last run of digits of a name.
+/// The last group of digits in a name.
 fn last_number(name: &str) -> Option<String> {
     let end = name.rfind(|c: char| c.is_ascii_digit())? + 1;
     let start = name[..end]
         .rfind(|c: char| !c.is_ascii_digit())
         .map_or(0, |at| at + name[at..].chars().next().map_or(1, char::len_utf8));
     Some(name[start..end].to_owned())
-}
-
-/// The files of the one series in a folder.
-fn folder(path: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, Failure> {
-    let ending = |name: &str| {
-        let name = name.to_ascii_lowercase();
-        endings
-            .iter()
-            .find(|ending| name.ends_with(**ending) || name.ends_with(&format!("{ending}.gz")))
-            .copied()
-    };
-    let files = list(path, |name| !name.starts_with('.') && ending(name).is_some())?;
-    let kinds: BTreeSet<&str> =
-        files.iter().filter_map(|file| ending(&file.file_name()?.to_string_lossy())).collect();
-    let place = path.display();
-    match kinds.len() {
-        0 => Err(wrong(format!("`{place}` holds no file that ends in one of {}", endings.join(", ")))),
-        1 => Ok(files),
-        _ => {
-            let kinds: Vec<&str> = kinds.into_iter().collect();
-            let pattern = path.join(format!("*{}", kinds[0]));
-            Err(wrong(format!(
-                "`{place}` holds files of {} kinds ({}): name one, as in '{}'",
-                kinds.len(),
-                kinds.join(", "),
-                pattern.display()
-            )))
-        }
-    }
-}
-
-/// The files of a folder whose names are wanted, in the order of the numbers in their names.
-fn list(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, Failure> {
-    let entries = std::fs::read_dir(folder)
-        .map_err(|error| wrong(format!("cannot list the folder `{}`: {error}", folder.display())))?;
-    let mut files: Vec<PathBuf> = entries
-        .flatten()
-        .filter(|entry| wanted(&entry.file_name().to_string_lossy()))
-        .map(|entry| entry.path())
-        .filter(|path| path.is_file())
-        // As the user wrote it: without a dot before it.
-        .map(|path| path.strip_prefix(".").map(Path::to_owned).unwrap_or(path))
-        .collect();
-    files.sort_by_cached_key(|file| natural(&file.to_string_lossy()));
-    Ok(files)
-}
-
-fn parent(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// A key that sorts frame_9 before frame_10: text and numbers by turns.
-fn natural(name: &str) -> Vec<(String, u64)> {
-    let mut parts = vec![(String::new(), 0_u64)];
-    let mut in_number = false;
-    for c in name.chars() {
-        let digit = c.to_digit(10).map(u64::from);
-        if in_number && digit.is_none() {
-            parts.push((String::new(), 0));
-        }
-        in_number = digit.is_some();
-        if let Some((text, number)) = parts.last_mut() {
-            match digit {
-                Some(digit) => *number = number.saturating_mul(10).saturating_add(digit),
-                None => text.push(c),
-            }
-        }
-    }
-    parts
-}
-
-/// Whether a name is like a pattern, whose `*` stands for any bytes and whose `?` for one.
-fn matches(pattern: &[u8], name: &[u8]) -> bool {
-    match (pattern, name) {
-        ([], []) => true,
-        ([b'*', rest @ ..], _) => (0..=name.len()).any(|skipped| matches(rest, &name[skipped..])),
-        ([b'?', rest @ ..], [_, others @ ..]) => matches(rest, others),
-        ([byte, rest @ ..], [other, others @ ..]) if byte == other => matches(rest, others),
-        _ => false,
-    }
-}
-
-fn wrong(message: String) -> Failure {
-    Failure::new(Exit::Scene, message)
 }
 
 #[cfg(test)]
@@ -223,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn made_files_have_the_numbers_of_their_files() {
+    fn output_files_have_the_numbers_of_their_input_files() {
         assert_eq!(outputs(&["a.ply"], "b.obj"), ["b.obj"]);
         assert_eq!(outputs(&["a_7.ply", "a_12.ply"], "m/b.obj"), ["m/b_0007.obj", "m/b_0012.obj"]);
         assert_eq!(outputs(&["a_7.ply", "a_12.ply"], "m/x*y.glb"), ["m/x0007y.glb", "m/x0012y.glb"]);
@@ -238,7 +152,7 @@ mod tests {
         for out in ["m2*/", "m2*/x.ply", "m*/x*.ply"] {
             assert!(
                 steps(paths(&["a1.ply", "a2.ply"]), out.as_ref())
-                    .is_err_and(|error| error.message.contains("star"))
+                    .is_err_and(|error| error.to_string().contains("star"))
             );
         }
     }
@@ -259,7 +173,7 @@ mod tests {
         assert!(names("h*").is_empty());
         std::fs::write(folder.path().join("z.vtk"), "")?;
         let message =
-            expand(&[folder.path().to_owned()], &[".ply", ".vtk"]).map_err(|failure| failure.message);
+            expand(&[folder.path().to_owned()], &[".ply", ".vtk"]).map_err(|error| error.to_string());
         assert!(message.is_err_and(|message| message.contains(".ply, .vtk")));
         Ok(())
     }

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use egui::Context;
+use splashdown_run::Recorder;
 
 use super::Viewer;
 use crate::engine::{Command, Snapshot};
-use crate::record::Recorder;
 
 /// A film in the making, and the last moment that it has.
 pub(super) struct Recording {
@@ -18,15 +18,17 @@ impl Viewer {
     pub(super) fn record_or_end(&mut self, now: f64) {
         if let Some(recording) = self.recording.take() {
             self.state.recorded = None;
-            let kept = recording.recorder.finish();
-            self.tell_kept("the film", kept, now);
+            let recorder = recording.recorder;
+            let place = format!("{} ({} pictures)", recorder.folder().display(), recorder.frames());
+            let exported = recorder.finish().map(|()| place).map_err(|error| error.to_string());
+            self.report_export("the film", exported, now);
             return;
         }
         let name = std::path::PathBuf::from(format!("{}-film", self.state.scene.name));
         match Recorder::start(&name, self.size, self.state.scene.frame_rate) {
-            Ok((recorder, obstacle)) => {
-                if let Some(obstacle) = obstacle {
-                    self.state.tell(obstacle, true, now);
+            Ok((recorder, failure)) => {
+                if let Some(failure) = failure {
+                    self.state.tell(failure, true, now);
                 }
                 self.state.playing = false;
                 self.state.recorded = Some(0);
@@ -50,7 +52,7 @@ impl Viewer {
         let drawn = self.picture.draw(size, &snapshot, &self.state.look, self.state.orbit.camera(aspect));
         let added = drawn.map_err(|error| error.to_string()).and_then(|()| {
             let rgba = self.picture.read().ok_or("the device did not hand the picture out")?;
-            recording.recorder.add(rgba)
+            recording.recorder.add(rgba).map_err(|error| error.to_string())
         });
         recording.last = Some(snapshot);
         self.state.recorded = Some(recording.recorder.frames());

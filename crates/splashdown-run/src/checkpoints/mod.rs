@@ -1,0 +1,87 @@
+//! The checkpoints of a run: when they are taken and when they are written.
+
+mod find;
+
+pub use find::{FoundCheckpoint, find_checkpoint, recent_checkpoints};
+
+use std::collections::VecDeque;
+
+use splashdown::{Checkpoint, Run};
+use splashdown_io::{FrameWriter, Job, WrittenFile, prepare_folder};
+
+use crate::settings::Notes;
+use crate::{RunError, RunFolder};
+
+/// How many stay on the disk: a second one, in case the newest is damaged from outside.
+const COUNT: usize = 2;
+
+/// Takes checkpoints. Each is written when the files of all frames up to it are complete, so that a resumed run
+/// finds them.
+#[derive(Debug)]
+pub(crate) struct CheckpointWriter {
+    folder: RunFolder,
+    every: Option<u32>,
+    notes: Notes,
+    taken: VecDeque<(u32, Checkpoint)>,
+    last: Option<u32>,
+}
+
+impl CheckpointWriter {
+    /// Takes one every so many frames.
+    pub fn new(folder: RunFolder, every: Option<u32>, notes: Notes) -> Self {
+        Self { folder, every, notes, taken: VecDeque::new(), last: None }
+    }
+
+    /// Whether one is due after this frame.
+    pub fn due(&self, frame: u32) -> bool {
+        self.every.is_some_and(|every| frame.is_multiple_of(every) && frame > 0)
+    }
+
+    /// Takes one after the run's last frame, unless that has been done.
+    ///
+    /// # Errors
+    /// As [`Run::checkpoint`].
+    pub fn take(&mut self, run: &mut Run, frame: u32, probe_bytes: Vec<u64>) -> Result<(), RunError> {
+        if self.last == Some(frame) {
+            return Ok(());
+        }
+        let mut checkpoint = run.checkpoint()?;
+        self.notes.probe_bytes = probe_bytes;
+        checkpoint.set_notes(&self.notes.to_json());
+        self.taken.push_back((frame, checkpoint));
+        self.last = Some(frame);
+        Ok(())
+    }
+
+    /// Queues those whose frames are complete.
+    ///
+    /// # Errors
+    /// The writer's first failure.
+    pub fn write(&mut self, complete: u32, writer: &FrameWriter) -> Result<(), RunError> {
+        while let Some((frame, checkpoint)) = self.taken.pop_front_if(|(frame, _)| *frame <= complete) {
+            // Before writing, so that there are never more than `COUNT`. The remaining one is complete.
+            self.folder.remove_old_checkpoints(COUNT - 1);
+            writer.submit(vec![Job::Bytes(self.folder.checkpoint(frame), checkpoint.to_bytes()?)])?;
+        }
+        Ok(())
+    }
+
+    /// Writes the rest after the writer has ended, and returns their files.
+    ///
+    /// # Errors
+    /// [`RunError::Io`], [`RunError::Checkpoint`].
+    pub fn finish(mut self, complete: Option<u32>) -> Result<Vec<WrittenFile>, RunError> {
+        let mut written = Vec::new();
+        while let Some((frame, checkpoint)) = self.taken.pop_front() {
+            if complete.is_some_and(|complete| frame <= complete) {
+                prepare_folder(&self.folder.checkpoint_folder())?;
+                self.folder.remove_old_checkpoints(COUNT - 1);
+                let path = self.folder.checkpoint(frame);
+                let bytes = checkpoint.write(&path)?;
+                written.push(WrittenFile { path, bytes });
+            }
+        }
+        self.folder.remove_old_checkpoints(COUNT);
+        Ok(written)
+    }
+}

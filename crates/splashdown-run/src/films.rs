@@ -1,0 +1,89 @@
+//! Films of the pictures of a run.
+
+use std::sync::Arc;
+
+use splashdown::scene::{PictureKind, Scene};
+use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, WrittenFile, picture};
+
+use crate::{Reporter, RunFolder};
+
+/// Films show at most this many frames per second.
+const MAX_FRAME_RATE: f32 = 60.0;
+/// The frame rate of films of faster scenes, which are thus in slow motion.
+const SLOW_MOTION_RATE: f32 = 30.0;
+
+/// The frames per second of the film of a scene with this many.
+pub fn frame_rate(scene_frame_rate: f32) -> f32 {
+    if scene_frame_rate > MAX_FRAME_RATE { SLOW_MOTION_RATE } else { scene_frame_rate }
+}
+
+/// Starts a film per kind of picture. Failures are returned as messages with the command that makes the film later.
+pub(crate) fn start(
+    scene: &Scene,
+    kinds: &[PictureKind],
+    folder: &RunFolder,
+) -> (Vec<Arc<Film>>, Vec<String>) {
+    let [width, height] = scene.output.picture_size;
+    let rate = frame_rate(scene.frame_rate);
+    let mut films = Vec::new();
+    let mut failures = Vec::new();
+    for &kind in kinds {
+        let options =
+            FilmOptions::new(folder.film(kind), width, height, rate.into(), folder.picture_pattern(kind));
+        let by_hand = options.command_by_hand();
+        match Film::start(options) {
+            Ok(film) => films.push(Arc::new(film)),
+            Err(error) if failures.is_empty() => failures.push(error.to_string()),
+            Err(_) => failures.push(format!("and for the other pictures: {by_hand}")),
+        }
+    }
+    (films, failures)
+}
+
+/// Starts films with the existing pictures of frames 0 to `last`; returns the number of missing pictures.
+///
+/// # Errors
+/// The writer's first failure.
+pub(crate) fn add_existing(
+    films: &[Arc<Film>],
+    kinds: &[PictureKind],
+    folder: &RunFolder,
+    last: u32,
+    writer: &FrameWriter,
+) -> Result<u32, IoError> {
+    let mut missing = 0;
+    for frame in 0..=last {
+        for (film, &kind) in films.iter().zip(kinds) {
+            let size = [film.options().width, film.options().height];
+            match picture::read_png(&folder.picture(kind, frame)) {
+                Ok(picture) if [picture.width, picture.height] == size => {
+                    writer.submit(vec![Job::Film(Arc::clone(film), Arc::new(picture))])?;
+                }
+                _ => missing += 1,
+            }
+        }
+    }
+    Ok(missing)
+}
+
+/// Completes the films. A failure is only a warning: the pictures exist and the film can be made from them.
+pub(crate) fn finish(films: &[Arc<Film>], reporter: &mut dyn Reporter) -> Vec<WrittenFile> {
+    let mut done = Vec::new();
+    for film in films {
+        match film.finish() {
+            Ok(bytes) => done.push(WrittenFile { path: film.options().path.clone(), bytes }),
+            Err(error) => reporter.warning(&error.to_string()),
+        }
+    }
+    done
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frame_rate;
+
+    #[test]
+    fn fast_scenes_are_shown_in_slow_motion() {
+        assert_eq!([24.0, 60.0, 120.0].map(frame_rate), [24.0, 60.0, 30.0]);
+    }
+}

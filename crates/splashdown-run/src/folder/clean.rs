@@ -1,0 +1,129 @@
+//! Finding and removing the files of earlier runs.
+//!
+//! Failures to remove a file are ignored here: the file cannot be overwritten either, and that is reported with its
+//! name.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use splashdown::scene::{Choice, PictureKind};
+use splashdown_io::WrittenFile;
+
+use super::{PROBES, RunFolder, numbered};
+
+/// The first bytes of a probe table.
+const PROBE_HEADER: &[u8] = b"time (s),";
+
+impl RunFolder {
+    /// Removes all checkpoints but the newest `count`.
+    pub(crate) fn remove_old_checkpoints(&self, count: usize) {
+        let files = self.checkpoints();
+        for old in &files[..files.len().saturating_sub(count)] {
+            // A leftover checkpoint does no harm.
+            let _ = fs::remove_file(old);
+        }
+    }
+
+    /// Removes frames and checkpoints after this frame: a resumed run may end earlier than the one before.
+    pub(crate) fn remove_after(&self, frame: u32) {
+        for series in numbered::ALL {
+            for (_, path) in series.files(&self.root).filter(|(number, _)| *number > frame) {
+                let _ = fs::remove_file(path);
+            }
+        }
+    }
+
+    /// The existing files of the frames up to this one. Films, probes, index and report are not included.
+    pub(crate) fn files_up_to(&self, frame: u32) -> Vec<WrittenFile> {
+        let numbered = numbered::ALL.iter().flat_map(|series| series.files(&self.root));
+        let numbered = numbered.filter(|(number, _)| *number <= frame).map(|(_, path)| path);
+        let animated = PictureKind::ALL.iter().map(|(kind, ..)| self.animated(*kind, None));
+        let existing = |path: std::path::PathBuf| {
+            let bytes = fs::metadata(&path).ok()?.len();
+            Some(WrittenFile { path, bytes })
+        };
+        numbered.chain(animated).filter_map(existing).collect()
+    }
+
+    /// Removes the files of an earlier run, if the folder contains its report. Other files stay. Frames of two runs
+    /// in one series would be read as one. Returns the number of files removed.
+    pub(crate) fn remove_earlier(&self) -> usize {
+        if !self.report().exists() {
+            return 0;
+        }
+        let mut files = 0;
+        let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
+        remove(&self.index());
+        for series in numbered::ALL {
+            for (_, path) in series.files(&self.root) {
+                remove(&path);
+            }
+            // Succeeds only if the folder is empty.
+            let _ = fs::remove_dir(self.root.join(series.folder));
+        }
+        let probes = self.root.join(PROBES);
+        for entry in fs::read_dir(&probes).into_iter().flatten().flatten() {
+            if is_probe_table(&entry.path()) {
+                remove(&entry.path());
+            }
+        }
+        let _ = fs::remove_dir(&probes);
+        remove(&self.report());
+        for (kind, ..) in PictureKind::ALL {
+            remove(&self.film(*kind));
+            remove(&self.animated(*kind, None));
+        }
+        files
+    }
+}
+
+/// Removes incomplete files that a killed run left below its folder.
+pub(crate) fn remove_partial(root: &Path) {
+    let folders = fs::read_dir(root).into_iter().flatten().flatten().map(|entry| entry.path());
+    for folder in folders.filter(|path| path.is_dir()).chain([root.to_owned()]) {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if name.starts_with('.') && name.ends_with(".partial") {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+}
+
+/// Whether a file is the table of a probe, whatever its name.
+fn is_probe_table(path: &Path) -> bool {
+    let mut start = [0; PROBE_HEADER.len()];
+    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    path.extension().is_some_and(|ending| ending == "csv") && read.is_ok() && start == PROBE_HEADER
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{RunFolder, Subfolders};
+    use std::fs;
+
+    #[test]
+    fn an_earlier_run_is_removed_and_nothing_else() -> Result<(), Box<dyn std::error::Error>> {
+        let temporary = tempfile::tempdir()?;
+        let folder = RunFolder::new(temporary.path().to_owned(), 10);
+        let all =
+            Subfolders { particles: true, mesh: true, pictures: true, probes: true, checkpoints: false };
+        folder.create_subfolders(all)?;
+        let mine = temporary.path().join("particles/notes.txt");
+        let frame = folder.particles(3, "ply");
+        fs::write(&mine, "mine")?;
+        fs::write(&frame, "old")?;
+        fs::write(folder.probe("gauge"), "time (s),height (m)\n")?;
+        let other = folder.probe("measured");
+        fs::write(&other, "seconds,metres\n")?;
+        // Without a report the folder may belong to another program.
+        assert_eq!(folder.remove_earlier(), 0);
+        assert!(frame.exists());
+        fs::write(folder.report(), "{}")?;
+        assert_eq!(folder.remove_earlier(), 3);
+        assert!(!frame.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! The output folder of a run and the names of its files.
+
+mod clean;
+mod create;
+mod numbered;
+
+pub(crate) use clean::remove_partial;
+pub(crate) use create::Subfolders;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use splashdown::Checkpoint;
+use splashdown::scene::{Choice, PictureKind};
+
+use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
+
+/// The folder of the probe tables, whose names come from the scene.
+const PROBES: &str = "probes";
+
+/// The names of all files of a run.
+#[derive(Clone, Debug)]
+pub struct RunFolder {
+    root: PathBuf,
+    digits: usize,
+}
+
+impl RunFolder {
+    /// Names for this many frames: four digits, more if necessary.
+    pub fn new(root: PathBuf, frames: u32) -> Self {
+        Self { root, digits: frames.to_string().len().max(4) }
+    }
+
+    /// Names with this many digits, 4 to 10.
+    pub(crate) fn with_digits(root: PathBuf, digits: usize) -> Self {
+        Self { root, digits: digits.clamp(4, 10) }
+    }
+
+    /// The digits of the frame numbers.
+    pub(crate) fn digits(&self) -> usize {
+        self.digits
+    }
+
+    /// The folder itself.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Particles of a frame. Endings are given without a dot.
+    pub fn particles(&self, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("particles", "particles", frame, ending)
+    }
+
+    /// Spray, foam or bubbles of a frame.
+    pub fn diffuse(&self, name: &str, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("particles", name, frame, ending)
+    }
+
+    /// The surface of a frame.
+    pub fn mesh(&self, frame: u32, ending: &str) -> PathBuf {
+        self.numbered("mesh", "surface", frame, ending)
+    }
+
+    /// A picture of a frame.
+    pub fn picture(&self, kind: PictureKind, frame: u32) -> PathBuf {
+        self.numbered("pictures", kind.name(), frame, "png")
+    }
+
+    /// The names of all pictures of a kind, in the notation of ffmpeg.
+    pub fn picture_pattern(&self, kind: PictureKind) -> String {
+        let name = format!("{}_%0{}d.png", kind.name(), self.digits);
+        self.root.join("pictures").join(name).display().to_string()
+    }
+
+    /// The film of the pictures of a kind.
+    pub fn film(&self, kind: PictureKind) -> PathBuf {
+        self.root.join(format!("{}.mp4", kind.name()))
+    }
+
+    /// The USD file of the surface or the particles, of the frames from `first` on, or of all frames.
+    pub fn animated(&self, kind: PictureKind, first: Option<u32>) -> PathBuf {
+        match first {
+            Some(frame) => self.numbered("", kind.name(), frame, "usda"),
+            None => self.root.join(format!("{}.usda", kind.name())),
+        }
+    }
+
+    /// The ParaView index of the VTU particles.
+    pub fn index(&self) -> PathBuf {
+        self.root.join("particles").join("particles.pvd")
+    }
+
+    /// The table of a probe.
+    pub fn probe(&self, name: &str) -> PathBuf {
+        self.root.join(PROBES).join(format!("{name}.csv"))
+    }
+
+    /// The report.
+    pub fn report(&self) -> PathBuf {
+        self.root.join("run.json")
+    }
+
+    /// The checkpoint after a frame.
+    pub fn checkpoint(&self, frame: u32) -> PathBuf {
+        self.numbered(CHECKPOINTS, CHECKPOINT, frame, Checkpoint::ENDING)
+    }
+
+    /// The folder of the checkpoints.
+    pub fn checkpoint_folder(&self) -> PathBuf {
+        self.root.join(CHECKPOINTS)
+    }
+
+    /// All checkpoints, the oldest first.
+    pub fn checkpoints(&self) -> Vec<PathBuf> {
+        let mut files: Vec<(u32, PathBuf)> = fs::read_dir(self.checkpoint_folder())
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|entry| {
+                let name = entry.file_name();
+                let number = frame_number(&name.to_string_lossy(), &[CHECKPOINT], &[Checkpoint::ENDING])?;
+                Some((number, entry.path()))
+            })
+            .collect();
+        files.sort();
+        files.into_iter().map(|(_, path)| path).collect()
+    }
+
+    /// The run whose folder of checkpoints this is, if it is one.
+    pub(crate) fn root_of_checkpoints(folder: &Path) -> Option<PathBuf> {
+        if folder.ends_with(CHECKPOINTS) {
+            let root = folder.parent()?;
+            return Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root.to_owned() });
+        }
+        // The folder may be given relative to itself, as `.`.
+        let whole = folder.canonicalize().ok().filter(|folder| folder.ends_with(CHECKPOINTS))?;
+        whole.parent().map(Path::to_owned)
+    }
+
+    fn numbered(&self, folder: &str, stem: &str, frame: u32, ending: &str) -> PathBuf {
+        self.root.join(folder).join(format!("{stem}_{frame:0digits$}.{ending}", digits = self.digits))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RunFolder;
+    use splashdown::scene::PictureKind;
+
+    #[test]
+    fn names_have_four_digits_or_as_many_as_needed() {
+        let folder = RunFolder::new("out".into(), 100);
+        assert!(folder.particles(7, "ply").ends_with("particles/particles_0007.ply"));
+        assert!(folder.picture_pattern(PictureKind::Surface).ends_with("surface_%04d.png"));
+        let folder = RunFolder::new("out".into(), 12_000);
+        assert!(folder.mesh(7, "obj").ends_with("mesh/surface_00007.obj"));
+        assert!(folder.picture_pattern(PictureKind::Particles).ends_with("particles_%05d.png"));
+    }
+}

@@ -1,0 +1,178 @@
+//! Writing frames. The writer works beside the simulation; a frame is reported when all of its files are complete.
+
+mod tracker;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use splashdown::scene::{Choice, Format, PictureKind, Scene};
+use splashdown::{DiffuseKind, Frame, Stats};
+use splashdown_io::usd::{MeshSeries, PointSeries};
+use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
+
+use crate::RunFolder;
+use tracker::Tracker;
+
+/// A frame whose files are all complete.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CompleteFrame {
+    /// The frame without its data.
+    pub summary: FrameSummary,
+    /// Its files.
+    pub files: Vec<PathBuf>,
+}
+
+/// The numbers of a frame. Its arrays are freed as soon as they are written.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct FrameSummary {
+    /// Number, from 0.
+    pub index: u32,
+    /// The statistics of the simulation.
+    pub stats: Stats,
+    /// Volume enclosed by the surface in m^3.
+    pub volume: Option<f64>,
+    /// Triangles of the surface.
+    pub triangles: Option<usize>,
+}
+
+impl FrameSummary {
+    fn of(frame: &Frame) -> Self {
+        Self {
+            index: frame.index,
+            stats: frame.stats,
+            volume: frame.volume,
+            triangles: frame.mesh.as_ref().map(|mesh| mesh.len()),
+        }
+    }
+}
+
+/// Writes the particles and meshes of a run.
+#[derive(Debug)]
+pub(crate) struct FrameFiles {
+    writer: Arc<FrameWriter>,
+    tracker: Tracker,
+    folder: RunFolder,
+    formats: Vec<Format>,
+    /// The USD files, if requested.
+    points: Option<Arc<PointSeries>>,
+    surface: Option<Arc<MeshSeries>>,
+}
+
+impl FrameFiles {
+    /// Starts the writer. USD files of a resumed run contain only its own frames and are named by the first of them.
+    ///
+    /// # Errors
+    /// [`IoError::WriterStopped`]; [`IoError::Write`] if a USD file cannot be created.
+    pub fn start(folder: RunFolder, scene: &Scene, resumed_after: Option<u32>) -> Result<Self, IoError> {
+        let formats = scene.output.formats.clone();
+        let animated = formats.contains(&Format::Usd);
+        let rate = f64::from(scene.frame_rate);
+        let first = resumed_after.map(|frame| frame + 1);
+        let start_points = || {
+            let path = folder.animated(PictureKind::Particles, first);
+            PointSeries::start(&path, rate, scene.fluid.particle_spacing)
+        };
+        let start_surface = || MeshSeries::start(&folder.animated(PictureKind::Surface, first), rate);
+        let points = animated.then(start_points).transpose()?.map(Arc::new);
+        let surface = (animated && scene.surface.enabled).then(start_surface).transpose()?.map(Arc::new);
+        let indexed = formats.contains(&Format::Vtu);
+        let mut tracker = Tracker::new(folder.clone(), indexed);
+        if let Some(last) = resumed_after {
+            tracker.add_existing(last, scene.frame_rate);
+        }
+        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, folder, formats, points, surface })
+    }
+
+    /// The writer, shared with the thread that draws pictures.
+    pub fn writer(&self) -> Arc<FrameWriter> {
+        Arc::clone(&self.writer)
+    }
+
+    /// Queues a frame; `pictures` are the files that will be drawn of it.
+    ///
+    /// # Errors
+    /// The first failure of an earlier frame.
+    pub fn submit(&mut self, frame: &Frame, pictures: Vec<PathBuf>) -> Result<(), IoError> {
+        let mut jobs = Vec::new();
+        let mut files = Vec::new();
+        let kinds =
+            frame.foam.iter().flat_map(|foam| DiffuseKind::ALL.map(|(kind, name)| (foam, kind, name)));
+        let diffuse: Vec<_> = kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind)))).collect();
+        for format in self.formats.iter().filter(|format| format.is_numbered()) {
+            if format.has_particles() {
+                let path = self.folder.particles(frame.index, format.name());
+                files.push(path.clone());
+                jobs.push(Job::Particles(path, Arc::clone(&frame.particles)));
+                for (name, particles) in &diffuse {
+                    let path = self.folder.diffuse(name, frame.index, format.name());
+                    files.push(path.clone());
+                    jobs.push(Job::Particles(path, Arc::clone(particles)));
+                }
+            }
+            if let (true, Some(mesh)) = (format.has_surface(), &frame.mesh) {
+                let path = self.folder.mesh(frame.index, format.name());
+                files.push(path.clone());
+                jobs.push(Job::Mesh(path, Arc::clone(mesh)));
+            }
+        }
+        if let Some(points) = &self.points {
+            jobs.push(Job::UsdPoints(Arc::clone(points), frame.index, Arc::clone(&frame.particles)));
+        }
+        if let (Some(surface), Some(mesh)) = (&self.surface, &frame.mesh) {
+            jobs.push(Job::UsdMesh(Arc::clone(surface), frame.index, Arc::clone(mesh)));
+        }
+        if !jobs.is_empty() {
+            self.writer.submit(jobs)?;
+        }
+        files.extend(pictures);
+        self.tracker.expect(CompleteFrame { summary: FrameSummary::of(frame), files });
+        Ok(())
+    }
+
+    /// Frames whose files have become complete since the last call, in order. With `no_pictures`, pictures that were
+    /// expected are no longer waited for.
+    ///
+    /// # Errors
+    /// If the ParaView index cannot be written.
+    pub fn completed(&mut self, no_pictures: bool) -> Result<Vec<CompleteFrame>, IoError> {
+        self.tracker.take(&self.writer.written(), no_pictures)
+    }
+
+    /// Waits until everything is written. No other owner of the writer may exist any more.
+    pub fn finish(self, no_pictures: bool) -> FinishedFiles {
+        let Self { writer, mut tracker, points, surface, .. } = self;
+        let (mut files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
+            Some(Ok(files)) => (files, None),
+            Some(Err(failure)) => (failure.written, Some(failure.error)),
+            None => (Vec::new(), Some(IoError::WriterStopped { reason: "it is still in use".to_owned() })),
+        };
+        let frames = tracker.take(&files, no_pictures).unwrap_or_else(|error| {
+            failure.get_or_insert(error);
+            Vec::new()
+        });
+        // Whatever ended the run, the frames written so far become a whole USD file.
+        for animated in [points.map(|points| points.finish()), surface.map(|surface| surface.finish())] {
+            match animated {
+                Some(Ok(Some((path, bytes)))) => files.push(WrittenFile { path, bytes }),
+                Some(Err(error)) => {
+                    failure.get_or_insert(error);
+                }
+                Some(Ok(None)) | None => {}
+            }
+        }
+        FinishedFiles { frames, files, failure }
+    }
+}
+
+/// The result of [`FrameFiles::finish`].
+#[derive(Debug)]
+pub(crate) struct FinishedFiles {
+    /// Frames that became complete while waiting.
+    pub frames: Vec<CompleteFrame>,
+    /// All files, in the order in which they were written.
+    pub files: Vec<WrittenFile>,
+    /// The first failure.
+    pub failure: Option<IoError>,
+}

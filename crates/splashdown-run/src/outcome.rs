@@ -1,0 +1,39 @@
+//! The result of a run.
+
+use splashdown::Summary;
+use splashdown_io::WrittenFile;
+
+use crate::{CompleteFrame, RunError, RunFolder};
+
+/// How a run ended.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum RunEnd {
+    /// All frames were computed.
+    Finished(Summary),
+    /// It was stopped by request.
+    Interrupted,
+    /// It failed. Frames already written are complete.
+    Failed(RunError),
+}
+
+/// What a run left behind.
+#[derive(Debug)]
+#[non_exhaustive]
+#[must_use]
+pub struct RunOutcome {
+    /// How it ended.
+    pub end: RunEnd,
+    /// Where the files are.
+    pub folder: RunFolder,
+    /// Number of frames with complete files, the initial one and those before a resume included.
+    pub complete_frames: usize,
+    /// The last frame that this run completed.
+    pub last_frame: Option<CompleteFrame>,
+    /// The files of all frames, checkpoints and probes, those before a resume included.
+    pub files: Vec<WrittenFile>,
+    /// The films.
+    pub films: Vec<WrittenFile>,
+    /// Whether the folder contains a checkpoint to resume from.
+    pub resumable: bool,
+}

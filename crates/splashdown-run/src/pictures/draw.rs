@@ -1,0 +1,115 @@
+//! Drawing one frame.
+
+use std::sync::Arc;
+
+use splashdown::BodyMesh;
+use splashdown::scene::{PictureKind, Scene};
+use splashdown_gpu::Gpu;
+use splashdown_io::{Particles, Picture};
+use splashdown_render::{
+    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
+    Renderer, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
+};
+
+use super::Drawn;
+use crate::{RunError, appearance};
+
+/// Draws frames on a device.
+pub struct Artist {
+    gpu: Arc<Gpu>,
+    scene: Scene,
+    kinds: Vec<PictureKind>,
+    renderer: Renderer,
+    target: Offscreen,
+    colouring: Colouring,
+    liquid: Liquid,
+    bodies: Vec<PlacedBody>,
+}
+
+impl Artist {
+    /// Prepares the device for the scene's pictures.
+    ///
+    /// # Errors
+    /// [`RenderError`] if it cannot draw pictures of this size.
+    pub fn new(
+        gpu: Arc<Gpu>,
+        scene: &Scene,
+        bodies: &[BodyMesh],
+        kinds: Vec<PictureKind>,
+    ) -> Result<Self, RenderError> {
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, Offscreen::FORMAT, 4)?;
+        let target = Offscreen::new(&gpu.device, &gpu.queue, scene.output.picture_size)?;
+        let colouring = appearance::colouring(scene, scene.output.colour_by);
+        let liquid = appearance::liquid(scene);
+        let place = |body: &BodyMesh| {
+            let colour = body.colour.unwrap_or(PlacedBody::COLOUR);
+            PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
+        };
+        let bodies = bodies.iter().map(place).collect::<Result<_, _>>()?;
+        Ok(Self { gpu, scene: scene.clone(), kinds, renderer, target, colouring, liquid, bodies })
+    }
+
+    /// Draws one picture per kind.
+    ///
+    /// # Errors
+    /// [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
+    pub fn draw(&mut self, drawn: &Drawn) -> Result<Vec<Arc<Picture>>, RunError> {
+        let pictures = self.pictures(drawn)?;
+        self.gpu.health("a picture")?;
+        Ok(pictures)
+    }
+
+    /// One picture per kind; all are submitted before the first is waited for.
+    fn pictures(&mut self, drawn: &Drawn) -> Result<Vec<Arc<Picture>>, RenderError> {
+        let device = &self.gpu.device;
+        let Particles { positions, velocities, densities, pressures, .. } = &*drawn.particles;
+        let particles = match self.kinds.contains(&PictureKind::Particles) {
+            true => Some(UploadedParticles::new(device, positions, velocities, densities, pressures)?),
+            false => None,
+        };
+        let surface = match &drawn.mesh {
+            Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
+            None => None,
+        };
+        let foam = match &drawn.foam {
+            Some(foam) => {
+                let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
+                Some(UploadedFoam::new(device, &foam.positions, &foam.lifetimes, &foam.ids, &kinds)?)
+            }
+            None => None,
+        };
+        let placed = self.bodies.iter().zip(&*drawn.bodies);
+        let bodies = (!self.bodies.is_empty()).then(|| {
+            UploadedBodies::new(
+                device,
+                placed.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array())),
+            )
+        });
+        let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
+        let radius = self.scene.fluid.particle_radius();
+        let (camera, domain) = (appearance::camera(&self.scene, drawn.time), appearance::domain(&self.scene));
+        let mut empty = Frame::new(camera, domain).with_caption(&caption);
+        empty.bodies = bodies.as_ref().map(UploadedBodies::buffers);
+        empty.foam = foam.as_ref().map(|foam| DrawnFoam::new(foam.buffers(), radius));
+        let mut tickets = Vec::new();
+        for kind in &self.kinds {
+            let mut frame = empty;
+            match kind {
+                PictureKind::Particles => {
+                    frame.particles = particles
+                        .as_ref()
+                        .map(|particles| DrawnParticles::new(particles.buffers(), radius, self.colouring));
+                }
+                PictureKind::Surface => {
+                    frame.surface =
+                        surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
+                }
+            }
+            tickets.push(self.target.submit(&mut self.renderer, &frame)?);
+        }
+        let [width, height] = self.target.size();
+        let collect =
+            |ticket| self.target.collect(ticket).map(|rgba| Arc::new(Picture { width, height, rgba }));
+        tickets.into_iter().map(collect).collect()
+    }
+}

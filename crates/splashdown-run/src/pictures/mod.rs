@@ -1,0 +1,147 @@
+//! Pictures of the frames, drawn by a thread beside the simulation.
+
+mod draw;
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, OnceLock};
+use std::thread::{self, JoinHandle};
+
+use splashdown::scene::{PictureKind, Scene};
+use splashdown::{BodyMesh, BodyState, DiffuseParticles};
+use splashdown_gpu::{DeviceRequest, Gpu};
+use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
+
+use crate::{RunError, RunFolder};
+use draw::Artist;
+
+/// Frames that wait while one is drawn.
+const QUEUE: usize = 1;
+
+/// Draws the frames of a run.
+#[derive(Debug)]
+pub(crate) struct Pictures {
+    kinds: Vec<PictureKind>,
+    folder: RunFolder,
+    queue: SyncSender<Drawn>,
+    thread: JoinHandle<()>,
+    failure: Arc<OnceLock<RunError>>,
+    films: Vec<Arc<Film>>,
+}
+
+/// What a picture is drawn from.
+#[derive(Debug)]
+struct Drawn {
+    index: u32,
+    time: f64,
+    particles: Arc<Particles>,
+    mesh: Option<Arc<Mesh>>,
+    foam: Option<Arc<DiffuseParticles>>,
+    bodies: Arc<[BodyState]>,
+}
+
+/// Opens a device to draw with: the GPU of the simulation, else the best adapter, software drivers included.
+///
+/// # Errors
+/// [`RunError::Gpu`] without a driver; the message says what to install.
+pub(crate) fn drawing_device(simulation: Option<&Arc<Gpu>>) -> Result<Arc<Gpu>, RunError> {
+    match simulation {
+        Some(gpu) => Ok(Arc::clone(gpu)),
+        None => Ok(Arc::new(Gpu::open(&DeviceRequest::Auto)?)),
+    }
+}
+
+/// Where the thread sends its pictures.
+struct Destination {
+    kinds: Vec<PictureKind>,
+    films: Vec<Arc<Film>>,
+    folder: RunFolder,
+    writer: Arc<FrameWriter>,
+}
+
+impl Pictures {
+    /// Starts the thread. `films` has one film per kind, or none.
+    ///
+    /// # Errors
+    /// [`RunError::Render`] if the device cannot draw pictures of the scene's size.
+    pub fn start(
+        gpu: Arc<Gpu>,
+        scene: &Scene,
+        bodies: &[BodyMesh],
+        kinds: Vec<PictureKind>,
+        films: Vec<Arc<Film>>,
+        folder: &RunFolder,
+        writer: Arc<FrameWriter>,
+    ) -> Result<Self, RunError> {
+        let artist = Artist::new(gpu, scene, bodies, kinds.clone())?;
+        let destination =
+            Destination { kinds: kinds.clone(), films: films.clone(), folder: folder.clone(), writer };
+        let (queue, frames) = sync_channel(QUEUE);
+        let failure = Arc::new(OnceLock::new());
+        let report = Arc::clone(&failure);
+        let body = move || {
+            if let Err(error) = draw_all(artist, &destination, &frames) {
+                // Only this thread sets it, once.
+                let _ = report.set(error);
+            }
+        };
+        let thread = thread::Builder::new()
+            .name("splashdown-pictures".to_owned())
+            .spawn(body)
+            .map_err(|error| IoError::WriterStopped { reason: error.to_string() })?;
+        Ok(Self { kinds, folder: folder.clone(), queue, thread, failure, films })
+    }
+
+    /// The files of the pictures of a frame.
+    pub fn names(&self, frame: u32) -> Vec<PathBuf> {
+        self.kinds.iter().map(|&kind| self.folder.picture(kind, frame)).collect()
+    }
+
+    /// Queues a frame; blocks while [`QUEUE`] frames wait.
+    pub fn submit(&self, frame: &splashdown::Frame) {
+        let drawn = Drawn {
+            index: frame.index,
+            time: frame.time,
+            particles: Arc::clone(&frame.particles),
+            mesh: frame.mesh.clone(),
+            foam: frame.foam.clone(),
+            bodies: Arc::clone(&frame.bodies),
+        };
+        // If the thread has ended, `failure` contains the reason.
+        let _ = self.queue.send(drawn);
+    }
+
+    /// Why no more pictures are drawn.
+    pub fn failure(&self) -> Option<&RunError> {
+        self.failure.get()
+    }
+
+    /// Waits for the last picture. Returns the films, which still wait for the writer, and the failure, if any.
+    pub fn finish(self) -> (Vec<Arc<Film>>, Option<RunError>) {
+        drop(self.queue);
+        let panicked = self.thread.join().is_err();
+        let failure = Arc::into_inner(self.failure).and_then(OnceLock::into_inner);
+        let stopped = || IoError::WriterStopped { reason: "the drawing thread panicked".to_owned() }.into();
+        (self.films, failure.or_else(|| panicked.then(stopped)))
+    }
+}
+
+/// Draws until the queue is closed.
+fn draw_all(mut artist: Artist, destination: &Destination, frames: &Receiver<Drawn>) -> Result<(), RunError> {
+    let Destination { kinds, films, folder, writer } = destination;
+    for drawn in frames {
+        let pictures = artist.draw(&drawn)?;
+        let mut jobs = Vec::new();
+        for (i, (kind, picture)) in kinds.iter().zip(pictures).enumerate() {
+            jobs.push(Job::Png(folder.picture(*kind, drawn.index), Arc::clone(&picture)));
+            if let Some(film) = films.get(i) {
+                jobs.push(Job::Film(Arc::clone(film), picture));
+            }
+        }
+        // The run reports a failure of the writer.
+        if writer.submit(jobs).is_err() {
+            break;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! Listing the files of a series.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::RunError;
+
+/// The files of the only series in a folder.
+pub fn folder(path: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, RunError> {
+    let ending = |name: &str| {
+        let name = name.to_ascii_lowercase();
+        endings
+            .iter()
+            .find(|ending| name.ends_with(**ending) || name.ends_with(&format!("{ending}.gz")))
+            .copied()
+    };
+    let files = list(path, |name| !name.starts_with('.') && ending(name).is_some())?;
+    let kinds: BTreeSet<&str> =
+        files.iter().filter_map(|file| ending(&file.file_name()?.to_string_lossy())).collect();
+    let place = path.display();
+    match kinds.len() {
+        0 => Err(RunError::Input(format!(
+            "`{place}` contains no file that ends in one of {}",
+            endings.join(", ")
+        ))),
+        1 => Ok(files),
+        _ => {
+            let kinds: Vec<&str> = kinds.into_iter().collect();
+            let pattern = path.join(format!("*{}", kinds[0]));
+            Err(RunError::Input(format!(
+                "`{place}` contains files of {} kinds ({}): name one, as in '{}'",
+                kinds.len(),
+                kinds.join(", "),
+                pattern.display()
+            )))
+        }
+    }
+}
+
+/// The files of a folder with accepted names, in the order of the numbers in their names.
+pub fn list(folder: &Path, accepts: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, RunError> {
+    let entries = std::fs::read_dir(folder).map_err(|error| {
+        RunError::Input(format!("cannot list the folder `{}`: {error}", folder.display()))
+    })?;
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .filter(|entry| accepts(&entry.file_name().to_string_lossy()))
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file())
+        // As the user wrote it: without a leading `./`.
+        .map(|path| path.strip_prefix(".").map(Path::to_owned).unwrap_or(path))
+        .collect();
+    files.sort_by_cached_key(|file| natural(&file.to_string_lossy()));
+    Ok(files)
+}
+
+pub fn parent(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A key that sorts frame_9 before frame_10: alternating text and numbers.
+fn natural(name: &str) -> Vec<(String, u64)> {
+    let mut parts = vec![(String::new(), 0_u64)];
+    let mut in_number = false;
+    for c in name.chars() {
+        let digit = c.to_digit(10).map(u64::from);
+        if in_number && digit.is_none() {
+            parts.push((String::new(), 0));
+        }
+        in_number = digit.is_some();
+        if let Some((text, number)) = parts.last_mut() {
+            match digit {
+                Some(digit) => *number = number.saturating_mul(10).saturating_add(digit),
+                None => text.push(c),
+            }
+        }
+    }
+    parts
+}
+
+/// Whether a name matches a pattern, where `*` stands for any bytes and `?` for one.
+pub fn matches(pattern: &[u8], name: &[u8]) -> bool {
+    match (pattern, name) {
+        ([], []) => true,
+        ([b'*', rest @ ..], _) => (0..=name.len()).any(|skipped| matches(rest, &name[skipped..])),
+        ([b'?', rest @ ..], [_, others @ ..]) => matches(rest, others),
+        ([byte, rest @ ..], [other, others @ ..]) if byte == other => matches(rest, others),
+        _ => false,
+    }
+}

@@ -1,0 +1,219 @@
+//! A run in progress: one loop over the events of [`splashdown::Run`].
+
+mod earlier;
+mod start;
+
+use splashdown::{Event, Run, Summary};
+use splashdown_io::WrittenFile;
+
+use crate::checkpoints::CheckpointWriter;
+use crate::frames::FrameFiles;
+use crate::lock::FolderLock;
+use crate::pictures::Pictures;
+use crate::probe_files::ProbeFiles;
+use crate::report::Report;
+use crate::{CompleteFrame, Reporter, RunEnd, RunError, RunFolder, RunOutcome, RunRequest, Stop, films};
+
+/// Runs a scene or resumes a run, and writes its files. `stop` is polled after every event.
+///
+/// # Errors
+/// As [`Session::start`]. A failure after the start is [`RunEnd::Failed`].
+pub fn run(
+    request: RunRequest,
+    reporter: &mut dyn Reporter,
+    stop: &dyn Fn() -> Stop,
+) -> Result<RunOutcome, RunError> {
+    Ok(Session::start(request, reporter)?.finish(reporter, stop))
+}
+
+/// A started run.
+pub struct Session {
+    run: Run,
+    folder: RunFolder,
+    files: FrameFiles,
+    probes: ProbeFiles,
+    checkpoints: CheckpointWriter,
+    pictures: Option<Pictures>,
+    /// Drawing has failed, and that was reported.
+    pictures_failed: bool,
+    /// A failure to draw fails the run.
+    pictures_required: bool,
+    report: Report,
+    /// The last frame that the simulation has completed.
+    frame: Option<u32>,
+    /// The last frame with complete files.
+    last_complete: Option<CompleteFrame>,
+    summary: Option<Summary>,
+    /// Files of earlier frames of a resumed run.
+    earlier: Vec<WrittenFile>,
+    /// Excludes other runs from the folder.
+    _lock: FolderLock,
+}
+
+impl Session {
+    /// Runs to the end, to a failure, or until `stop` requests it; writes the report.
+    pub fn finish(mut self, reporter: &mut dyn Reporter, stop: &dyn Fn() -> Stop) -> RunOutcome {
+        let mut failure = None;
+        while let Some(event) = self.run.next() {
+            let frame_ended = matches!(event, Ok(Event::Frame(_)));
+            let finished = matches!(event, Ok(Event::Finished(_)));
+            let handled = event.map_err(RunError::from).and_then(|event| self.handle(event, reporter));
+            if let Err(error) = handled.and_then(|()| self.report_progress(reporter)) {
+                failure = Some(error);
+                break;
+            }
+            match stop() {
+                Stop::AfterFrame if frame_ended && !finished => {
+                    if let Some(frame) = self.frame {
+                        failure = self.checkpoints.take(&mut self.run, frame, self.probes.bytes()).err();
+                    }
+                    break;
+                }
+                Stop::Now if !finished => break,
+                _ => {}
+            }
+        }
+        self.close(failure, reporter)
+    }
+
+    fn handle(&mut self, event: Event, reporter: &mut dyn Reporter) -> Result<(), RunError> {
+        match event {
+            Event::Started(started) => {
+                self.report.device = Some(started.device.clone());
+                reporter.started(&started);
+            }
+            Event::Progress(progress) => reporter.progress(&progress),
+            Event::Frame(frame) => {
+                let pictures = self.pictures.as_ref().filter(|_| !self.pictures_failed);
+                let names = pictures.map(|pictures| pictures.names(frame.index)).unwrap_or_default();
+                self.frame = Some(frame.index);
+                self.probes.write(&frame)?;
+                if self.checkpoints.due(frame.index) {
+                    self.checkpoints.take(&mut self.run, frame.index, self.probes.bytes())?;
+                }
+                self.files.submit(&frame, names)?;
+                if let Some(pictures) = pictures {
+                    pictures.submit(&frame);
+                }
+            }
+            Event::Warning(message) => reporter.warning(&message),
+            Event::Note(message) => reporter.note(&message),
+            Event::Finished(summary) => {
+                self.report.set_summary(&summary);
+                self.summary = Some(summary);
+            }
+            // `Event` is non-exhaustive.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Reports a failure to draw, once, and frames whose files have become complete.
+    fn report_progress(&mut self, reporter: &mut dyn Reporter) -> Result<(), RunError> {
+        if let Some(failure) = self.pictures.as_ref().and_then(Pictures::failure)
+            && !self.pictures_failed
+        {
+            self.pictures_failed = true;
+            reporter.warning(&format!("no more pictures: {failure}"));
+        }
+        let frames = self.files.completed(self.pictures_failed)?;
+        complete(frames, &mut self.report, &mut self.last_complete, reporter);
+        if let Some(frame) = &self.last_complete {
+            self.checkpoints.write(frame.summary.index, &self.files.writer())?;
+        }
+        Ok(())
+    }
+
+    /// Waits for queued work and writes the report.
+    fn close(self, mut failure: Option<RunError>, reporter: &mut dyn Reporter) -> RunOutcome {
+        let Self {
+            run,
+            folder,
+            files,
+            probes,
+            checkpoints,
+            pictures,
+            mut pictures_failed,
+            pictures_required,
+            mut report,
+            frame: _,
+            mut last_complete,
+            summary,
+            earlier: mut written,
+            _lock,
+        } = self;
+        drop(run);
+        reporter.waiting("finishing pictures and files");
+        let (films, drawing) = pictures.map(Pictures::finish).unwrap_or_default();
+        if let Some(error) = drawing {
+            if !pictures_failed {
+                reporter.warning(&format!("no more pictures: {error}"));
+            }
+            pictures_failed = true;
+            if pictures_required {
+                failure.get_or_insert(error);
+            }
+        }
+        let ended = files.finish(pictures_failed);
+        written.extend(ended.files);
+        written.extend(probes.finish());
+        complete(ended.frames, &mut report, &mut last_complete, reporter);
+        if let Some(error) = ended.failure {
+            failure.get_or_insert(error.into());
+        }
+        match checkpoints.finish(last_complete.as_ref().map(|frame| frame.summary.index)) {
+            Ok(files) => written.extend(files),
+            Err(error) => {
+                failure.get_or_insert(error);
+            }
+        }
+        let films = films::finish(&films, reporter);
+        // Older checkpoints have been removed meanwhile.
+        written.retain(|file| file.path.exists());
+
+        report.status = match (&failure, &summary) {
+            (Some(_), _) => "failed",
+            (None, Some(_)) => "finished",
+            (None, None) => "interrupted",
+        };
+        report.error = failure.as_ref().map(ToString::to_string);
+        report.files = written.len() + films.len();
+        report.bytes = written.iter().chain(&films).map(|file| file.bytes).sum();
+        if let Err(error) = report.write(&folder) {
+            failure.get_or_insert(error.into());
+        }
+        RunOutcome {
+            end: match (failure, summary) {
+                (Some(failure), _) => RunEnd::Failed(failure),
+                (None, Some(summary)) => RunEnd::Finished(summary),
+                (None, None) => RunEnd::Interrupted,
+            },
+            complete_frames: report.complete_frames,
+            resumable: !folder.checkpoints().is_empty(),
+            folder,
+            last_frame: last_complete,
+            files: written,
+            films,
+        }
+    }
+}
+
+/// Reports frames whose files have become complete.
+fn complete(
+    frames: Vec<CompleteFrame>,
+    report: &mut Report,
+    last: &mut Option<CompleteFrame>,
+    reporter: &mut dyn Reporter,
+) {
+    for frame in frames {
+        report.complete_frames += 1;
+        report.set_end(&frame.summary.stats);
+        reporter.frame_complete(&frame);
+        *last = Some(frame);
+    }
+}
+
+/// A count with its noun: 1 file, 2 files.
+fn count_of(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}

@@ -1,0 +1,101 @@
+//! The settings of a run.
+
+mod notes;
+
+pub(crate) use notes::Notes;
+
+use splashdown::Device;
+use splashdown::scene::{Format, PictureKind, Scene};
+
+use crate::RunError;
+
+/// What to compute and write. `None` means: as the scene or, for a resumed run, its checkpoint says.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RunSettings {
+    /// Where to simulate.
+    pub device: Option<Device>,
+    /// Number of frames after the initial one.
+    pub frames: Option<u32>,
+    /// File formats.
+    pub formats: Option<Vec<Format>>,
+    /// Extract the surface, if the scene enables it. Without it there are no meshes and no pictures of it.
+    pub surface: bool,
+    /// Pictures; an empty list draws none. If pictures are given, a device that cannot draw them is an error.
+    pub pictures: Option<Vec<PictureKind>>,
+    /// Make films of the pictures, if the scene enables them.
+    pub film: bool,
+    /// Frames between two checkpoints.
+    pub checkpoint_every: Option<u32>,
+}
+
+impl Default for RunSettings {
+    fn default() -> Self {
+        Self {
+            device: None,
+            frames: None,
+            formats: None,
+            surface: true,
+            pictures: None,
+            film: true,
+            checkpoint_every: None,
+        }
+    }
+}
+
+impl RunSettings {
+    /// These settings, completed by those of the run to resume.
+    pub(crate) fn or(self, earlier: Self) -> Self {
+        Self {
+            device: self.device.or(earlier.device),
+            frames: self.frames.or(earlier.frames),
+            formats: self.formats.or(earlier.formats),
+            surface: self.surface && earlier.surface,
+            pictures: self.pictures.or(earlier.pictures),
+            film: self.film && earlier.film,
+            checkpoint_every: self.checkpoint_every.or(earlier.checkpoint_every),
+        }
+    }
+
+    /// Changes the scene accordingly.
+    pub(crate) fn apply_to(&self, scene: &mut Scene) {
+        scene.surface.enabled &= self.surface;
+        if let Some(formats) = &self.formats {
+            scene.output.formats = distinct(formats);
+        }
+        if let Some(pictures) = &self.pictures {
+            scene.output.pictures = distinct(pictures);
+        }
+    }
+
+    /// The pictures to draw of a scene to which these settings were applied.
+    ///
+    /// # Errors
+    /// [`RunError::SurfaceRequired`] if pictures of the surface were requested and there is no surface.
+    pub(crate) fn pictures_of(&self, scene: &Scene) -> Result<Vec<PictureKind>, RunError> {
+        let mut kinds = scene.output.pictures.clone();
+        if scene.surface.enabled || !kinds.contains(&PictureKind::Surface) {
+            return Ok(kinds);
+        }
+        if self.pictures.is_some() {
+            return Err(RunError::SurfaceRequired);
+        }
+        kinds.retain(|&kind| kind != PictureKind::Surface);
+        Ok(kinds)
+    }
+
+    /// Whether pictures were requested, not only suggested by the scene.
+    pub(crate) fn requires_pictures(&self) -> bool {
+        self.pictures.as_ref().is_some_and(|kinds| !kinds.is_empty())
+    }
+}
+
+/// Each item once: two writers of one file would race.
+fn distinct<T: Copy + PartialEq>(items: &[T]) -> Vec<T> {
+    items.iter().fold(Vec::new(), |mut found, &item| {
+        if !found.contains(&item) {
+            found.push(item);
+        }
+        found
+    })
+}

@@ -1,0 +1,133 @@
+//! The settings of a run and the state of its files, as stored in its checkpoints (entry `notes.json`). A resumed
+//! run continues with the same output.
+
+use serde::{Deserialize, Serialize};
+use splashdown::scene::{Choice, Format, PictureKind};
+use splashdown::{Checkpoint, CheckpointError};
+
+use super::RunSettings;
+
+/// The entry's content. Choices are stored by their scene-file words.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(crate) struct Notes {
+    device: Option<String>,
+    frames: Option<u32>,
+    formats: Option<Vec<String>>,
+    no_surface: bool,
+    pictures: Option<Vec<String>>,
+    no_pictures: bool,
+    no_film: bool,
+    checkpoint_every: Option<u32>,
+    /// Digits of the frame numbers in file names.
+    pub digits: Option<usize>,
+    /// The first frame written with these formats.
+    pub since: u32,
+    /// Bytes in each probe's file at the checkpoint, in the order of the scene.
+    pub probe_bytes: Vec<u64>,
+}
+
+impl Notes {
+    /// Notes with these settings.
+    pub fn new(settings: &RunSettings) -> Self {
+        let no_pictures = settings.pictures.as_ref().is_some_and(Vec::is_empty);
+        let pictures = settings.pictures.as_ref().filter(|kinds| !kinds.is_empty());
+        Self {
+            device: settings.device.as_ref().map(ToString::to_string),
+            frames: settings.frames,
+            formats: settings.formats.as_deref().map(words),
+            no_surface: !settings.surface,
+            pictures: pictures.map(|kinds| words(kinds)),
+            no_pictures,
+            no_film: !settings.film,
+            checkpoint_every: settings.checkpoint_every,
+            ..Self::default()
+        }
+    }
+
+    /// The notes in a checkpoint; the defaults if the window or a program made it.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Malformed`] for values that no run can have stored.
+    pub fn in_checkpoint(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
+        let Some(notes) = checkpoint.notes() else { return Ok(Self::default()) };
+        let checked = serde_json::from_str(notes).map_err(|error| error.to_string()).and_then(Self::checked);
+        checked.map_err(|reason| CheckpointError::Malformed(format!("its entry `notes.json`: {reason}")))
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> RunSettings {
+        let pictures = self.pictures.as_deref().map(choices::<PictureKind>);
+        RunSettings {
+            // Every word is a device: at worst the name of an adapter that does not exist.
+            device: self.device.as_ref().map(|word| word.parse().unwrap_or_default()),
+            frames: self.frames,
+            formats: self.formats.as_deref().map(choices::<Format>),
+            surface: !self.no_surface,
+            pictures: if self.no_pictures { Some(Vec::new()) } else { pictures },
+            film: !self.no_film,
+            checkpoint_every: self.checkpoint_every,
+        }
+    }
+
+    /// As the text of the entry.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    fn checked(self) -> Result<Self, String> {
+        let numbers = [("frames", self.frames), ("checkpoint_every", self.checkpoint_every)];
+        for (name, number) in numbers {
+            if number.is_some_and(|number| !(1..=1_000_000).contains(&number)) {
+                return Err(format!("`{name}` is not between 1 and 1000000"));
+            }
+        }
+        if self.digits.is_some_and(|digits| !(4..=10).contains(&digits)) {
+            return Err("`digits` is not between 4 and 10".to_owned());
+        }
+        let formats = self.formats.iter().flatten().filter(|word| Format::from_name(word).is_none());
+        let pictures = self.pictures.iter().flatten().filter(|word| PictureKind::from_name(word).is_none());
+        match formats.chain(pictures).next() {
+            Some(word) => Err(format!("it requests {word:?}, which this program cannot write")),
+            None => Ok(self),
+        }
+    }
+}
+
+fn words<T: Choice>(list: &[T]) -> Vec<String> {
+    list.iter().map(|choice| choice.name().to_owned()).collect()
+}
+
+/// Unknown words do not occur: `checked` has refused them.
+fn choices<T: Choice>(words: &[String]) -> Vec<T> {
+    words.iter().filter_map(|word| T::from_name(word)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use splashdown::Device;
+
+    #[test]
+    fn settings_survive_a_checkpoint() {
+        let settings = [
+            RunSettings::default(),
+            RunSettings { pictures: Some(Vec::new()), surface: false, ..RunSettings::default() },
+            RunSettings {
+                device: Some(Device::Cpu),
+                frames: Some(7),
+                formats: Some(vec![Format::Vtu, Format::Ply]),
+                pictures: Some(vec![PictureKind::Particles]),
+                film: false,
+                checkpoint_every: Some(3),
+                ..RunSettings::default()
+            },
+        ];
+        for settings in settings {
+            let notes = Notes::new(&settings);
+            let read: Notes = serde_json::from_str(&notes.to_json()).unwrap();
+            assert_eq!(read, notes);
+            assert_eq!(read.settings(), settings);
+        }
+    }
+}
