@@ -1,4 +1,4 @@
-//! What the particles carry, for the vertices of their surface: which of it is wanted, and its means.
+//! Attributes of particles, interpolated to the vertices of their surface.
 
 use std::path::Path;
 
@@ -7,30 +7,30 @@ use splashdown_io::{Attribute, Mesh, Particles, mesh};
 
 use crate::exit::{Exit, Failure};
 
-/// The word for all of them.
+/// The name that selects all attributes.
 const ALL: &str = "all";
 
-/// Tells before anything is computed that a mesh cannot hold what is wanted.
+/// Checks that the format of a mesh supports attributes before anything is computed.
 ///
 /// # Errors
-/// [`Exit::Usage`], with the formats that can.
+/// [`Exit::Usage`] names the formats that do.
 pub fn check_format(wanted: &[String], out: &Path, ending: &str) -> Result<(), Failure> {
     if wanted.is_empty() || mesh::WITH_ATTRIBUTES.contains(&ending) {
         return Ok(());
     }
     let message = format!(
-        "--attribute: `{}` cannot hold attributes; {} files can",
+        "--attribute: the format of `{}` has no attributes; use {}",
         out.display(),
         mesh::WITH_ATTRIBUTES.join(" and ")
     );
     Err(Failure::new(Exit::Usage, message))
 }
 
-/// The attributes of a file that are wanted, each once. `all` leaves out ids, whose means say nothing, and
-/// velocities, which vertices have anyway.
+/// The selected attributes of a file, each once. `all` excludes ids, whose interpolation is meaningless, and
+/// velocities, which are always interpolated.
 ///
 /// # Errors
-/// [`Exit::Usage`] names what the file has instead.
+/// [`Exit::Usage`] names the attributes of the file.
 pub fn chosen<'a>(
     particles: &'a Particles,
     wanted: &[String],
@@ -40,9 +40,9 @@ pub fn chosen<'a>(
     for name in wanted.iter().filter(|name| *name != ALL) {
         if !all.iter().any(|attribute| attribute.name == *name) {
             let names: Vec<&str> = all.iter().map(|attribute| attribute.name.as_str()).collect();
-            let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let existing = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
             let message = format!(
-                "--attribute: `{}` has no attribute `{name}` of one number or three for each particle; it has {there}",
+                "--attribute: `{}` has no attribute `{name}` with one or three numbers per particle; it has {existing}",
                 file.display()
             );
             return Err(Failure::new(Exit::Usage, message));
@@ -55,7 +55,7 @@ pub fn chosen<'a>(
     Ok(all.iter().filter(is_chosen).collect())
 }
 
-/// Puts their means at the vertices into a mesh.
+/// Interpolates the attributes to the vertices and adds them to the mesh.
 ///
 /// # Errors
 /// Those of [`interpolate`].

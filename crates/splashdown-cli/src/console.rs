@@ -1,5 +1,5 @@
-//! Where words go: results to stdout, everything else to stderr. A reader that closes the pipe early (`| head`)
-//! ends the words, not the work: the files are what a run is for.
+//! Console output: results to stdout, everything else to stderr. A reader that closes the pipe early (`| head`) ends the
+//! output, not the run.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -7,45 +7,45 @@ use std::sync::OnceLock;
 
 use serde::Serialize;
 
-/// How much to say.
+/// How much to print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verbosity {
     /// Errors only.
     Quiet,
     /// Progress, warnings, a summary.
     Normal,
-    /// Also the library's own remarks.
+    /// Also the log of the library.
     Verbose,
 }
 
-/// Why results are missing on stdout: the first failure that is not a reader who left.
+/// The first failure to write to stdout, except a closed pipe.
 static LOST: OnceLock<io::Error> = OnceLock::new();
 
-/// Why results are missing on stdout, if they are: a full disk, say. A closed pipe is no failure.
+/// Why results are missing on stdout, if they are; for example a full disk. A closed pipe is no failure.
 pub fn lost() -> Option<&'static io::Error> {
     LOST.get()
 }
 
-/// Prints text to stdout, with a line end.
+/// Prints a line to stdout.
 pub fn print(text: impl Display) {
     print_raw(format!("{text}\n").as_bytes());
 }
 
-/// Prints text to stdout as it is. Everything is flushed: programs read along, and failures show now or never.
+/// Prints bytes to stdout. Every call flushes: other programs read along, and later failures would go unnoticed.
 pub fn print_raw(text: &[u8]) {
     let mut out = io::stdout().lock();
     if let Err(error) = out.write_all(text).and_then(|()| out.flush())
         && error.kind() != ErrorKind::BrokenPipe
     {
-        // Only the first one counts.
+        // Only the first failure is kept.
         let _ = LOST.set(error);
     }
 }
 
-/// Prints one JSON object in one line.
+/// Prints a JSON object on one line.
 pub fn print_json(value: &impl Serialize) {
     let Ok(mut line) = serde_json::to_vec(value) else {
-        // Plain structs of numbers and text always serialise; a NaN becomes null.
+        // Structs of numbers and text always serialise; NaN becomes null.
         return;
     };
     line.push(b'\n');

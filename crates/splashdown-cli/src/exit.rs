@@ -1,5 +1,4 @@
-//! How the program ends: one error message and one exit code. `splashdown --help` and the README list the codes
-//! from here.
+//! How the program ends: one error message and one exit code. `splashdown --help` lists the codes from here.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -13,33 +12,33 @@ use splashdown_run::RunError;
 #[cfg(feature = "window")]
 use splashdown_viewer::ViewerError;
 
-/// What the program's exit code says.
+/// The exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Exit {
-    /// The simulation failed on its way.
+    /// The simulation failed.
     Failed = 1,
-    /// The command line was not understood.
+    /// The command line is invalid.
     Usage = 2,
-    /// The scene file, or particles or a table that were given, are missing or wrong.
+    /// The scene file, or another input file, is missing or invalid.
     Scene = 3,
     /// The device is missing, too small, or was lost.
     Device = 4,
-    /// A file or folder could not be written, or a checkpoint not be used.
+    /// A file or folder could not be written, or a checkpoint cannot be used.
     Files = 5,
-    /// Ctrl-C; the frames that are there are complete.
+    /// Stopped by Ctrl-C. Frames already written are complete.
     Interrupted = 130,
 }
 
-/// The codes as the help shows them.
+/// The codes for the help.
 pub const HELP: &str = "\
 Exit codes:
-    0  done
-    1  the simulation failed on its way (frames already written are complete)
-    2  the command line was not understood, or another run writes into the same folder
-    3  the scene file, or another file that was given, is missing or wrong
-    4  the device is missing, too small, or was lost; or pictures were demanded and nothing
-       can draw them
+    0  success
+    1  the simulation failed (frames already written are complete)
+    2  the command line is invalid, or another run writes into the same folder
+    3  the scene file, or another input file, is missing or invalid
+    4  the device is missing, too small, or was lost; or pictures were requested and no
+       device can draw them
     5  a file or folder could not be written (frames already written are complete), or a
        checkpoint cannot be used
   130  stopped by Ctrl-C (frames already written are complete)";
@@ -49,14 +48,14 @@ Exit codes:
 pub struct Failure {
     /// The exit code.
     pub exit: Exit,
-    /// What is wrong and what to do, for people.
+    /// What is wrong and what to do.
     pub message: String,
-    /// Every problem of a scene, for programs.
+    /// Every problem of a scene, for the JSON output.
     pub scene: Option<SceneErrors>,
 }
 
 impl Failure {
-    /// A failure with its message.
+    /// A failure with this message.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self { exit, message: message.into(), scene: None }
     }

@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Formatting numbers for people.
 
-/// Digits in groups of three: 65,536.
+/// An integer with groups of three digits: 65,536.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -38,7 +38,7 @@ pub fn bytes(number: u64) -> String {
 pub fn scaled(number: f64) -> String {
     let steps = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
     for (unit, prefix) in steps {
-        // 999.96 k would round to 1000 k.
+        // 999.96 k is shown as 1.00 M, not as 1000 k.
         if number.abs() >= unit * 0.9995 {
             return format!("{} {prefix}", three_digits(number / unit));
         }
@@ -48,7 +48,7 @@ pub fn scaled(number: f64) -> String {
 
 /// About three significant digits without an exponent, for numbers that are not tiny.
 pub fn three_digits(number: f64) -> String {
-    // A number that rounds up to the next power of ten has its digits.
+    // A number that rounds up to a power of ten has the decimals of that power.
     let decimals = match number.abs() {
         x if x >= 99.95 => 0,
         x if x >= 9.995 => 1,
@@ -79,7 +79,7 @@ pub fn duration(seconds: f64) -> String {
 
 /// A count of particles: 65536, 64K (1024 each), 1M.
 pub fn parse_count(text: &str) -> Result<u32, String> {
-    let advice = "give a whole number from 1 to 100,000,000, with K or M for 1024 or 1024 * 1024 if you like, as in 64K";
+    let advice = "give an integer from 1 to 100,000,000; K and M multiply by 1024 and 1024 * 1024, as in 64K";
     let upper = text.trim().to_ascii_uppercase();
     let (digits, factor) = match upper.as_bytes().last() {
         Some(b'K') => (&upper[..upper.len() - 1], 1024),

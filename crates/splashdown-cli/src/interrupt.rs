@@ -17,7 +17,9 @@ impl Interrupt {
         let handler = move || {
             let before = counter.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_add(1));
             if before == Ok(0) {
-                crate::console::note("\nStopping after this frame; press Ctrl-C again to stop at once.");
+                crate::console::note(
+                    "\nStopping after the current frame; press Ctrl-C again to stop at once.",
+                );
             }
         };
         // Without a handler Ctrl-C ends the program at once. Every file on the disk is complete then, too.

@@ -7,8 +7,7 @@ use splashdown_run::CompleteFrame;
 
 use crate::exit::Failure;
 
-/// One line. The first eleven keys are always there, null where nothing is known; the others only where they
-/// mean something.
+/// One line. The first eleven keys are always present, null if unknown; the others only where they apply.
 #[derive(Debug, Default, Serialize)]
 pub struct Line {
     /// started, progress, frame, warning, finished, interrupted or error.
@@ -57,10 +56,10 @@ pub struct Line {
     /// Bytes in the device's buffers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory: Option<u64>,
-    /// Words for people.
+    /// Text for people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
-    /// The exit code that follows.
+    /// The exit code.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exit_code: Option<u8>,
     /// Every problem of the scene file.
@@ -111,12 +110,12 @@ impl Line {
         }
     }
 
-    /// Something to know.
+    /// A warning.
     pub fn warning(message: &str) -> Self {
         Self { event: "warning", message: Some(message.to_owned()), ..Self::default() }
     }
 
-    /// The last line of a run that went well.
+    /// The last line of a finished run.
     pub fn finished(summary: &Summary, triangles: Option<usize>, files: Vec<String>) -> Self {
         Self {
             event: "finished",

@@ -1,7 +1,7 @@
-//! `splashdown`, the command line: a scene file in; particles, a watertight mesh, pictures and a film out.
+//! `splashdown`, the command line: from a scene file to particles, a watertight mesh, pictures and a film.
 //!
-//! It only translates: arguments into the library's options, the library's stream of events into words, JSON lines and
-//! files, errors into one message and one exit code.
+//! It translates arguments into options of the libraries, events of a run into console output, and errors into one
+//! message and one exit code.
 
 mod args;
 mod attributes;
@@ -28,16 +28,16 @@ use args::{Arguments, Command};
 use exit::Failure;
 
 fn main() -> ExitCode {
-    quieten_drivers();
+    silence_drivers();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way too; a closed pipe is no reason to fail.
+            // This prints help and version, too. A closed pipe is no failure.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::Exit::Usage as u8));
         }
     };
-    match dispatch(&arguments.command).and_then(all_said) {
+    match dispatch(&arguments.command).and_then(check_output) {
         Ok(code) => code,
         Err(failure) => {
             console::note(format!("error: {}", failure.message.trim_start_matches("error: ")));
@@ -46,24 +46,25 @@ fn main() -> ExitCode {
     }
 }
 
-/// Results that did not reach stdout are missing for whoever asked for them; a reader that left has asked for no more.
-fn all_said(code: ExitCode) -> Result<ExitCode, Failure> {
+/// Output that could not be written to stdout is an error.
+fn check_output(code: ExitCode) -> Result<ExitCode, Failure> {
     match console::lost() {
         Some(error) if code == ExitCode::SUCCESS => {
-            let message =
-                format!("the standard output could not be written: {error}; what was printed is incomplete");
+            let message = format!(
+                "the standard output could not be written: {error}; the printed results are incomplete"
+            );
             Err(Failure::new(exit::Exit::Files, message))
         }
         _ => Ok(code),
     }
 }
 
-/// Mesa prints "error: XDG_RUNTIME_DIR is invalid or not set" whenever adapters are listed on a machine without
-/// a desktop. It is harmless, looks like an error of this program, and any folder in that variable silences it.
-fn quieten_drivers() {
+/// Mesa prints "error: XDG_RUNTIME_DIR is invalid or not set" when adapters are listed on a machine without a desktop.
+/// The message is harmless but looks like an error of this program. Any folder in that variable prevents it.
+fn silence_drivers() {
     const VARIABLE: &str = "XDG_RUNTIME_DIR";
     if cfg!(target_os = "linux") && std::env::var_os(VARIABLE).is_none() {
-        // SAFETY: this is the first thing the program does, so no other thread reads the environment.
+        // SAFETY: `main` calls this first, before any other thread exists that could read the environment.
         unsafe { std::env::set_var(VARIABLE, std::env::temp_dir()) };
     }
 }

@@ -1,4 +1,4 @@
-//! How much memory this machine has, where the system tells it in a file (Linux), and whether a scene fits.
+//! The memory of this machine, as far as the system reports it in a file (Linux), and whether a scene fits.
 
 use splashdown::scene::Scene;
 use splashdown::{Device, memory_forecast};
@@ -7,11 +7,10 @@ use splashdown_gpu::list_adapters;
 use crate::exit::{Exit, Failure};
 use crate::human;
 
-/// Refuses a scene that would make the system run out of memory on the CPU; a GPU's own limits are the
-/// library's affair.
+/// Refuses a scene that does not fit into memory if the CPU simulates. The library checks the limits of GPUs.
 ///
 /// # Errors
-/// [`Exit::Device`], with what is needed and what there is.
+/// [`Exit::Device`], with the required and the available memory.
 pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
     let needed = memory_forecast(scene);
     let Some(available) = available().filter(|&available| needed > available) else { return Ok(()) };
@@ -24,7 +23,7 @@ pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
         return Ok(());
     }
     let message = format!(
-        "the scene needs about {} of memory and {} are free: take a larger fluid.particle_spacing, or close other programs",
+        "the scene needs about {} of memory and {} are available: choose a larger fluid.particle_spacing, or close other programs",
         human::bytes(needed),
         human::bytes(available)
     );
@@ -36,17 +35,17 @@ pub fn total() -> Option<u64> {
     value("MemTotal:")
 }
 
-/// Memory that a new program can use, in bytes.
+/// Available memory in bytes.
 pub fn available() -> Option<u64> {
     value("MemAvailable:")
 }
 
-/// Bytes that this process has in memory now.
+/// Resident bytes of this process.
 pub fn resident() -> Option<u64> {
     parse(&std::fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
 }
 
-/// The most bytes that this process has had in memory so far.
+/// Peak resident bytes of this process so far.
 pub fn peak() -> Option<u64> {
     parse(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }

@@ -1,4 +1,4 @@
-//! Progress on stderr: a bar in a terminal, a plain line now and then in a log.
+//! Progress on stderr: a bar in a terminal, else a plain line every few seconds.
 
 use std::collections::VecDeque;
 use std::io::IsTerminal;
@@ -11,16 +11,16 @@ use splashdown::{Progress, ProgressFn};
 use crate::console::{self, Verbosity};
 use crate::human;
 
-/// The bar's length: thousandths of the simulated time.
+/// The length of the bar: thousandths of the simulated time.
 const LENGTH: u64 = 1000;
 
-/// Over which time speeds are taken: long enough to be calm, short enough to follow the flow.
+/// The time over which speeds are averaged.
 const WINDOW: Duration = Duration::from_secs(10);
 
-/// Between two plain lines.
+/// The time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
 
-/// Shows where a run is.
+/// Shows the progress of a run.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
@@ -31,8 +31,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A bar, plain lines, or nothing if quiet. Programs that read JSON get plain lines only where they asked
-    /// for words.
+    /// A bar, plain lines, or nothing if quiet. In JSON mode plain lines need `--verbose`.
     pub fn new(verbosity: Verbosity, json: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let quiet = verbosity == Verbosity::Quiet;
@@ -49,7 +48,7 @@ impl Bar {
         Self { bar, plain, last_line: None, speed: Speed::default() }
     }
 
-    /// Takes in where the run is.
+    /// Shows the current progress.
     pub fn update(&mut self, progress: &Progress) {
         self.speed.add(progress);
         let text = self.text(progress);
@@ -80,25 +79,25 @@ impl Bar {
         })
     }
 
-    /// Prints a line without disturbing the bar.
+    /// Prints a line above the bar.
     pub fn note(&self, text: &str) {
         self.bar.suspend(|| console::note(text));
     }
 
-    /// Prints to stdout without disturbing the bar.
+    /// Hides the bar while printing to stdout.
     pub fn suspend(&self, print: impl FnOnce()) {
         self.bar.suspend(print);
     }
 
-    /// What is being waited for.
+    /// Shows what the run waits for.
     pub fn waiting(&self, what: &str) {
         self.bar.set_position(LENGTH);
         self.bar.set_message(what.to_owned());
-        // Progress of the run has ended; the bar must still be drawn while files are written.
+        // No more progress will come; the bar is drawn while files are written.
         self.bar.tick();
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
     }
@@ -137,7 +136,7 @@ impl Speed {
         }
     }
 
-    /// Steps and simulated seconds per second; nothing before there is something to measure.
+    /// Steps and simulated seconds per second, once there is enough to measure.
     fn measure(&self) -> Option<(f64, f64)> {
         let (first, last) = (self.marks.front()?, self.marks.back()?);
         let wall = last.0.saturating_sub(first.0).as_secs_f64();
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn speed_forgets_what_is_long_past() {
+    fn the_speed_is_that_of_the_last_seconds() {
         let mut speed = Speed::default();
         speed.add(&at(0.0, 0));
         assert_eq!(speed.measure(), None);

@@ -1,4 +1,4 @@
-//! From the word on the command line to a scene: a file, or the name of a scene that comes with the program.
+//! Loading the scene named on the command line: a file, or a built-in scene.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use splashdown::scene::{Scene, presets};
 
 use crate::exit::Failure;
 
-/// Loads a scene. A file goes before a built-in scene of the same name.
+/// Loads a scene. A file takes precedence over a built-in scene of the same name.
 ///
 /// # Errors
 /// Every problem of the scene at once.

@@ -1,4 +1,4 @@
-//! How speeds are measured: a dam break of any number of particles, and the wall time of its steps.
+//! Measuring speed: a dam break with any number of particles, and the wall time of its steps.
 
 use std::fmt::Write;
 use std::time::Instant;
@@ -6,17 +6,16 @@ use std::time::Instant;
 use splashdown::scene::{Scene, SceneErrors};
 use splashdown::{Simulation, SimulationError};
 
-/// A power of two, so that the lattice's coordinates are exact and counts come out as asked for.
+/// A power of two, so that the coordinates of the lattice and thus the counts are exact.
 const SPACING: f64 = 1.0 / 64.0;
 
-/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width.
-/// Only the size grows with the number, never the density of neighbours, so the cost per particle can be
-/// compared.
+/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width. Its
+/// size grows with the number and its density of neighbours does not, so the cost per particle is comparable.
 pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
     let side = (f64::from(particles) / 2.0).cbrt().round().max(1.0);
     let depth = (f64::from(particles) / (side * side)).round().max(1.0);
     let [width, height, depth] = [side, side, depth].map(|count| count * SPACING);
-    // A domain holds four spacings in every direction.
+    // A domain has at least four spacings in every direction.
     let least = 4.0 * SPACING;
     let mut text = String::new();
     // Writing into a string cannot fail.
@@ -33,12 +32,12 @@ pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
     Scene::parse(&text, "the benchmark's scene")
 }
 
-/// Simulates about `steps` steps and waits for their end; wall time per step in s and the number of steps.
+/// Simulates about `steps` steps and waits for their end; returns the wall time per step in s and the number of steps.
 ///
 /// # Errors
 /// Those of the simulation.
 pub fn seconds_per_step(simulation: &mut Simulation, steps: u32) -> Result<(f64, u32), SimulationError> {
-    // The step adapts itself, so their number is known only afterwards.
+    // The time step is adaptive, so the number of steps is known only afterwards.
     let duration = simulation.dt() * steps as f32;
     let start = Instant::now();
     let stats = simulation.advance(duration)?;

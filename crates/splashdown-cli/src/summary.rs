@@ -1,4 +1,4 @@
-//! The closing words of a run.
+//! The summary at the end of a run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,14 +9,14 @@ use splashdown_io::WrittenFile;
 
 use crate::{console, human};
 
-/// The numbers of a run that went to its end.
+/// The numbers of a finished run.
 pub fn numbers(summary: &Summary) -> String {
     let stats = &summary.stats;
     let particles = human::count(stats.particles.into());
     let mut rows = vec![
         ("simulated", format!("{:.4} s in {}", stats.time, human::counted(summary.frames.into(), "frame"))),
         ("wall time", human::duration(summary.wall)),
-        ("steps", format!("{}, the last of {:.3e} s", human::count(stats.steps), stats.dt)),
+        ("steps", format!("{}, the last with dt = {:.3e} s", human::count(stats.steps), stats.dt)),
         (
             "speed",
             format!("{} simulated seconds per second", human::three_digits(summary.simulated_per_wall)),
@@ -65,7 +65,7 @@ pub fn numbers(summary: &Summary) -> String {
     }
     if stats.wall_corrections > 0 {
         let text = format!(
-            "{} times a particle was put back through a wall",
+            "{} times a particle was moved back through a wall",
             human::count(stats.wall_corrections.into())
         );
         rows.push(("leaks", text));
@@ -80,7 +80,7 @@ fn volume(summary: &Summary) -> String {
         Some([first, last]) => {
             let first_share = change(first, summary.particle_volume);
             format!(
-                "{particles} (particles); inside the surface {} at first ({first_share}), {} at last ({})",
+                "{particles} (particles); inside the surface initially {} ({first_share}), finally {} ({})",
                 human::volume(first),
                 human::volume(last),
                 change(last, summary.particle_volume)
@@ -97,7 +97,7 @@ fn change(value: f64, reference: f64) -> String {
     }
 }
 
-/// What was written where, a line per kind of file.
+/// The files written, one line per kind.
 pub fn files(root: &Path, files: &[WrittenFile], films: &[WrittenFile]) -> String {
     let mut kinds: BTreeMap<String, (usize, u64)> = BTreeMap::new();
     for file in files {
@@ -132,7 +132,7 @@ pub fn files(root: &Path, files: &[WrittenFile], films: &[WrittenFile]) -> Strin
     format!("Written to {}:\n{}", root.display(), lines.join("\n"))
 }
 
-/// Time per pass, the longest first.
+/// Time per pass, the slowest first.
 pub fn passes(timings: &Timings, steps: u64) -> String {
     let mut passes: Vec<_> = timings.passes.iter().collect();
     passes.sort_by_key(|(_, time)| std::cmp::Reverse(time.total));
@@ -164,7 +164,7 @@ mod tests {
             [file("mesh/surface_0000.ply"), file("mesh/surface_0001.ply"), file("mesh/surface_0000.obj")];
         let text = files(Path::new("out_1"), &written, &[]);
         assert!(text.contains("mesh/surface_*.ply") && text.contains("2 files  2.00 kB"), "{text}");
-        // However long a name is, the columns stand below one another.
+        // The columns are aligned also after a long name.
         let long = [file("checkpoints/checkpoint_0010.splashdown"), file("mesh/surface_0000.ply")];
         let text = files(Path::new("out_1"), &long, &[]);
         let ends: Vec<_> = text.lines().skip(1).filter_map(|line| line.find("1 file")).collect();

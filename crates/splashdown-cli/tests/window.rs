@@ -1,4 +1,4 @@
-//! The window as a person uses it, on an X server that nobody sees: it opens, shows water, obeys keys and the mouse.
+//! The window on a virtual X server: it opens, shows water, and reacts to keys and the mouse.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 const SIZE: [u32; 2] = [720, 480];
 const TOOLS: [(&str, &str); 3] = [("Xvfb", "-help"), ("xdotool", "version"), ("import", "-version")];
 
-/// Ends with the test, however that ends.
+/// Kills the process when dropped.
 struct Running(Child);
 
 impl Drop for Running {
@@ -38,7 +38,7 @@ impl Screen {
         command
     }
 
-    /// What xdotool answers; empty if there is nothing to answer.
+    /// The output of xdotool.
     fn tool(&self, arguments: &[&str]) -> String {
         let output = self.command("xdotool").args(arguments).output().unwrap();
         String::from_utf8_lossy(&output.stdout).trim().to_owned()
@@ -53,7 +53,7 @@ impl Screen {
         pixels
     }
 
-    /// Looks until it is as wanted.
+    /// Waits until the picture satisfies the condition.
     fn until(&self, what: &str, wanted: impl Fn(&[[u8; 3]]) -> bool) -> Vec<[u8; 3]> {
         let begun = Instant::now();
         loop {
@@ -61,13 +61,13 @@ impl Screen {
             if wanted(&picture) {
                 return picture;
             }
-            assert!(begun.elapsed() < Duration::from_secs(60), "{what} was not to be seen");
+            assert!(begun.elapsed() < Duration::from_secs(60), "{what} did not appear");
             std::thread::sleep(Duration::from_millis(200));
         }
     }
 }
 
-/// The left part, where the water is: without panels, whose figures change.
+/// The left part, with the water and without panels, whose numbers change.
 fn water(picture: &[[u8; 3]]) -> impl Iterator<Item = [u8; 3]> {
     let [width, height] = SIZE.map(|side| side as usize);
     let inside = move |i: &usize| {
@@ -77,7 +77,7 @@ fn water(picture: &[[u8; 3]]) -> impl Iterator<Item = [u8; 3]> {
     (0..width * height).filter(inside).map(|i| picture[i])
 }
 
-/// Part of the pixels that are the blue of water.
+/// Fraction of pixels with the blue of water.
 fn blue(picture: &[[u8; 3]]) -> f64 {
     let (mut blue, mut all) = (0, 0);
     for [r, _, b] in water(picture) {
@@ -87,7 +87,7 @@ fn blue(picture: &[[u8; 3]]) -> f64 {
     f64::from(blue) / f64::from(all)
 }
 
-/// Part of the pixels that differ visibly.
+/// Fraction of pixels that differ visibly.
 fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
     let (mut differing, mut all) = (0, 0);
     for (a, b) in water(a).zip(water(b)) {
@@ -98,13 +98,15 @@ fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
 }
 
 #[test]
-fn the_window_shows_water_and_obeys() {
-    let there = |(tool, argument): &(&str, &str)| {
+fn the_window_shows_water_and_reacts() {
+    let is_installed = |(tool, argument): &(&str, &str)| {
         Command::new(tool).arg(argument).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
     };
-    if let Some((tool, _)) = TOOLS.iter().find(|tool| !there(tool)) {
-        let _ =
-            writeln!(std::io::stderr(), "SKIPPED: the_window_shows_water_and_obeys: {tool} is not installed");
+    if let Some((tool, _)) = TOOLS.iter().find(|tool| !is_installed(tool)) {
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED: the_window_shows_water_and_reacts: {tool} is not installed"
+        );
         return;
     }
     let screen = Screen::open();
@@ -123,30 +125,29 @@ fn the_window_shows_water_and_obeys() {
     screen.tool(&["windowfocus", window.lines().last().unwrap()]);
     // It moves.
     screen.until("a motion", |picture| differing(picture, &first) > 0.01);
-    // It stands still, and looks then as it looked before: the control of all that differs here.
+    // Paused, the picture stays the same: the control for all differences here.
     screen.tool(&["key", "space"]);
     std::thread::sleep(Duration::from_secs(2));
     let paused = screen.picture();
     std::thread::sleep(Duration::from_secs(1));
-    assert!(differing(&paused, &screen.picture()) < 0.001, "a picture that stands still moves");
-    // Another way to see it.
+    assert!(differing(&paused, &screen.picture()) < 0.001, "a paused picture moves");
+    // Another display mode.
     screen.tool(&["key", "1"]);
     let particles = screen.until("the particles", |picture| differing(picture, &paused) > 0.02);
-    // Looking round.
-    // As slowly as a hand: a drag within one picture is a click.
+    // Orbiting, slowly: a drag within one frame would be a click.
     for step in ["mousemove 120 200", "mousedown 1", "mousemove 150 210", "mousemove 180 220", "mouseup 1"] {
         screen.tool(&step.split(' ').collect::<Vec<_>>());
         std::thread::sleep(Duration::from_millis(400));
     }
     screen.until("another side", |picture| differing(picture, &particles) > 0.05);
-    // The scene as it is now is kept, and the command line takes it.
+    // The scene is exported, and the command line accepts it.
     screen.tool(&["key", "ctrl+s"]);
-    let kept = folder.path().join("dam-break-small.toml");
+    let exported = folder.path().join("dam-break-small.toml");
     let begun = Instant::now();
-    while !kept.exists() {
-        assert!(begun.elapsed() < Duration::from_secs(20), "no scene was kept");
+    while !exported.exists() {
+        assert!(begun.elapsed() < Duration::from_secs(20), "no scene was exported");
         std::thread::sleep(Duration::from_millis(100));
     }
-    let check = Command::new(env!("CARGO_BIN_EXE_splashdown")).arg("check").arg(&kept).output().unwrap();
+    let check = Command::new(env!("CARGO_BIN_EXE_splashdown")).arg("check").arg(&exported).output().unwrap();
     assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stderr));
 }

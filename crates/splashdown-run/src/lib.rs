@@ -41,7 +41,7 @@ mod folder;
 mod frames;
 mod lock;
 mod outcome;
-pub mod pictures;
+mod pictures;
 mod probe_files;
 mod recorder;
 mod report;

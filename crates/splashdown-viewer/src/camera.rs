@@ -1,4 +1,4 @@
-//! The camera in the user's hands: it orbits a point, slides, comes nearer, or flies.
+//! The interactive camera: orbit, pan, zoom and fly.
 
 use glam::{Vec2, Vec3};
 use splashdown::scene::Scene;
@@ -6,30 +6,30 @@ use splashdown_render::Camera;
 
 /// Degrees per point of the screen.
 const ORBIT: f32 = 0.3;
-/// Width over height of the pictures that scenes set their cameras for.
-const USUAL_ASPECT: f32 = 16.0 / 9.0;
+/// Width over height of the pictures for which scenes set their cameras.
+const REFERENCE_ASPECT: f32 = 16.0 / 9.0;
 /// Lengths of the view per second of flight.
 const FLIGHT: f32 = 0.8;
 
-/// A camera on a sphere round a point.
+/// A camera on a sphere around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     /// The point in the middle of the picture, in m.
     pub target: Vec3,
     /// Distance of the eye from it, in m.
     pub distance: f32,
-    /// Degrees round the y axis; 0 stands on the +z side, 90 on the +x side.
+    /// Degrees around the y axis; 0 stands on the +z side, 90 on the +x side.
     pub azimuth: f32,
     /// Degrees above the horizon.
     pub elevation: f32,
     /// Vertical angle of view in degrees.
     pub field_of_view: f32,
-    /// Length of the scene's diagonal, in m: nearer than a thousandth of it nothing is seen.
+    /// Length of the domain's diagonal, in m, which limits the distance.
     extent: f32,
 }
 
 impl Orbit {
-    /// The scene's own camera.
+    /// The scene's camera.
     pub fn of_scene(scene: &Scene) -> Self {
         let camera = scene.camera;
         Self {
@@ -42,46 +42,45 @@ impl Orbit {
         }
     }
 
-    /// As the renderer wants it, for a picture of this aspect ratio (width over height).
+    /// The camera of the renderer for a picture with this aspect ratio (width over height).
     pub fn camera(&self, aspect_ratio: f32) -> Camera {
         let angle = self.vertical_angle(aspect_ratio);
         Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, angle)
     }
 
-    /// A picture narrower than those that scenes are made for sees as much of the width, and so more of the
-    /// height. In degrees.
+    /// Vertical angle of view in degrees. A narrower picture than the reference shows the same width, and therefore
+    /// more height.
     fn vertical_angle(&self, aspect_ratio: f32) -> f32 {
-        let wider = (USUAL_ASPECT / aspect_ratio.clamp(0.1, 10.0)).max(1.0);
+        let wider = (REFERENCE_ASPECT / aspect_ratio.clamp(0.1, 10.0)).max(1.0);
         (2.0 * (self.half_height() * wider).atan().to_degrees()).min(150.0)
     }
 
-    /// Half the height of what a usual picture shows at unit distance.
+    /// Half the height of the reference picture at unit distance.
     fn half_height(&self) -> f32 {
         (0.5 * self.field_of_view).to_radians().tan()
     }
 
-    /// Metres per point in the target's distance, in a picture of this size in points.
+    /// Metres per point at the target's distance, in a picture of this size in points.
     pub fn metres_per_point(&self, size: Vec2) -> f32 {
         let angle = self.vertical_angle(size.x / size.y.max(1.0));
         2.0 * self.distance * (0.5 * angle).to_radians().tan() / size.y.max(1.0)
     }
 
-    /// Turns by a drag of this many points.
+    /// Orbits by a drag in points.
     pub fn orbit(&mut self, drag: Vec2) {
         self.azimuth = (self.azimuth - ORBIT * drag.x).rem_euclid(360.0);
         self.elevation = (self.elevation + ORBIT * drag.y).clamp(-89.0, 89.0);
     }
 
-    /// Slides with the mouse: what is under it in the target's distance stays under it. `size` is the
-    /// picture's, in points.
+    /// Pans with the mouse: a point at the target's distance stays under it. `size` is the picture's, in points.
     pub fn pan(&mut self, drag: Vec2, size: Vec2) {
         let [right, up, _] = self.axes();
         let scale = self.metres_per_point(size);
         self.target += scale * (drag.y * up - drag.x * right);
-        self.keep_near();
+        self.clamp_target();
     }
 
-    /// Comes nearer by this factor above 1, or goes away.
+    /// Zooms in by a factor above 1, or out by one below 1.
     pub fn zoom(&mut self, factor: f32) {
         if factor > 0.0 && factor.is_finite() {
             self.distance = (self.distance / factor).clamp(1e-3 * self.extent, 20.0 * self.extent);
@@ -93,7 +92,7 @@ impl Orbit {
         let [right, _, forward] = self.axes();
         let way = direction.x * right + direction.y * Vec3::Y + direction.z * forward;
         self.target += FLIGHT * self.distance.max(0.2 * self.extent) * seconds * way;
-        self.keep_near();
+        self.clamp_target();
     }
 
     /// A point of the picture as a ray: the eye in m, and a unit vector. `point` and `size` are in points.
@@ -101,19 +100,19 @@ impl Orbit {
         let [right, up, forward] = self.axes();
         let scale = self.metres_per_point(size) / self.distance;
         let (x, y) = (scale * (point.x - 0.5 * size.x), scale * (0.5 * size.y - point.y));
-        (Vec3::from(self.camera(USUAL_ASPECT).eye), (forward + x * right + y * up).normalize_or(forward))
+        (Vec3::from(self.camera(REFERENCE_ASPECT).eye), (forward + x * right + y * up).normalize_or(forward))
     }
 
     /// Right, up and ahead of the picture.
     pub fn axes(&self) -> [Vec3; 3] {
-        let camera = self.camera(USUAL_ASPECT);
+        let camera = self.camera(REFERENCE_ASPECT);
         let forward = (self.target - Vec3::from(camera.eye)).normalize_or(Vec3::NEG_Z);
         let right = forward.cross(camera.up.into()).normalize_or(Vec3::X);
         [right, right.cross(forward), forward]
     }
 
-    /// Nobody gets lost.
-    fn keep_near(&mut self) {
+    /// Limits the distance of the target from the origin.
+    fn clamp_target(&mut self) {
         let limit = Vec3::splat(10.0 * self.extent);
         self.target = self.target.clamp(-limit, limit);
     }
@@ -163,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_gets_too_near_or_over_the_pole() {
+    fn distance_and_elevation_are_limited() {
         let mut orbit = orbit();
         orbit.zoom(1e9);
         orbit.orbit(Vec2::new(0.0, 1e6));

@@ -1,4 +1,4 @@
-//! Things that a user throws into a scene.
+//! Adding bodies and emitters to a scene.
 
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
@@ -6,19 +6,19 @@ use std::path::PathBuf;
 use glam::{Quat, Vec3};
 use splashdown::scene::{Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Scene, UpAxis};
 
-/// Density of what is thrown in, over the fluid's.
-const BUOYANT: f32 = 0.5;
-/// Size of what is thrown in, over the smallest edge of the box.
+/// Density of added bodies over the fluid's.
+const DENSITY_RATIO: f32 = 0.5;
+/// Size of added bodies over the smallest edge of the domain.
 const SIZE: f32 = 0.2;
 /// How long a tap can run, in s.
 const TAP_TIME: f32 = 60.0;
 /// The tap's name.
 const TAP: &str = "tap";
 
-/// Adds a floating ball that falls from under the top of the box.
+/// Adds a floating ball that falls from the top of the domain.
 pub fn add_ball(scene: &mut Scene) {
-    // The model is 0.2 m across.
-    let scale = thrown_size(scene) / 0.2;
+    // The model's diameter is 0.2 m.
+    let scale = added_size(scene) / 0.2;
     let shape = MeshShape::Model("sphere".to_owned());
     let colours = [[0.8, 0.25, 0.15], [0.9, 0.6, 0.1], [0.2, 0.5, 0.25], [0.55, 0.3, 0.6]];
     let colour = colours[scene.bodies.len() % colours.len()];
@@ -29,7 +29,7 @@ pub fn add_ball(scene: &mut Scene) {
 /// Adds a mesh from a file with this bounding box, in the file's units; it is scaled to fit and floats.
 pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
     let size = (high - low).max_element();
-    let scale = if size > 0.0 && size.is_finite() { 1.5 * thrown_size(scene) / size } else { 1.0 };
+    let scale = if size > 0.0 && size.is_finite() { 1.5 * added_size(scene) / size } else { 1.0 };
     let name = file.file_stem().map_or_else(|| "mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let name: String = name
         .chars()
@@ -39,7 +39,7 @@ pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
     add_body(scene, &name, MeshShape::File(file), scale, middle, None);
 }
 
-/// Opens a tap over the middle of the box, or closes it; true if it is open now.
+/// Opens or closes a tap over the middle of the domain; returns whether it is open now.
 pub fn turn_tap(scene: &mut Scene) -> bool {
     if let Some(place) = scene.emitters.iter().position(|emitter| emitter.name == TAP) {
         scene.emitters.remove(place);
@@ -49,7 +49,7 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     let radius = (0.08 * size.min_element()).max(2.5 * spacing);
     let top = scene.domain.max.y - 3.0 * spacing;
     let center = scene.domain.center();
-    // Room for what it pours is made beforehand, for as long as the scene lasts.
+    // Particles are allocated in advance for the duration of the scene.
     scene.duration = scene.duration.max(TAP_TIME);
     let most = (2 * splashdown::sample::count(scene)).clamp(20_000, 500_000) as u32;
     scene.emitters.push(Emitter {
@@ -65,12 +65,12 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     true
 }
 
-/// True if a tap is open.
+/// Whether a tap is open.
 pub fn has_tap(scene: &Scene) -> bool {
     scene.emitters.iter().any(|emitter| emitter.name == TAP)
 }
 
-fn thrown_size(scene: &Scene) -> f32 {
+fn added_size(scene: &Scene) -> f32 {
     (SIZE * scene.domain.size().min_element()).max(5.0 * scene.fluid.particle_spacing)
 }
 
@@ -83,13 +83,13 @@ fn add_body(
     middle: Vec3,
     colour: Option<[f32; 3]>,
 ) {
-    let thrown = scene.bodies.iter().filter(|body| body.name.starts_with(name)).count();
-    let mut number = thrown + 1;
+    let same_name = scene.bodies.iter().filter(|body| body.name.starts_with(name)).count();
+    let mut number = same_name + 1;
     while scene.bodies.iter().any(|body| body.name == format!("{name}-{number}")) {
         number += 1;
     }
     let (low, size) = (scene.domain.min, scene.domain.size());
-    // Golden angles: two in a row do not fall onto one another.
+    // Golden angles: successive bodies do not collide.
     let angle = 2.399_963 * number as f32;
     let aside = Vec3::new(0.2 * size.x * angle.cos(), 0.0, 0.2 * size.z * angle.sin());
     let place = low + Vec3::new(0.5, 0.8, 0.5) * size + aside;
@@ -97,7 +97,7 @@ fn add_body(
         name: format!("{name}-{number}"),
         mesh: MeshSource { shape, scale, up: UpAxis::Y, position: place - middle, rotation: Quat::IDENTITY },
         motion: Motion::Dynamic {
-            density: BUOYANT * scene.fluid.material.rest_density,
+            density: DENSITY_RATIO * scene.fluid.material.rest_density,
             velocity: Vec3::ZERO,
             angular_velocity: Vec3::ZERO,
             hinge: None,
@@ -118,7 +118,7 @@ mod tests {
     use splashdown::{Device, Simulation};
 
     #[test]
-    fn what_is_thrown_in_is_accepted_and_stays_apart() {
+    fn added_bodies_are_valid_and_separate() {
         let (name, text) = presets()[1];
         let mut scene = Scene::parse(text, name).unwrap();
         scene.fluid.particle_spacing *= 1.5;
@@ -131,7 +131,7 @@ mod tests {
         assert!(stats.emitted > 0, "{stats:?}");
         let places: Vec<Vec3> =
             simulation.body_states().unwrap().iter().map(|state| state.position).collect();
-        assert!(places[0].distance(places[1]) > thrown_size(&scene), "{places:?}");
+        assert!(places[0].distance(places[1]) > added_size(&scene), "{places:?}");
         assert!(!turn_tap(&mut scene));
         assert!(scene.emitters.is_empty());
     }

@@ -1,23 +1,23 @@
-//! What can go wrong before the window is there.
+//! Errors when opening the window.
 
 use splashdown_render::RenderError;
 
-/// Why there is no window.
+/// Why the window cannot be opened.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewerError {
-    /// No screen.
+    /// No display.
     #[error(
-        "no window could be opened: this session has no display (neither DISPLAY nor WAYLAND_DISPLAY is set). Start it on a \
-         desktop, or let `splashdown run` write pictures and a film"
+        "no window could be opened: there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set). Start it on a desktop, or \
+         use `splashdown run` to write pictures and a film"
     )]
     NoDisplay,
-    /// No driver, or one that does not show windows.
+    /// No driver, or one that cannot open windows.
     #[error("no window could be opened: {reason}. A window needs a graphics driver: {hint}")]
     NoWindow {
-        /// What the system says.
+        /// The system's message.
         reason: String,
-        /// How to get a driver.
+        /// How to install a driver.
         hint: &'static str,
     },
     /// The device cannot draw.

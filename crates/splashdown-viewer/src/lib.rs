@@ -1,13 +1,12 @@
-//! The real-time program: a fluid in a window or on a web page, to look at and to play with.
+//! The interactive program, in a window and on a web page.
 //!
 //! ```text
 //! panels (egui)  --Action-->  app  --Command-->  engine (thread or task)  --Snapshot-->  picture (splashdown-render)
 //! ```
 //!
-//! Data flows in a circle of four parts, each of which knows only the next: panels change [`state::State`] and
-//! say what they want done; the app does it; the engine simulates beside the window and hands out copies of
-//! what is to be seen; the picture draws the newest copy. So the window stays quick however slow the simulation
-//! is.
+//! Four parts form a loop, and each knows only the next. The panels change [`state::State`] and request actions. The
+//! app executes them. The engine simulates beside the window and publishes snapshots. The picture draws the newest
+//! snapshot. The window therefore stays responsive however slow the simulation is.
 
 mod app;
 pub mod camera;

@@ -1,14 +1,14 @@
-//! How the fluid is shown.
+//! Display settings.
 
 use splashdown::scene::ColourBy;
 use splashdown_render::{Axis, ColourMap};
 
-/// A way to see the fluid.
+/// What is drawn of the fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
-    /// Balls, coloured by a quantity.
+pub enum DisplayMode {
+    /// Particles as spheres, coloured by a quantity.
     Particles,
-    /// A liquid drawn from the particles in screen space.
+    /// A liquid reconstructed from the particles in screen space.
     Fluid,
     /// The surface by marching cubes, as water.
     Surface,
@@ -18,8 +18,8 @@ pub enum Way {
     Slice,
 }
 
-impl Way {
-    /// All ways, in the order of their keys.
+impl DisplayMode {
+    /// All modes, in the order of their keys.
     pub const ALL: [Self; 5] = [Self::Particles, Self::Fluid, Self::Surface, Self::Mesh, Self::Slice];
 
     /// Its name.
@@ -33,53 +33,47 @@ impl Way {
         }
     }
 
-    /// What it is for.
+    /// Its explanation.
     pub fn hint(self) -> &'static str {
         match self {
-            Self::Particles => {
-                "Each particle as a ball, coloured by a quantity: to see what the simulation does"
-            }
-            Self::Fluid => {
-                "A liquid drawn from the particles as they are seen: smooth and quick, without a mesh"
-            }
-            Self::Surface => "The fluid's surface by marching cubes, the same mesh that is exported",
-            Self::Mesh => "The triangles of the surface: how it is made",
-            Self::Slice => {
-                "A plane through the fluid, coloured by density, speed or pressure: what is inside"
-            }
+            Self::Particles => "Particles as spheres, coloured by a quantity",
+            Self::Fluid => "A liquid reconstructed from the particles in screen space: fast, without a mesh",
+            Self::Surface => "The surface by marching cubes, which is the mesh that is exported",
+            Self::Mesh => "The triangles of the surface",
+            Self::Slice => "A plane through the fluid, coloured by density, speed or pressure",
         }
     }
 
-    /// True if the surface has to be extracted for it.
+    /// Whether it needs the surface.
     pub fn needs_surface(self) -> bool {
         matches!(self, Self::Surface | Self::Mesh)
     }
 
-    /// True if colours stand for a quantity.
+    /// Whether colours represent a quantity.
     pub fn has_colours(self) -> bool {
         matches!(self, Self::Particles | Self::Slice)
     }
 }
 
-/// Everything that changes the picture and not the water.
+/// The display settings, which do not affect the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// The way.
-    pub way: Way,
-    /// What colours particles.
+    /// What is drawn.
+    pub mode: DisplayMode,
+    /// The quantity that particles are coloured by.
     pub colour_by: ColourBy,
-    /// With which colours.
+    /// The colour map.
     pub map: ColourMap,
-    /// Across which axis a slice lies.
+    /// The normal of the slice.
     pub slice_axis: Axis,
-    /// Where it lies along that axis, as a part of the box.
+    /// The position of the slice along that axis, as a fraction of the domain.
     pub slice_at: f32,
 }
 
 impl Default for Look {
     fn default() -> Self {
         Self {
-            way: Way::Fluid,
+            mode: DisplayMode::Fluid,
             colour_by: ColourBy::Speed,
             map: ColourMap::Water,
             slice_axis: Axis::Z,

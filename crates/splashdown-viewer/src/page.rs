@@ -1,4 +1,4 @@
-//! The web page: the same program on a canvas.
+//! The web page: the program on a canvas.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -13,20 +13,20 @@ use wasm_bindgen::JsValue;
 use crate::Viewer;
 
 thread_local! {
-    /// What [`figures`] tells, written anew with every picture.
+    /// The result of [`figures`], updated with every picture.
     static FIGURES: RefCell<String> = const { RefCell::new(String::new()) };
-    /// What draws on the canvas.
+    /// The runner of the canvas.
     static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
-    /// The fluid that was saved when the device was lost.
+    /// The checkpoint saved when the device was lost.
     static RESCUE: RefCell<Option<Checkpoint>> = const { RefCell::new(None) };
-    /// Files that the browser has read since they were dropped.
+    /// Dropped files that the browser has read.
     static ARRIVED: RefCell<Vec<Arrived>> = const { RefCell::new(Vec::new()) };
 }
 
-/// A file's name, and its content or why there is none.
+/// A file's name, and its content or the reason why it cannot be read.
 type Arrived = (PathBuf, Result<Vec<u8>, String>);
 
-/// A file has been read.
+/// Adds a file that has been read.
 pub(crate) fn arrived(path: PathBuf, read: Result<Vec<u8>, String>) {
     ARRIVED.with_borrow_mut(|files| files.push((path, read)));
 }
@@ -36,16 +36,16 @@ pub(crate) fn take_arrived() -> Vec<Arrived> {
     ARRIVED.take()
 }
 
-/// Keeps the fluid for the next start.
+/// Stores a checkpoint for the next start.
 pub(crate) fn set_rescue(checkpoint: Checkpoint) {
     RESCUE.set(Some(checkpoint));
 }
 
-/// Shows another address without opening it: what is after the page's path. It comes back whole.
+/// Sets the part of the address after the page's path without loading it; returns the whole address.
 pub(crate) fn set_address(rest: &str) -> String {
     let Some(window) = web_sys::window() else { return String::new() };
     let path = window.location().pathname().unwrap_or_default();
-    // A page without a history (in a frame without rights) keeps the address that it has.
+    // In a frame without access to the history the address stays.
     let _ = window.history().and_then(|history| {
         history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("{path}{rest}")))
     });
@@ -56,7 +56,7 @@ pub(crate) fn set_address(rest: &str) -> String {
 pub(crate) fn share(text: &str) -> String {
     let address = set_address(&format!("#toml={}", String::from(js_sys::encode_uri_component(text))));
     if let Some(window) = web_sys::window() {
-        // A browser that does not allow it still shows the address.
+        // Without access to the clipboard the address bar still shows it.
         let copied = window.navigator().clipboard().write_text(&address);
         wasm_bindgen_futures::spawn_local(async move {
             let _ = wasm_bindgen_futures::JsFuture::from(copied).await;
@@ -65,12 +65,11 @@ pub(crate) fn share(text: &str) -> String {
     address
 }
 
-/// Starts the program on a canvas, again if need be: after the device was lost it goes on with the fluid as it
-/// was some seconds before. `scene` is the name of a scene that comes with the program, or the text of a scene
-/// file.
+/// Starts or restarts the program on a canvas. After the device was lost it resumes from a checkpoint of some seconds
+/// before. `scene` is the name of a built-in scene, or the text of a scene file.
 ///
 /// # Errors
-/// What is wrong with the scene, or why there is no device, as words.
+/// A message about the scene or the missing device.
 pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> Result<(), JsValue> {
     let scene = open(scene).map_err(|error| JsValue::from_str(&error))?;
     let setup = WgpuSetupCreateNew {
@@ -90,14 +89,14 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
         ..eframe::WebOptions::default()
     };
     let create = move |context: &eframe::CreationContext<'_>| {
-        let render_state = context.wgpu_render_state.as_ref().ok_or("the page came without a device")?;
+        let render_state = context.wgpu_render_state.as_ref().ok_or("the page has no device")?;
         let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, None)?;
         if let Some(checkpoint) = RESCUE.take() {
             viewer.resume(checkpoint)?;
         }
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
-    // One that lost its device is done for.
+    // A runner whose device was lost is unusable.
     if let Some(old) = RUNNER.take() {
         old.destroy();
     }
@@ -114,17 +113,17 @@ fn open(scene: &str) -> Result<Scene, String> {
         None if scene.contains('=') => ("this link", scene),
         None => {
             let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();
-            return Err(format!("there is no scene {scene:?}; there are {}", names.join(", ")));
+            return Err(format!("there is no scene {scene:?}; the scenes are {}", names.join(", ")));
         }
     };
     Scene::parse(text, name).map_err(|error| error.to_string())
 }
 
-/// Compiles every pass of the program on this browser's device. JSON: how many there are, and what the browser
-/// says of those that it refuses. With `broken`, one more is compiled that no device can accept.
+/// Compiles every pass of the program on this browser's device. Returns their number and the errors of refused passes
+/// as JSON. With `broken`, an invalid pass is added.
 ///
 /// # Errors
-/// Why there is no device, as words.
+/// A message about the missing device.
 pub async fn try_passes(broken: bool) -> Result<String, JsValue> {
     let gpu =
         Gpu::open_async(&DeviceRequest::Auto).await.map_err(|error| JsValue::from_str(&error.to_string()))?;
@@ -137,7 +136,7 @@ pub async fn try_passes(broken: bool) -> Result<String, JsValue> {
     Ok(format!("{{\"passes\":{},\"refused\":[{}]}}", passes.len(), refused.join(",")))
 }
 
-/// Asks for more than any device has.
+/// Exceeds the limits of every device.
 static BROKEN: PassDesc = PassDesc {
     label: "broken",
     wgsl: "@compute @workgroup_size(1000000) fn broken() {}",
@@ -154,7 +153,7 @@ pub fn figures() -> String {
     FIGURES.with_borrow(Clone::clone)
 }
 
-/// Writes what [`figures`] tells.
+/// Sets the result of [`figures`].
 pub(crate) fn set_figures(figures: String) {
-    FIGURES.with_borrow_mut(|told| *told = figures);
+    FIGURES.with_borrow_mut(|current| *current = figures);
 }

@@ -1,4 +1,4 @@
-//! What a ray meets first.
+//! Ray picking.
 
 use glam::Vec3;
 use splashdown::BodyState;
@@ -6,8 +6,8 @@ use splashdown::scene::Motion;
 
 use crate::engine::{Grip, Opened};
 
-/// The free body that a ray (a point in m and a unit vector) meets before any other body, held where it meets
-/// it; and the distance from the ray's start in m.
+/// The dynamic body that a ray (a point in m and a unit vector) hits before any other body, held at the hit; and the
+/// distance from the ray's start in m.
 pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, Vec3)) -> Option<(Grip, f32)> {
     let mut nearest: Option<(usize, f32)> = None;
     for (number, (body, state)) in opened.bodies.iter().zip(states).enumerate() {
@@ -15,7 +15,7 @@ pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, V
         let (from, along) = (back * (origin - state.position), back * direction);
         for triangle in &body.mesh.triangles {
             let corners = triangle.map(|v| Vec3::from(body.mesh.vertices[v as usize]));
-            if let Some(distance) = meets(from, along, corners)
+            if let Some(distance) = hit(from, along, corners)
                 && nearest.is_none_or(|(_, least)| distance < least)
             {
                 nearest = Some((number, distance));
@@ -23,14 +23,14 @@ pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, V
         }
     }
     let (number, distance) = nearest?;
-    let free = matches!(opened.scene.bodies.get(number)?.motion, Motion::Dynamic { .. });
+    let dynamic = matches!(opened.scene.bodies.get(number)?.motion, Motion::Dynamic { .. });
     let (state, target) = (states.get(number)?, origin + distance * direction);
     let anchor = state.orientation.conjugate() * (target - state.position);
-    free.then_some((Grip { body: number, anchor, target }, distance))
+    dynamic.then_some((Grip { body: number, anchor, target }, distance))
 }
 
-/// Where a ray meets a triangle, if it does (Moeller and Trumbore 1997).
-fn meets(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+/// Where a ray hits a triangle, if it does (Moeller and Trumbore 1997).
+fn hit(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (along, across) = (b - a, c - a);
     let p = direction.cross(across);
     let determinant = along.dot(p);
@@ -50,11 +50,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_triangle_is_met_inside_and_missed_outside() {
+    fn a_triangle_is_hit_inside_and_missed_outside() {
         let corners = [Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0)];
-        let at = |x: f32, y: f32| meets(Vec3::new(x, y, -1.0), Vec3::Z, corners);
+        let at = |x: f32, y: f32| hit(Vec3::new(x, y, -1.0), Vec3::Z, corners);
         assert_eq!(at(0.2, 0.3), Some(2.0));
         assert_eq!(at(0.6, 0.6), None);
-        assert_eq!(meets(Vec3::new(0.2, 0.3, 2.0), Vec3::Z, corners), None);
+        assert_eq!(hit(Vec3::new(0.2, 0.3, 2.0), Vec3::Z, corners), None);
     }
 }

@@ -1,4 +1,4 @@
-//! The picture of a snapshot, in a texture that the window shows.
+//! Drawing a snapshot into a texture that the window shows.
 
 use std::sync::Arc;
 
@@ -11,11 +11,11 @@ use splashdown_render::{
 use splashdown_run::appearance;
 
 use crate::engine::Snapshot;
-use crate::look::{Look, Way};
+use crate::look::{DisplayMode, Look};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::pixels;
 
-/// Colours as egui wants its textures.
+/// The texture format of egui.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Draws snapshots.
@@ -34,21 +34,21 @@ struct Target {
     size: [u32; 2],
 }
 
-/// What belongs to a scene.
+/// The bodies of a scene.
 struct Stage {
-    /// What `bodies` was made from: other meshes are other bodies.
+    /// The meshes from which `bodies` was made.
     meshes: Arc<[BodyMesh]>,
     bodies: Vec<PlacedBody>,
 }
 
-/// The bodies as they were drawn last: most pictures show them where they were.
+/// The bodies at their last position, which most pictures reuse.
 struct Placed {
     states: Vec<BodyState>,
     uploaded: UploadedBodies,
 }
 
 impl Picture {
-    /// Makes what draws on this device. Software drivers draw without smoothing of edges, which costs them most.
+    /// Creates the renderer. Software drivers draw without multisampling, which is their largest cost.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -58,7 +58,7 @@ impl Picture {
         Ok(Self { gpu, renderer, target: None, stage: None, placed: None, timing: false })
     }
 
-    /// Draws into the texture of this size, in pixels, and hands it out.
+    /// Draws into a texture of this size in pixels.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -81,19 +81,19 @@ impl Picture {
         let mut frame = Frame::new(camera, appearance::domain(scene));
         frame.bodies = self.placed.as_ref().map(|placed| placed.uploaded.buffers());
         frame.foam = drawn.foam().map(|buffers| DrawnFoam::new(buffers, radius));
-        match (look.way, drawn.mesh()) {
-            (Way::Particles, _) => {
+        match (look.mode, drawn.mesh()) {
+            (DisplayMode::Particles, _) => {
                 frame.particles = Some(DrawnParticles::new(drawn.particles(), radius, colouring));
             }
-            (Way::Surface | Way::Mesh, Some(mesh)) => {
-                let style = match look.way {
-                    Way::Mesh => SurfaceStyle::Lines,
+            (DisplayMode::Surface | DisplayMode::Mesh, Some(mesh)) => {
+                let style = match look.mode {
+                    DisplayMode::Mesh => SurfaceStyle::Lines,
                     _ => SurfaceStyle::Liquid,
                 };
                 let (buffers, liquid) = (mesh.buffers(), appearance::liquid(scene));
                 frame.surface = Some(DrawnSurface::new(buffers, liquid).with_style(style));
             }
-            (Way::Slice, _) => {
+            (DisplayMode::Slice, _) => {
                 let (axis, low, high) = match look.slice_axis {
                     Axis::X => (Axis::X, scene.domain.min.x, scene.domain.max.x),
                     Axis::Y => (Axis::Y, scene.domain.min.y, scene.domain.max.y),
@@ -102,8 +102,8 @@ impl Picture {
                 let position = low + look.slice_at * (high - low);
                 frame.slice = Some(DrawnSlice::new(drawn.particles(), axis, position, radius, colouring));
             }
-            // Until the first surface comes, what the particles say of it.
-            (Way::Fluid | Way::Surface | Way::Mesh, _) => {
+            // Until the first surface is extracted, the screen-space liquid.
+            (DisplayMode::Fluid | DisplayMode::Surface | DisplayMode::Mesh, _) => {
                 let (buffers, liquid) = (drawn.particles(), appearance::liquid(scene));
                 frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
             }
@@ -117,7 +117,7 @@ impl Picture {
         Ok(())
     }
 
-    /// From now on passes are timed, or not; and the times of a picture a few pictures ago.
+    /// Enables or disables timing; returns the times per pass of a recent picture.
     pub fn time_passes(&mut self, wanted: bool) -> &[PassTime] {
         if self.timing != wanted {
             self.timing = wanted;
@@ -131,12 +131,12 @@ impl Picture {
         self.target.as_ref().map(|target| &target.view)
     }
 
-    /// The texture drawn last, to be read, and its size in pixels.
+    /// The texture drawn last and its size in pixels, for reading.
     pub fn texture_drawn(&self) -> Option<(wgpu::Texture, [u32; 2])> {
         self.target.as_ref().map(|target| (target.texture.clone(), target.size))
     }
 
-    /// The picture drawn last: 8-bit RGBA rows from the top; `None` before the first, or if the device is lost.
+    /// The picture drawn last as 8-bit RGBA rows from the top; `None` before the first, or if the device was lost.
     /// Waits for the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self) -> Option<Vec<u8>> {

@@ -1,10 +1,10 @@
-//! A texture's content on the host.
+//! Reading back a texture.
 
 use std::sync::Arc;
 
 use splashdown_gpu::Gpu;
 
-/// 8-bit RGBA rows from the top; `None` if the device is lost.
+/// 8-bit RGBA rows from the top; `None` if the device was lost.
 pub async fn read(gpu: Arc<Gpu>, texture: wgpu::Texture, [width, height]: [u32; 2]) -> Option<Vec<u8>> {
     let row = 4 * width;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

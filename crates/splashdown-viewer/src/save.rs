@@ -1,4 +1,4 @@
-//! The scene as it was changed, as a file that the command line runs.
+//! Writing a changed scene as a scene file.
 
 use glam::Vec3;
 use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene};
@@ -6,10 +6,10 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
 
-/// The scene's file with what differs from it put in; comments and order stay.
+/// The text of the scene's file with the changes; comments and order are preserved.
 ///
 /// # Errors
-/// A sentence, if the text cannot say what the scene is: that of a scene whose own things were taken out.
+/// A sentence, if a scene file cannot express the changes, such as removed bodies.
 pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let source =
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
@@ -24,12 +24,12 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
         tables(&mut document, "emitter").push(emitter_table(emitter)?);
     }
     let written = document.to_string();
-    // What was written is what is meant, or it is not written.
+    // The text must read back as the same scene.
     let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
     read.camera = scene.camera;
     let (source, warnings, text) = (scene.source.clone(), scene.warnings.clone(), scene.text.clone());
     if (Scene { source, warnings, text, ..read }) != *scene {
-        return Err("this scene has been changed in ways that a scene file cannot say".to_owned());
+        return Err("this scene has changes that a scene file cannot express".to_owned());
     }
     Ok(written)
 }
@@ -55,7 +55,7 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
     set("fluid", "surface_tension", a.surface_tension != b.surface_tension, number(b.surface_tension));
     let (a, b) = (&old.solver, &new.solver);
     set("solver", "method", a.method != b.method, value(b.method.name()));
-    // Its default depends on the method.
+    // The default exponent depends on the method.
     let differs = a.exponent != b.exponent || a.method != b.method;
     set("solver", "exponent", differs, number(b.exponent));
     let model = value(b.surface_tension.name());
@@ -85,7 +85,7 @@ fn tables<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut ArrayOfTable
     if !item.is_array_of_tables() {
         *item = Item::ArrayOfTables(std::mem::take(item).into_array_of_tables().unwrap_or_default());
     }
-    item.as_array_of_tables_mut().unwrap_or_else(|| unreachable!("it was just made one"))
+    item.as_array_of_tables_mut().unwrap_or_else(|| unreachable!("it was just made an array of tables"))
 }
 
 fn body_table(body: &Body) -> Result<Table, String> {
@@ -93,13 +93,13 @@ fn body_table(body: &Body) -> Result<Table, String> {
     table.insert("name", value(&body.name));
     let mesh = match &body.mesh.shape {
         MeshShape::Model(name) => name.clone(),
-        MeshShape::File(path) => path.to_str().ok_or("a mesh's path is no text")?.to_owned(),
+        MeshShape::File(path) => path.to_str().ok_or("the path of a mesh is not valid text")?.to_owned(),
     };
     table.insert("mesh", value(mesh));
     table.insert("scale", number(body.mesh.scale));
     table.insert("position", vector(body.mesh.position));
     let Motion::Dynamic { density, .. } = body.motion else {
-        return Err("only bodies that were thrown in can be added to a scene file".to_owned());
+        return Err("only dynamic bodies can be added to a scene file".to_owned());
     };
     table.insert("motion", value("dynamic"));
     table.insert("density", number(density));
@@ -112,7 +112,7 @@ fn body_table(body: &Body) -> Result<Table, String> {
 
 fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
     let Outlet::Disc { radius } = emitter.outlet else {
-        return Err("only taps can be added to a scene file".to_owned());
+        return Err("only disc emitters can be added to a scene file".to_owned());
     };
     let mut table = Table::new();
     table.insert("name", value(&emitter.name));
@@ -127,7 +127,7 @@ fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
     Ok(table)
 }
 
-/// The shortest number that is read back as the same.
+/// The shortest decimal that reads back as the same number.
 fn shortest(x: f32) -> f64 {
     x.to_string().parse().unwrap_or(f64::from(x))
 }
@@ -147,7 +147,7 @@ mod tests {
     use splashdown::scene::{Method, presets};
 
     #[test]
-    fn every_scene_is_saved_as_it_was_changed() {
+    fn changes_of_every_scene_are_saved() {
         for (name, text) in presets() {
             let mut changed = Scene::parse(text, name).unwrap();
             changed.gravity = Vec3::new(0.1, -9.0, 1.0 / 3.0);
@@ -164,13 +164,13 @@ mod tests {
             let read = Scene::parse(&saved, name).unwrap();
             assert_eq!(read.camera.azimuth, 77.0, "{name}");
             assert_eq!(read.bodies, changed.bodies, "{name}");
-            // Comments are kept.
+            // Comments are preserved.
             assert_eq!(text.lines().next(), saved.lines().next(), "{name}");
         }
     }
 
     #[test]
-    fn what_a_file_cannot_say_is_refused() {
+    fn inexpressible_changes_are_refused() {
         let (name, text) = presets()[0];
         let mut changed = Scene::parse(text, name).unwrap();
         changed.domain.max.x *= 2.0;

@@ -1,4 +1,4 @@
-//! What the window knows and shows; no device, so that panels are tested without one.
+//! The state of the window, without a device, so that panels can be tested without one.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,29 +11,29 @@ use crate::camera::Orbit;
 use crate::engine::Grip;
 use crate::look::Look;
 
-/// What the mouse does to the picture.
+/// What dragging the mouse does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
-    /// Turns the camera.
+    /// Orbits the camera.
     #[default]
     Orbit,
-    /// Drags water and bodies.
-    Hand,
-    /// Tilts the box.
+    /// Applies a force to the water or drags a body.
+    Drag,
+    /// Tilts the domain.
     Tilt,
-    /// Shakes the box.
+    /// Shakes the domain.
     Shake,
 }
 
 impl Tool {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Orbit, Self::Hand, Self::Tilt, Self::Shake];
+    pub const ALL: [Self; 4] = [Self::Orbit, Self::Drag, Self::Tilt, Self::Shake];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Orbit => "Look",
-            Self::Hand => "Hand",
+            Self::Orbit => "Orbit",
+            Self::Drag => "Drag",
             Self::Tilt => "Tilt",
             Self::Shake => "Shake",
         }
@@ -42,80 +42,80 @@ impl Tool {
     /// What it does.
     pub fn hint(self) -> &'static str {
         match self {
-            Self::Orbit => "Drag to look round; right button to slide, wheel or pinch to come nearer",
-            Self::Hand => "Drag water and floating bodies (also with Shift held)",
-            Self::Tilt => "Drag to tilt the box; double click sets it upright again",
-            Self::Shake => "Drag to shake the box",
+            Self::Orbit => "Drag to orbit the camera; right button to pan, wheel or pinch to zoom",
+            Self::Drag => "Drag water and dynamic bodies (also with Shift held)",
+            Self::Tilt => "Drag to tilt the tank; double-click to set it upright",
+            Self::Shake => "Drag to shake the tank",
         }
     }
 }
 
-/// What a panel or the picture wants done.
+/// A request from a panel or the viewport.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Open a scene that comes with the program.
+    /// Open a built-in scene.
     OpenPreset(&'static str),
-    /// Start `State::scene` anew.
+    /// Restart `State::scene`.
     Restart,
-    /// Go on under `State::scene`.
+    /// Continue with the changed `State::scene`.
     Change,
-    /// Run, or stand still.
+    /// Run or pause.
     Play(bool),
     /// Simulate one frame of the scene.
     Step,
-    /// Back to the scene's file.
+    /// Restart the scene as its file defines it.
     Reset,
     /// `State::time_scale` has changed.
     TimeScale,
-    /// The hand is here; it moves with this velocity.
-    Stir {
-        /// The eye's ray through the mouse: a point in m and a unit vector.
+    /// Apply the mouse force.
+    Drag {
+        /// The ray from the eye through the mouse: a point in m and a unit vector.
         ray: (Vec3, Vec3),
-        /// In m/s.
+        /// The velocity of the mouse in m/s.
         velocity: Vec3,
     },
-    /// The hand is gone, and holds nothing.
-    LetGo,
-    /// A body is held.
+    /// Remove the mouse force and release the held body.
+    Release,
+    /// Hold a body.
     Grip(Grip),
-    /// Drop a ball into the middle of the box.
+    /// Drop a ball into the domain.
     DropBall,
-    /// Turn a tap over the box on or off.
+    /// Open or close a tap over the domain.
     Pour,
-    /// Write the picture as it is.
+    /// Export the current picture.
     Screenshot,
-    /// Write the scene as it is now.
+    /// Export the scene with its changes.
     SaveScene,
-    /// Write the surface as it is.
+    /// Export the current surface.
     SaveMesh,
-    /// Keep the fluid as it is, to go on with it later.
+    /// Export a checkpoint.
     SaveCheckpoint,
     /// Open a file.
     OpenFile(PathBuf),
-    /// Look for checkpoints: `State::files` shall hold them.
+    /// List recent checkpoints in `State::files`.
     ShowFiles,
-    /// Make a link that holds the scene as it is now.
+    /// Make a link that contains the scene with its changes.
     Share,
-    /// Begin to record frame by frame, or end it.
+    /// Start or stop recording.
     Record,
-    /// Dark instead of light, or the other way round.
+    /// Switch between dark and light.
     SwapTheme,
 }
 
-/// A box that follows the mouse by a spring, and returns when it is let go.
+/// A tank that follows the mouse by a spring and returns when it is released.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shaking {
-    /// Where the mouse wants the box, in m from its place.
-    pub wanted: Vec3,
-    /// Where it is, in m from its place.
+    /// Target displacement in m.
+    pub target: Vec3,
+    /// Displacement in m.
     pub offset: Vec3,
     /// Its velocity in m/s.
     pub velocity: Vec3,
-    /// Gravity of the box at rest, in m/s^2.
+    /// Gravity of the tank at rest, in m/s^2.
     pub gravity: Vec3,
 }
 
-/// What is shown at a glance.
+/// The numbers in the status bar.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     /// Pictures per second.
@@ -128,11 +128,11 @@ pub struct Figures {
     pub time: f64,
     /// Time step in s.
     pub dt: f32,
-    /// Whether the simulation's clock runs, as it says itself.
+    /// Whether the simulation runs.
     pub playing: bool,
     /// Particles.
     pub particles: u32,
-    /// Mean height of the particles in m, now and then; NaN while unknown.
+    /// Mean height of the particles in m, updated now and then; NaN while unknown.
     pub mean_height: f32,
     /// Triangles of the surface, if there is one.
     pub triangles: Option<u32>,
@@ -140,20 +140,20 @@ pub struct Figures {
     pub density_error: f32,
     /// Bytes in the simulation's buffers.
     pub memory: u64,
-    /// What simulates.
+    /// The simulating device.
     pub device: String,
     /// Time per pass.
     pub timings: Arc<Timings>,
-    /// Steps that `timings` are of.
+    /// Number of steps in `timings`.
     pub timed_steps: u64,
-    /// Whether the device is gone.
+    /// Whether the device was lost.
     pub lost: bool,
     /// Time per pass of drawing, in ms.
     pub drawing: Vec<(&'static str, f32)>,
 }
 
 impl Figures {
-    /// The numbers that tests of the page look at.
+    /// The numbers that the tests of the web page read.
     pub fn to_json(&self) -> String {
         let mean_height =
             if self.mean_height.is_finite() { self.mean_height.to_string() } else { "null".into() };
@@ -171,23 +171,23 @@ impl Figures {
     }
 }
 
-/// Something the user is told for a while.
+/// A notification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    /// What.
+    /// The text.
     pub text: String,
-    /// Whether it is bad news.
+    /// Whether it reports an error.
     pub is_error: bool,
-    /// When it goes, in s of the window's clock; bad news stays until it is clicked away.
+    /// When it disappears, in s of the window's clock; infinite for errors, which the user closes.
     pub until: f64,
 }
 
 /// Which windows are open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shown {
-    /// The scene gallery.
+    /// The gallery of scenes.
     pub gallery: bool,
-    /// What keys and mouse do.
+    /// The help on keys and mouse.
     pub help: bool,
     /// Time per pass.
     pub timings: bool,
@@ -197,50 +197,50 @@ pub struct Shown {
     pub narrow: bool,
 }
 
-/// What the window knows and shows.
+/// The state of the window.
 pub struct State {
-    /// The scene as it is edited.
+    /// The scene with its changes.
     pub scene: Scene,
-    /// How it is shown.
+    /// How it is displayed.
     pub look: Look,
-    /// From where.
+    /// The camera.
     pub orbit: Orbit,
-    /// What the mouse does.
+    /// The mouse tool.
     pub tool: Tool,
-    /// Whether the clock runs.
+    /// Whether the simulation shall run.
     pub playing: bool,
     /// Simulated seconds per second.
     pub time_scale: f32,
     /// Open windows.
     pub shown: Shown,
-    /// Notes.
+    /// Notifications.
     pub notes: Vec<Note>,
-    /// At a glance.
+    /// The status bar.
     pub figures: Figures,
-    /// What is being prepared, and how far, in [0, 1].
+    /// The body being prepared and the completed fraction, in [0, 1].
     pub preparing: Option<(String, f32)>,
-    /// Gravity of the scene as it was opened, in m/s^2.
+    /// Gravity of the opened scene before changes, in m/s^2.
     pub upright: Vec3,
-    /// The motion of the box while it is shaken.
+    /// The motion of the tank while it is shaken.
     pub shaking: Option<Shaking>,
-    /// The last place of the hand, in points, if it is in the water.
-    pub hand: Option<Vec2>,
+    /// The last position of the mouse in points, while it drags.
+    pub drag_point: Option<Vec2>,
     /// A held body and the distance of its anchor from the eye, in m.
     pub grip: Option<(Grip, f32)>,
-    /// Particles the scene had when it was opened, for the slider of their number.
+    /// The value of the slider for the number of particles.
     pub particles_wanted: f32,
-    /// Pictures recorded, while that goes on.
+    /// Number of recorded pictures, while recording.
     pub recorded: Option<u32>,
-    /// Particles that the scene starts with, as it is now.
+    /// Initial number of particles of the scene with its changes.
     pub counted: u64,
-    /// Whether the tap is on.
+    /// Whether the tap is open.
     pub pouring: bool,
-    /// Checkpoints that the gallery offers.
+    /// Checkpoints listed in the gallery.
     pub files: Vec<PathBuf>,
 }
 
 impl State {
-    /// A scene as it was just opened.
+    /// The state of a scene that was just opened.
     pub fn new(scene: Scene) -> Self {
         let counted = splashdown::sample::count(&scene);
         Self {
@@ -255,7 +255,7 @@ impl State {
             preparing: None,
             upright: scene.gravity,
             shaking: None,
-            hand: None,
+            drag_point: None,
             grip: None,
             particles_wanted: counted as f32,
             counted,
@@ -266,17 +266,17 @@ impl State {
         }
     }
 
-    /// Another scene in the same window: the look stays.
+    /// Opens another scene and keeps the display settings.
     pub fn open(&mut self, scene: Scene) {
         let old = std::mem::replace(self, Self::new(scene));
-        (self.look.way, self.look.map) = (old.look.way, old.look.map);
+        (self.look.mode, self.look.map) = (old.look.mode, old.look.map);
         (self.tool, self.shown, self.notes) = (old.tool, old.shown, old.notes);
         self.time_scale = old.time_scale;
         self.figures = old.figures;
     }
 
-    /// Tells something at this time of the window's clock.
-    pub fn tell(&mut self, text: impl Into<String>, is_error: bool, now: f64) {
+    /// Shows a notification; `now` is the time of the window's clock in s.
+    pub fn notify(&mut self, text: impl Into<String>, is_error: bool, now: f64) {
         let text = text.into();
         self.notes.retain(|note| note.text != text);
         self.notes.push(Note { text, is_error, until: if is_error { f64::INFINITY } else { now + 6.0 } });

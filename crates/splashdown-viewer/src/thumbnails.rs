@@ -1,4 +1,4 @@
-//! Small pictures of the scenes that come with the program.
+//! Thumbnails of the built-in scenes.
 
 use egui::{ColorImage, Context, Id, TextureHandle, TextureId};
 use splashdown::scene::presets;
@@ -7,12 +7,12 @@ use splashdown_io::picture::decode_png;
 /// Width of a thumbnail, in points.
 pub const WIDTH: f32 = 144.0;
 
-/// Names and first comments of the scenes.
+/// Names and descriptions of the scenes.
 pub fn scenes() -> impl Iterator<Item = (&'static str, String)> {
     presets().iter().map(|(name, text)| (*name, about(text)))
 }
 
-/// The comment that a scene file begins with.
+/// The comment at the start of a scene file.
 fn about(text: &str) -> String {
     let lines = text.lines().take_while(|line| line.starts_with('#'));
     lines.map(|line| line.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")

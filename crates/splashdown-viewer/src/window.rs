@@ -1,4 +1,4 @@
-//! The window of a desktop.
+//! The desktop window.
 
 use std::sync::Arc;
 
@@ -10,15 +10,15 @@ use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
 use crate::engine::Simulate;
 use crate::{Viewer, ViewerError};
 
-/// What is shown, and on what.
+/// The options of the window.
 pub struct ViewOptions {
-    /// The scene to begin with.
+    /// The initial scene.
     pub scene: Scene,
-    /// What to go on from; `scene` is then its scene.
+    /// The checkpoint to resume from; `scene` is then its scene.
     pub checkpoint: Option<Checkpoint>,
     /// The device that draws.
     pub device: DeviceRequest,
-    /// Which device simulates; `None`: the one that draws, if that is real hardware.
+    /// Which device simulates. `None`: the one that draws, unless it is a software driver.
     pub simulate: Option<Simulate>,
     /// Width and height of the window in points.
     pub size: [f32; 2],
@@ -45,7 +45,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
         ..eframe::NativeOptions::default()
     };
     let create = move |context: &eframe::CreationContext<'_>| {
-        let render_state = context.wgpu_render_state.as_ref().ok_or("the window came without a device")?;
+        let render_state = context.wgpu_render_state.as_ref().ok_or("the window has no device")?;
         let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
         if let Some(checkpoint) = checkpoint {
             viewer.resume(checkpoint)?;
@@ -58,7 +58,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     })
 }
 
-/// A device with all that its adapter can do: buffers as large as the memory allows, and clocks for passes.
+/// A device with all limits and features of its adapter, such as large buffers and timestamps.
 fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
     let choose = move |adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>| {
         let shows =

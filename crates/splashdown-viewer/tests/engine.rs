@@ -1,4 +1,4 @@
-//! The engine beside a window that is not there: what it is told to do, it does, on software Vulkan.
+//! The engine without a window: commands and their effects, on software Vulkan.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use splashdown::scene::Scene;
 use splashdown_gpu::{Gpu, testing};
 use splashdown_render::Camera;
 use splashdown_viewer::engine::{Command, Engine, Message, Purpose, Simulate, Snapshot};
-use splashdown_viewer::look::{Look, Way};
+use splashdown_viewer::look::{DisplayMode, Look};
 use splashdown_viewer::picture::Picture;
 
 const SCENE: &str = r#"
@@ -31,13 +31,13 @@ fn scene() -> Scene {
     Scene::parse(SCENE, "small.toml").unwrap()
 }
 
-/// The first snapshot that is as wanted, and everything told until then.
+/// The first snapshot that satisfies the condition, and the messages until then.
 fn until(engine: &mut Engine, wanted: impl Fn(&Snapshot) -> bool) -> (Arc<Snapshot>, Vec<Message>) {
-    let (begun, mut told) = (Instant::now(), Vec::new());
+    let (begun, mut messages) = (Instant::now(), Vec::new());
     loop {
-        told.extend(engine.take_messages());
+        messages.extend(engine.take_messages());
         if let Some(snapshot) = engine.snapshot().filter(|snapshot| wanted(snapshot)) {
-            return (snapshot, told);
+            return (snapshot, messages);
         }
         engine.picture_drawn();
         assert!(begun.elapsed() < Duration::from_secs(60), "no such snapshot");
@@ -52,8 +52,8 @@ fn start(gpu: &Arc<Gpu>, simulate: Simulate) -> Engine {
 }
 
 #[test]
-fn it_plays_pauses_steps_and_begins_anew() {
-    let Some(gpu) = testing::gpu_or_skip("it_plays_pauses_steps_and_begins_anew") else { return };
+fn it_plays_pauses_steps_and_restarts() {
+    let Some(gpu) = testing::gpu_or_skip("it_plays_pauses_steps_and_restarts") else { return };
     for simulate in [Simulate::OnCpu, Simulate::WhereDrawn] {
         let mut engine = start(&gpu, simulate);
         let (first, _) = until(&mut engine, |_| true);
@@ -74,8 +74,8 @@ fn it_plays_pauses_steps_and_begins_anew() {
 }
 
 #[test]
-fn a_failure_is_told_and_the_next_scene_runs() {
-    let Some(gpu) = testing::gpu_or_skip("a_failure_is_told_and_the_next_scene_runs") else { return };
+fn a_failure_is_reported_and_the_next_scene_runs() {
+    let Some(gpu) = testing::gpu_or_skip("a_failure_is_reported_and_the_next_scene_runs") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);
     until(&mut engine, |_| true);
     let mut broken = scene();
@@ -84,22 +84,24 @@ fn a_failure_is_told_and_the_next_scene_runs() {
     engine.send(Command::Play(true));
     engine.send(Command::Open(Box::new(scene())));
     engine.send(Command::Play(true));
-    let (_, told) = until(&mut engine, |now| now.stats.time > 0.01);
-    assert!(told.iter().any(|message| matches!(message, Message::Failed(text) if text.contains("cells"))));
+    let (_, messages) = until(&mut engine, |now| now.stats.time > 0.01);
+    assert!(
+        messages.iter().any(|message| matches!(message, Message::Failed(text) if text.contains("cells")))
+    );
 }
 
-fn picture(gpu: &Arc<Gpu>, engine: &Engine, way: Way) -> Vec<u8> {
+fn picture(gpu: &Arc<Gpu>, engine: &Engine, mode: DisplayMode) -> Vec<u8> {
     let mut picture = Picture::new(Arc::clone(gpu)).unwrap();
     let snapshot = engine.snapshot().unwrap();
     let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
-    let look = Look { way, ..Look::default() };
+    let look = Look { mode, ..Look::default() };
     picture.draw([160, 90], &snapshot, &look, camera).unwrap();
     picture.read().unwrap()
 }
 
 #[test]
-fn what_cannot_be_changed_leaves_the_water_as_it_is() {
-    let Some(gpu) = testing::gpu_or_skip("what_cannot_be_changed_leaves_the_water_as_it_is") else { return };
+fn a_refused_change_leaves_the_simulation_as_it_is() {
+    let Some(gpu) = testing::gpu_or_skip("a_refused_change_leaves_the_simulation_as_it_is") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);
     engine.send(Command::Play(true));
     until(&mut engine, |now| now.playing && now.stats.time > 0.02);
@@ -119,7 +121,7 @@ fn what_cannot_be_changed_leaves_the_water_as_it_is() {
     until(&mut engine, |now| now.stats.time < time);
 }
 
-/// Pixels that are clearly another colour.
+/// Number of pixels with a clearly different colour.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     a.chunks_exact(4)
         .zip(b.chunks_exact(4))
@@ -127,7 +129,7 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
         .count()
 }
 
-/// One is copied and drawn by its size, the other where it was made and by the arguments on the device.
+/// One surface is copied, the other drawn in place by an indirect call.
 #[test]
 fn both_devices_show_the_same_surface() {
     let Some(gpu) = testing::gpu_or_skip("both_devices_show_the_same_surface") else { return };
@@ -135,18 +137,18 @@ fn both_devices_show_the_same_surface() {
         let mut engine = start(&gpu, simulate);
         engine.send(Command::Surface(true));
         until(&mut engine, |now| now.drawn.mesh().is_some());
-        picture(&gpu, &engine, Way::Surface)
+        picture(&gpu, &engine, DisplayMode::Surface)
     });
     assert!(differing(&pictures[0], &pictures[1]) < 20, "{}", differing(&pictures[0], &pictures[1]));
-    // Control: without a surface the picture is another.
+    // Control: without a surface the picture differs.
     let mut engine = start(&gpu, Simulate::OnCpu);
     until(&mut engine, |_| true);
-    assert!(differing(&pictures[0], &picture(&gpu, &engine, Way::Surface)) > 200);
+    assert!(differing(&pictures[0], &picture(&gpu, &engine, DisplayMode::Surface)) > 200);
 }
 
 #[test]
-fn foam_is_computed_where_it_is_wanted_and_drawn_in_every_way() {
-    let Some(gpu) = testing::gpu_or_skip("foam_is_computed_where_it_is_wanted_and_drawn_in_every_way") else {
+fn foam_is_computed_if_enabled_and_drawn_in_every_mode() {
+    let Some(gpu) = testing::gpu_or_skip("foam_is_computed_if_enabled_and_drawn_in_every_mode") else {
         return;
     };
     let mut engine = start(&gpu, Simulate::OnCpu);
@@ -161,44 +163,49 @@ fn foam_is_computed_where_it_is_wanted_and_drawn_in_every_way() {
     advance(&engine);
     let (with, _) = until(&mut engine, |now| now.stats.time > 0.39 && now.drawn.foam().is_some());
     assert!(with.drawn.foam().is_some_and(|foam| foam.count > 50), "{:?}", with.drawn.foam());
-    for way in Way::ALL.into_iter().filter(|way| !way.needs_surface()) {
-        let drawn = picture(&gpu, &engine, way);
+    for mode in DisplayMode::ALL.into_iter().filter(|mode| !mode.needs_surface()) {
+        let drawn = picture(&gpu, &engine, mode);
         let mut picture = Picture::new(Arc::clone(&gpu)).unwrap();
         let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
-        picture.draw([160, 90], &without, &Look { way, ..Look::default() }, camera).unwrap();
+        picture.draw([160, 90], &without, &Look { mode, ..Look::default() }, camera).unwrap();
         let other = picture.read().unwrap();
         let differing = drawn.chunks_exact(4).zip(other.chunks_exact(4)).filter(|(a, b)| a != b).count();
-        assert!(differing > 20, "{way:?} shows no foam: {differing} pixels");
+        assert!(differing > 20, "{mode:?} shows no foam: {differing} pixels");
     }
 }
 
 #[test]
-fn every_way_shows_the_water() {
-    let Some(gpu) = testing::gpu_or_skip("every_way_shows_the_water") else { return };
+fn every_display_mode_shows_the_water() {
+    let Some(gpu) = testing::gpu_or_skip("every_display_mode_shows_the_water") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);
     engine.send(Command::Surface(true));
     until(&mut engine, |now| now.drawn.mesh().is_some());
-    let pictures: Vec<_> = Way::ALL.into_iter().map(|way| picture(&gpu, &engine, way)).collect();
+    let pictures: Vec<_> = DisplayMode::ALL.into_iter().map(|mode| picture(&gpu, &engine, mode)).collect();
     for (i, a) in pictures.iter().enumerate() {
         for (j, b) in pictures.iter().enumerate().skip(i + 1) {
-            assert!(differing(a, b) > 100, "{:?} and {:?} look alike", Way::ALL[i], Way::ALL[j]);
+            assert!(
+                differing(a, b) > 100,
+                "{:?} and {:?} look alike",
+                DisplayMode::ALL[i],
+                DisplayMode::ALL[j]
+            );
         }
-        // Control: the same way twice.
-        assert_eq!(differing(a, &picture(&gpu, &engine, Way::ALL[i])), 0);
+        // Control: the same mode twice.
+        assert_eq!(differing(a, &picture(&gpu, &engine, DisplayMode::ALL[i])), 0);
     }
 }
 
 #[test]
-fn a_checkpoint_brings_the_water_back() {
-    let Some(gpu) = testing::gpu_or_skip("a_checkpoint_brings_the_water_back") else { return };
+fn a_checkpoint_restores_the_simulation() {
+    let Some(gpu) = testing::gpu_or_skip("a_checkpoint_restores_the_simulation") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);
     engine.send(Command::Advance(0.05));
     let (then, _) = until(&mut engine, |now| now.stats.time > 0.04);
-    engine.send(Command::Checkpoint(SCENE.to_owned(), Purpose::Keep));
+    engine.send(Command::Checkpoint(SCENE.to_owned(), Purpose::Export));
     engine.send(Command::Advance(0.05));
-    let (later, told) = until(&mut engine, |now| now.stats.time > 0.09);
-    let checkpoint = told.into_iter().find_map(|message| match message {
-        Message::Checkpoint(checkpoint, Purpose::Keep) => Some(checkpoint),
+    let (later, messages) = until(&mut engine, |now| now.stats.time > 0.09);
+    let checkpoint = messages.into_iter().find_map(|message| match message {
+        Message::Checkpoint(checkpoint, Purpose::Export) => Some(checkpoint),
         _ => None,
     });
     engine.send(Command::Resume(checkpoint.unwrap()));

@@ -1,11 +1,11 @@
-//! The panels as a person uses them, without a device: what is clicked, typed and dragged becomes the right action.
+//! The panels without a device: clicks, keys and drags give the right actions.
 
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use splashdown::scene::{ColourBy, Method, Scene, presets};
-use splashdown_viewer::look::Way;
+use splashdown_viewer::look::DisplayMode;
 use splashdown_viewer::panels;
 use splashdown_viewer::state::{Action, State, Tool};
 
@@ -52,17 +52,17 @@ fn buttons_do_what_they_say() {
         window.get_by_label(label).click();
         assert_eq!(actions(&mut window), [action], "{label}");
     }
-    window.get_by_label("Hand").click();
+    window.get_by_label("Drag").click();
     window.get_by_label("Particles").click();
     window.run_steps(2);
-    assert_eq!((window.state().0.tool, window.state().0.look.way), (Tool::Hand, Way::Particles));
+    assert_eq!((window.state().0.tool, window.state().0.look.mode), (Tool::Drag, DisplayMode::Particles));
     window.get_by_label("density").click();
     window.run_steps(2);
     assert_eq!(window.state().0.look.colour_by, ColourBy::Density);
 }
 
 #[test]
-fn foam_is_a_matter_of_the_scene_and_is_kept_with_it() {
+fn foam_belongs_to_the_scene_and_is_exported_with_it() {
     let mut window = wide();
     assert!(!window.state().0.scene.foam.enabled);
     window.get_by_label("Foam and spray").click();
@@ -70,7 +70,7 @@ fn foam_is_a_matter_of_the_scene_and_is_kept_with_it() {
     let state = &window.state().0;
     assert!(state.scene.foam.enabled);
     let text = splashdown_viewer::save::scene(&state.scene, &state.orbit).unwrap();
-    assert!(Scene::parse(&text, "kept.toml").unwrap().foam.enabled, "{text}");
+    assert!(Scene::parse(&text, "exported.toml").unwrap().foam.enabled, "{text}");
 }
 
 #[test]
@@ -98,10 +98,12 @@ fn keys_do_what_the_help_says() {
     window.key_press(Key::Escape);
     window.run_steps(3);
     assert!(!window.state().0.shown.help);
-    for (number, way) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().zip(Way::ALL) {
+    for (number, mode) in
+        [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5].into_iter().zip(DisplayMode::ALL)
+    {
         window.key_press(number);
         window.run_steps(2);
-        assert_eq!(window.state().0.look.way, way);
+        assert_eq!(window.state().0.look.mode, mode);
     }
 }
 
@@ -109,12 +111,11 @@ fn keys_do_what_the_help_says() {
 fn the_solver_is_changed_and_its_models_follow() {
     let mut window = wide();
     window.get_by_label("with surface tension").click();
-    let told = actions(&mut window);
-    assert_eq!(told, [Action::Change]);
+    assert_eq!(actions(&mut window), [Action::Change]);
     let before = window.state().0.scene.solver.clone();
     window.get_by_label("method").click();
     window.run_steps(3);
-    window.get_by_label("mueller2003 (the thesis's)").click();
+    window.get_by_label("mueller2003 (the original thesis)").click();
     assert_eq!(actions(&mut window), [Action::Change]);
     let after = &window.state().0.scene.solver;
     assert_eq!(after.method, Method::Mueller2003);
@@ -123,7 +124,7 @@ fn the_solver_is_changed_and_its_models_follow() {
 }
 
 #[test]
-fn dragging_turns_the_view_and_the_hand_stirs() {
+fn dragging_orbits_the_camera_or_moves_the_water() {
     let mut window = wide();
     let drag = |window: &mut Harness<'_, Both>| {
         window.drag_at(egui::pos2(300.0, 300.0));
@@ -140,24 +141,24 @@ fn dragging_turns_the_view_and_the_hand_stirs() {
     let after = window.state().0.orbit;
     assert!(after.azimuth != before.azimuth && after.elevation > before.elevation, "{after:?}");
 
-    window.state_mut().0.tool = Tool::Hand;
+    window.state_mut().0.tool = Tool::Drag;
     drag(&mut window);
-    let stirred = actions(&mut window);
-    let Some(Action::Stir { velocity, .. }) = stirred
+    let dragged = actions(&mut window);
+    let Some(Action::Drag { velocity, .. }) = dragged
         .iter()
-        .find(|action| matches!(action, Action::Stir { velocity, .. } if *velocity != Vec3::ZERO))
+        .find(|action| matches!(action, Action::Drag { velocity, .. } if *velocity != Vec3::ZERO))
     else {
-        panic!("{stirred:?}")
+        panic!("{dragged:?}")
     };
     // To the right of the picture.
     assert!(velocity.dot(after.axes()[0]) > 0.0, "{velocity}");
     window.drop_at(egui::pos2(360.0, 320.0));
-    assert!(actions(&mut window).contains(&Action::LetGo));
-    assert_eq!(window.state().0.orbit, after, "the hand turned the camera");
+    assert!(actions(&mut window).contains(&Action::Release));
+    assert_eq!(window.state().0.orbit, after, "dragging water turned the camera");
 }
 
 #[test]
-fn a_narrow_window_begins_with_the_water() {
+fn a_narrow_window_starts_with_hidden_controls() {
     let mut window = window([400.0, 700.0]);
     assert!(window.state().0.shown.bare);
     assert!(window.query_by_label("Drop a ball").is_none());
@@ -167,10 +168,10 @@ fn a_narrow_window_begins_with_the_water() {
 }
 
 #[test]
-fn bad_news_stay_and_notes_go() {
+fn errors_stay_and_messages_disappear() {
     let mut window = wide();
-    window.state_mut().0.tell("nothing is left", true, 0.0);
-    window.state_mut().0.tell("the picture is in a.png", false, -100.0);
+    window.state_mut().0.notify("nothing is left", true, 0.0);
+    window.state_mut().0.notify("the picture is in a.png", false, -100.0);
     window.run_steps(3);
     assert!(window.query_by_label("nothing is left").is_some());
     assert!(window.query_by_label("the picture is in a.png").is_none());

@@ -20,30 +20,30 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct BenchArguments {
-    /// Numbers of particles, separated by commas (64K = 65,536)
+    /// Numbers of particles, separated by commas; K and M are powers of 1024 (64K = 65,536)
     #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_value = "64K", value_parser = human::parse_count)]
     pub particles: Vec<u32>,
     #[command(flatten)]
     pub device: DeviceArgument,
-    /// Steps to measure [default: as many as take about two seconds]
+    /// Number of steps to measure [default: as many as fit into about two seconds]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
     /// Solver to measure: wcsph or mueller2003 [default: wcsph, or the scene's]
     #[arg(short = 'm', long, value_parser = choice::<Method>())]
     pub solver: Option<Method>,
-    /// Measure a scene (a file, or the name of one that comes with the program), not the benchmark's dam break
+    /// Scene to measure instead of the benchmark's dam break: a file, or the name of a built-in scene
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["particles", "compare"])]
     pub scene: Option<PathBuf>,
-    /// Measure from 8K particles to as many as fit, doubling: how does the cost grow?
+    /// Double the number of particles from 8K to the largest that fits
     #[arg(long, conflicts_with = "particles")]
     pub compare: bool,
-    /// Numbers of threads to measure with, separated by commas; for the CPU [default: all there are]
+    /// Numbers of CPU threads, separated by commas [default: all]
     #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = threads)]
     pub threads: Vec<usize>,
-    /// Do not split the time by pass
+    /// Do not measure the passes separately
     #[arg(long)]
     pub no_passes: bool,
-    /// Run shaders without checks: what do the checks cost?
+    /// Run shaders without bounds checks, to measure the cost of the checks
     #[arg(long)]
     pub unchecked_shaders: bool,
     /// Print one JSON object per number of particles

@@ -1,4 +1,4 @@
-//! The command line: one declaration gives the parser, the help and the shells' completions.
+//! The command line: one declaration defines the parser, the help and the completions of shells.
 
 mod bench;
 mod plot;
@@ -29,41 +29,41 @@ pub use view::ViewArguments;
 #[derive(Debug, Parser)]
 #[command(name = "splashdown", version, max_term_width = 100, after_help = exit::HELP)]
 pub struct Arguments {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The words after `splashdown`.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Simulate a scene and write its frames
     Run(RunArguments),
-    /// Open a window to watch a scene and to play with it
+    /// Open an interactive window
     View(ViewArguments),
-    /// Validate a scene and print what follows from it, without simulating
+    /// Validate a scene and print derived quantities without simulating
     Check(CheckArguments),
-    /// List the devices of this machine, what fits on them, and what is missing
+    /// List this machine's devices, their limits, and missing software
     Doctor(DoctorArguments),
-    /// List, show or copy the scenes that come with the program
+    /// List, show or copy the built-in scenes
     Scenes(ScenesArguments),
-    /// Make meshes of anybody's particles
+    /// Reconstruct surface meshes from particle files
     Surface(SurfaceArguments),
-    /// Draw what probes have measured
+    /// Plot the tables of probes
     Plot(PlotArguments),
-    /// Measure the time of a step, by pass and by number of particles
+    /// Measure the time per step, by pass and by number of particles
     Bench(BenchArguments),
-    /// Print completions for a shell
+    /// Print the completions of a shell
     Completions(CompletionsArguments),
 }
 
-/// How much is said.
+/// How much is printed.
 #[derive(Debug, Args)]
 pub struct VerbosityArguments {
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Also say what the library remarks
+    /// Also print the log of the library
     #[arg(short, long, action = ArgAction::SetTrue)]
     pub verbose: bool,
 }
@@ -82,7 +82,7 @@ impl VerbosityArguments {
 /// The device to compute on.
 #[derive(Debug, Args)]
 pub struct DeviceArgument {
-    /// auto (the best GPU, else the CPU), gpu, cpu, or a part of an adapter's name from `splashdown doctor`
+    /// auto (the best GPU, else the CPU), gpu, cpu, or part of an adapter's name from `splashdown doctor`
     #[arg(short, long, value_name = "auto|gpu|cpu|NAME", default_value = "auto", value_parser = clap::value_parser!(Device))]
     pub device: Device,
 }
@@ -92,13 +92,13 @@ Examples:
   splashdown check scenes/dam-break.toml
   splashdown check my.toml --json
 
-The expected time is an estimate: a few steps of a small scene are measured on this machine.";
+The expected time is an estimate from a few measured steps of a small scene on this machine.";
 
 /// Options of `check`.
 #[derive(Debug, Args)]
 #[command(after_help = CHECK_EXAMPLES)]
 pub struct CheckArguments {
-    /// Scene file (TOML), or the name of one that comes with the program
+    /// Scene file (TOML), or the name of a built-in scene
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     #[command(flatten)]
@@ -131,12 +131,12 @@ pub struct CompletionsArguments {
     pub shell: Shell,
 }
 
-/// Reads one word of a choice of the scene file; help and completions list the words.
+/// Parses one of the words that a scene file allows. Help and completions list the words.
 fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
     words::<C>(&[]).try_map(|word| C::from_name(&word).ok_or("unknown word"))
 }
 
-/// As [`choice`], with the word `none` for nothing.
+/// As [`choice`], with `none` as an additional word.
 fn choice_or_none<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = Option<C>> {
     words::<C>(&["none"]).map(|word| C::from_name(&word))
 }

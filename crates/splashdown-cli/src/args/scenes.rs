@@ -8,36 +8,36 @@ const SCENES_EXAMPLES: &str = "\
 Examples:
   splashdown scenes                       list them
   splashdown scenes show honey            print one
-  splashdown scenes copy dam-break        write dam-break.toml here, to change it
+  splashdown scenes copy dam-break        write dam-break.toml here, to edit it
   splashdown scenes schema > scene.schema.json";
 
 /// Options of `scenes`.
 #[derive(Debug, Args)]
 #[command(after_help = SCENES_EXAMPLES)]
 pub struct ScenesArguments {
-    /// What to do; without a word, the list.
+    /// The command; `list` if none is given.
     #[command(subcommand)]
     pub action: Option<ScenesAction>,
 }
 
-/// The words after `splashdown scenes`.
+/// The commands of `scenes`.
 #[derive(Debug, Subcommand)]
 pub enum ScenesAction {
-    /// List names and what the scenes are (the default)
+    /// List the scenes (the default)
     List,
     /// Print a scene file
     Show {
         /// Name of the scene
         name: String,
     },
-    /// Copy a scene file, to change it
+    /// Copy a scene file, to edit it
     Copy {
         /// Name of the scene
         name: String,
         /// File or folder to write to
         #[arg(default_value = ".")]
         destination: PathBuf,
-        /// Replace a file that is there
+        /// Overwrite an existing file
         #[arg(short, long)]
         force: bool,
     },

@@ -13,11 +13,10 @@ Examples:
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
   splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
 
-Particles are read from PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; meshes are written as PLY, OBJ,
-STL, VTK or GLB. Where particles have velocities, so have the vertices (PLY, VTK, GLB). Other
-attributes (a number or a vector for each particle) come with --attribute into PLY and VTK; OBJ, STL
-and GLB cannot hold them. The meshes of several files have the numbers of their files, at the place of
-the star or before the ending.
+Input formats are PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; output formats are PLY, OBJ, STL, VTK
+and GLB. Velocities of particles are interpolated to the vertices (PLY, VTK, GLB). Other attributes
+(a number or a vector per particle) are interpolated with --attribute (PLY, VTK). Several input files
+give meshes with the same numbers, in place of the star or before the ending.
 
 Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
 particle radius is half of the particle spacing.";
@@ -26,35 +25,35 @@ particle radius is half of the particle spacing.";
 #[derive(Debug, Args)]
 #[command(after_help = SURFACE_EXAMPLES)]
 pub struct SurfaceArguments {
-    /// Files of particles, patterns with * and ?, or a folder with one series of files
+    /// Particle files, patterns with * and ?, or a folder with one series of files
     #[arg(value_name = "PARTICLES", required = true)]
     pub particles: Vec<PathBuf>,
-    /// File for the mesh; for several a folder, or a name whose * becomes the number
+    /// Output mesh; for several files a folder, or a name in which * becomes the number
     #[arg(short, long, value_name = "MESH")]
     pub out: PathBuf,
-    /// Distance of the particles in the fluid's bulk
+    /// Distance between neighbouring particles in the bulk of the fluid
     #[arg(short = 's', long, value_name = "S", allow_negative_numbers = true, value_parser = length)]
     pub particle_spacing: Option<f32>,
-    /// Use a spacing that does not fit the particles all the same
+    /// Use the given spacing even if it does not fit the particles
     #[arg(long)]
     pub force: bool,
     /// Edge of a marching-cubes cell [default: half a spacing]
     #[arg(short, long, value_name = "C", allow_negative_numbers = true, value_parser = length)]
     pub cell_size: Option<f32>,
-    /// Distance from which on a particle is not felt [default: two spacings]
+    /// Distance at which the kernel becomes zero [default: two spacings]
     #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = length)]
     pub support_radius: Option<f32>,
-    /// The field's value at the surface; it is about 1 in the bulk and 0 outside
+    /// Value of the density field at the surface; it is about 1 in the bulk and 0 outside
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true, default_value_t = 0.6)]
     pub iso_level: f32,
-    /// Rounds of smoothing; 15 to 25 remove the particles' bumps and keep the volume
+    /// Iterations of smoothing; 15 to 25 remove the bumps of single particles and preserve the volume
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub smoothing: u32,
-    /// Leave out separate pieces smaller than this many particles in the bulk; lone particles count 1 to 2
+    /// Remove components with less volume than N particles in the bulk; a single particle has 1 to 2
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = particles_of_a_blob)]
     pub min_blob: f64,
-    /// Give the vertices this attribute of the particles too, by its name in the file, or `all`; may be
-    /// repeated (PLY, VTK)
+    /// Interpolate this attribute of the particles to the vertices, or `all` of them; may be repeated
+    /// (PLY, VTK)
     #[arg(short, long, value_name = "NAME|all")]
     pub attribute: Vec<String>,
     #[command(flatten)]
@@ -62,7 +61,7 @@ pub struct SurfaceArguments {
     /// Print one JSON object per mesh to stdout
     #[arg(long)]
     pub json: bool,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -80,5 +79,5 @@ fn particles_of_a_blob(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|size: &f64| (0.0..=1e12).contains(size))
-        .ok_or_else(|| "the smallest blob is a number of particles, 0 or more".to_owned())
+        .ok_or_else(|| "the smallest component is a number of particles, 0 or more".to_owned())
 }

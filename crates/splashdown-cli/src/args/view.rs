@@ -9,13 +9,12 @@ use super::DeviceArgument;
 /// Options of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArguments {
-    /// Scene file (TOML), the name of one that comes with the program, or what to go on from: a checkpoint, or the
-    /// output folder of a run
+    /// Scene file (TOML), the name of a built-in scene, or a checkpoint or output folder to resume from
     #[arg(value_name = "SCENE", default_value = "dam-break")]
     pub scene: PathBuf,
     #[command(flatten)]
     pub device: DeviceArgument,
-    /// Width and height of the window
+    /// Width and height of the window in points
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = window_size)]
     pub size: [f32; 2],
 }
@@ -26,8 +25,7 @@ fn window_size(text: &str) -> Result<[f32; 2], String> {
     match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
         Some((Some(width), Some(height))) => Ok([width, height]),
         _ => {
-            Err("a size is two numbers between 200 and 16384 with an x between them, such as 1280x800"
-                .to_owned())
+            Err("a size is two numbers from 200 to 16384 with an x between them, such as 1280x800".to_owned())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `splashdown check`: is the scene valid, and what follows from it.
+//! `splashdown check`: validates a scene and prints derived quantities.
 
 use std::time::{Duration, Instant};
 
@@ -13,14 +13,14 @@ use crate::lines::Line;
 use crate::speed::{bench_scene, seconds_per_step};
 use crate::{console, human, scene_file};
 
-/// How long the measurement behind the expected time may take.
+/// Duration of the measurement for the expected time.
 const MEASURE: Duration = Duration::from_millis(60);
 
-/// Particles that are enough to load a CPU fully; a GPU is measured with more, or it idles.
+/// Numbers of particles that keep a CPU and a GPU busy.
 const FEW: u64 = 4096;
 const MANY: u64 = 65_536;
 
-/// What is printed as JSON.
+/// The JSON output.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     event: &'static str,
@@ -30,14 +30,14 @@ struct Report<'a> {
     duration: f32,
     #[serde(flatten)]
     derived: &'a Derived,
-    /// Particles left out because they would be inside bodies.
+    /// Particles removed because they are inside bodies.
     removed: u64,
     memory_forecast: u64,
     speed: &'a Speed,
     warnings: &'a [SceneWarning],
 }
 
-/// How fast this machine is, measured with another scene.
+/// The speed of this machine, measured with a dam break.
 #[derive(Debug, Serialize)]
 struct Speed {
     #[serde(skip)]
@@ -48,7 +48,7 @@ struct Speed {
     expected_seconds: f64,
 }
 
-/// Checks, and prints.
+/// Checks a scene and prints the result.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let checked = scene_file::load(&arguments.scene);
     let scene = checked.inspect_err(|failure| {
@@ -56,11 +56,11 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             console::print_json(&Line::error(failure));
         }
     })?;
-    // As the simulation will have them: without those inside bodies.
+    // Without the particles inside bodies, as in the simulation.
     let inventory = sample::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let memory = memory_forecast_of(&scene, &inventory);
-    // The scene is valid all the same: what is said of it comes before what the device says.
+    // A scene too large for the device is still valid: the report is printed before the error.
     let largest = arguments.device.device.executor()?.largest_buffer();
     let fits = check_particles(inventory.particles, largest, scene.fluid.particle_spacing);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
@@ -106,7 +106,7 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
         ("solver", format!("{}, support radius {} m", scene.solver.method, derived.support_radius)),
         (
             "speed",
-            format!("up to about {} m/s expected", human::three_digits(derived.reference_speed.into())),
+            format!("at most about {} m/s expected", human::three_digits(derived.reference_speed.into())),
         ),
         ("sound", format!("{} m/s", human::three_digits(derived.sound_speed.into()))),
         ("time step", format!("about {:.3e} s, limited by {}", derived.dt_estimate, derived.dt_limit)),
@@ -123,7 +123,7 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
         (
             "expected time",
             format!(
-                "about {} on {}: an estimate from {} particle-steps/s, measured with {} particles, without pictures and files",
+                "about {} on {}: estimated from {} particle-steps/s measured with {} particles, without pictures and files",
                 human::duration(speed.expected_seconds),
                 speed.device,
                 human::scaled(speed.particle_steps_per_second).trim_end(),
@@ -136,15 +136,15 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
 fn particles(inventory: &Inventory, spacing: f32) -> String {
     let mut words = format!("{}, {spacing} m apart", human::count(inventory.particles));
     if inventory.emitted > 0 {
-        words += &format!("; emitters bring up to {} more", human::count(inventory.emitted));
+        words += &format!("; emitters add at most {}", human::count(inventory.emitted));
     }
     if inventory.removed > 0 {
-        words += &format!("; {} inside bodies are left out", human::count(inventory.removed));
+        words += &format!("; {} inside bodies are removed", human::count(inventory.removed));
     }
     words
 }
 
-/// Runs a few steps of a dam break with the scene's own solver.
+/// Runs a few steps of a dam break with the scene's solver.
 fn measure(scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
     let typical = (derived.mean_particles.ceil() as u64).max(1);
     let mut speed = measure_with(FEW.min(typical), scene, derived, device)?;

@@ -1,4 +1,4 @@
-//! `splashdown doctor`: what this machine has, what fits on it, and what is missing.
+//! `splashdown doctor`: the devices of this machine, their limits, and missing software.
 
 use std::process::{Command, Stdio};
 
@@ -11,7 +11,7 @@ use splashdown_gpu::{AdapterReport, MISSING_DRIVER_HINT, list_adapters};
 use crate::args::DoctorArguments;
 use crate::{console, human, memory};
 
-/// Everything that `doctor` finds.
+/// The JSON output.
 #[derive(Debug, Serialize)]
 struct Health {
     version: &'static str,
@@ -47,7 +47,7 @@ struct Adapter {
     timestamps: bool,
 }
 
-/// Looks, and prints.
+/// Examines the machine and prints the result.
 pub fn run(arguments: &DoctorArguments) {
     let health = examine();
     if arguments.json {
@@ -64,12 +64,12 @@ fn examine() -> Health {
     let hardware = reports.iter().position(|report| !report.software);
     let mut advice = Vec::new();
     if adapters.is_empty() {
-        advice.push(format!("no Vulkan, Metal or Direct3D 12 driver was found, so pictures cannot be drawn: {MISSING_DRIVER_HINT}"));
+        advice.push(format!("no Vulkan, Metal or Direct3D 12 driver was found, so no pictures can be drawn: {MISSING_DRIVER_HINT}"));
     } else if hardware.is_none() {
-        advice.push("only a software driver was found: pictures are drawn with it, the simulation runs on the CPU, which is faster. If this machine has a graphics card, install its driver".to_owned());
+        advice.push("only a software driver was found. Pictures are drawn with it; the simulation runs on the CPU, which is faster. If this machine has a graphics card, install its driver".to_owned());
     }
     if ffmpeg.is_none() {
-        advice.push("ffmpeg was not found, so there will be pictures but no film: on Debian and Ubuntu `apt-get install ffmpeg`, on macOS `brew install ffmpeg`, on Windows `winget install ffmpeg`".to_owned());
+        advice.push("ffmpeg was not found, so no films can be made of the pictures. Install it: on Debian and Ubuntu `apt-get install ffmpeg`, on macOS `brew install ffmpeg`, on Windows `winget install ffmpeg`".to_owned());
     }
     let name = |adapter: &Adapter| format!("{} ({})", adapter.name, adapter.backend);
     let chosen = hardware.and_then(|index| adapters.get(index));
@@ -122,7 +122,7 @@ fn cpu() -> Cpu {
     }
 }
 
-/// What a particle of the demo takes in all buffers together, its share of cells and surface among them: on the CPU no
+/// Bytes per particle of the demo in all buffers together, including its share of cells and surface. On the CPU no
 /// single buffer is the limit.
 fn bytes_per_particle() -> Option<u64> {
     let (name, text) = presets().first()?;
@@ -163,10 +163,13 @@ fn describe(health: &Health) -> String {
     let cpu = &health.cpu;
     let mut rows = vec![("threads", cpu.threads.to_string()), ("features", cpu.features.join(", "))];
     if let (Some(total), Some(available)) = (cpu.memory, cpu.memory_available) {
-        rows.push(("memory", format!("{}, {} of it free", human::bytes(total), human::bytes(available))));
+        rows.push((
+            "memory",
+            format!("{}, {} of it available", human::bytes(total), human::bytes(available)),
+        ));
     }
     if let Some(count) = cpu.largest_particle_count {
-        rows.push(("fits about", format!("{} particles", human::count(count))));
+        rows.push(("capacity", format!("about {} particles", human::count(count))));
     }
     text += &console::table(&rows);
     if health.adapters.is_empty() {
@@ -177,7 +180,7 @@ fn describe(health: &Health) -> String {
             ("kind", adapter.kind.to_owned()),
             ("driver", adapter.driver.clone()),
             ("largest buffer", human::bytes(adapter.largest_buffer)),
-            ("fits at most", format!("{} particles", human::count(adapter.largest_particle_count))),
+            ("capacity", format!("at most {} particles", human::count(adapter.largest_particle_count))),
             (
                 "workgroup",
                 format!(
@@ -196,17 +199,17 @@ fn describe(health: &Health) -> String {
         text += &format!("\n\n{} ({})\n{}", adapter.name, adapter.backend, console::table(&rows));
     }
     let rows = [
-        ("simulate on", health.simulates_on.clone()),
-        ("draw on", health.draws_on.clone().unwrap_or_else(|| "nothing: no driver".to_owned())),
+        ("to simulate", health.simulates_on.clone()),
+        ("to draw", health.draws_on.clone().unwrap_or_else(|| "nothing: no driver".to_owned())),
         (
-            "make films with",
+            "to make films",
             health
                 .ffmpeg
                 .as_ref()
                 .map_or_else(|| "nothing: no ffmpeg".to_owned(), |version| format!("ffmpeg {version}")),
         ),
     ];
-    text += &format!("\n\nWith --device auto, this machine will\n{}", console::table(&rows));
+    text += &format!("\n\nWith --device auto, this machine uses\n{}", console::table(&rows));
     for advice in &health.advice {
         text += &format!("\n\nNote: {advice}.");
     }

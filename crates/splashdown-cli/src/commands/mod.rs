@@ -1,4 +1,4 @@
-//! One file per word after `splashdown`.
+//! The commands, one file each.
 
 pub mod bench;
 pub mod check;
@@ -15,7 +15,7 @@ pub mod view;
 #[cfg(not(all(feature = "plot", feature = "window")))]
 use crate::exit::{Exit, Failure};
 
-/// The answer to a command that this build leaves out, with how to get it.
+/// The error for a command that this build does not include.
 #[cfg(not(all(feature = "plot", feature = "window")))]
 pub fn left_out(command: &str, feature: &str) -> Failure {
     let message = format!(

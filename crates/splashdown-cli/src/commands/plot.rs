@@ -1,4 +1,4 @@
-//! `splashdown plot`: what probes have written, as a picture.
+//! `splashdown plot`: plots of the tables of probes.
 
 use splashdown_io::picture::write_png;
 use splashdown_io::{IoError, Picture, atomic};
@@ -7,10 +7,10 @@ use crate::args::PlotArguments;
 use crate::exit::{Exit, Failure};
 use crate::plot::{draw, table};
 
-/// Height of the title and of the words below the last panel, in pixels.
+/// Height of the title and of the labels below the last panel, in pixels.
 const FRAME: u32 = 60;
 
-/// Height of a panel where no size is given, in pixels.
+/// Default height of a panel, in pixels.
 const PANEL: u32 = 260;
 
 /// Draws the plot.

@@ -34,7 +34,10 @@ pub fn run(arguments: &ScenesArguments) -> Result<(), Failure> {
 fn find(name: &str) -> Result<&'static str, Failure> {
     scene_file::preset(name).map(|(_, text)| text).ok_or_else(|| {
         let names = presets().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-        Failure::new(Exit::Usage, format!("there is no built-in scene `{name}`; there are: {names}"))
+        Failure::new(
+            Exit::Usage,
+            format!("there is no built-in scene `{name}`; the built-in scenes are {names}"),
+        )
     })
 }
 
@@ -51,7 +54,7 @@ fn list() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The first sentence of the comment that opens a scene.
+/// The first sentence of the comment at the start of a scene file.
 fn about(text: &str) -> String {
     let comment: Vec<&str> = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect();
     let comment = comment.join(" ");
@@ -66,7 +69,7 @@ fn copy(name: &str, destination: &Path, force: bool) -> Result<(), Failure> {
     let path: PathBuf =
         if destination.is_dir() { destination.join(format!("{name}.toml")) } else { destination.to_owned() };
     if path.exists() && !force {
-        let message = format!("`{}` is there already; --force replaces it", path.display());
+        let message = format!("`{}` exists; --force overwrites it", path.display());
         return Err(Failure::new(Exit::Files, message));
     }
     atomic::write(&path, |out| out.write_all(text.as_bytes()))?;
@@ -79,7 +82,7 @@ mod tests {
     use super::about;
 
     #[test]
-    fn the_first_sentence_of_the_comment_tells_what_a_scene_is() {
+    fn the_first_sentence_of_the_comment_describes_a_scene() {
         assert_eq!(
             about("# A drop, 3.2 cm\n# across, falls. It splashes.\n[scene]\n# no"),
             "A drop, 3.2 cm across, falls."

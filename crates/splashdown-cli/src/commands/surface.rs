@@ -1,4 +1,4 @@
-//! `splashdown surface`: anybody's particles in, closed meshes out.
+//! `splashdown surface`: closed surface meshes from particle files.
 
 use std::path::Path;
 use std::time::Instant;
@@ -16,9 +16,9 @@ use crate::args::SurfaceArguments;
 use crate::exit::{Exit, Failure};
 use crate::{attributes, console, human, memory};
 
-/// How far a spacing may be from what the particles look like before it is taken for a mistake: a radius for a
-/// diameter, or another unit.
-const FITTING: f32 = 1.8;
+/// The largest accepted ratio between the given spacing and the one estimated from the particles. A larger ratio is
+/// a mistake: a radius instead of a diameter, or another unit.
+const MAX_SPACING_RATIO: f32 = 1.8;
 
 /// One mesh, as `--json` prints it.
 #[derive(Debug, Serialize)]
@@ -39,14 +39,14 @@ struct Line<'a> {
     attributes: Vec<String>,
     /// From particles in memory to the mesh in memory.
     surface_seconds: f64,
-    /// Everything, with reading and writing.
+    /// In all, including reading and writing.
     seconds: f64,
-    /// Bytes that this process had in memory before it read anything, and the most so far; where the system tells.
+    /// Resident bytes of this process before reading, and its peak so far, if the system reports them.
     start_memory: Option<u64>,
     peak_memory: Option<u64>,
 }
 
-/// Which file of how many, and what the process took before the first.
+/// The position of a file in the series, and the memory of the process before the first.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     number: usize,
@@ -54,7 +54,7 @@ struct Place {
     start_memory: Option<u64>,
 }
 
-/// Makes the meshes.
+/// Reconstructs the meshes.
 pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let start_memory = memory::resident();
     let inputs = sequence::expand(&arguments.particles, PARTICLE_FORMATS_READ)?;
@@ -80,7 +80,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
         let topology = match one(step, &params, arguments, &mut executor, place) {
-            // In a sequence the others are worth having.
+            // The remaining files of a series are still processed.
             Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
                 open.push(failure.message);
                 continue;
@@ -95,7 +95,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     conclude(arguments, &steps, last, &open)
 }
 
-/// Reads one file and writes its mesh; returns how the mesh hangs together.
+/// Reads one file and writes its mesh; returns the mesh's topology.
 fn one(
     step: &Step,
     params: &SurfaceParams,
@@ -146,18 +146,18 @@ fn one(
         console::print_json(&line);
     }
     if !arguments.quiet {
-        console::note(format!("[{number}/{all}] {}", told(&line, &surface)));
+        console::note(format!("[{number}/{all}] {}", describe(&line, &surface)));
     }
     Ok(topology)
 }
 
 /// One line for people.
-fn told(line: &Line<'_>, surface: &Mesh) -> String {
+fn describe(line: &Line<'_>, surface: &Mesh) -> String {
     let (particles, triangles) =
         (human::counted(line.particles as u64, "particle"), human::count(surface.len() as u64));
     let blobs = match line.dropped_blobs {
         0 => String::new(),
-        count => format!(", {} left out", human::counted(count as u64, "blob")),
+        count => format!(", {} removed", human::counted(count as u64, "small component")),
     };
     let velocities = line.velocities.then_some("velocities");
     let carried: Vec<&str> =
@@ -172,7 +172,10 @@ fn told(line: &Line<'_>, surface: &Mesh) -> String {
     )
 }
 
-/// The last word: what the meshes are, or which of them are not what they should be.
+/// Prints a summary of all meshes.
+///
+/// # Errors
+/// [`Exit::Failed`] if any of them is not watertight.
 fn conclude(
     arguments: &SurfaceArguments,
     steps: &[Step],
@@ -180,7 +183,7 @@ fn conclude(
     open: &[String],
 ) -> Result<(), Failure> {
     if !open.is_empty() {
-        let message = format!("{} of {} meshes have faults: {}", open.len(), steps.len(), open.join("; "));
+        let message = format!("{} of {} meshes failed: {}", open.len(), steps.len(), open.join("; "));
         return Err(Failure::new(Exit::Failed, message));
     }
     if !arguments.quiet && !arguments.json {
@@ -197,13 +200,13 @@ fn conclude(
     Ok(())
 }
 
-/// What cannot be read is the fault of what was given, not of the place for the results.
+/// Unreadable input has another exit code than unwritable output.
 fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure> {
     let particles = if arguments.attribute.is_empty() { read_particles(path) } else { read_all(path) };
     particles.map_err(|error| Failure::new(Exit::Scene, error.to_string()))
 }
 
-/// What makes no surface is the fault of what was given: numbers of the command line, or particles.
+/// Assigns errors to the arguments or to the input file.
 fn of_input(error: SurfaceError, input: &Path) -> Failure {
     let exit = match &error {
         SurfaceError::NoSurface { .. } | SurfaceError::Parameter { .. } => Exit::Usage,
@@ -215,7 +218,10 @@ fn of_input(error: SurfaceError, input: &Path) -> Failure {
     Failure::new(exit, format!("`{}`: {error}", input.display()))
 }
 
-/// The spacing that was given, if the first file's particles are about so far from each other.
+/// The given spacing, if it fits the particles of the first file.
+///
+/// # Errors
+/// [`Exit::Usage`] if it does not, or none was given.
 fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure> {
     let first = &steps[0].input;
     let given = arguments.particle_spacing;
@@ -227,15 +233,20 @@ fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure>
     let name = first.display();
     match (given, found) {
         (Some(given), None) => Ok(given),
-        (Some(given), Some(found)) if (found / FITTING..=found * FITTING).contains(&given) => Ok(given),
+        (Some(given), Some(found))
+            if (found / MAX_SPACING_RATIO..=found * MAX_SPACING_RATIO).contains(&given) =>
+        {
+            Ok(given)
+        }
         (Some(given), Some(found)) => {
-            let hint = if (given * 2.0 / found - 1.0).abs() < 0.15 { " (is it their radius?)" } else { "" };
+            let hint =
+                if (given * 2.0 / found - 1.0).abs() < 0.15 { " (is it the particle radius?)" } else { "" };
             let digits = human::three_digits(f64::from(found));
             Err(Failure::new(
                 Exit::Usage,
                 format!(
-                    "a particle spacing of {given} does not fit the particles of `{name}`{hint}: they are about {digits} from \
-                     each other. Give --particle-spacing {digits}, or --force to use {given} all the same"
+                    "a particle spacing of {given} does not fit the particles of `{name}`{hint}: their distance is about \
+                     {digits}. Give --particle-spacing {digits}, or --force to use {given}"
                 ),
             ))
         }
@@ -244,19 +255,19 @@ fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure>
             Err(Failure::new(
                 Exit::Usage,
                 format!(
-                    "--particle-spacing is missing: the distance at which the particles of `{name}` were made. They are about \
-                     {digits} from each other"
+                    "--particle-spacing is missing: give the initial distance of the particles. In `{name}` their distance is \
+                     about {digits}"
                 ),
             ))
         }
         (None, None) => Err(Failure::new(
             Exit::Usage,
-            format!("--particle-spacing is missing, and `{name}` has too few particles to guess it from"),
+            format!("--particle-spacing is missing, and `{name}` has too few particles to estimate it"),
         )),
     }
 }
 
-/// Tells before anything is computed that a mesh cannot be written.
+/// Checks that the name of a mesh has a known format before anything is computed.
 fn mesh_format(output: &Path, given: &Path) -> Result<(), Failure> {
     let ending = ending(output);
     if mesh::FORMATS.iter().any(|format| *format == ending) {
@@ -270,7 +281,7 @@ fn holds_velocities(path: &Path) -> bool {
     matches!(ending(path).as_str(), ".ply" | ".vtk" | ".glb")
 }
 
-/// The name's ending with its dot, in small letters.
+/// The ending of a name in lower case, with its dot.
 fn ending(path: &Path) -> String {
     path.extension()
         .map(|ending| format!(".{}", ending.to_string_lossy().to_ascii_lowercase()))

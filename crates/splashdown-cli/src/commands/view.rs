@@ -22,7 +22,7 @@ pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
         Some(checkpoint) => checkpoint.scene()?,
         None => scene_file::load(path)?,
     };
-    // The CPU cannot show anything: something has to draw.
+    // Drawing needs a GPU or a software driver even if the CPU simulates.
     let (device, simulate) = match &arguments.device.device {
         Device::Auto => (DeviceRequest::Auto, None),
         Device::Cpu => (DeviceRequest::Auto, Some(Simulate::OnCpu)),

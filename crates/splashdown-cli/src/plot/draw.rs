@@ -1,4 +1,4 @@
-//! The drawing: one panel for each unit, one above the other, with one axis of time.
+//! Drawing: one panel per unit, stacked, with a common time axis.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use plotters::style::register_font;
 
 use super::table::{Curve, unit};
 
-/// The font's name in SVG; programs that show one have their own for it.
+/// The font's name in SVG, which the program that shows the file resolves.
 const FONT: &str = "sans-serif";
 
-/// Dark enough to be read on white, and told apart by those who see few colours (Okabe & Ito 2008).
+/// Readable on white and distinguishable with colour-vision deficiency (Okabe & Ito 2008).
 const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -25,12 +25,12 @@ const COLOURS: [RGBColor; 7] = [
 /// Curves of one unit.
 #[derive(Debug)]
 pub struct Panel {
-    /// What is measured, with its unit; several quantities of one unit by the unit alone.
+    /// The quantity with its unit; for several quantities the unit alone.
     label: String,
     curves: Vec<Curve>,
 }
 
-/// Sorts curves into panels by their units, in the order in which these come.
+/// Groups curves into panels by unit, in order of appearance.
 pub fn panels(curves: Vec<Curve>) -> Vec<Panel> {
     let mut panels: Vec<Panel> = Vec::new();
     for curve in curves {
@@ -47,10 +47,10 @@ pub fn panels(curves: Vec<Curve>) -> Vec<Panel> {
     panels
 }
 
-/// As text of an SVG file.
+/// The text of an SVG file.
 ///
 /// # Errors
-/// What the drawing library says.
+/// The message of the drawing library.
 pub fn svg(panels: &[Panel], title: Option<&str>, size: (u32, u32)) -> Result<String, String> {
     prepare()?;
     let mut text = String::new();
@@ -58,10 +58,10 @@ pub fn svg(panels: &[Panel], title: Option<&str>, size: (u32, u32)) -> Result<St
     Ok(text)
 }
 
-/// As RGBA pixels, row by row from the top.
+/// RGBA pixels, row by row from the top.
 ///
 /// # Errors
-/// What the drawing library says.
+/// The message of the drawing library.
 pub fn pixels(panels: &[Panel], title: Option<&str>, size: (u32, u32)) -> Result<Vec<u8>, String> {
     prepare()?;
     let mut rgb = vec![255; size.0 as usize * size.1 as usize * 3];
@@ -69,7 +69,7 @@ pub fn pixels(panels: &[Panel], title: Option<&str>, size: (u32, u32)) -> Result
     Ok(rgb.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect())
 }
 
-/// Brings the font along, so that letters look the same on a machine that has none.
+/// Registers the built-in font, so that text looks the same on every machine.
 fn prepare() -> Result<(), String> {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
     register_font(FONT, FontStyle::Normal, font).map_err(|_| "the built-in font cannot be read".to_owned())
@@ -80,12 +80,12 @@ fn draw<DB: DrawingBackend>(
     panels: &[Panel],
     title: Option<&str>,
 ) -> Result<(), String> {
-    let told = |error: DrawingAreaErrorKind<DB::ErrorType>| format!("the plot cannot be drawn: {error}");
-    area.fill(&WHITE).map_err(told)?;
+    let message = |error: DrawingAreaErrorKind<DB::ErrorType>| format!("the plot cannot be drawn: {error}");
+    area.fill(&WHITE).map_err(message)?;
     let titled;
     let area = match title {
         Some(title) => {
-            titled = area.titled(title, (FONT, 22)).map_err(told)?;
+            titled = area.titled(title, (FONT, 22)).map_err(message)?;
             &titled
         }
         None => area,
@@ -95,9 +95,9 @@ fn draw<DB: DrawingBackend>(
     let areas = area.split_evenly((panels.len().max(1), 1));
     let last = panels.len().saturating_sub(1);
     for (number, (area, panel)) in areas.iter().zip(panels).enumerate() {
-        draw_panel(area, panel, times.clone(), number == last).map_err(told)?;
+        draw_panel(area, panel, times.clone(), number == last).map_err(message)?;
     }
-    area.present().map_err(told)
+    area.present().map_err(message)
 }
 
 fn draw_panel<DB: DrawingBackend>(
@@ -130,7 +130,7 @@ fn draw_panel<DB: DrawingBackend>(
     for (curve, colour) in panel.curves.iter().zip(COLOURS.iter().cycle()) {
         let style = colour.stroke_width(2);
         let sample = move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style);
-        // A gap is no line across it, and a point between two gaps is a dot.
+        // Lines end at gaps, and a point between two gaps is a dot.
         let is_gap = |point: &(f64, f64)| !(point.0.is_finite() && point.1.is_finite());
         let mut runs: Vec<&[(f64, f64)]> = curve.points.split(is_gap).filter(|run| !run.is_empty()).collect();
         runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
@@ -149,16 +149,16 @@ fn draw_panel<DB: DrawingBackend>(
     legend.background_style(WHITE.mix(0.85)).border_style(BLACK.mix(0.2)).draw()
 }
 
-/// The range of the finite numbers with a margin on both sides; something around the only number, or 0 to 1.
+/// The range of the finite numbers with a margin on both sides; for equal numbers a range around them; else 0 to 1.
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
-    // What is larger could not be told apart in a picture, and its range would be infinite.
+    // The range of larger numbers would be infinite.
     let finite = values.filter(|value| value.is_finite() && value.abs() < 1e300);
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
     if low > high {
         return 0.0..1.0;
     }
     let width = high - low;
-    // Of numbers that are all the same, or differ by rounding only, a range that can be labelled.
+    // Numbers that differ by rounding only get a range that can be labelled.
     if width <= 1e-9 * low.abs().max(high.abs()).max(1e-30) {
         let around = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
         return low - around..high + around;
@@ -166,9 +166,9 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     low - margin * width..high + margin * width
 }
 
-/// A number at an axis, with as many digits as tell neighbours apart.
+/// The label of an axis, with enough digits to distinguish neighbours.
 fn label(value: f64, width: f64) -> String {
-    // Zero comes out of sums of steps as almost zero.
+    // Sums of steps give almost zero instead of zero.
     let value = if value.abs() < 1e-9 * width { 0.0 } else { value };
     let largest = value.abs().max(width);
     if largest >= 1e6 || width < 1e-4 {
@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(drawn.len(), 800 * 600 * 4);
         let blue = drawn.chunks_exact(4).filter(|pixel| pixel[..3] == [0, 114, 178]).count();
         assert!(blue > 300, "{blue} pixels of the first curve");
-        // Letters are drawn: the title is all there is in the topmost rows.
+        // Text is drawn: the topmost rows contain only the title.
         let titled = pixels(&panels, Some("A dam breaks"), (800, 600)).unwrap();
         let dark = |drawn: &[u8]| {
             let rows = drawn[..4 * 800 * 10].chunks_exact(4);

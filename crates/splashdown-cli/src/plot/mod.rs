@@ -1,4 +1,4 @@
-//! Plots of tables, drawn by `plotters` with a font that the program brings along.
+//! Plots of tables, drawn by `plotters` with a built-in font.
 
 pub mod draw;
 pub mod table;

@@ -1,4 +1,4 @@
-//! Bad input: each case gets one clear error and its exit code, and frames already written stay valid.
+//! Invalid input: each case gives one clear error and its exit code, and frames already written stay valid.
 
 use std::io::Write;
 
@@ -43,7 +43,7 @@ fn wrong_scenes_are_refused_before_anything_is_written() -> Outcome {
             let output = place.splashdown(&[command, "wrong.toml", "--device", "cpu"]).output()?;
             assert_eq!(output.status.code(), Some(3), "{what}: {}", stderr(&output));
             assert_refused(&output, 3, &["wrong.toml", word]);
-            assert!(stderr(&output).len() < 20_000, "{what}: the message is a book");
+            assert!(stderr(&output).len() < 20_000, "{what}: the message is too long");
         }
         assert!(!place.path("out").exists(), "{what}");
     }
@@ -51,7 +51,7 @@ fn wrong_scenes_are_refused_before_anything_is_written() -> Outcome {
 }
 
 #[test]
-fn a_missing_scene_and_a_folder_are_told_apart() -> Outcome {
+fn a_missing_scene_and_a_folder_are_distinguished() -> Outcome {
     let place = Place::new()?;
     assert_refused(
         &place.splashdown(&["run", "nowhere.toml"]).output()?,
@@ -82,7 +82,7 @@ fn a_hundred_million_particles_get_a_number_and_advice() -> Outcome {
 }
 
 #[test]
-fn folders_that_cannot_be_written_are_told_before_the_first_step() -> Outcome {
+fn unwritable_folders_are_reported_before_the_first_step() -> Outcome {
     let place = Place::new()?;
     place.write("file", "in the way")?;
     for out in ["file", "file/below"] {
@@ -113,7 +113,7 @@ fn more_particles_than_a_device_binds_are_refused_with_the_count_that_fits() -> 
         let output = place.splashdown(&[arguments, &["--device", "llvmpipe"]].concat()).output()?;
         assert_refused(&output, 4, &words);
     }
-    // Control: the spacing that is told is taken; `check` is enough to see that.
+    // Control: the recommended spacing is accepted; `check` is enough to test that.
     place.write("big.toml", scene.replace("0.0093", "0.0099"))?;
     let output = place.splashdown(&["check", "big.toml", "--device", "llvmpipe"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
@@ -121,7 +121,7 @@ fn more_particles_than_a_device_binds_are_refused_with_the_count_that_fits() -> 
 }
 
 #[test]
-fn unknown_devices_are_refused_with_the_names_there_are() -> Outcome {
+fn unknown_devices_are_refused_with_the_available_names() -> Outcome {
     let place = Place::new()?;
     for command in ["run", "check"] {
         let output = place.splashdown(&[command, "small.toml", "--device", "no-such-card"]).output()?;
@@ -166,9 +166,9 @@ fn frames_before_a_failure_stay_valid() -> Outcome {
         assert_eq!(ply::read_particles(&place.path(&name))?.len(), 216);
     }
     let lines = lines(&output)?;
-    let told: Vec<_> =
+    let reported: Vec<_> =
         lines.iter().filter(|line| line["event"] == "frame").map(|line| line["frame"].clone()).collect();
-    assert_eq!(told, [0, 1], "only complete frames are told");
+    assert_eq!(reported, [0, 1], "only complete frames are reported");
     assert_eq!(lines.last().map(|line| &line["exit_code"]), Some(&5.into()));
     let partial = crate::place::names(&place.path("out/particles"))?
         .into_iter()
@@ -211,7 +211,7 @@ mod linux {
     use std::process::{Command, Stdio};
 
     #[test]
-    fn without_a_driver_files_are_written_and_the_way_to_pictures_is_told() -> Outcome {
+    fn without_a_driver_files_are_written_and_the_driver_is_named() -> Outcome {
         let place = Place::new()?;
         let run = |more: &[&str]| {
             let mut command = place.splashdown(&["run", "small.toml", "--out", "out", "--frames", "1"]);
@@ -223,12 +223,12 @@ mod linux {
         };
         let output = run(&[])?;
         assert!(output.status.success(), "{}", stderr(&output));
-        let said = stderr(&output);
+        let text = stderr(&output);
         assert!(
-            said.contains("warning: no pictures") && said.contains("apt-get install mesa-vulkan-drivers"),
-            "{said}"
+            text.contains("warning: no pictures") && text.contains("apt-get install mesa-vulkan-drivers"),
+            "{text}"
         );
-        assert_eq!(said.matches("no pictures").count(), 1, "said once: {said}");
+        assert_eq!(text.matches("no pictures").count(), 1, "once: {text}");
         assert_eq!(names(&place.path("out/particles"))?.len(), 2);
         assert_eq!(names(&place.path("out/mesh"))?.len(), 2);
 
@@ -257,7 +257,7 @@ mod linux {
     }
 
     #[test]
-    fn a_full_disk_is_told_and_complete_frames_stay() -> Outcome {
+    fn a_full_disk_is_reported_and_complete_frames_stay() -> Outcome {
         let place = Place::new()?;
         let Some(disk) = TinyDisk::mount(place.path("disk"), 128)? else {
             eprintln!("SKIPPED: no small file system can be mounted here to fill up");

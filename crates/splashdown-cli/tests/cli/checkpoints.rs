@@ -1,4 +1,4 @@
-//! Stopping a run in every way there is, and going on with it.
+//! Stopping a run in every way, and resuming it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::place::{Outcome, Place, SMALL, TinyDisk, assert_refused, stderr, stdout};
 
-/// The small scene with a probe and a free body: two more things that remember.
+/// The small scene with a probe and a dynamic body, which have state of their own.
 const MORE: &str = "
 [[probe]]
 name = \"gauge\"
@@ -24,7 +24,7 @@ motion = \"dynamic\"
 density = 500
 ";
 
-/// Everything that a run wrote but for its report, which holds wall times, and its checkpoints, by name.
+/// The files of a run by name, without its report, which contains wall times, and its checkpoints.
 fn results(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     let mut found = BTreeMap::new();
     for folder in ["particles", "mesh", "probes"] {
@@ -41,7 +41,7 @@ fn assert_same(root: &Path, straight: &Path) -> Outcome {
     let (mine, theirs) = (results(root)?, results(straight)?);
     assert_eq!(mine.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
     for (name, bytes) in &mine {
-        assert!(*bytes == theirs[name], "{name} differs from that of the run that was not stopped");
+        assert!(*bytes == theirs[name], "{name} differs from that of the uninterrupted run");
     }
     Ok(())
 }
@@ -55,7 +55,7 @@ fn start(place: &Place, arguments: &[&str]) -> std::io::Result<Child> {
         .spawn()
 }
 
-/// Waits until this file is there.
+/// Waits until this file exists.
 fn await_file(path: &Path) {
     let begun = Instant::now();
     while !path.exists() {
@@ -65,7 +65,7 @@ fn await_file(path: &Path) {
 }
 
 #[test]
-fn a_run_that_is_killed_goes_on_with_the_same_bits() -> Outcome {
+fn a_killed_run_resumes_bit_identically() -> Outcome {
     let place = Place::new()?;
     place.write("more.toml", format!("{SMALL}{MORE}"))?;
     let run =
@@ -84,18 +84,18 @@ fn a_run_that_is_killed_goes_on_with_the_same_bits() -> Outcome {
     assert!(child.wait()?.success());
     assert_same(&place.path("out"), &place.path("straight"))?;
 
-    // Of the checkpoints the last two stay, and nothing half-written does.
-    let mut kept: Vec<_> = fs::read_dir(place.path("out/checkpoints"))?
+    // The last two checkpoints stay, and no incomplete file does.
+    let mut names: Vec<_> = fs::read_dir(place.path("out/checkpoints"))?
         .map(|entry| entry.map(|entry| entry.file_name().to_string_lossy().into_owned()))
         .collect::<Result<_, _>>()?;
-    kept.sort();
-    assert_eq!(kept, ["checkpoint_0039.splashdown", "checkpoint_0040.splashdown"]);
+    names.sort();
+    assert_eq!(names, ["checkpoint_0039.splashdown", "checkpoint_0040.splashdown"]);
 
-    // A run that is done can be made longer.
+    // A finished run can be extended.
     let output = place.splashdown(&["run", "--resume", "out", "--frames", "41"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(place.path("out/particles/particles_0041.ply").exists());
-    // The control: what comes after is not the same.
+    // The control: the extended run is not the same.
     assert!(assert_same_names(&place)?, "a frame more is a file more");
     Ok(())
 }
@@ -106,7 +106,7 @@ fn assert_same_names(place: &Place) -> Result<bool, std::io::Error> {
 }
 
 #[test]
-fn ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on() -> Outcome {
+fn ctrl_c_writes_a_checkpoint_and_prints_how_to_resume() -> Outcome {
     let place = Place::new()?;
     let child = Command::new(assert_cmd::cargo::cargo_bin!("splashdown"))
         .current_dir(place.path("."))
@@ -128,7 +128,7 @@ fn ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on() -> Outcome {
 }
 
 #[test]
-fn a_run_that_a_full_disk_stopped_goes_on_when_there_is_room() -> Outcome {
+fn a_run_stopped_by_a_full_disk_resumes_when_there_is_room() -> Outcome {
     let place = Place::new()?;
     let Some(disk) = TinyDisk::mount(place.path("disk"), 256)? else {
         eprintln!("SKIPPED: no small file system can be mounted here to fill up");
@@ -153,7 +153,7 @@ fn a_run_that_a_full_disk_stopped_goes_on_when_there_is_room() -> Outcome {
 }
 
 #[test]
-fn what_cannot_be_gone_on_from_is_told() -> Outcome {
+fn what_cannot_be_resumed_is_refused() -> Outcome {
     let place = Place::new()?;
     let resume = |what: &str| place.splashdown(&["run", "--resume", what]).output();
     assert_refused(&resume("nowhere")?, 5, &["nowhere"]);
@@ -164,7 +164,7 @@ fn what_cannot_be_gone_on_from_is_told() -> Outcome {
     assert_refused(&both, 2, &["cannot be used with"]);
     assert_refused(&place.splashdown(&["run"]).output()?, 2, &["SCENE"]);
 
-    // A run that is done is not begun anew, whatever its folder is called.
+    // A finished run is not restarted, however its folder is spelled.
     let done = place.run_small(&["--checkpoint-every", "1"]).output()?;
     assert!(done.status.success(), "{}", stderr(&done));
     let shorter =
@@ -176,7 +176,7 @@ fn what_cannot_be_gone_on_from_is_told() -> Outcome {
         assert!(place.path(&format!("out/particles/particles_000{frame}.ply")).exists(), "frame {frame}");
     }
 
-    // A checkpoint that was cut short is passed over for the one before it; alone it is refused.
+    // A truncated checkpoint is skipped in favour of the one before it; alone it is refused.
     let output = place.run_small(&["--frames", "4", "--checkpoint-every", "2"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let newest = place.path("out/checkpoints/checkpoint_0004.splashdown");
@@ -184,7 +184,7 @@ fn what_cannot_be_gone_on_from_is_told() -> Outcome {
     fs::write(&newest, &bytes[..bytes.len() / 2])?;
     assert_refused(&resume("out/checkpoints/checkpoint_0004.splashdown")?, 5, &["cut short"]);
     let output = resume("out")?;
-    assert!(output.status.success() && stderr(&output).contains("passed over"), "{}", stderr(&output));
-    assert!(fs::read(&newest)? == bytes, "the checkpoint that was made anew");
+    assert!(output.status.success() && stderr(&output).contains("skipped"), "{}", stderr(&output));
+    assert!(fs::read(&newest)? == bytes, "the checkpoint is written again");
     Ok(())
 }

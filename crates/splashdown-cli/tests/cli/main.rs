@@ -3,9 +3,9 @@
 mod bad_input;
 #[cfg(target_os = "linux")]
 mod checkpoints;
-mod going_on;
 mod place;
 mod plot;
+mod resume;
 mod runs;
 mod splashsurf;
 mod surface;

@@ -85,7 +85,7 @@ pub fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// What came on stderr.
+/// The text on stderr.
 pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
@@ -107,12 +107,12 @@ pub fn names(folder: &Path) -> std::io::Result<Vec<String>> {
 
 /// One clear error: the exit code, no panic, and a message on stderr that says all this.
 pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
-    let said = stderr(output);
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    assert!(said.contains("error"), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
+    let text = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    assert!(text.contains("error"), "{text}");
+    assert!(!text.contains("panicked"), "{text}");
     for word in words {
-        assert!(said.contains(word), "`{word}` is missing in:\n{said}");
+        assert!(text.contains(word), "`{word}` is missing in:\n{text}");
     }
 }
 

@@ -28,7 +28,7 @@ fn tables_become_pictures() -> Outcome {
 }
 
 #[test]
-fn what_cannot_be_plotted_is_told() -> Outcome {
+fn what_cannot_be_plotted_is_refused() -> Outcome {
     let place = Place::new()?;
     fs::write(place.path("good.csv"), "time (s),height (m)\n0,0.5\n")?;
     fs::write(place.path("bad.csv"), "time (s),height (m)\n0,0.5\n0.1,high\n")?;

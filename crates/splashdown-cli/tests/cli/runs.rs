@@ -55,7 +55,7 @@ fn a_run_leaves_complete_frames_and_a_summary() -> Outcome {
 }
 
 #[test]
-fn spray_foam_and_bubbles_have_files_of_their_own() -> Outcome {
+fn spray_foam_and_bubbles_have_separate_files() -> Outcome {
     let place = Place::new()?;
     let scene = "[scene]\nname = \"foam\"\nduration = 0.5\nframe_rate = 10\n[domain]\nmin = [0, 0, 0]\nmax = [0.8, 0.8, 0.2]\n\
                  [fluid]\nparticle_spacing = 0.025\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.25, 0.4, 0.2]\n[foam]\nenabled = true\n";
@@ -72,7 +72,7 @@ fn spray_foam_and_bubbles_have_files_of_their_own() -> Outcome {
         Ok(particles.len())
     };
     for kind in ["spray", "foam", "bubbles"] {
-        // A column that stands makes none, one that falls makes some.
+        // A column at rest makes none, a falling one makes some.
         assert_eq!(count(kind, 0)?, 0);
         assert!(count(kind, 5)? > 0, "there are no {kind}");
     }
@@ -242,7 +242,7 @@ fn the_benchmark_takes_scenes_and_numbers_of_threads() -> Outcome {
             row["particles"].as_u64().is_some_and(|count| count > 0) && row["passes"] == json!({}),
             "{row}"
         );
-        // The floor counts the dispatches also where passes are not told.
+        // The roofline needs the dispatches also where passes are not printed.
         assert!(row["dispatches_per_step"].as_f64().is_some_and(|count| count > 4.0), "{row}");
         let ratio = row["support_radius"].as_f64().zip(row["spacing"].as_f64()).map(|(h, s)| h / s);
         assert!(ratio.is_some_and(|ratio| (ratio - 2.0).abs() < 1e-5), "{row}");
@@ -279,13 +279,13 @@ fn the_benchmark_measures_steps_and_passes() -> Outcome {
 }
 
 #[test]
-fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
+fn each_probe_has_a_table_with_units() -> Outcome {
     let place = Place::new()?;
     let scene = fs::read_to_string(place.path("small.toml"))?;
     let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n\
                  [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n";
     fs::write(place.path("small.toml"), format!("{scene}\n{probe}"))?;
-    // What an earlier run measured, and what is somebody else's.
+    // A table of an earlier run, and an unrelated file.
     fs::create_dir_all(place.path("out/probes"))?;
     fs::write(place.path("out/run.json"), "{}")?;
     fs::write(place.path("out/probes/old.csv"), "time (s),height (m)\n0.1,0.2\n")?;
@@ -302,7 +302,7 @@ fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
     assert!(lines.next().is_some_and(|names| names.starts_with("time (s),volume (m^3),kinetic energy (J)")));
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').filter_map(|word| word.parse().ok()).collect()).collect();
-    // 27 l of water whose middle is 15 cm up; what it loses of the one energy it has in the other, less what is rubbed.
+    // 27 l of water at a mean height of 15 cm. Potential energy becomes kinetic energy, minus friction.
     assert_eq!(rows.len(), 3, "{text}");
     for row in &rows {
         let [_, volume, kinetic, potential, _, momentum, _] = row[..] else { panic!("{text}") };
@@ -318,7 +318,7 @@ fn probes_have_a_file_each_that_holds_their_units() -> Outcome {
 }
 
 #[test]
-fn every_format_holds_the_same_frames() -> Outcome {
+fn every_format_contains_the_same_frames() -> Outcome {
     let place = Place::new()?;
     let formats = "ply,vtu,obj,vtk,bgeo,npz,stl,glb,usd";
     let output = place.run_small(&["--formats", formats]).output()?;
@@ -337,7 +337,7 @@ fn every_format_holds_the_same_frames() -> Outcome {
             assert!((other.volume() / mesh.volume() - 1.0).abs() < 1e-5, "{ending}");
         }
         assert!(fs::metadata(file("mesh/surface_#.vtk"))?.len() > 1000);
-        // The water falls, and the vertices with it.
+        // The water falls, and so do the vertices.
         let mean = |values: &[[f32; 3]]| values.iter().map(|v| v[1]).sum::<f32>() / values.len() as f32;
         let (water, skin) = (mean(&particles.velocities), mean(&mesh.velocities));
         assert!((water - skin).abs() < 0.1 + 0.3 * water.abs(), "frame {frame}: {water} and {skin} m/s");

@@ -47,7 +47,7 @@ fn a_file_becomes_a_closed_mesh_with_velocities() -> Outcome {
         assert!((0..3).all(|axis| (velocity[axis] - wanted[axis]).abs() < 1e-5), "{vertex:?}: {velocity:?}");
     }
 
-    // Without the drops, and smoother.
+    // Without the drops, and smoothed.
     let more = [&arguments[..], &["--min-blob", "4", "--smoothing", "15", "--json"]].concat();
     let output = place.splashdown(&more).output()?;
     let line: Value = serde_json::from_str(stdout(&output).trim())?;
@@ -72,7 +72,7 @@ fn columns(file: &[u8]) -> Option<(Vec<String>, Vec<Vec<f32>>)> {
 }
 
 #[test]
-fn what_particles_carry_comes_to_the_vertices() -> Outcome {
+fn attributes_of_particles_are_interpolated_to_the_vertices() -> Outcome {
     let place = Place::new()?;
     let block = block([0.0; 3]);
     let list = |number: &dyn Fn(&[f32; 3]) -> String| -> String {
@@ -100,15 +100,15 @@ fn what_particles_carry_comes_to_the_vertices() -> Outcome {
     assert_eq!(names[6..], ["temperature", "force_x", "force_y", "force_z"]);
     let mut off = 0.0_f32;
     for row in &rows {
-        // A number that is the same everywhere stays so; one with a slope of 100 is off by the way to the
-        // particles around.
+        // A constant attribute stays constant; one with a slope of 100 has an error from the distance to the
+        // particles.
         let force = [row[7] - 1.0, row[8] + 2.0, row[9] - 0.5];
         assert!(force.iter().all(|off| off.abs() < 1e-5), "{row:?}");
         off = off.max((row[6] - 290.0 - 100.0 * row[0]).abs());
     }
     assert!(off < 100.0 * SPACING && off > 0.1 * SPACING, "{off}");
 
-    // One of them, and the mesh is what it was.
+    // One attribute; the mesh is the same.
     let output = surface("one.ply", &["-a", "force"])?;
     assert!(output.status.success(), "{}", stderr(&output));
     let (names, _) = columns(&fs::read(place.path("one.ply"))?).ok_or("no PLY")?;
@@ -149,7 +149,7 @@ fn a_series_becomes_a_series() -> Outcome {
 }
 
 #[test]
-fn what_is_wrong_is_said_before_anything_is_made() -> Outcome {
+fn errors_are_reported_before_anything_is_written() -> Outcome {
     let place = Place::new()?;
     particles::write(&place.path("block.ply"), &block([0.0; 3]))?;
     fs::write(place.path("empty.xyz"), "")?;
@@ -191,7 +191,7 @@ fn what_is_wrong_is_said_before_anything_is_made() -> Outcome {
         assert_refused(&output, code, words);
         assert!(!place.path("m.ply").exists());
     }
-    // Whoever means it gets it.
+    // `--force` accepts it.
     let forced = ["surface", "block.ply", "-o", "m.ply", "-s", "0.01", "--force", "--device", "cpu"];
     assert!(place.splashdown(&forced).output()?.status.success());
     assert!(ply::read_mesh(&place.path("m.ply"))?.topology()?.components > 1000, "balls that do not touch");

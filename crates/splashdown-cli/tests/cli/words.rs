@@ -1,11 +1,10 @@
-//! The words that neither simulate nor draw: help, scenes, check, doctor, completions, and what the README says
-//! of them.
+//! Commands that neither simulate nor draw: help, scenes, check, doctor, completions; and what the README says of them.
 
 use crate::place::{Outcome, Place, SMALL, splashdown, stderr, stdout};
 use serde_json::Value;
 
 #[test]
-fn the_help_reads_as_it_was_approved() -> Outcome {
+fn the_help_equals_its_snapshot() -> Outcome {
     for (name, arguments) in [
         ("help", &["--help"][..]),
         ("help_run", &["run", "--help"]),
@@ -24,7 +23,7 @@ fn the_help_reads_as_it_was_approved() -> Outcome {
 }
 
 #[test]
-fn wrong_words_end_with_two_and_a_hint() -> Outcome {
+fn invalid_command_lines_exit_with_two_and_a_hint() -> Outcome {
     for arguments in [
         &["rnu"][..],
         &["run"],
@@ -62,7 +61,7 @@ fn scenes_are_listed_shown_and_copied() -> Outcome {
 }
 
 #[test]
-fn check_prints_what_follows_from_a_scene() -> Outcome {
+fn check_prints_derived_quantities() -> Outcome {
     let place = Place::new()?;
     let words = place.splashdown(&["check", "small.toml", "--device", "cpu"]).output()?;
     assert!(words.status.success(), "{}", stderr(&words));
@@ -83,7 +82,7 @@ fn check_prints_what_follows_from_a_scene() -> Outcome {
 }
 
 #[test]
-fn check_counts_what_emitters_bring_and_what_bodies_leave_out() -> Outcome {
+fn check_counts_emitted_and_removed_particles() -> Outcome {
     let place = Place::new()?;
     let tap = "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.8, 0.15]\n\
                direction = [0, -1, 0]\nspeed = 50\n";
@@ -102,7 +101,7 @@ fn check_counts_what_emitters_bring_and_what_bodies_leave_out() -> Outcome {
     assert!(removed.is_some_and(|removed| removed >= 64), "{report}");
     assert_eq!(left.zip(removed).map(|(left, removed)| left + removed), Some(216), "{report}");
     let words = place.splashdown(&["check", "post.toml", "--device", "cpu"]).output()?;
-    assert!(stdout(&words).contains("inside bodies are left out"), "{}", stdout(&words));
+    assert!(stdout(&words).contains("inside bodies are removed"), "{}", stdout(&words));
     Ok(())
 }
 
@@ -130,14 +129,14 @@ fn check_reports_every_problem_at_once() -> Outcome {
 }
 
 #[test]
-fn doctor_tells_what_is_there() -> Outcome {
+fn doctor_lists_devices_and_programs() -> Outcome {
     let words = splashdown(&["doctor"]).output()?;
     assert!(words.status.success());
-    for word in ["CPU", "threads", "simulate on", "draw on", "films"] {
+    for word in ["CPU", "threads", "to simulate", "to draw", "films"] {
         assert!(stdout(&words).contains(word), "{word} is missing in:\n{}", stdout(&words));
     }
     let bare = splashdown(&["doctor", "--json"]).env_remove("XDG_RUNTIME_DIR").output()?;
-    assert!(bare.stderr.is_empty(), "drivers chatter: {}", stderr(&bare));
+    assert!(bare.stderr.is_empty(), "a driver printed: {}", stderr(&bare));
     let json: Value = serde_json::from_slice(&bare.stdout)?;
     assert!(json["cpu"]["threads"].as_u64().is_some_and(|threads| threads > 0));
     for adapter in json["adapters"].as_array().ok_or("no list")? {
@@ -151,7 +150,7 @@ fn doctor_tells_what_is_there() -> Outcome {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn doctor_tells_what_is_missing_and_how_to_get_it() -> Outcome {
+fn doctor_lists_what_is_missing_and_how_to_install_it() -> Outcome {
     let mut doctor = splashdown(&["doctor"]);
     let output = doctor
         .env("VK_DRIVER_FILES", "/nonexistent")
@@ -168,7 +167,7 @@ fn doctor_tells_what_is_missing_and_how_to_get_it() -> Outcome {
 }
 
 #[test]
-fn completions_know_every_word() -> Outcome {
+fn completions_contain_every_command() -> Outcome {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let output = splashdown(&["completions", shell]).output()?;
         assert!(output.status.success());

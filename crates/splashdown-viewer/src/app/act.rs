@@ -1,4 +1,4 @@
-//! Doing what panels want done.
+//! Executing the actions of panels.
 
 use egui::Context;
 use splashdown::MouseForce;
@@ -9,10 +9,10 @@ use crate::edit;
 use crate::engine::{Command, Purpose};
 use crate::state::Action;
 
-/// How quickly water takes the hand's velocity, in 1/s.
-const HAND_RATE: f32 = 14.0;
-/// Radius of the hand over the smallest edge of the box.
-const HAND_SIZE: f32 = 0.16;
+/// Rate at which water assumes the velocity of the mouse, in 1/s.
+const MOUSE_FORCE_RATE: f32 = 14.0;
+/// Radius of the mouse force over the smallest edge of the domain.
+const MOUSE_FORCE_SIZE: f32 = 0.16;
 /// Checkpoints in the menu of files.
 const MENU_FILES: usize = 8;
 
@@ -28,7 +28,7 @@ impl Viewer {
                         #[cfg(target_arch = "wasm32")]
                         crate::page::set_address(&format!("?scene={name}"));
                     }
-                    Err(error) => self.state.tell(error.to_string(), true, now),
+                    Err(error) => self.state.notify(error.to_string(), true, now),
                 }
             }
             Action::Restart => self.restart(),
@@ -48,21 +48,21 @@ impl Viewer {
                     .map_or_else(|| self.state.scene.name.clone(), |path| path.display().to_string());
                 match Scene::parse(&self.state.scene.text, &name) {
                     Ok(scene) => self.open(Scene { source, ..scene }),
-                    Err(error) => self.state.tell(error.to_string(), true, now),
+                    Err(error) => self.state.notify(error.to_string(), true, now),
                 }
             }
             Action::TimeScale => self.engine.send(Command::TimeScale(self.state.time_scale.into())),
-            Action::Stir { ray, velocity } => {
+            Action::Drag { ray, velocity } => {
                 let scene = &self.state.scene;
-                let radius =
-                    (HAND_SIZE * scene.domain.size().min_element()).max(3.0 * scene.fluid.particle_spacing);
-                // Half the speed of sound would tear the water.
+                let radius = (MOUSE_FORCE_SIZE * scene.domain.size().min_element())
+                    .max(3.0 * scene.fluid.particle_spacing);
+                // Faster motion would tear the water apart.
                 let velocity = velocity.clamp_length_max(3.0 * scene.domain.size().max_element());
-                let hand = MouseForce::new(ray.0, ray.1, velocity, radius, HAND_RATE);
-                self.engine.send(Command::Hand(Some(hand)));
+                let force = MouseForce::new(ray.0, ray.1, velocity, radius, MOUSE_FORCE_RATE);
+                self.engine.send(Command::MouseForce(Some(force)));
             }
-            Action::LetGo => {
-                self.engine.send(Command::Hand(None));
+            Action::Release => {
+                self.engine.send(Command::MouseForce(None));
                 self.engine.send(Command::Grip(None));
             }
             Action::Grip(mut grip) => {
@@ -84,14 +84,14 @@ impl Viewer {
                 self.seen.exporting = true;
                 self.engine.send(Command::Export);
             }
-            Action::SaveCheckpoint => self.checkpoint(Purpose::Keep, now),
+            Action::SaveCheckpoint => self.checkpoint(Purpose::Export, now),
             #[cfg(not(target_arch = "wasm32"))]
             Action::OpenFile(path) => self.open_file(&path, now),
             #[cfg(target_arch = "wasm32")]
             Action::OpenFile(_) => {}
             Action::ShowFiles => self.state.files = splashdown_run::recent_checkpoints(MENU_FILES),
             Action::Share => self.share(now),
-            Action::Record => self.record_or_end(now),
+            Action::Record => self.toggle_recording(now),
             Action::SwapTheme => {
                 let theme = match ctx.theme() {
                     egui::Theme::Dark => egui::Theme::Light,

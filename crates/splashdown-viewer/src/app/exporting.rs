@@ -13,39 +13,39 @@ impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn screenshot(&mut self, now: f64) {
         let name = format!("{}.png", self.state.scene.name);
-        self.draw_in_full();
+        self.draw_full_size();
         let size = self.picture.texture_drawn().map_or([0, 0], |(_, size)| size);
-        let picture = self.picture.read().ok_or_else(|| "the device did not hand it out".to_owned());
+        let picture = self.picture.read().ok_or_else(|| "it could not be read from the device".to_owned());
         let exported = picture.and_then(|rgba| export::picture(&name, size, rgba));
         self.report_export("the picture", exported, now);
     }
 
-    /// The page gets the picture when the browser has it.
+    /// On a page the picture arrives asynchronously.
     #[cfg(target_arch = "wasm32")]
     pub(super) fn screenshot(&mut self, now: f64) {
-        self.draw_in_full();
+        self.draw_full_size();
         let Some((texture, size)) = self.picture.texture_drawn() else { return };
         let (gpu, name) = (Arc::clone(&self.gpu), format!("{}.png", self.state.scene.name));
-        self.state.tell(format!("the picture is in your downloads, as {name}"), false, now);
+        self.state.notify(format!("the picture was written to your downloads, as {name}"), false, now);
         wasm_bindgen_futures::spawn_local(async move {
             if let Some(rgba) = pixels::read(gpu, texture, size).await {
-                // It has been told already where it is; without it the browser says why.
+                // The notification is shown already; the browser reports failures.
                 let _ = export::picture(&name, size, rgba);
             }
         });
     }
 
-    /// Draws with all pixels what is shown with fewer while the water moves. The next picture of the window is
-    /// drawn anew.
-    fn draw_in_full(&mut self) {
+    /// Draws at full resolution what is displayed at lower resolution while the water moves. The next picture of the
+    /// window is redrawn.
+    fn draw_full_size(&mut self) {
         let Some(drawn) = self.drawn.take() else { return };
         let aspect = self.size[0] as f32 / self.size[1] as f32;
-        // An error of this picture was told when it was drawn for the window.
+        // An error was reported when the picture was drawn for the window.
         let _ = self.picture.draw(self.size, &drawn.snapshot, &drawn.look, drawn.camera.camera(aspect));
     }
 
     pub(super) fn save_scene(&mut self, now: f64) {
-        // Beside the file that it came from: its meshes are named from there.
+        // In the folder of the original file: mesh paths are relative to it.
         let folder = self.state.scene.source.as_deref().and_then(std::path::Path::parent);
         let name = folder.unwrap_or(std::path::Path::new("")).join(format!("{}.toml", self.state.scene.name));
         let name = name.to_string_lossy().into_owned();
@@ -54,18 +54,20 @@ impl Viewer {
         self.report_export("the scene", exported, now);
     }
 
-    /// Asks the engine for a checkpoint.
+    /// Requests a checkpoint from the engine.
     pub(super) fn checkpoint(&mut self, purpose: Purpose, now: f64) {
         match save::scene(&self.state.scene, &self.state.orbit) {
             Ok(text) => self.engine.send(Command::Checkpoint(text, purpose)),
-            Err(reason) if purpose == Purpose::Keep => self.report_export("the checkpoint", Err(reason), now),
-            // Nobody has asked for it.
+            Err(reason) if purpose == Purpose::Export => {
+                self.report_export("the checkpoint", Err(reason), now)
+            }
+            // The user did not request a backup, so its failure is not reported.
             Err(_) => {}
         }
     }
 
-    /// The device is gone: on a desktop the fluid goes into a file, and a page starts itself again with it.
-    pub(super) fn save_what_can_be_saved(&mut self, now: f64) {
+    /// After the device was lost: on a desktop the backup is written into a file, a page restarts with it.
+    pub(super) fn save_rescue(&mut self, now: f64) {
         let Some(checkpoint) = self.rescue.take() else { return };
         #[cfg(target_arch = "wasm32")]
         {
@@ -76,20 +78,20 @@ impl Viewer {
         {
             let name = format!("{}.{}", self.state.scene.name, splashdown::Checkpoint::ENDING);
             let exported = export::checkpoint(&name, &checkpoint);
-            self.report_export("the fluid as it was some seconds ago, for `splashdown view`,", exported, now);
+            self.report_export("a checkpoint of the last seconds, for `splashdown view`,", exported, now);
         }
     }
 
-    /// Puts the scene as it is now into the page's address, and the address into the clipboard.
+    /// Puts the changed scene into the page's address, and the address into the clipboard.
     pub(super) fn share(&mut self, now: f64) {
         let text = save::scene(&self.state.scene, &self.state.orbit);
         #[cfg(target_arch = "wasm32")]
         match text {
             Ok(text) => {
                 let address = crate::page::share(&text);
-                self.state.tell(
+                self.state.notify(
                     format!(
-                        "the link is in the address line and in the clipboard ({} letters)",
+                        "the link is in the address bar and in the clipboard ({} characters)",
                         address.len()
                     ),
                     false,
@@ -101,19 +103,19 @@ impl Viewer {
         #[cfg(not(target_arch = "wasm32"))]
         {
             drop(text);
-            self.state.tell("a window has no address: keep the scene as a file", true, now);
+            self.state.notify("links exist on the web page only: export the scene as a file", true, now);
         }
     }
 
     pub(super) fn report_export(&mut self, what: &str, exported: Result<String, String>, now: f64) {
         match exported {
-            Ok(place) => self.state.tell(format!("{what} is in {place}"), false, now),
-            Err(reason) => self.state.tell(format!("{what} was not written: {reason}"), true, now),
+            Ok(place) => self.state.notify(format!("{what} was written to {place}"), false, now),
+            Err(reason) => self.state.notify(format!("{what} was not written: {reason}"), true, now),
         }
     }
 
     #[cfg(target_arch = "wasm32")]
-    pub(super) fn record_or_end(&mut self, now: f64) {
-        self.state.tell("a page records no films", true, now);
+    pub(super) fn toggle_recording(&mut self, now: f64) {
+        self.state.notify("films cannot be recorded on a web page", true, now);
     }
 }

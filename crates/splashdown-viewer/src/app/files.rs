@@ -1,4 +1,4 @@
-//! Files that come to the window: scenes, checkpoints and meshes, dropped or chosen.
+//! Opening files: scenes, checkpoints and meshes, dropped or selected.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::edit;
 use crate::engine::Command;
 
 impl Viewer {
-    /// Opens what was dropped.
+    /// Opens dropped files.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn dropped_files(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
@@ -23,7 +23,7 @@ impl Viewer {
         }
     }
 
-    /// Opens what was dropped: the browser hands it out later.
+    /// Opens dropped files, which the browser reads asynchronously.
     #[cfg(target_arch = "wasm32")]
     pub(super) fn dropped_files(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
@@ -38,18 +38,18 @@ impl Viewer {
         for (path, read) in crate::page::take_arrived() {
             match read {
                 Ok(bytes) => self.open_bytes(&path, &bytes, now),
-                Err(reason) => self.state.tell(format!("{}: {reason}", path.display()), true, now),
+                Err(reason) => self.state.notify(format!("{}: {reason}", path.display()), true, now),
             }
         }
     }
 
-    /// Opens a file by the ending of its name.
+    /// Opens a file according to its ending.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn open_file(&mut self, path: &Path, now: f64) {
         match ending(path).as_str() {
             "toml" | Checkpoint::ENDING => match std::fs::read(path) {
                 Ok(bytes) => self.open_bytes(path, &bytes, now),
-                Err(error) => self.state.tell(format!("{}: {error}", path.display()), true, now),
+                Err(error) => self.state.notify(format!("{}: {error}", path.display()), true, now),
             },
             _ => match splashdown_io::read_mesh(path) {
                 Ok(mesh) => {
@@ -59,7 +59,7 @@ impl Viewer {
                     edit::add_mesh(&mut self.state.scene, path.to_owned(), low, high);
                     self.change();
                 }
-                Err(error) => self.state.tell(error.to_string(), true, now),
+                Err(error) => self.state.notify(error.to_string(), true, now),
             },
         }
     }
@@ -72,22 +72,22 @@ impl Viewer {
                 checkpoint.and_then(|checkpoint| self.resume(checkpoint))
             }
             _ => Err(format!(
-                "a page takes scenes (.toml) and checkpoints (.{}); the desktop's `splashdown view` also takes meshes",
+                "the web page opens scenes (.toml) and checkpoints (.{}); `splashdown view` also opens meshes",
                 Checkpoint::ENDING
             )),
         };
         if let Err(reason) = opened {
-            self.state.tell(format!("{}: {reason}", path.display()), true, now);
+            self.state.notify(format!("{}: {reason}", path.display()), true, now);
         }
     }
 
-    /// Goes on from a checkpoint, at its time.
+    /// Resumes from a checkpoint, at its time.
     pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), String> {
-        // What runs is let go only for what can be gone on from.
+        // The running simulation is replaced only by a usable checkpoint.
         checkpoint.check().map_err(|error| error.to_string())?;
         let scene = checkpoint.scene().map_err(|error| error.to_string())?;
         self.state.open(scene);
-        self.engine.send(Command::Hand(None));
+        self.engine.send(Command::MouseForce(None));
         self.engine.send(Command::Resume(Box::new(checkpoint)));
         self.engine.send(Command::TimeScale(self.state.time_scale.into()));
         self.engine.send(Command::Play(self.state.playing));
@@ -99,7 +99,7 @@ fn ending(path: &Path) -> String {
     path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// A page knows the names of files, not their places.
+/// On a page only the name of a file is known, not its folder.
 fn open_scene(path: &Path, bytes: &[u8]) -> Result<Scene, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| format!("it is not text: {error}"))?;
     let scene = match cfg!(target_arch = "wasm32") {

@@ -1,4 +1,4 @@
-//! Taking in what the engine tells and what is dropped onto the window, and asking for what is shown.
+//! Receiving messages of the engine, and requesting the data to display.
 
 use std::sync::Arc;
 
@@ -12,9 +12,9 @@ use crate::engine::{Command, Message, Purpose};
 use crate::{edit, export, pick};
 
 impl Viewer {
-    /// Asks for what this way of seeing needs.
-    pub(super) fn ask_for_what_is_shown(&mut self) {
-        let surface = self.state.look.way.needs_surface();
+    /// Requests what the display mode needs.
+    pub(super) fn request_displayed_data(&mut self) {
+        let surface = self.state.look.mode.needs_surface();
         if std::mem::replace(&mut self.seen.wants_surface, surface) != surface {
             self.engine.send(Command::Surface(surface));
         }
@@ -26,28 +26,28 @@ impl Viewer {
         self.state.figures.drawing = times.iter().map(|pass| (pass.label, pass.milliseconds)).collect();
     }
 
-    /// Takes in what the engine tells.
+    /// Receives the messages and the newest snapshot of the engine.
     pub(super) fn listen(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         for message in self.engine.take_messages() {
             match message {
-                Message::Note(text) => self.state.tell(text, false, now),
+                Message::Note(text) => self.state.notify(text, false, now),
                 Message::Failed(text) => {
                     self.state.playing = false;
                     self.state.preparing = None;
-                    self.back_to_what_runs();
-                    self.state.tell(text, true, now);
+                    self.revert_edits();
+                    self.state.notify(text, true, now);
                 }
                 Message::Refused(text) => {
-                    self.back_to_what_runs();
-                    self.state.tell(text, true, now);
+                    self.revert_edits();
+                    self.state.notify(text, true, now);
                 }
                 Message::Stopped => {
                     self.state.playing = false;
-                    let text = "the simulation has ended by a fault of this program; open the window again";
-                    self.state.tell(text, true, now);
+                    let text = "the simulation ended because of a bug in this program; restart the program";
+                    self.state.notify(text, true, now);
                 }
-                Message::Checkpoint(checkpoint, Purpose::Keep) => {
+                Message::Checkpoint(checkpoint, Purpose::Export) => {
                     let name = format!("{}.{}", self.state.scene.name, Checkpoint::ENDING);
                     let exported = export::checkpoint(&name, &checkpoint);
                     self.report_export("the checkpoint", exported, now);
@@ -64,11 +64,11 @@ impl Viewer {
             }
         }
         if let Err(error) = self.gpu.health("the window") {
-            self.state.tell(error.to_string(), true, now);
+            self.state.notify(error.to_string(), true, now);
             if matches!(error, GpuError::DeviceLost { .. })
                 && !std::mem::replace(&mut self.state.figures.lost, true)
             {
-                self.save_what_can_be_saved(now);
+                self.save_rescue(now);
             }
         }
         let Some(snapshot) = self.engine.snapshot() else { return };
@@ -89,16 +89,16 @@ impl Viewer {
         figures.device.clone_from(&snapshot.opened.device);
     }
 
-    /// Forgets changes that were not accepted.
-    fn back_to_what_runs(&mut self) {
+    /// Reverts changes that were refused.
+    fn revert_edits(&mut self) {
         if let Some(snapshot) = self.engine.snapshot() {
             self.state.scene = snapshot.opened.scene.clone();
             self.state.pouring = edit::has_tap(&self.state.scene);
         }
     }
 
-    /// The hand takes what the ray meets first: a free body by the point, else the water.
-    pub(super) fn take_hold(&mut self, ray: (Vec3, Vec3)) {
+    /// Grabs the dynamic body that the ray hits first, if any.
+    pub(super) fn grab(&mut self, ray: (Vec3, Vec3)) {
         let Some(snapshot) = self.engine.snapshot() else { return };
         if let Some((grip, distance)) = pick::body(&snapshot.opened, &snapshot.bodies, ray) {
             self.state.grip = Some((grip, distance));

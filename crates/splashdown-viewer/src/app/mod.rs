@@ -1,4 +1,4 @@
-//! The window: asks the panels what is to be done and does it.
+//! The window: shows the panels and executes their actions.
 
 mod act;
 mod exporting;
@@ -24,8 +24,8 @@ use crate::panels;
 use crate::picture::Picture;
 use crate::state::State;
 
-/// Seconds between two rescues.
-const RESCUE: f64 = 10.0;
+/// Seconds between two backups.
+const RESCUE_INTERVAL: f64 = 10.0;
 
 /// The interactive program.
 pub struct Viewer {
@@ -36,7 +36,7 @@ pub struct Viewer {
     state: State,
     seen: Seen,
     drawn: Option<Drawn>,
-    /// The fluid some seconds ago, should the device be lost.
+    /// A recent checkpoint, in case the device is lost.
     rescue: Option<Box<Checkpoint>>,
     /// The picture's size in pixels at full resolution.
     size: [u32; 2],
@@ -44,7 +44,7 @@ pub struct Viewer {
     recording: Option<recording::Recording>,
 }
 
-/// What the picture shows.
+/// The content of the picture.
 struct Drawn {
     snapshot: Arc<Snapshot>,
     size: [u32; 2],
@@ -59,15 +59,15 @@ impl Drawn {
     }
 }
 
-/// What has been sent to the engine, or come from it.
+/// What was requested from the engine.
 #[derive(Default)]
 struct Seen {
     wants_surface: bool,
     wants_timing: bool,
     frames_per_second: f32,
     exporting: bool,
-    /// When the engine was last asked for a rescue, in s of the window's clock.
-    rescue_asked: f64,
+    /// When a backup was last requested, in s of the window's clock.
+    rescue_requested: f64,
 }
 
 impl Viewer {
@@ -110,7 +110,7 @@ impl Viewer {
         Ok(viewer)
     }
 
-    /// One picture of the window.
+    /// Shows one frame of the window.
     pub fn show(&mut self, ui: &mut Ui, render_state: &RenderState) {
         let ctx = ui.ctx().clone();
         self.dropped_files(&ctx);
@@ -121,11 +121,11 @@ impl Viewer {
         }
         if let Some(at) = viewport.touched {
             let size = glam::Vec2::new(viewport.rect.width(), viewport.rect.height());
-            self.take_hold(self.state.orbit.ray(at, size));
+            self.grab(self.state.orbit.ray(at, size));
         }
-        self.ask_for_what_is_shown();
-        self.ask_for_a_rescue(&ctx);
-        // A software driver draws as many pixels as it can while the water moves, and all of them when it stands still.
+        self.request_displayed_data();
+        self.request_rescue(&ctx);
+        // A software driver draws at half resolution while the simulation runs.
         self.size = viewport.size;
         #[cfg(not(target_arch = "wasm32"))]
         self.record(&ctx);
@@ -142,12 +142,12 @@ impl Viewer {
         }
     }
 
-    /// Something to go on from, now and then: devices are lost by drivers that are updated, machines that
-    /// sleep, and browsers that want the memory.
-    fn ask_for_a_rescue(&mut self, ctx: &Context) {
+    /// Requests a backup now and then: a device may be lost by a driver update, when the machine sleeps, or when a
+    /// browser needs the memory.
+    fn request_rescue(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
-        if self.state.playing && now - self.seen.rescue_asked > RESCUE {
-            self.seen.rescue_asked = now;
+        if self.state.playing && now - self.seen.rescue_requested > RESCUE_INTERVAL {
+            self.seen.rescue_requested = now;
             self.checkpoint(Purpose::Rescue, now);
         }
     }
@@ -160,7 +160,7 @@ impl Viewer {
 
     fn open(&mut self, scene: Scene) {
         self.state.open(scene);
-        self.engine.send(Command::Hand(None));
+        self.engine.send(Command::MouseForce(None));
         self.restart();
     }
 
@@ -168,7 +168,7 @@ impl Viewer {
         let Some(snapshot) = self.engine.snapshot() else { return };
         let mut camera = self.state.orbit;
         camera.target -= self.state.shaking.map_or(Vec3::ZERO, |shaking| shaking.offset);
-        // A picture of what was drawn last is there already.
+        // Nothing has changed since the last picture.
         let shown = Drawn { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
         if self.drawn.as_ref().is_some_and(|drawn| drawn.is(&shown)) {
             return;
@@ -178,7 +178,7 @@ impl Viewer {
         let drawn = self.picture.draw(size, &snapshot, &self.state.look, camera.camera(aspect));
         if let Err(error) = drawn {
             let now = ctx.input(|input| input.time);
-            self.state.tell(error.to_string(), true, now);
+            self.state.notify(error.to_string(), true, now);
             return;
         }
         self.drawn = Some(shown);

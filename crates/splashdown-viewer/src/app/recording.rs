@@ -1,4 +1,4 @@
-//! A film, frame by frame: the engine goes on when a moment has been drawn.
+//! Recording a film frame by frame: the engine continues after each frame is drawn.
 
 use std::sync::Arc;
 
@@ -8,14 +8,14 @@ use splashdown_run::Recorder;
 use super::Viewer;
 use crate::engine::{Command, Snapshot};
 
-/// A film in the making, and the last moment that it has.
+/// A recording in progress, and its last frame.
 pub(super) struct Recording {
     recorder: Recorder,
     last: Option<Arc<Snapshot>>,
 }
 
 impl Viewer {
-    pub(super) fn record_or_end(&mut self, now: f64) {
+    pub(super) fn toggle_recording(&mut self, now: f64) {
         if let Some(recording) = self.recording.take() {
             self.state.recorded = None;
             let recorder = recording.recorder;
@@ -28,18 +28,18 @@ impl Viewer {
         match Recorder::start(&name, self.size, self.state.scene.frame_rate) {
             Ok((recorder, failure)) => {
                 if let Some(failure) = failure {
-                    self.state.tell(failure, true, now);
+                    self.state.notify(failure, true, now);
                 }
                 self.state.playing = false;
                 self.state.recorded = Some(0);
                 self.engine.send(Command::Play(false));
                 self.recording = Some(Recording { recorder, last: None });
             }
-            Err(reason) => self.state.tell(format!("nothing can be recorded: {reason}"), true, now),
+            Err(reason) => self.state.notify(format!("recording is not possible: {reason}"), true, now),
         }
     }
 
-    /// Adds the newest moment to the film, if it is another than the last, and asks for the next.
+    /// Adds a new frame to the recording and requests the next one.
     pub(super) fn record(&mut self, ctx: &Context) {
         let Some(recording) = &mut self.recording else { return };
         let Some(snapshot) = self.engine.snapshot().filter(|snapshot| !snapshot.playing) else { return };
@@ -51,7 +51,7 @@ impl Viewer {
         self.drawn = None;
         let drawn = self.picture.draw(size, &snapshot, &self.state.look, self.state.orbit.camera(aspect));
         let added = drawn.map_err(|error| error.to_string()).and_then(|()| {
-            let rgba = self.picture.read().ok_or("the device did not hand the picture out")?;
+            let rgba = self.picture.read().ok_or("the picture could not be read from the device")?;
             recording.recorder.add(rgba).map_err(|error| error.to_string())
         });
         recording.last = Some(snapshot);
@@ -59,7 +59,7 @@ impl Viewer {
         if let Err(reason) = added {
             let now = ctx.input(|input| input.time);
             (self.recording, self.state.recorded) = (None, None);
-            self.state.tell(format!("the recording has ended: {reason}"), true, now);
+            self.state.notify(format!("the recording ended: {reason}"), true, now);
             return;
         }
         self.engine.send(Command::Advance(self.state.scene.frame_duration()));

@@ -1,4 +1,4 @@
-//! What the window asks for.
+//! Commands from the window to the engine.
 
 use glam::Vec3;
 use splashdown::scene::Scene;
@@ -9,7 +9,7 @@ use splashdown::{Checkpoint, MouseForce};
 pub enum Simulate {
     /// The one that draws.
     WhereDrawn,
-    /// The CPU: where the device that draws is a software driver, it is many times faster.
+    /// The CPU, which is many times faster than a software driver.
     OnCpu,
 }
 
@@ -20,45 +20,45 @@ pub struct Grip {
     pub body: usize,
     /// The point where it is held, in its own frame, in m.
     pub anchor: Vec3,
-    /// Where that point shall be, in m.
+    /// The target position of that point, in m.
     pub target: Vec3,
 }
 
 /// What a checkpoint is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// The user wants it as a file.
-    Keep,
-    /// It is there in case the device is lost.
+    /// A file for the user.
+    Export,
+    /// A backup in case the device is lost.
     Rescue,
 }
 
-/// What the window asks for.
+/// A command to the engine.
 pub enum Command {
     /// Start this scene from its beginning.
     Open(Box<Scene>),
-    /// Go on under this scene, with the fluid as it is.
+    /// Continue with this scene and the current fluid.
     Change(Box<Scene>),
-    /// Run, or stand still.
+    /// Run or pause.
     Play(bool),
-    /// Simulate this long, in s, and stand still.
+    /// Simulate this long, in s, then pause.
     Advance(f32),
     /// Simulated seconds per second.
     TimeScale(f64),
-    /// Put a hand into the water, or take it out.
-    Hand(Option<MouseForce>),
-    /// Hold a body, or let go.
+    /// Apply or remove the mouse force.
+    MouseForce(Option<MouseForce>),
+    /// Hold or release a body.
     Grip(Option<Grip>),
-    /// Whether the surface is wanted.
+    /// Whether the surface is extracted.
     Surface(bool),
     /// Whether passes are timed.
     Timing(bool),
-    /// Hand out the surface's mesh as it is.
+    /// Send the current mesh of the surface.
     Export,
-    /// Hand out a checkpoint with this text as its scene.
+    /// Send a checkpoint with this text as its scene.
     Checkpoint(String, Purpose),
-    /// Go on from a checkpoint.
+    /// Resume from a checkpoint.
     Resume(Box<Checkpoint>),
-    /// Stop for good.
+    /// End the engine.
     Quit,
 }

@@ -1,5 +1,5 @@
-//! Buffers that are drawn. Particles are copies: the window may draw one moment while the next is computed. The
-//! surface is drawn where it was made, as many triangles as the device has counted.
+//! The buffers that are drawn. Particles are copied, so that the window can draw them while the next step is computed.
+//! The surface is drawn from the buffers of the simulation by an indirect call.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use splashdown_gpu::{Buffer, Executor, Gpu, GpuElement};
 use splashdown_render::{Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
 use wgpu::BufferUsages as Use;
 
-/// Copies of the particles and, where wanted, of the surface.
+/// The particles and, if requested, the surface.
 pub struct Drawn {
     positions: wgpu::Buffer,
     velocities: wgpu::Buffer,
@@ -19,19 +19,19 @@ pub struct Drawn {
     foam: Option<(wgpu::Buffer, u32)>,
 }
 
-/// The surface: that of the simulation itself, where it is on the device that draws, else a copy.
+/// The surface: the buffers of the simulation if it runs on the device that draws, else a copy.
 pub struct DrawnMesh {
     vertices: wgpu::Buffer,
     normals: wgpu::Buffer,
     indices: wgpu::Buffer,
-    /// What the device wrote of how much there is to draw; a copy is as large as it was when it was made.
+    /// The arguments of the indirect draw call; `None` for a copy, whose size is known.
     arguments: Option<wgpu::Buffer>,
     /// Its size.
     pub stats: SurfaceStats,
 }
 
 impl Drawn {
-    /// The particles, to be drawn.
+    /// The particles for the renderer.
     pub fn particles(&self) -> ParticleBuffers<'_> {
         ParticleBuffers {
             positions: &self.positions,
@@ -41,19 +41,19 @@ impl Drawn {
         }
     }
 
-    /// Foam, spray and bubbles, to be drawn.
+    /// Foam, spray and bubbles for the renderer.
     pub fn foam(&self) -> Option<FoamBuffers<'_>> {
         self.foam.as_ref().map(|(particles, count)| FoamBuffers { particles, count: *count })
     }
 
-    /// The surface, to be drawn.
+    /// The surface.
     pub fn mesh(&self) -> Option<&DrawnMesh> {
         self.mesh.as_ref()
     }
 }
 
 impl DrawnMesh {
-    /// The buffers, to be drawn.
+    /// The buffers for the renderer.
     pub fn buffers(&self) -> SurfaceBuffers<'_> {
         SurfaceBuffers {
             vertices: &self.vertices,
@@ -67,7 +67,7 @@ impl DrawnMesh {
     }
 }
 
-/// Takes copies. Those that the window has given back are used again.
+/// Makes copies, and reuses those that the window no longer holds.
 pub(super) struct Copies {
     gpu: Arc<Gpu>,
     pool: Vec<Arc<Drawn>>,
@@ -78,8 +78,8 @@ impl Copies {
         Self { gpu, pool: Vec::new() }
     }
 
-    /// Copies the particles as they are after all work submitted so far, the surface extracted last, and so
-    /// many particles of foam.
+    /// Copies the particles after all work submitted so far, the surface extracted last, and the given number of foam
+    /// particles.
     pub fn take(
         &mut self,
         simulation: &mut Simulation,
@@ -142,15 +142,15 @@ impl Copies {
         drawn
     }
 
-    /// A copy that nobody looks at any more.
+    /// A copy that the window no longer holds.
     fn reuse(&mut self) -> Option<Drawn> {
         let free = self.pool.iter().position(|drawn| Arc::strong_count(drawn) == 1)?;
         Arc::into_inner(self.pool.swap_remove(free))
     }
 }
 
-/// The simulation's own surface, if the device that draws has it. It changes as a whole, by one submission:
-/// what is drawn is always one surface, be it a newer one than that of the snapshot.
+/// The simulation's own surface, if it is on the device that draws. One submission changes it as a whole, so a consistent
+/// surface is drawn, possibly a newer one than that of the snapshot.
 fn shared(executor: &Executor, surface: &Surface, stats: SurfaceStats) -> Option<DrawnMesh> {
     let buffer = |id| executor.wgpu_buffer(id).cloned();
     Some(DrawnMesh {
@@ -169,7 +169,7 @@ struct Copy<'a> {
 }
 
 impl Copy<'_> {
-    /// The first `len` elements of a buffer, in the old copy if it is large enough.
+    /// Copies the first `len` elements of a buffer, into the old copy if it is large enough.
     fn take<T: GpuElement>(
         &mut self,
         from: Buffer<T>,
@@ -181,7 +181,7 @@ impl Copy<'_> {
         let to = old.filter(|old| old.size() >= bytes).unwrap_or_else(|| {
             self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("snapshot"),
-                // Room to grow, and never empty.
+                // With room to grow, and never empty.
                 size: (bytes + bytes / 4).next_multiple_of(16).max(16),
                 usage: usage | Use::COPY_DST,
                 mapped_at_creation: false,

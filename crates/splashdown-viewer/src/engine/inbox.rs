@@ -1,4 +1,4 @@
-//! Commands on their way to the engine, and its sleep when there is nothing to do.
+//! The queue of commands, and sleeping while it is empty.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -22,18 +22,18 @@ impl Inbox {
         self.wake();
     }
 
-    /// All commands, but for those that the next one makes void: a slider sends many.
+    /// All commands except those that the next one supersedes: a slider sends many.
     pub fn take(&self) -> Vec<Command> {
         let mut commands = std::mem::take(&mut *lock(&self.commands));
-        let void: Vec<bool> = (0..commands.len())
-            .map(|i| commands.get(i + 1).is_some_and(|next| is_void(&commands[i], next)))
+        let superseded: Vec<bool> = (0..commands.len())
+            .map(|i| commands.get(i + 1).is_some_and(|next| is_superseded(&commands[i], next)))
             .collect();
-        let mut void = void.into_iter();
-        commands.retain(|_| void.next() == Some(false));
+        let mut superseded = superseded.into_iter();
+        commands.retain(|_| superseded.next() == Some(false));
         commands
     }
 
-    /// Ends a sleep on a web page; a thread wakes up by itself.
+    /// Wakes the engine on a web page; a thread is woken by its condition variable.
     pub fn wake(&self) {
         #[cfg(target_arch = "wasm32")]
         if let Some(waker) = lock(&self.waker).take() {
@@ -41,7 +41,7 @@ impl Inbox {
         }
     }
 
-    /// Sleeps until a command comes, but no longer than this; on a web page until the next picture.
+    /// Sleeps until a command arrives, at most this long; on a web page until the next frame.
     #[cfg(not(target_arch = "wasm32"))]
     pub async fn sleep(&self, at_most: Duration) {
         let commands = lock(&self.commands);
@@ -50,10 +50,10 @@ impl Inbox {
         }
     }
 
-    /// Sleeps until a command comes, but no longer than this; on a web page until the next picture.
+    /// Sleeps until a command arrives, at most this long; on a web page until the next frame.
     #[cfg(target_arch = "wasm32")]
     pub async fn sleep(&self, _: Duration) {
-        // What came while the engine was busy has woken nobody.
+        // Commands that arrived while the engine was busy did not wake it.
         let mut slept = !lock(&self.commands).is_empty();
         std::future::poll_fn(|context| {
             if std::mem::replace(&mut slept, true) {
@@ -66,14 +66,14 @@ impl Inbox {
     }
 }
 
-/// True if obeying the second leaves nothing of the first.
-fn is_void(command: &Command, next: &Command) -> bool {
+/// Whether the second command makes the first irrelevant.
+fn is_superseded(command: &Command, next: &Command) -> bool {
     use Command as C;
     matches!(
         (command, next),
         (C::Change(_), C::Change(_) | C::Open(_) | C::Resume(_))
             | (C::Open(_) | C::Resume(_), C::Open(_) | C::Resume(_))
-            | (C::Hand(_), C::Hand(_))
+            | (C::MouseForce(_), C::MouseForce(_))
             | (C::Grip(_), C::Grip(_))
             | (C::TimeScale(_), C::TimeScale(_))
     )
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_many_like_commands_the_last_is_obeyed() {
+    fn only_the_last_of_several_similar_commands_is_executed() {
         let inbox = Inbox::default();
         for scale in [0.1, 0.2, 0.3] {
             inbox.put(Command::TimeScale(scale));

@@ -1,16 +1,15 @@
-//! How much to simulate next, so that the fluid keeps up with the clock where the machine can, and the window
-//! with the user where it cannot.
+//! How much to simulate next: real time if the machine is fast enough, else as much as keeps the window responsive.
 
 use std::time::Duration;
 
 use web_time::Instant;
 
-/// Wall time between two snapshots that a slow machine may take, in s.
-const PATIENCE: f64 = 0.03;
-/// What is simulated at once on a fast machine, in s of wall time.
-const BEAT: f64 = 1.0 / 120.0;
-/// What a machine that is behind does not catch up with, in s of wall time.
-const FORGIVEN: f64 = 0.05;
+/// Wall time between two snapshots on a slow machine, in s.
+const MAX_TICK: f64 = 0.03;
+/// Duration of a tick on a fast machine, in s of wall time.
+const TICK: f64 = 1.0 / 120.0;
+/// The largest delay that is caught up with, in s of wall time.
+const MAX_DELAY: f64 = 0.05;
 
 /// Turns wall time into simulated time.
 #[derive(Debug)]
@@ -22,7 +21,7 @@ pub(super) struct Pace {
     last: Option<Instant>,
     /// Wall seconds per simulated second; 0 while unknown.
     cost: f64,
-    /// Wall seconds from the end of a tick to the next, lately.
+    /// Recent wall seconds between two ticks.
     between: f64,
 }
 
@@ -36,38 +35,38 @@ impl Pace {
         self.due = 0.0;
     }
 
-    /// The clock stands still.
+    /// Stops the clock.
     pub fn pause(&mut self) {
         self.last = None;
         self.due = 0.0;
     }
 
-    /// Simulated seconds to compute now, if it is time; `least` is what a step takes.
+    /// Simulated seconds to compute now, if a tick is due; `least` is the duration of a step.
     pub fn tick(&mut self, now: Instant, least: f64) -> Option<f64> {
         let passed = self.last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64());
-        // Slow motion may ask for less than a step per beat.
-        let beat = (BEAT * self.scale).max(least);
-        self.due = (self.due + passed * self.scale).min((FORGIVEN * self.scale).max(beat));
-        if self.due < beat {
+        // In slow motion a tick may be shorter than a step.
+        let shortest = (TICK * self.scale).max(least);
+        self.due = (self.due + passed * self.scale).min((MAX_DELAY * self.scale).max(shortest));
+        if self.due < shortest {
             return None;
         }
-        // A slow driver may take long for a picture: half of the time is the simulation's all the same.
-        let patience = self.between.max(PATIENCE);
-        let affordable = if self.cost > 0.0 { patience / self.cost } else { beat };
+        // With a slow driver the simulation still gets half of the time.
+        let longest_tick = self.between.max(MAX_TICK);
+        let affordable = if self.cost > 0.0 { longest_tick / self.cost } else { shortest };
         let tick = self.due.min(affordable).max(least);
         self.due -= tick;
         Some(tick)
     }
 
-    /// Learns what a tick took, and what was done between it and the next.
-    pub fn learn(&mut self, simulated: f64, wall: Duration, between: Duration) {
+    /// Records the wall time of a tick and the time until the next.
+    pub fn record(&mut self, simulated: f64, wall: Duration, between: Duration) {
         let cost = wall.as_secs_f64() / simulated.max(1e-9);
         self.cost = if self.cost > 0.0 { 0.8 * self.cost + 0.2 * cost } else { cost };
         self.between = (0.8 * self.between + 0.2 * between.as_secs_f64()).min(0.25);
     }
 
-    /// Forgets what ticks took: another scene.
-    pub fn forget(&mut self) {
+    /// Forgets the recorded times, for another scene.
+    pub fn reset(&mut self) {
         self.cost = 0.0;
         self.pause();
     }
@@ -77,8 +76,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Simulated seconds after this many wall seconds, and the longest tick, on a machine with this cost, and
-    /// this much to do between two ticks.
+    /// Simulated seconds after some wall seconds, and the longest tick, on a machine with this cost and this time
+    /// between two ticks.
     fn run(scale: f64, cost: f64, between: f64, seconds: f64) -> (f64, f64) {
         let mut pace = Pace::new();
         pace.set_scale(scale);
@@ -87,7 +86,7 @@ mod tests {
             match pace.tick(start + Duration::from_secs_f64(wall), 1e-4) {
                 Some(tick) => {
                     let took = tick * cost;
-                    pace.learn(tick, Duration::from_secs_f64(took), Duration::from_secs_f64(between));
+                    pace.record(tick, Duration::from_secs_f64(took), Duration::from_secs_f64(between));
                     (wall, simulated) = (wall + took + between, simulated + tick);
                     longest = longest.max(took);
                 }
@@ -103,14 +102,14 @@ mod tests {
         assert!((fast - 2.0).abs() < 0.05, "{fast}");
         let (slow_motion, _) = run(0.1, 0.2, 0.0, 2.0);
         assert!((slow_motion - 0.2).abs() < 0.01, "{slow_motion}");
-        // A step every second and a half.
+        // One step every 1.5 s.
         let (slower, _) = run(1e-4 / 1.5, 0.2, 0.0, 6.0);
         assert!((slower - 4e-4).abs() < 1.1e-4, "{slower}");
         let (slow, longest) = run(1.0, 20.0, 0.0, 5.0);
-        // All that the machine can do, and the window hears of it often.
+        // As fast as the machine can, in short ticks.
         assert!((slow - 5.0 / 20.0).abs() < 0.02, "{slow}");
         assert!(longest < 0.2, "{longest}");
-        // Pictures that take long leave half of the time.
+        // Slow pictures leave half of the time.
         let (beside, longest) = run(1.0, 20.0, 0.1, 5.0);
         assert!((beside - 2.5 / 20.0).abs() < 0.02, "{beside}");
         assert!(longest < 0.2, "{longest}");

@@ -1,4 +1,4 @@
-//! What the engine shows.
+//! The output of the engine.
 
 use std::sync::Arc;
 
@@ -9,13 +9,13 @@ use splashdown_io::Mesh;
 
 use super::{Drawn, Purpose};
 
-/// A scene that is being simulated.
+/// The scene being simulated.
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
     /// The meshes of its bodies.
     pub bodies: Arc<[BodyMesh]>,
-    /// What simulates it.
+    /// The simulating device.
     pub device: String,
     /// Bytes in its buffers.
     pub memory: u64,
@@ -23,42 +23,42 @@ pub struct Opened {
 
 /// The fluid at one moment.
 pub struct Snapshot {
-    /// The scene that it shows.
+    /// The scene.
     pub opened: Arc<Opened>,
-    /// The simulation's account.
+    /// The statistics of the simulation.
     pub stats: Stats,
-    /// What is drawn.
+    /// The buffers to draw.
     pub drawn: Arc<Drawn>,
-    /// Where the bodies are.
+    /// The states of the bodies.
     pub bodies: Vec<BodyState>,
-    /// Mean height of the particles in m, a half second old at most; NaN where there are too many to look.
+    /// Mean height of the particles in m, at most half a second old; NaN if there are too many to compute it.
     pub mean_height: f32,
-    /// Steps per second of wall time, lately.
+    /// Recent steps per second of wall time.
     pub steps_per_second: f64,
-    /// Simulated seconds per second of wall time, lately.
+    /// Recent simulated seconds per second of wall time.
     pub speed: f64,
-    /// Time per pass over the last half second, where it is wanted.
+    /// Time per pass over the last half second, if enabled.
     pub timings: Arc<Timings>,
-    /// Steps that `timings` are of.
+    /// Number of steps in `timings`.
     pub timed_steps: u64,
-    /// True if the clock runs.
+    /// Whether the clock runs.
     pub playing: bool,
 }
 
-/// Something to tell the user.
+/// A message to the window.
 pub enum Message {
-    /// Something worth knowing.
+    /// Information.
     Note(String),
-    /// What the scene cannot do; the simulation stands still.
+    /// The simulation failed and is paused.
     Failed(String),
-    /// What cannot be changed; the simulation goes on as it was.
+    /// A change was refused; the simulation continues without it.
     Refused(String),
-    /// The engine has ended by a fault of its own.
+    /// The engine has panicked.
     Stopped,
-    /// The surface, as [`Command::Export`](super::Command::Export) asked for it.
+    /// The surface requested by [`Command::Export`](super::Command::Export).
     Exported(Arc<Mesh>),
-    /// What [`Command::Checkpoint`](super::Command::Checkpoint) asked for.
+    /// The checkpoint requested by [`Command::Checkpoint`](super::Command::Checkpoint).
     Checkpoint(Box<Checkpoint>, Purpose),
-    /// A body's distances are being computed: its name and how far, in [0, 1].
+    /// The distance field of a body is being computed: its name and the completed fraction, in [0, 1].
     Preparing(String, f32),
 }

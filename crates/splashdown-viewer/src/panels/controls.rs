@@ -1,24 +1,24 @@
-//! The panel on the right: what the water is, what moves it, how it is computed and shown.
+//! The controls: fluid, gravity, interaction, solver, display, export.
 
 use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, SliderClamping, Ui};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
 use splashdown_render::{Axis, ColourMap};
 
 use super::gravity;
-use crate::look::Way;
+use crate::look::DisplayMode;
 use crate::state::{Action, State};
 
-/// Scenes that start with fewer particles do not get others by number.
-const FEWEST: u64 = 20;
+/// The number of particles cannot be changed in scenes that start with fewer.
+const MIN_PARTICLES: u64 = 20;
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ScrollArea::vertical().show(ui, |ui| {
         section(ui, "Fluid", |ui| fluid(ui, state, actions));
         section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
-        section(ui, "Play", |ui| play(ui, state, actions));
+        section(ui, "Interact", |ui| interact(ui, state, actions));
         section(ui, "Solver", |ui| solver(ui, state, actions));
-        section(ui, "Look", |ui| look(ui, state, actions));
-        section(ui, "Keep", |ui| keep(ui, state, actions));
+        section(ui, "Display", |ui| display(ui, state, actions));
+        section(ui, "Export", |ui| export(ui, state, actions));
     });
 }
 
@@ -32,14 +32,14 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         .logarithmic(true)
         .max_decimals(0)
         .text("particles");
-    // Where all water comes from emitters, the number at the start says nothing of the size of particles.
+    // If all water comes from emitters, the initial number does not determine the particle spacing.
     let counted = state.counted;
     let wanted = ui
-        .add_enabled(counted >= FEWEST, wanted)
+        .add_enabled(counted >= MIN_PARTICLES, wanted)
         .on_hover_text(
-            "About how many particles the scene starts with. More are finer and slower; the scene begins anew",
+            "Approximate initial number of particles. More particles are finer and slower. Changing it restarts the scene",
         )
-        .on_disabled_hover_text("This scene begins without water: its emitters bring it");
+        .on_disabled_hover_text("This scene starts without water; emitters add it");
     if wanted.drag_stopped() || (wanted.changed() && !wanted.dragged()) {
         let factor = (counted as f32 / state.particles_wanted).cbrt();
         state.scene.fluid.particle_spacing *= factor;
@@ -75,16 +75,16 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let tension = ui
         .add_enabled(state.scene.solver.surface_tension != SurfaceTension::None, tension)
         .on_hover_text("Water against air has 0.073 N/m")
-        .on_disabled_hover_text("Switched off: choose a model under Solver");
+        .on_disabled_hover_text("Disabled: enable it under Solver");
     changed |= tension.changed();
     if changed {
         actions.push(Action::Change);
     }
 }
 
-fn play(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn interact(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Drop a ball").on_hover_text("A ball of half the water's density (B)").clicked() {
+        if ui.button("Drop a ball").on_hover_text("A ball with half the density of water (B)").clicked() {
             actions.push(Action::DropBall);
         }
         let tap = if state.pouring { "Close the tap" } else { "Open the tap" };
@@ -92,7 +92,7 @@ fn play(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             actions.push(Action::Pour);
         }
     });
-    ui.weak("Drop an OBJ, STL, PLY or glTF onto the window: it falls in.");
+    ui.weak("Drop an OBJ, STL, PLY or glTF file onto the window to add it as a body.");
 }
 
 fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -107,7 +107,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                     Method::Wcsph => 7.0,
                     Method::Mueller2003 => 1.0,
                 };
-                // Each method has a model of its own.
+                // Each method has its own model.
                 if solver.surface_tension != SurfaceTension::None {
                     solver.surface_tension = tension_of(method);
                 }
@@ -117,7 +117,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     });
     let mut tension = solver.surface_tension != SurfaceTension::None;
     let box_of_tension = ui.checkbox(&mut tension, "with surface tension").on_hover_text(
-        "Akinci, Akinci and Teschner 2013, or Müller, Charypar and Gross 2003: makes drops and films",
+        "Akinci, Akinci and Teschner 2013, or Müller, Charypar and Gross 2003: forms drops and films",
     );
     if box_of_tension.changed() {
         solver.surface_tension = if tension { tension_of(solver.method) } else { SurfaceTension::None };
@@ -133,14 +133,9 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         &mut solver.artificial_viscosity,
         0.0..=0.5,
         "damping",
-        "Factor alpha of Monaghan's artificial viscosity: 0 splashes and rattles, 0.1 is calm",
+        "Factor alpha of Monaghan's artificial viscosity: 0 is lively and noisy, 0.1 is calm",
     );
-    slider(
-        &mut solver.wall_friction,
-        0.0..=1.0,
-        "wall friction",
-        "0: water slips along walls, 1: it sticks to them",
-    );
+    slider(&mut solver.wall_friction, 0.0..=1.0, "wall friction", "0: free slip, 1: no slip");
     if changed {
         actions.push(Action::Change);
     }
@@ -156,19 +151,19 @@ fn tension_of(method: Method) -> SurfaceTension {
 fn name(method: Method) -> &'static str {
     match method {
         Method::Wcsph => "wcsph (weakly compressible)",
-        Method::Mueller2003 => "mueller2003 (the thesis's)",
+        Method::Mueller2003 => "mueller2003 (the original thesis)",
     }
 }
 
-fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    let foam = ui.checkbox(&mut state.scene.foam.enabled, "Foam and spray").on_hover_text(
-        "What a splash makes beside water: spray in the air, foam on it, bubbles in it (Ihmsen et al. 2012)",
-    );
+fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let foam = ui
+        .checkbox(&mut state.scene.foam.enabled, "Foam and spray")
+        .on_hover_text("Spray in the air, foam on the surface, bubbles in the water (Ihmsen et al. 2012)");
     if foam.changed() {
         actions.push(Action::Change);
     }
     let look = &mut state.look;
-    if look.way.has_colours() {
+    if look.mode.has_colours() {
         ui.horizontal(|ui| {
             ui.label("colour by");
             for (quantity, text) in
@@ -182,29 +177,29 @@ fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                 ui.selectable_value(&mut look.map, map, map.name());
             }
         });
-        if look.way == Way::Slice {
+        if look.mode == DisplayMode::Slice {
             ui.horizontal(|ui| {
                 for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
                     ui.selectable_value(&mut look.slice_axis, axis, name);
                 }
                 ui.add(
-                    Slider::new(&mut look.slice_at, 0.0..=1.0).clamping(SliderClamping::Edits).text("where"),
+                    Slider::new(&mut look.slice_at, 0.0..=1.0)
+                        .clamping(SliderClamping::Edits)
+                        .text("position"),
                 );
             });
         }
-    } else if look.way.needs_surface() {
+    } else if look.mode.needs_surface() {
         let surface = &mut state.scene.surface;
         let rounds = Slider::new(&mut surface.smoothing_iterations, 0..=25)
             .clamping(SliderClamping::Edits)
             .text("smoothing");
-        let rounds = ui.add(rounds).on_hover_text("Rounds of smoothing of the mesh");
+        let rounds = ui.add(rounds).on_hover_text("Smoothing iterations of the mesh");
         let spacing = state.scene.fluid.particle_spacing;
         let mut cell = surface.cell_size / spacing;
         let size = ui
-            .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell"))
-            .on_hover_text(
-                "Size of a cell of marching cubes, in particle spacings: smaller is finer and slower",
-            );
+            .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
+            .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
         if size.changed() {
             surface.cell_size = cell * spacing;
         }
@@ -214,25 +209,25 @@ fn look(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
 }
 
-fn keep(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
+fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (text, hint, action) in [
-            ("Picture", "Write the picture as PNG (T)", Action::Screenshot),
-            ("Scene", "Write the scene as it is set now, for the command line (Ctrl + S)", Action::SaveScene),
+            ("Picture", "Export the picture as PNG (T)", Action::Screenshot),
+            ("Scene", "Export the scene with its changes (Ctrl + S)", Action::SaveScene),
             (
                 "Checkpoint",
-                "Keep the fluid as it is, to go on with it here or by the command line (K); drop the file here to go on",
+                "Export a checkpoint to resume from, here or on the command line (K). Drop the file onto the window to resume",
                 Action::SaveCheckpoint,
             ),
-            ("Mesh", "Write the surface as a closed mesh, PLY (M)", Action::SaveMesh),
+            ("Mesh", "Export the surface as a closed mesh in PLY (M)", Action::SaveMesh),
         ] {
             if ui.button(text).on_hover_text(hint).clicked() {
                 actions.push(action);
             }
         }
-        // Only a page has an address.
+        // Only a web page has an address.
         if cfg!(target_arch = "wasm32")
-            && ui.button("Link").on_hover_text("A link that opens the scene as it is set now").clicked()
+            && ui.button("Link").on_hover_text("A link that opens the scene with its changes").clicked()
         {
             actions.push(Action::Share);
         }
@@ -241,11 +236,11 @@ fn keep(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
         return;
     }
     let text = match state.recorded {
-        Some(frames) => format!("End the film ({frames} pictures)"),
+        Some(frames) => format!("Stop recording ({frames} pictures)"),
         None => "Film".to_owned(),
     };
-    let hint = "A picture of every frame of the scene, and a film if ffmpeg is installed. The water moves frame by frame then, \
-                however long each takes";
+    let hint = "Record a picture of every frame of the scene, and a film if ffmpeg is installed. The simulation advances frame \
+                by frame";
     if ui.button(text).on_hover_text(hint).clicked() {
         actions.push(Action::Record);
     }

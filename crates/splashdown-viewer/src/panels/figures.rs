@@ -1,4 +1,4 @@
-//! The line at the bottom: how it goes, at a glance; and the table of time per pass.
+//! The status bar, and the table of time per pass.
 
 use egui::{Grid, RichText, Ui, Window};
 
@@ -12,10 +12,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) {
         };
         item(format!("{:3.0} frames/s", figures.frames_per_second), "Pictures per second of this window");
         item(format!("{:5.0} steps/s", figures.steps_per_second), "Time steps of the simulation per second");
-        item(format!("{:.2} x real time", figures.speed), "Simulated seconds per second, lately");
+        item(format!("{:.2} x real time", figures.speed), "Simulated seconds per second, recent average");
         item(format!("t = {:7.3} s", figures.time), "Simulated time");
         item(format!("dt = {}", seconds(figures.dt.into())), "Length of a time step");
-        item(format!("{} particles", count(figures.particles.into())), "Particles alive");
+        item(format!("{} particles", count(figures.particles.into())), "Number of particles");
         if figures.mean_height.is_finite() {
             item(format!("{:.3} m high", figures.mean_height), "Mean height of the particles");
         }
@@ -24,12 +24,12 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) {
         }
         item(
             format!("density +{:.1} %", 100.0 * figures.density_error),
-            "Largest excess of density over that at rest: how compressible the water was lately",
+            "Largest recent density above the rest density",
         );
         item(format!("{:.0} MB", figures.memory as f64 / 1e6), "Memory of the simulation's buffers");
-        item(figures.device.clone(), "What simulates");
+        item(figures.device.clone(), "Simulating device");
         ui.toggle_value(&mut state.shown.timings, "time per pass")
-            .on_hover_text("Where the time of a step goes. Measuring it costs some of it");
+            .on_hover_text("Time of each pass. Measuring slows the simulation down a little");
     });
 }
 
@@ -38,7 +38,7 @@ pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
     let steps = figures.timed_steps.max(1) as f64;
     Window::new("Time per pass").open(&mut state.shown.timings).resizable(false).show(ctx, |ui| {
         if figures.timings.passes.is_empty() && figures.drawing.is_empty() {
-            ui.label("Nothing has been timed yet, or this device has no clock.");
+            ui.label("No times yet, or this device has no timestamps.");
             return;
         }
         Grid::new("timings").striped(true).num_columns(2).show(ui, |ui| {
@@ -49,7 +49,7 @@ pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
                 ui.monospace(seconds(time.total.as_secs_f64() / steps));
                 ui.end_row();
             }
-            ui.strong("a step");
+            ui.strong("step");
             ui.monospace(seconds(figures.timings.total().as_secs_f64() / steps));
             ui.end_row();
             let mut picture = 0.0;
@@ -59,19 +59,19 @@ pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
                 ui.end_row();
                 picture += 1e-3 * f64::from(*milliseconds);
             }
-            ui.strong("a picture");
+            ui.strong("picture");
             ui.monospace(seconds(picture));
             ui.end_row();
         });
     });
 }
 
-/// A time with a unit of its size.
+/// A time in a suitable unit.
 fn seconds(seconds: f64) -> String {
     if seconds < 1e-3 { format!("{:.0} us", 1e6 * seconds) } else { format!("{:.2} ms", 1e3 * seconds) }
 }
 
-/// A number with its thousands apart.
+/// A number with separated thousands.
 fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_easily() {
+    fn numbers_are_formatted() {
         assert_eq!(count(999), "999");
         assert_eq!(count(1_234_567), "1 234 567");
         assert_eq!(seconds(0.000_25), "250 us");

@@ -1,11 +1,11 @@
-//! The scenes that come with the program.
+//! The gallery of built-in scenes.
 
 use egui::{Button, Context, Grid, ScrollArea, Ui, Window, vec2};
 
 use crate::state::{Action, State};
 use crate::thumbnails;
 
-/// Between two pictures, in points.
+/// Space between two pictures, in points.
 const GAP: f32 = 12.0;
 
 pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
@@ -28,7 +28,7 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         });
         if !state.files.is_empty() {
             ui.separator();
-            ui.label("Go on from a checkpoint:");
+            ui.label("Resume from a checkpoint:");
             ui.horizontal_wrapped(|ui| {
                 for path in &state.files {
                     if ui.button(path.display().to_string().trim_start_matches("./")).clicked() {
@@ -48,7 +48,7 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     }
 }
 
-/// A picture with a name under it; true if it is clicked.
+/// A picture with its name below; returns whether it was clicked.
 fn tile(ui: &mut Ui, name: &str, about: &str, is_open: bool) -> bool {
     let size = vec2(thumbnails::WIDTH, thumbnails::WIDTH * 9.0 / 16.0);
     ui.vertical(|ui| {

@@ -1,4 +1,4 @@
-//! Gravity as a ball to drag: where the ball is, there is down.
+//! The gravity dial: the position of the knob is the direction of gravity.
 
 use egui::{Color32, Sense, Slider, SliderClamping, Stroke, Ui, vec2};
 use glam::{Vec2, Vec3};
@@ -12,8 +12,9 @@ const SIZE: f32 = 86.0;
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         let (rect, response) = ui.allocate_exact_size(vec2(SIZE, SIZE), Sense::click_and_drag());
-        let response = response
-            .on_hover_text("Drag the ball: it shows, in this view, which way is down. Double click: upright");
+        let response = response.on_hover_text(
+            "Drag the knob towards the direction of gravity in this view. Double-click to reset",
+        );
         let radius = 0.5 * SIZE - 8.0;
         let before = state.scene.gravity;
         if response.double_clicked() {
@@ -53,12 +54,12 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     });
 }
 
-/// Gravity of the same strength for a knob at this place of the dial, y down, of radius 1.
+/// Gravity of the same magnitude for a knob at this position of the dial, with y down and radius 1.
 fn from_knob(knob: Vec2, before: Vec3, upright: Vec3, orbit: &Orbit) -> Vec3 {
     let strength = if before.length() > 1e-3 { before.length() } else { upright.length().max(9.81) };
     let [right, up, forward] = orbit.axes();
     let knob = knob.clamp_length_max(1.0);
-    // Of the two directions that look alike, the one that gravity had.
+    // Two directions have the same projection: choose the previous side.
     let side = if before.dot(forward) < 0.0 { -1.0 } else { 1.0 };
     let depth = side * (1.0 - knob.length_squared()).max(0.0).sqrt();
     strength * (knob.x * right - knob.y * up + depth * forward)
@@ -70,7 +71,7 @@ mod tests {
     use splashdown::scene::{Scene, presets};
 
     #[test]
-    fn the_knob_is_where_gravity_points() {
+    fn the_knob_shows_the_direction_of_gravity() {
         let (name, text) = presets()[0];
         let scene = Scene::parse(text, name).unwrap();
         let orbit = Orbit::of_scene(&scene);

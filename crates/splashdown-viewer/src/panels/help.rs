@@ -1,41 +1,41 @@
-//! Keys: what they do, and doing it.
+//! Keyboard shortcuts and their help.
 
 use egui::{Context, Event, Grid, Key, RichText, Window};
 use glam::Vec3;
 
-use crate::look::Way;
+use crate::look::DisplayMode;
 use crate::state::{Action, State};
 
-/// What is written in the help, line by line.
+/// The lines of the help.
 const LINES: [(&str, &str); 20] = [
-    ("drag", "look round (with the tool Look)"),
-    ("right or middle drag", "slide"),
-    ("wheel, pinch", "come nearer, go away"),
+    ("drag", "orbit the camera (with the tool Orbit)"),
+    ("right or middle drag", "pan"),
+    ("wheel, pinch", "zoom"),
     ("W A S D, Q E", "fly"),
-    ("F", "the scene's own view"),
-    ("Shift + drag", "drag water and floating bodies"),
+    ("F", "reset the camera to the scene's"),
+    ("Shift + drag", "drag water and dynamic bodies"),
     ("Space", "play, pause"),
-    (".", "one frame"),
-    ("R", "from the beginning, with what was changed"),
-    ("1, 2, ...", "ways to see the fluid"),
+    (".", "advance one frame"),
+    ("R", "restart with the changes"),
+    ("1, 2, ...", "display mode"),
     ("B", "drop a ball"),
-    ("P", "turn the tap on or off"),
-    ("drop a file", "a scene opens; a mesh falls in"),
-    ("G", "scenes"),
-    ("C", "hide the controls, show them"),
-    ("T", "write a picture"),
-    ("M", "write the surface as a mesh"),
-    ("K", "keep a checkpoint to go on from"),
-    ("Ctrl + S", "write the scene as it is now"),
+    ("P", "open or close the tap"),
+    ("drop a file", "open a scene or checkpoint, add a mesh as a body"),
+    ("G", "choose a scene"),
+    ("C", "show or hide the controls"),
+    ("T", "export a picture"),
+    ("M", "export the surface as a mesh"),
+    ("K", "export a checkpoint to resume from"),
+    ("Ctrl + S", "export the scene with its changes"),
     ("H", "this help"),
 ];
 
-/// Does what keys say, unless somebody types into a field.
+/// Handles keys, unless a text field has the focus.
 pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
     if ctx.egui_wants_keyboard_input() {
         return;
     }
-    // The modifiers of the key's own moment: where pictures are slow, those of the picture's end are others.
+    // The modifiers at the time of the key event: with slow frames those at the end of the frame may differ.
     let struck = |wanted: Key, command: bool| {
         ctx.input(|input| {
             input.events.iter().any(|event| match event {
@@ -84,9 +84,9 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         state.orbit = crate::camera::Orbit::of_scene(&state.scene);
     }
     let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
-    for (key, way) in numbers.into_iter().zip(Way::ALL) {
+    for (key, mode) in numbers.into_iter().zip(DisplayMode::ALL) {
         if pressed(key) {
-            state.look.way = way;
+            state.look.mode = mode;
         }
     }
     let along = |plus, minus| f32::from(u8::from(down(plus))) - f32::from(u8::from(down(minus)));

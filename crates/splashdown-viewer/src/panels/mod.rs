@@ -1,4 +1,4 @@
-//! The panels: each shows a part of the state, changes what is its own, and says what it wants done.
+//! The panels. Each shows and changes a part of the state, and requests actions.
 
 mod controls;
 mod figures;
@@ -15,17 +15,16 @@ use crate::state::{Action, State};
 
 pub use viewport::Viewport;
 
-/// Windows narrower than this, in points, begin without controls.
+/// Windows narrower than this, in points, start with hidden controls.
 const NARROW: f32 = 700.0;
 
-/// All of the window. `picture` is the texture to show in the middle; the size that the next one should have
-/// comes back with what is to be done.
+/// Shows all panels. `picture` is the texture in the middle. Returns the size for the next picture and the actions.
 pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
     let mut actions = Vec::new();
     help::keys(ui.ctx(), state, &mut actions);
     Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, state, &mut actions));
     Panel::bottom("figures").show(ui, |ui| figures::show(ui, state));
-    // On a telephone the controls would leave nothing of the water.
+    // On a phone the controls would cover the picture.
     let narrow = ui.max_rect().width() < NARROW;
     if std::mem::replace(&mut state.shown.narrow, narrow) != narrow {
         state.shown.bare = narrow;

@@ -1,4 +1,4 @@
-//! What the user is told: notes that go by themselves, and bad news that stay until they are clicked away.
+//! Notifications: messages disappear after a while, errors when they are closed.
 
 use egui::{Align2, Area, Color32, Context, Frame, Id, ProgressBar, Rect, RichText};
 
@@ -10,14 +10,16 @@ pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
     if state.notes.is_empty() && state.preparing.is_none() {
         return;
     }
-    let mut gone = None;
+    let mut closed = None;
     Area::new(Id::unique("notes"))
         .pivot(Align2::LEFT_TOP)
         .fixed_pos(over.left_top() + egui::vec2(10.0, 10.0))
         .show(ctx, |ui| {
             ui.set_max_width((over.width() - 20.0).clamp(120.0, 520.0));
             if let Some((what, part)) = &state.preparing {
-                ui.add(ProgressBar::new(*part).text(format!("distances of {what:?}")).desired_width(240.0));
+                ui.add(
+                    ProgressBar::new(*part).text(format!("distance field of {what:?}")).desired_width(240.0),
+                );
             }
             for (number, note) in state.notes.iter().enumerate() {
                 Frame::popup(ui.style()).show(ui, |ui| {
@@ -30,15 +32,15 @@ pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
                     ui.horizontal_wrapped(|ui| {
                         ui.label(text);
                         if note.is_error && ui.small_button("close").clicked() {
-                            gone = Some(number);
+                            closed = Some(number);
                         }
                     });
                 });
             }
         });
-    if let Some(number) = gone {
+    if let Some(number) = closed {
         state.notes.remove(number);
     }
-    // A note goes without anybody moving the mouse.
+    // Messages disappear without any input.
     ctx.request_repaint_after(std::time::Duration::from_millis(500));
 }

@@ -1,8 +1,8 @@
-//! The line at the top: scene, clock, tools, ways to see.
+//! The toolbar: scene, clock, tools, display modes.
 
 use egui::{Button, RichText, Slider, SliderClamping, Ui};
 
-use crate::look::Way;
+use crate::look::DisplayMode;
 use crate::state::{Action, State, Tool};
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -20,10 +20,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if ui.button("Step").on_hover_text("One frame of the scene (.)").clicked() {
             actions.push(Action::Step);
         }
-        if ui.button("Restart").on_hover_text("From the beginning, with what was changed (R)").clicked() {
+        if ui.button("Restart").on_hover_text("Restart with the changes (R)").clicked() {
             actions.push(Action::Restart);
         }
-        if ui.button("Reset").on_hover_text("From the beginning, as the scene's file says").clicked() {
+        if ui.button("Reset").on_hover_text("Restart without the changes").clicked() {
             actions.push(Action::Reset);
         }
         let speed = Slider::new(&mut state.time_scale, 0.05..=4.0).clamping(SliderClamping::Edits)
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             .suffix(" x")
             .text("speed");
         let speed = ui.add(speed).on_hover_text(
-            "Simulated seconds per second. A machine that is too slow for it simulates slower; the window does not",
+            "Simulated seconds per second. If the machine is too slow, the simulation runs slower; the window stays responsive",
         );
         if speed.changed() {
             actions.push(Action::TimeScale);
@@ -42,19 +42,19 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             ui.selectable_value(&mut state.tool, tool, tool.name()).on_hover_text(tool.hint());
         }
         ui.separator();
-        for (number, way) in Way::ALL.into_iter().enumerate() {
-            let hint = format!("{} ({})", way.hint(), number + 1);
-            ui.selectable_value(&mut state.look.way, way, way.name()).on_hover_text(hint);
+        for (number, mode) in DisplayMode::ALL.into_iter().enumerate() {
+            let hint = format!("{} ({})", mode.hint(), number + 1);
+            ui.selectable_value(&mut state.look.mode, mode, mode.name()).on_hover_text(hint);
         }
         ui.separator();
         let controls = if state.shown.bare { "Controls" } else { "Hide controls" };
-        if ui.button(controls).on_hover_text("Fluid, gravity, solver and more (C)").clicked() {
+        if ui.button(controls).on_hover_text("Show or hide the controls (C)").clicked() {
             state.shown.bare = !state.shown.bare;
         }
         if ui.button("Theme").on_hover_text("Light or dark").clicked() {
             actions.push(Action::SwapTheme);
         }
-        if ui.button("Help").on_hover_text("What keys and mouse do (H)").clicked() {
+        if ui.button("Help").on_hover_text("Keys and mouse (H)").clicked() {
             state.shown.help = !state.shown.help;
         }
     });

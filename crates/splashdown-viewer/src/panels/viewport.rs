@@ -1,4 +1,4 @@
-//! The picture in the middle, and what the mouse does to it.
+//! The picture in the middle, and the mouse tools.
 
 use egui::{PointerButton, Rect, Response, Sense, TextureId, Ui};
 use glam::{Quat, Vec2, Vec3};
@@ -7,17 +7,17 @@ use crate::state::{Action, Shaking, State, Tool};
 
 /// Degrees of tilt per point.
 const TILT: f32 = 0.25;
-/// How stiffly a shaken box follows the mouse, in 1/s.
+/// Rate at which a shaken tank follows the mouse, in 1/s.
 const SHAKE_RATE: f32 = 12.0;
 
 /// Where the picture is.
 #[derive(Clone, Copy, Debug)]
 pub struct Viewport {
-    /// In points.
+    /// The rectangle in points.
     pub rect: Rect,
-    /// In pixels.
+    /// The size in pixels.
     pub size: [u32; 2],
-    /// Where a button went down on the picture in this frame with the hand, in points of the picture.
+    /// Where a drag with the tool [`Tool::Drag`] started in this frame, in points of the picture.
     pub touched: Option<Vec2>,
 }
 
@@ -39,24 +39,24 @@ pub(super) fn show(
     if by(PointerButton::Secondary) || by(PointerButton::Middle) {
         state.orbit.pan(drag, size_of(rect));
     }
-    let tool = if ui.input(|input| input.modifiers.shift) { Tool::Hand } else { state.tool };
+    let tool = if ui.input(|input| input.modifiers.shift) { Tool::Drag } else { state.tool };
     let mut touched = None;
     match tool {
         Tool::Orbit if by(PointerButton::Primary) => state.orbit.orbit(drag),
-        Tool::Hand => touched = hand(ui, &response, state, actions),
+        Tool::Drag => touched = drag_fluid(ui, &response, state, actions),
         Tool::Tilt => tilt(&response, drag, state, actions),
         Tool::Shake if by(PointerButton::Primary) => {
             let [right, up, _] = state.orbit.axes();
             let way = state.orbit.metres_per_point(size_of(rect)) * (drag.x * right - drag.y * up);
             let gravity = state.scene.gravity;
-            state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).wanted += way;
+            state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).target += way;
         }
         Tool::Shake => {}
         Tool::Orbit => {}
     }
-    if tool != Tool::Hand && state.hand.take().is_some() {
+    if tool != Tool::Drag && state.drag_point.take().is_some() {
         state.grip = None;
-        actions.push(Action::LetGo);
+        actions.push(Action::Release);
     }
     let held = tool == Tool::Shake && by(PointerButton::Primary);
     shake(ui, held, state, actions);
@@ -81,20 +81,20 @@ fn zoom(ui: &Ui, response: &Response, state: &mut State) {
     }
 }
 
-/// The hand follows the mouse in the plane through the camera's target, or the held body's distance.
-fn hand(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
+/// The mouse force acts in the plane through the camera's target; a held body stays at its distance.
+fn drag_fluid(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
     let size = size_of(response.rect);
     let place = response.interact_pointer_pos().map(|at| at - response.rect.min);
     let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) else {
-        if state.hand.take().is_some() {
+        if state.drag_point.take().is_some() {
             state.grip = None;
-            actions.push(Action::LetGo);
+            actions.push(Action::Release);
         }
         return None;
     };
     let at = Vec2::new(at.x, at.y);
     let ray = state.orbit.ray(at, size);
-    let Some(before) = state.hand.replace(at) else { return Some(at) };
+    let Some(before) = state.drag_point.replace(at) else { return Some(at) };
     if let Some((mut grip, distance)) = state.grip {
         grip.target = ray.0 + distance * ray.1;
         state.grip = Some((grip, distance));
@@ -105,11 +105,11 @@ fn hand(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Actio
     let old = state.orbit.ray(before, size);
     let depth = state.orbit.distance;
     let velocity = (ray.0 + depth * ray.1 - old.0 - depth * old.1) / seconds;
-    actions.push(Action::Stir { ray, velocity });
+    actions.push(Action::Drag { ray, velocity });
     None
 }
 
-/// Turns gravity, which is what fluid in a tilted box feels.
+/// Rotates gravity, which is equivalent to tilting the tank.
 fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Action>) {
     if response.double_clicked() {
         state.scene.gravity = state.upright;
@@ -118,7 +118,7 @@ fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Ac
         let [_, _, forward] = state.orbit.axes();
         let ahead = Vec3::new(forward.x, 0.0, forward.z).normalize_or(Vec3::NEG_Z);
         let aside = ahead.cross(Vec3::Y);
-        // The box leans the way it is dragged: gravity, seen from the box, the other way.
+        // The tank tilts towards the drag: gravity in the frame of the tank rotates the other way.
         let turn = Quat::from_axis_angle(ahead, -(TILT * drag.x).to_radians())
             * Quat::from_axis_angle(aside, -(TILT * drag.y).to_radians());
         state.scene.gravity = turn * state.scene.gravity;
@@ -126,16 +126,16 @@ fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Ac
     }
 }
 
-/// The box follows the mouse by a critically damped spring, and its fluid feels the acceleration. It comes to
-/// rest where it was, so that in the end nothing has pushed the fluid anywhere.
+/// The tank follows the mouse by a critically damped spring, and its acceleration acts on the fluid. It returns to
+/// its place, so that its net displacement is zero.
 fn shake(ui: &Ui, held: bool, state: &mut State, actions: &mut Vec<Action>) {
     let Some(shaking) = &mut state.shaking else { return };
     if !held {
-        shaking.wanted = Vec3::ZERO;
+        shaking.target = Vec3::ZERO;
     }
     let seconds = ui.input(|input| input.stable_dt).clamp(1e-3, 0.05);
     let acceleration =
-        SHAKE_RATE * SHAKE_RATE * (shaking.wanted - shaking.offset) - 2.0 * SHAKE_RATE * shaking.velocity;
+        SHAKE_RATE * SHAKE_RATE * (shaking.target - shaking.offset) - 2.0 * SHAKE_RATE * shaking.velocity;
     shaking.velocity += seconds * acceleration;
     shaking.offset += seconds * shaking.velocity;
     state.scene.gravity = shaking.gravity - acceleration;

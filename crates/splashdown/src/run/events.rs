@@ -1,4 +1,4 @@
-//! What a run is asked for, and what it tells.
+//! The options of a run, and its events.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::probes::ProbeRows;
 use crate::scene::Scene;
 use crate::{BodyState, Device, DiffuseParticles, Stats};
 
-/// What to compute beside the particles' motion.
+/// What to compute in addition to the motion of particles.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Where to simulate.
@@ -21,7 +21,7 @@ pub struct RunOptions {
     pub surface: bool,
     /// Compute foam, spray and bubbles.
     pub foam: bool,
-    /// Give the surface's vertices the velocities of the particles around them, by which other programs blur motion.
+    /// Interpolate the particles' velocities to the vertices of the surface, for motion blur in other programs.
     pub vertex_velocities: bool,
     /// Measure the time of every pass.
     pub timing: bool,
@@ -53,7 +53,7 @@ impl std::fmt::Debug for ProgressFn {
 }
 
 impl RunOptions {
-    /// The scene's own wishes on the best device.
+    /// The options of the scene, on the best device.
     pub fn new(scene: &Scene) -> Self {
         Self {
             device: Device::Auto,
@@ -76,34 +76,34 @@ impl RunOptions {
     }
 }
 
-/// One thing that happened.
+/// An event of a run.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Event {
     /// The first event.
     Started(Started),
-    /// Now and then between two frames.
+    /// Progress between two frames.
     Progress(Progress),
     /// A frame is complete. Frame 0 is the initial state.
     Frame(Frame),
-    /// Something the user should know; the run goes on.
+    /// A problem that does not stop the run.
     Warning(String),
-    /// Something the user may want to know.
+    /// Information.
     Note(String),
     /// The last event.
     Finished(Summary),
 }
 
-/// What is about to run.
+/// The start of a run.
 #[derive(Clone, Debug)]
 pub struct Started {
     /// The device's name.
     pub device: String,
     /// Number of particles.
     pub particles: u32,
-    /// The frame that is there already: 0, the initial one, unless the run goes on from a checkpoint.
+    /// The first frame: 0, or that of the checkpoint that the run resumes from.
     pub first_frame: u32,
-    /// Number of frames, the initial one not counted.
+    /// Number of frames, without the initial one.
     pub frames: u32,
     /// Simulated time in seconds.
     pub time: f64,
@@ -115,7 +115,7 @@ pub struct Started {
     pub dt: f32,
 }
 
-/// Where the run is.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// The frame being computed.
@@ -141,36 +141,36 @@ pub struct Frame {
     pub index: u32,
     /// Simulated time in seconds.
     pub time: f64,
-    /// The simulation's own account.
+    /// The statistics of the simulation.
     pub stats: Stats,
-    /// The living particles in order of id.
+    /// The particles in order of id.
     pub particles: Arc<Particles>,
-    /// The fluid's surface, if asked for.
+    /// The surface of the fluid, if enabled.
     pub mesh: Option<Arc<Mesh>>,
     /// The volume that the surface encloses in m^3.
     pub volume: Option<f64>,
-    /// Foam, spray and bubbles, if asked for.
+    /// Foam, spray and bubbles, if enabled.
     pub foam: Option<Arc<DiffuseParticles>>,
     /// The bodies, in the order of [`Run::bodies`](crate::Run::bodies).
     pub bodies: Arc<[BodyState]>,
-    /// What the scene's probes measured since the frame before, in the order of the scene.
+    /// The samples of the scene's probes since the previous frame, in the order of the scene.
     pub probes: Arc<[ProbeRows]>,
 }
 
-/// The whole run in a few numbers.
+/// The summary of a run.
 #[derive(Clone, Debug)]
 pub struct Summary {
-    /// The simulation's last account.
+    /// The final statistics of the simulation.
     pub stats: Stats,
-    /// Frames computed, the initial one not counted.
+    /// Number of frames, without the initial one.
     pub frames: u32,
-    /// Steps of this run, without those before the checkpoint that it went on from.
+    /// Steps of this run, without those before the checkpoint it resumed from.
     pub steps: u64,
-    /// Wall time of everything, in seconds.
+    /// Wall time in all, in seconds.
     pub wall: f64,
-    /// Wall time spent in steps, in seconds.
+    /// Wall time of steps, in seconds.
     pub step_wall: f64,
-    /// Wall time spent in the surface and in fetching frames, in seconds.
+    /// Wall time of extracting the surface and reading frames back, in seconds.
     pub frame_wall: f64,
     /// Particles times steps per second of `step_wall`.
     pub particle_steps_per_second: f64,
@@ -182,6 +182,6 @@ pub struct Summary {
     pub volume: Option<[f64; 2]>,
     /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
     pub particle_volume: f64,
-    /// Time per pass, if asked for.
+    /// Time per pass, if enabled.
     pub timings: Timings,
 }

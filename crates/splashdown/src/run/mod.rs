@@ -1,4 +1,4 @@
-//! A whole run as one stream of events, which command line, window and Python read.
+//! A whole run as one stream of events.
 
 mod events;
 mod resume;
@@ -47,34 +47,35 @@ pub struct Run {
     frame_duration: f32,
     duration: f64,
     stage: Stage,
-    /// The frame that is there when the run starts: 0, or that of a checkpoint.
+    /// The frame at the start of the run: 0, or that of a checkpoint.
     first: u32,
-    /// The last frame that was told, or that of the checkpoint.
+    /// The last frame that was returned, or that of the checkpoint.
     complete: Option<u32>,
     /// Steps before this run.
     steps_before: u64,
-    /// What is left of the next frame in seconds, if that is not the whole.
+    /// The rest of the next frame in seconds, if the run does not start between two frames.
     next_duration: Option<f32>,
     scene_text: Arc<str>,
     started: Instant,
-    told: Instant,
+    /// When progress was last reported.
+    reported: Instant,
     clock: Clock,
     density_error: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
     particle_steps: f64,
     waiting: VecDeque<Event>,
-    /// What is wrong with the scene's probes.
+    /// Warnings about the scene's probes.
     buried: Vec<String>,
     domain: Domain,
-    /// One per body: true if it moves by itself and has not been told lost.
+    /// One per body: whether it is dynamic and has not been reported as lost.
     watched: Vec<bool>,
     stats_before: Stats,
     /// Simulated time at the start in seconds.
-    began_at: f64,
+    start_time: f64,
 }
 
-/// Wall time by what it was spent on.
+/// Wall time by purpose.
 #[derive(Default)]
 struct Clock {
     steps: Duration,
@@ -83,11 +84,11 @@ struct Clock {
 
 enum Stage {
     Start,
-    /// The frame of this number is about to begin.
+    /// The frame with this number starts.
     Begin(u32),
-    /// The frame of this number is being computed.
+    /// The frame with this number is being computed.
     Steps(u32),
-    /// The frame of this number has to be fetched.
+    /// The frame with this number is complete and must be fetched.
     Fetch(u32),
     Finish,
     End,
@@ -136,7 +137,7 @@ impl Run {
             next_duration: None,
             scene_text: Arc::clone(&scene.text),
             started,
-            told: started,
+            reported: started,
             clock: Clock::default(),
             density_error: 0.0,
             volume: None,
@@ -147,17 +148,17 @@ impl Run {
             domain: scene.domain.clone(),
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             stats_before: simulation.stats(),
-            began_at: simulation.stats().time,
+            start_time: simulation.stats().time,
             simulation,
         })
     }
 
-    /// The device, if this does not run on the CPU: pictures are best drawn there.
+    /// The GPU, unless the run is on the CPU. Pictures are best drawn on the same device.
     pub fn gpu(&self) -> Option<&Arc<Gpu>> {
         self.simulation.gpu()
     }
 
-    /// The frame that is there when the run starts: 0, or that of the checkpoint from which it goes on.
+    /// The frame at the start of the run: 0, or that of the checkpoint it resumes from.
     pub fn first_frame(&self) -> u32 {
         self.first
     }
@@ -178,7 +179,8 @@ impl Run {
         self.waiting.extend(std::mem::take(&mut self.buried).into_iter().map(Event::Warning));
         let removed = self.simulation.removed();
         if removed > 0 {
-            let text = format!("{removed} particles of the fluid were left out: they would be inside bodies");
+            let text =
+                format!("{removed} particles of the fluid were removed because they are inside bodies");
             self.waiting.push_back(Event::Note(text));
         }
         Event::Started(Started {
@@ -193,7 +195,7 @@ impl Run {
         })
     }
 
-    /// Works on a frame until there is something to tell.
+    /// Computes steps of a frame until there is an event.
     fn steps(&mut self, frame: u32) -> Result<Option<Event>, SimulationError> {
         let begun = Instant::now();
         let outcome = self.simulation.continue_frame();
@@ -208,10 +210,10 @@ impl Run {
         if let Some(foam) = &self.foam {
             self.simulation.advance_foam(foam)?;
         }
-        if self.told.elapsed() < PROGRESS {
+        if self.reported.elapsed() < PROGRESS {
             return Ok(None);
         }
-        self.told = Instant::now();
+        self.reported = Instant::now();
         let (time, steps) = self.simulation.progress();
         Ok(Some(Event::Progress(Progress {
             frame,
@@ -224,7 +226,7 @@ impl Run {
         })))
     }
 
-    /// What comes after a frame.
+    /// The stage after a frame.
     fn after(&self, frame: u32) -> Stage {
         if frame < self.frames { Stage::Begin(frame + 1) } else { Stage::Finish }
     }
@@ -258,10 +260,10 @@ impl Run {
         self.stage = self.after(index);
         self.complete = Some(index);
         self.clock.frames += begun.elapsed();
-        // The sum of frames in single precision would read 0.0199999996.
+        // A sum of frame durations in single precision would give 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
-        let told = self.simulation.take_warnings().into_iter();
-        self.waiting.extend(told.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
+        let warnings = self.simulation.take_warnings().into_iter();
+        self.waiting.extend(warnings.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
         let inside_bodies = self.simulation.inside_bodies(&particles)?;
         let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
         if inside_bodies > 0 {
@@ -272,7 +274,7 @@ impl Run {
         let mut probes = self.simulation.take_probe_rows();
         self.fluid_probes.read(&mut probes, time, &particles);
         let bodies: Arc<[BodyState]> = self.simulation.body_states()?.into();
-        self.tell_lost(&bodies, time);
+        self.warn_of_lost_bodies(&bodies, time);
         Ok(Frame {
             index,
             time,
@@ -299,7 +301,7 @@ impl Run {
             step_wall,
             frame_wall: self.clock.frames.as_secs_f64(),
             particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
-            simulated_per_wall: (stats.time - self.began_at) / wall,
+            simulated_per_wall: (stats.time - self.start_time) / wall,
             density_error: self.density_error,
             volume: self.volume,
             particle_volume: self.particle_volume,

@@ -1,4 +1,4 @@
-//! What a run keeps in checkpoints, and how it goes on from one.
+//! Checkpoints of a run, and resuming from one.
 
 use serde::{Deserialize, Serialize};
 use splashdown_gpu::block_on;
@@ -8,9 +8,9 @@ use super::{Run, RunOptions, Stage};
 use crate::scene::Scene;
 use crate::{Checkpoint, CheckpointError, Simulation, SimulationError};
 
-/// What a run remembers beside its simulation; part of a checkpoint.
+/// The state of a run beside its simulation; part of a checkpoint.
 #[derive(Serialize, Deserialize)]
-struct Account {
+struct RunState {
     frame: u32,
     density_error: f32,
     volume: Option<[f64; 2]>,
@@ -18,15 +18,15 @@ struct Account {
     watched: Vec<bool>,
 }
 
-/// Frames that a run can have.
-const MOST_FRAMES: u32 = 100_000_000;
+/// The largest number of frames.
+const MAX_FRAMES: u32 = 100_000_000;
 
-/// The name of the account in a checkpoint.
-const ACCOUNT: &str = "run.bin";
+/// The entry of this state in a checkpoint.
+const ENTRY: &str = "run.bin";
 
 impl Run {
-    /// Goes on from a checkpoint, whose scene this is: frames that came before are not told again. A checkpoint
-    /// that was not made at the end of a frame goes on with what is left of the frame that it was made in.
+    /// Resumes from a checkpoint, whose scene must be given. Earlier frames are not returned again. A checkpoint made
+    /// within a frame resumes with the rest of that frame.
     ///
     /// # Errors
     /// As [`Simulation::resume`].
@@ -41,26 +41,26 @@ impl Run {
             block_on(Simulation::resume_async(checkpoint, executor, &options.report_progress()))?;
         let time = simulation.stats().time;
         let mut run = Self::of(simulation, scene, options, started)?;
-        if let (Some(foam), Some(kept)) = (&mut run.foam, checkpoint.foam()?) {
-            run.simulation.restore_foam(foam, &kept)?;
+        if let (Some(foam), Some(saved)) = (&mut run.foam, checkpoint.foam()?) {
+            run.simulation.restore_foam(foam, &saved)?;
         }
         let rate = f64::from(scene.frame_rate);
-        let account = match checkpoint.has(ACCOUNT) {
-            true => checkpoint.get::<Option<Account>>(ACCOUNT)?,
+        let state = match checkpoint.has(ENTRY) {
+            true => checkpoint.get::<Option<RunState>>(ENTRY)?,
             false => None,
         };
-        let frame = match account {
-            Some(account) if account.frame > MOST_FRAMES => {
-                let reason = format!("its frame is {}, more than {MOST_FRAMES}", account.frame);
+        let frame = match state {
+            Some(state) if state.frame > MAX_FRAMES => {
+                let reason = format!("its frame is {}, more than {MAX_FRAMES}", state.frame);
                 return Err(CheckpointError::Malformed(reason).into());
             }
-            Some(account) => {
-                let frame = account.frame;
-                run.restore(account);
+            Some(state) => {
+                let frame = state.frame;
+                run.restore(state);
                 run.complete = Some(frame);
                 frame
             }
-            // From a front end without frames. A part in a million does not make one.
+            // From the window, which has no frames. A millionth of a frame is rounding.
             None => {
                 let frame = (time * rate + 1e-6).floor();
                 run.next_duration = Some(((frame + 1.0) / rate - time) as f32);
@@ -71,8 +71,8 @@ impl Run {
         Ok(run)
     }
 
-    /// Everything that is needed to go on after the last [`Event::Frame`](super::Event::Frame); call it before
-    /// asking for the next event.
+    /// The state after the last [`Event::Frame`](super::Event::Frame), to resume from. Call it before the next event is
+    /// requested.
     ///
     /// # Errors
     /// As [`Simulation::checkpoint`].
@@ -81,21 +81,21 @@ impl Run {
         if let Some(foam) = &self.foam {
             checkpoint.set_foam(&block_on(self.simulation.keep_foam_async(foam))?);
         }
-        // Within a frame there is no account of one.
+        // Only between frames.
         let between = !matches!(self.stage, Stage::Steps(_) | Stage::Fetch(_));
-        let account = self.complete.filter(|_| between).map(|frame| Account {
+        let state = self.complete.filter(|_| between).map(|frame| RunState {
             frame,
             density_error: self.density_error,
             volume: self.volume,
             particle_volume: self.particle_volume,
             watched: self.watched.clone(),
         });
-        checkpoint.set(ACCOUNT, &account);
+        checkpoint.set(ENTRY, &state);
         Ok(checkpoint)
     }
 
-    fn restore(&mut self, account: Account) {
-        let Account { density_error, volume, particle_volume, watched, .. } = account;
+    fn restore(&mut self, state: RunState) {
+        let RunState { density_error, volume, particle_volume, watched, .. } = state;
         (self.density_error, self.volume, self.particle_volume) = (density_error, volume, particle_volume);
         self.watched = watched;
     }

@@ -1,4 +1,4 @@
-//! One row: a scene's step, measured.
+//! Measuring one scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -15,16 +15,16 @@ use crate::exit::{Exit, Failure};
 use crate::memory;
 use crate::speed::seconds_per_step;
 
-/// Steps before the first measurement: the lattice gives way, pipelines are built, buffers find their size.
+/// Steps before the first measurement: the lattice relaxes, pipelines are compiled, buffers grow to their size.
 pub const WARM_UP: u32 = 30;
 
-/// Measurements, of which the median counts: other programs disturb some of them.
+/// Number of measurements. Their median is reported, because other programs disturb some of them.
 const ROUNDS: usize = 5;
 
-/// How long all rounds of one size should take together.
+/// Duration of all rounds of one size together.
 const BUDGET: Duration = Duration::from_secs(2);
 
-/// Steps in which dispatches are counted where no passes are wanted.
+/// Steps in which dispatches are counted if passes are not measured.
 const COUNTED: u32 = 2;
 
 /// What a step must at least move and compute per particle, with about 28 neighbours: every array once, in a
@@ -32,7 +32,7 @@ const COUNTED: u32 = 2;
 /// docs/performance.md derives both.
 const FLOOR_BYTES: f64 = 192.0;
 const FLOOR_OPERATIONS: f64 = 6047.0;
-/// Particles of whose neighbours the mean is told.
+/// Number of particles in the sample for the mean number of neighbours.
 const SAMPLED: usize = 256;
 
 /// The measurement of one size.
@@ -41,7 +41,7 @@ pub struct Row {
     pub device: String,
     pub solver: String,
     pub particles: u64,
-    /// Threads that compute, where the CPU does.
+    /// CPU threads.
     pub threads: usize,
     pub rounds: usize,
     pub steps_per_round: u32,
@@ -51,7 +51,7 @@ pub struct Row {
     pub fastest: f64,
     pub nanoseconds_per_particle: f64,
     pub particle_steps_per_second: f64,
-    /// Distance of particles on the lattice they start from, in m.
+    /// Particle spacing in m.
     pub spacing: f32,
     /// Where the kernel becomes zero, in m.
     pub support_radius: f32,
@@ -59,7 +59,7 @@ pub struct Row {
     pub neighbours: f64,
     /// Bytes in the simulation's buffers.
     pub memory: u64,
-    /// The most bytes that this process has had in memory so far, where the system tells.
+    /// Peak resident bytes of this process so far, if the system reports them.
     pub peak_memory: Option<u64>,
     /// The shortest time that this device could take, in s.
     pub floor: f64,
@@ -85,14 +85,14 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     let device = &arguments.device.device;
     let unchecked = arguments.unchecked_shaders;
     let executor = if unchecked {
-        // SAFETY: nobody but the simulation uses the executor.
+        // SAFETY: only the simulation uses the executor.
         unsafe { device.unchecked_executor()? }
     } else {
         device.executor()?
     };
     if unchecked && executor.gpu().is_none() {
         let message = format!(
-            "--unchecked-shaders is for GPUs, and `{device}` is none: leave it out, or choose a --device"
+            "--unchecked-shaders needs a GPU, and `{device}` is none: leave it out, or choose another --device"
         );
         return Err(Failure::new(Exit::Usage, message));
     }
@@ -108,8 +108,7 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     }
     rounds.sort_by(f64::total_cmp);
     let seconds = rounds[ROUNDS / 2];
-    // After the rounds: clocks round every pass cost a little on a GPU. The floor needs the number of
-    // dispatches in any case.
+    // After the rounds, because timing every pass slows a GPU down a little.
     let mut timed_steps = 0;
     if simulation.enable_timing() {
         let steps = if arguments.no_passes { COUNTED.min(steps) } else { steps };
@@ -155,9 +154,9 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     })
 }
 
-/// The mean number of particles within the support radius of one, itself left out, over a few of them.
+/// The mean number of neighbours within the support radius, over a sample of particles.
 fn neighbours(positions: &[[f32; 3]], support_radius: f32) -> f64 {
-    // Regular steps would fall into step with the lattice and take particles of one wall.
+    // Regular strides would resonate with the lattice and sample the particles of one wall.
     let golden = |k: usize| ((k as f64 * 0.618_033_988_75).fract() * positions.len() as f64) as usize;
     let sampled: BTreeSet<usize> = (0..SAMPLED).map(golden).collect();
     let (mut found, mut count) = (0_u64, 0_u64);
@@ -187,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sample_does_not_keep_step_with_a_lattice() {
+    fn the_sample_does_not_resonate_with_a_lattice() {
         let side = 32;
         let lattice: Vec<[f32; 3]> = (0..side * side * side)
             .map(|i| [i % side, i / side % side, i / side / side].map(|c| c as f32))

@@ -1,5 +1,5 @@
-//! `splashdown bench`: the time of a step, by number of particles, by threads and by pass, and how far it is from what
-//! the device can do, as Markdown or JSON.
+//! `splashdown bench`: the time per step, by number of particles, by threads and by pass, compared with the roofline of
+//! the device, as Markdown or JSON.
 
 mod measure;
 mod page;
@@ -15,18 +15,18 @@ use crate::speed::bench_scene;
 use crate::{console, human, memory, scene_file};
 use measure::{Row, measure};
 
-/// Sizes of `--compare`: from 8,192 particles up to as many as fit, or as take so long per step.
+/// Sizes of `--compare` as powers of two, and the longest step that is measured in s.
 const COMPARED: (u32, u32) = (13, 30);
 const LONGEST_STEP: f64 = 2.0;
 
-/// A size that was not measured, as `--json` prints it.
+/// A size that was not measured, in the JSON output.
 #[derive(Debug, Serialize)]
 struct Missing<'a> {
     particles: u32,
     error: &'a str,
 }
 
-/// Measures, and prints.
+/// Measures and prints.
 pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     let mut rows = Vec::new();
     if arguments.threads.is_empty() {
@@ -34,7 +34,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     }
     for &threads in &arguments.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-            Failure::new(Exit::Failed, format!("{threads} threads cannot be started: {error}"))
+            Failure::new(Exit::Failed, format!("cannot start {threads} threads: {error}"))
         })?;
         pool.install(|| all_sizes(arguments, &mut rows))?;
     }
@@ -61,7 +61,7 @@ fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Fail
                 .map_err(Failure::from)
                 .and_then(|scene| one_size(scene, arguments, floors, rows)),
         };
-        // A device tells what it cannot hold when it is asked to: that is where a comparison ends.
+        // A comparison ends at the first size that does not fit on the device.
         match outcome {
             Err(failure) if arguments.compare && rows.len() > before => {
                 missing(particles, &failure.message, arguments.json);
@@ -87,7 +87,7 @@ fn one_size(
     if arguments.json {
         console::print_json(&row);
     } else {
-        // What the heading says holds for the rows of one number of threads.
+        // One heading per number of threads.
         if rows.last().is_none_or(|last| last.device != row.device) {
             console::print(page::header(&row, !rows.is_empty()));
         }
@@ -102,12 +102,12 @@ fn too_large(particles: u32, rows: &[Row], device: &Device) -> Option<String> {
     let last = rows.last()?;
     let next = last.seconds_per_step * f64::from(particles) / last.particles as f64;
     if next > LONGEST_STEP {
-        return Some(format!("not measured, a step would take {next:.1} s"));
+        return Some(format!("not measured: a step would take {next:.1} s"));
     }
     memory::check(&bench_scene(particles).ok()?, device).err().map(|error| error.message)
 }
 
-/// Says where a comparison ends, and why.
+/// Prints where and why a comparison ends.
 fn missing(particles: u32, error: &str, json: bool) {
     if json {
         console::print_json(&Missing { particles, error });

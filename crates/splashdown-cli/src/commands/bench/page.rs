@@ -3,7 +3,7 @@
 use super::measure::{Row, WARM_UP};
 use crate::{human, summary};
 
-/// What holds for all rows of one device and number of threads, and the heads of their columns.
+/// The properties of all rows of one device and number of threads, and the column headings.
 pub fn header(row: &Row, another: bool) -> String {
     format!(
         "{}`{}` on {}: median of {} rounds after {WARM_UP} steps.\n\n\
@@ -35,7 +35,7 @@ pub fn line(row: &Row) -> String {
     )
 }
 
-/// What follows from the rows together, and the passes of each.
+/// Comparisons between rows, and the passes of each row.
 pub fn closing(rows: &[Row], no_passes: bool) -> String {
     let mut text = growth(rows) + &scaling(rows);
     if let Some(peak) = rows.last().and_then(|row| row.peak_memory) {
@@ -52,7 +52,7 @@ pub fn closing(rows: &[Row], no_passes: bool) -> String {
     text
 }
 
-/// How the cost of a particle grows with their number.
+/// The growth of the cost per particle with the number of particles.
 fn growth(rows: &[Row]) -> String {
     let mut text = String::new();
     for group in rows.chunk_by(|a, b| a.device == b.device).filter(|group| group.len() > 1) {
@@ -66,7 +66,7 @@ fn growth(rows: &[Row]) -> String {
     text
 }
 
-/// How much faster more threads are, size by size, than the first number of them.
+/// The speed-up over the first number of threads, for each size.
 fn scaling(rows: &[Row]) -> String {
     let Some(first) = rows.first() else { return String::new() };
     let mut text = String::new();
@@ -74,7 +74,7 @@ fn scaling(rows: &[Row]) -> String {
         let same = |other: &&Row| other.particles == row.particles && other.threads == first.threads;
         let Some(base) = rows.iter().find(same) else { continue };
         text += &format!(
-            "\n{} particles on {} over {}: {:.2} times as fast\n",
+            "\n{} particles on {} over {}: speed-up {:.2}\n",
             human::count(row.particles),
             human::counted(row.threads as u64, "thread"),
             first.threads,

@@ -1,4 +1,4 @@
-//! How fast the simulation is, looked at now and then.
+//! Measuring the speed of the simulation.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,12 +7,12 @@ use splashdown::{Simulation, SimulationError};
 use splashdown_gpu::Timings;
 use web_time::Instant;
 
-/// How long a step takes is looked at this often.
+/// The time between two measurements.
 const MEASURE: Duration = Duration::from_millis(500);
-/// Up to this many particles their mean height is looked at.
-const FEW: u32 = 20_000;
+/// The mean height is computed for at most this many particles.
+const MAX_PARTICLES: u32 = 20_000;
 
-/// What was done lately.
+/// Recent speeds and times.
 pub(super) struct Meter {
     since: Instant,
     steps: u64,
@@ -52,7 +52,7 @@ impl Meter {
             self.speed = self.simulated / passed.as_secs_f64();
             self.timings = Arc::new(simulation.take_timings());
             self.timed_steps = self.steps;
-            if simulation.stats().particles <= FEW {
+            if simulation.stats().particles <= MAX_PARTICLES {
                 let positions = simulation.particles_async().await?.positions;
                 let heights = positions.iter().map(|x| f64::from(x[1]));
                 self.mean_height = (heights.sum::<f64>() / positions.len().max(1) as f64) as f32;
@@ -62,7 +62,7 @@ impl Meter {
         Ok(())
     }
 
-    pub fn stand_still(&mut self) {
+    pub fn pause(&mut self) {
         let (timings, timed_steps, mean_height) =
             (Arc::clone(&self.timings), self.timed_steps, self.mean_height);
         *self = Self { timings, timed_steps, mean_height, ..Self::new() };

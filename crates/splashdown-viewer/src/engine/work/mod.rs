@@ -1,4 +1,4 @@
-//! The engine's own side: obeys commands, simulates, takes snapshots.
+//! The worker of the engine: executes commands, simulates, takes snapshots.
 
 mod meter;
 mod show;
@@ -18,13 +18,13 @@ use super::pace::Pace;
 use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, lock};
 use meter::Meter;
 
-/// Wall time that steps submitted at once may take: the window draws in between.
+/// Wall time in s of steps submitted at once; the window draws in between.
 const BATCH: f64 = 0.008;
-/// How long the engine sleeps when nothing is due.
-const NAP: Duration = Duration::from_millis(2);
-/// How long it sleeps when the clock stands still; a command wakes it.
-const REST: Duration = Duration::from_millis(200);
-/// How quickly a held body comes along, in 1/s.
+/// Sleep while no tick is due.
+const SHORT_SLEEP: Duration = Duration::from_millis(2);
+/// Sleep while paused; a command ends it.
+const LONG_SLEEP: Duration = Duration::from_millis(200);
+/// Rate at which a held body follows the mouse, in 1/s.
 const GRIP_RATE: f32 = 12.0;
 
 pub(super) struct Worker {
@@ -37,13 +37,13 @@ pub(super) struct Worker {
     simulation: Option<Simulation>,
     surface: Option<Surface>,
     foam: Option<Foam>,
-    /// Foam of the simulation before, to go on with.
-    kept: Option<KeptFoam>,
+    /// Foam of the previous simulation or of a checkpoint, to continue with.
+    saved_foam: Option<KeptFoam>,
     opened: Option<Arc<Opened>>,
     playing: bool,
     wants_surface: bool,
     wants_timing: bool,
-    hand: Option<MouseForce>,
+    mouse_force: Option<MouseForce>,
     grip: Option<Grip>,
     pace: Pace,
     meter: Meter,
@@ -67,26 +67,26 @@ impl Worker {
             simulation: None,
             surface: None,
             foam: None,
-            kept: None,
+            saved_foam: None,
             opened: None,
             playing: false,
             wants_surface: false,
             wants_timing: false,
-            hand: None,
+            mouse_force: None,
             grip: None,
             pace: Pace::new(),
             meter: Meter::new(),
         }
     }
 
-    /// Works until it is told to quit.
+    /// Works until [`Command::Quit`].
     pub async fn work(&mut self) {
         loop {
             for command in self.inbox.take() {
                 if matches!(command, Command::Quit) {
                     return;
                 }
-                if let Err(error) = self.obey(command).await {
+                if let Err(error) = self.execute(command).await {
                     self.fail(&error);
                 }
             }
@@ -100,16 +100,16 @@ impl Worker {
                         self.fail(&error);
                     }
                 }
-                None => self.inbox.sleep(if self.playing { NAP } else { REST }).await,
+                None => self.inbox.sleep(if self.playing { SHORT_SLEEP } else { LONG_SLEEP }).await,
             }
         }
     }
 
-    async fn obey(&mut self, command: Command) -> Result<(), SimulationError> {
+    async fn execute(&mut self, command: Command) -> Result<(), SimulationError> {
         match command {
             Command::Open(scene) => return self.open(*scene).await,
             Command::Change(scene) => {
-                // What cannot be changed leaves the water as it is.
+                // A refused change leaves the simulation as it is.
                 if let Err(error) = self.change(*scene).await {
                     lock(&lock(&self.outbox).messages).push(Message::Refused(error.to_string()));
                     (self.repaint)();
@@ -118,7 +118,7 @@ impl Worker {
             Command::Play(playing) => {
                 self.playing = playing && self.simulation.is_some();
                 self.pace.pause();
-                self.meter.stand_still();
+                self.meter.pause();
                 return self.show().await;
             }
             Command::Advance(seconds) => {
@@ -126,10 +126,10 @@ impl Worker {
                 return self.advance(seconds).await;
             }
             Command::TimeScale(scale) => self.pace.set_scale(scale),
-            Command::Hand(hand) => {
-                self.hand = hand;
+            Command::MouseForce(force) => {
+                self.mouse_force = force;
                 if let Some(simulation) = &mut self.simulation {
-                    simulation.set_mouse_force(hand)?;
+                    simulation.set_mouse_force(force)?;
                 }
             }
             Command::Grip(grip) => self.grip = grip,
@@ -165,21 +165,22 @@ impl Worker {
     }
 
     async fn open(&mut self, scene: Scene) -> Result<(), SimulationError> {
-        let (executor, told) = self.make_room()?;
-        let simulation = Simulation::prepare_async(&scene, executor, &told).await?;
-        self.kept = None;
+        let (executor, progress) = self.free_simulation()?;
+        let simulation = Simulation::prepare_async(&scene, executor, &progress).await?;
+        self.saved_foam = None;
         self.begin(simulation).await
     }
 
     async fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), SimulationError> {
-        let (executor, told) = self.make_room()?;
-        let simulation = Simulation::resume_async(checkpoint, executor, &told).await?;
-        self.kept = checkpoint.foam()?;
+        let (executor, progress) = self.free_simulation()?;
+        let simulation = Simulation::resume_async(checkpoint, executor, &progress).await?;
+        self.saved_foam = checkpoint.foam()?;
         self.begin(simulation).await
     }
 
-    /// Lets go of what runs, whose memory may be needed: what comes next, and what hears of it.
-    fn make_room(&mut self) -> Result<(Executor, impl Fn(&str, f32) + Sync + use<>), SimulationError> {
+    /// Frees the running simulation, whose memory may be needed. Returns an executor for the next one, and a callback for
+    /// the progress of its distance fields.
+    fn free_simulation(&mut self) -> Result<(Executor, impl Fn(&str, f32) + Sync + use<>), SimulationError> {
         let executor = match self.simulation.take() {
             Some(mut old) => old.executor().successor(),
             None => self.executor()?,
@@ -187,10 +188,10 @@ impl Worker {
         self.surface = None;
         self.copies = Copies::new(Arc::clone(&self.gpu));
         let messages = Arc::clone(&lock(&self.outbox).messages);
-        let told = move |body: &str, part: f32| {
-            lock(&messages).push(Message::Preparing(body.to_owned(), part));
+        let progress = move |body: &str, fraction: f32| {
+            lock(&messages).push(Message::Preparing(body.to_owned(), fraction));
         };
-        Ok((executor, told))
+        Ok((executor, progress))
     }
 
     async fn checkpoint(&mut self, text: &str, purpose: Purpose) -> Result<(), SimulationError> {
@@ -210,36 +211,36 @@ impl Worker {
         let foam_differs = simulation.scene().foam != scene.foam;
         if simulation.update_parameters(&scene)? {
             if foam_differs && let Some(foam) = &self.foam {
-                // Old foam would be where the water was then.
+                // Existing foam would not match the water.
                 foam.clear(simulation.executor())?;
             }
             if surface_differs {
                 self.surface = None;
             }
-            // The bodies are the same: the picture keeps what it has made of them.
+            // The bodies are unchanged, so the picture can reuse their buffers.
             let bodies = self.opened.as_ref().map(|opened| Arc::clone(&opened.bodies));
             self.publish_scene(bodies);
             return self.show().await;
         }
         let next = simulation.carry_over_async(&scene).await?;
-        self.kept = match &self.foam {
+        self.saved_foam = match &self.foam {
             Some(foam) if simulation.scene().foam.enabled => Some(simulation.keep_foam_async(foam).await?),
             _ => None,
         };
         self.begin(next).await
     }
 
-    /// Takes over a simulation that was just made.
+    /// Replaces the simulation.
     async fn begin(&mut self, mut simulation: Simulation) -> Result<(), SimulationError> {
         if self.wants_timing {
             simulation.enable_timing();
         }
-        simulation.set_mouse_force(self.hand)?;
+        simulation.set_mouse_force(self.mouse_force)?;
         self.simulation = Some(simulation);
         self.surface = None;
         self.foam = None;
         self.grip = None;
-        self.pace.forget();
+        self.pace.reset();
         self.meter = Meter::new();
         self.publish_scene(None);
         self.show().await
@@ -267,22 +268,22 @@ impl Worker {
             simulation.advance_foam(foam)?;
         }
         let steps = (stats.steps - before.steps) as u32;
-        let told = simulation.take_warnings();
-        lock(&lock(&self.outbox).messages).extend(told.into_iter().map(Message::Note));
+        let warnings = simulation.take_warnings();
+        lock(&lock(&self.outbox).messages).extend(warnings.into_iter().map(Message::Note));
         let stepped = begun.elapsed();
         if steps > 0 {
             let per_step = stepped.as_secs_f64() / f64::from(steps);
             simulation.set_steps_at_once((BATCH / per_step.max(1e-7)) as u32);
         }
         self.meter.count(steps, f64::from(seconds), simulation).await?;
-        // A window that has not drawn the last snapshot does not want another.
+        // No new snapshot is needed before the window has drawn the last one.
         let wanted = lock(&self.outbox).is_seen || !self.playing;
         let shown = if wanted { self.show().await } else { Ok(()) };
-        self.pace.learn(f64::from(seconds), stepped, begun.elapsed() - stepped);
+        self.pace.record(f64::from(seconds), stepped, begun.elapsed() - stepped);
         shown
     }
 
-    /// The simulation stands still, and the user hears why.
+    /// Pauses the simulation and reports the error.
     fn fail(&mut self, error: &SimulationError) {
         self.playing = false;
         lock(&lock(&self.outbox).messages).push(Message::Failed(error.to_string()));

@@ -1,4 +1,4 @@
-//! Handing out what there is: snapshots for the window, meshes to keep.
+//! Snapshots for the window, and meshes for export.
 
 use std::sync::Arc;
 
@@ -27,14 +27,14 @@ impl Worker {
             if self.foam.is_none() {
                 let settings = simulation.scene().foam;
                 let mut new = simulation.foam(&settings)?;
-                if let Some(kept) = self.kept.take() {
-                    simulation.restore_foam(&mut new, &kept)?;
+                if let Some(saved) = self.saved_foam.take() {
+                    simulation.restore_foam(&mut new, &saved)?;
                 }
                 self.foam = Some(new);
             }
-            if let Some(there) = &mut self.foam {
-                let count = simulation.foam_state_async(there).await?.count;
-                foam = Some((&*there, count));
+            if let Some(current) = &mut self.foam {
+                let count = simulation.foam_state_async(current).await?.count;
+                foam = Some((&*current, count));
             }
         }
         let bodies = simulation.body_states_async().await?;

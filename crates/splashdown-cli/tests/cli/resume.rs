@@ -1,4 +1,4 @@
-//! Going on with a run: what may be named, what is told, and that two runs do not write into one folder.
+//! Resuming a run: what may be named, what is reported, and that two runs do not write into one folder.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -48,9 +48,9 @@ fn two_runs_do_not_write_into_one_folder() -> Outcome {
     first.wait()?;
     assert_refused(&refused, 2, &["another run is writing into `out`", "--out"]);
     assert!(beside.status.success(), "{}", stderr(&beside));
-    // Half a file, as the killed one may have left it, goes with its frames.
+    // An incomplete file of the killed run is removed with its frames.
     let half = place.write("out/particles/.particles_0007.ply.1-2.partial", "ply")?;
-    // What a killed run leaves holds nobody up, and a run that ends leaves nothing.
+    // The lock of a killed run does not block, and a finished run leaves none.
     let output = place.run_small(&[]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(!place.path("out/.lock").exists() && !half.exists());
@@ -71,16 +71,16 @@ fn the_folder_of_the_checkpoints_and_a_file_in_it_name_the_run_too() -> Outcome 
     let output = inside.current_dir(place.path("out/checkpoints")).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(place.path("out/particles/particles_0006.ply").exists());
-    // One that was kept by hand has to be named itself.
-    fs::create_dir(place.path("kept"))?;
-    fs::copy(place.path("out/checkpoints/checkpoint_0006.splashdown"), place.path("kept/mine.splashdown"))?;
-    let output = place.splashdown(&["run", "--resume", "kept"]).output()?;
-    assert_refused(&output, 5, &["as in `kept/mine.splashdown`"]);
+    // A copied checkpoint has to be named itself.
+    fs::create_dir(place.path("copies"))?;
+    fs::copy(place.path("out/checkpoints/checkpoint_0006.splashdown"), place.path("copies/mine.splashdown"))?;
+    let output = place.splashdown(&["run", "--resume", "copies"]).output()?;
+    assert_refused(&output, 5, &["as in `copies/mine.splashdown`"]);
     Ok(())
 }
 
 #[test]
-fn another_device_is_chosen_and_told() -> Outcome {
+fn a_change_of_the_device_is_reported() -> Outcome {
     let place = two_frames()?;
     let longer = |frames: &str, more: &[&str]| {
         place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
@@ -92,9 +92,9 @@ fn another_device_is_chosen_and_told() -> Outcome {
     };
     change(&place, "about.json", |text| text.replace("\"CPU\"", "\"Abacus\""))?;
     let output = longer("3", &[])?;
-    assert!(stderr(&output).contains("made on Abacus, and the run goes on on CPU"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("made on Abacus, and the run continues on CPU"), "{}", stderr(&output));
     assert_eq!(asked(3)?, "cpu");
-    // The control: the same device is nothing to tell.
+    // The control: the same device is not reported.
     let output = longer("4", &["--device", "auto"])?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(asked(4)?, "auto");
@@ -105,7 +105,7 @@ fn another_device_is_chosen_and_told() -> Outcome {
 }
 
 #[test]
-fn files_that_are_gone_are_missed_and_all_are_counted() -> Outcome {
+fn missing_files_are_reported_and_all_are_counted() -> Outcome {
     let place = Place::new()?;
     let report = |root: &str| -> Result<Value, Box<dyn std::error::Error>> {
         Ok(serde_json::from_slice(&fs::read(place.path(root).join("run.json"))?)?)
@@ -121,7 +121,7 @@ fn files_that_are_gone_are_missed_and_all_are_counted() -> Outcome {
     assert_eq!(report("straight")?["files"], 12);
     assert_eq!(report("out")?["files"], 12);
 
-    // Other formats are asked for from here on: the frames before never had them.
+    // Other formats are requested from here on: earlier frames do not have them.
     let longer = |frames: &str, more: &[&str]| {
         place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
     };
@@ -132,13 +132,13 @@ fn files_that_are_gone_are_missed_and_all_are_counted() -> Outcome {
     fs::remove_file(place.path("out/particles/particles_0006.vtk"))?;
     let output = longer("7", &[])?;
     assert!(output.status.success(), "{}", stderr(&output));
-    let said = "1 file of the frames before cannot be found any more: particles/particles_0006.vtk";
-    assert!(stderr(&output).contains(said), "{}", stderr(&output));
+    let warning = "1 file of earlier frames cannot be found: particles/particles_0006.vtk";
+    assert!(stderr(&output).contains(warning), "{}", stderr(&output));
     Ok(())
 }
 
 #[test]
-fn notes_that_no_command_line_can_have_left_are_refused() -> Outcome {
+fn notes_that_no_run_can_have_stored_are_refused() -> Outcome {
     let place = two_frames()?;
     let wrong = [
         ("words", "notes.json"),
@@ -154,8 +154,8 @@ fn notes_that_no_command_line_can_have_left_are_refused() -> Outcome {
         let output = place.splashdown(&["run", "--resume", newest, "--frames", "3"]).output()?;
         assert_refused(&output, 5, &["checkpoint_0002", "notes.json", word]);
     }
-    // The one before it is as good.
+    // The one before it is used.
     let output = place.splashdown(&["run", "--resume", "out"]).output()?;
-    assert!(output.status.success() && stderr(&output).contains("passed over"), "{}", stderr(&output));
+    assert!(output.status.success() && stderr(&output).contains("skipped"), "{}", stderr(&output));
     Ok(())
 }

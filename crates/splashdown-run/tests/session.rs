@@ -1,0 +1,148 @@
+//! Runs by the library alone: stopping, resuming, and what a reporter receives.
+
+use std::cell::Cell;
+use std::fs;
+use std::path::Path;
+
+use splashdown::scene::Scene;
+use splashdown::{Device, Progress, Started};
+use splashdown_run::{
+    CompleteFrame, Reporter, RunEnd, RunError, RunOutcome, RunRequest, RunSettings, Session, Stop, run,
+};
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+const SCENE: &str = r#"
+[scene]
+name = "small"
+duration = 0.02
+frame_rate = 200
+[domain]
+min = [0, 0, 0]
+max = [1, 1, 0.3]
+[fluid]
+particle_spacing = 0.05
+[[fluid.block]]
+position = [0, 0, 0]
+size = [0.3, 0.3, 0.3]
+"#;
+
+/// Records what a run reports.
+#[derive(Default)]
+struct Log {
+    started: Vec<u32>,
+    frames: Vec<u32>,
+    warnings: Vec<String>,
+}
+
+impl Reporter for Log {
+    fn warning(&mut self, text: &str) {
+        self.warnings.push(text.to_owned());
+    }
+
+    fn started(&mut self, started: &Started) {
+        self.started.push(started.first_frame);
+    }
+
+    fn progress(&mut self, progress: &Progress) {
+        assert!(progress.frame <= progress.frames);
+    }
+
+    fn frame_complete(&mut self, frame: &CompleteFrame) {
+        assert!(frame.files.iter().all(|file| file.exists()), "{frame:?}");
+        self.frames.push(frame.summary.index);
+    }
+}
+
+fn settings() -> RunSettings {
+    let mut settings = RunSettings::default();
+    settings.device = Some(Device::Cpu);
+    settings.pictures = Some(Vec::new());
+    settings
+}
+
+fn request(out: &Path) -> Result<RunRequest, Box<dyn std::error::Error>> {
+    let mut request = RunRequest::new(Scene::parse(SCENE, "small.toml")?, settings());
+    request.out = Some(out.to_owned());
+    Ok(request)
+}
+
+fn assert_finished(outcome: &RunOutcome) {
+    assert!(matches!(outcome.end, RunEnd::Finished(_)), "{outcome:?}");
+    assert_eq!(outcome.complete_frames, 5);
+}
+
+#[test]
+fn a_stopped_run_resumes_bit_identically() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let [straight, out] = ["straight", "out"].map(|name| folder.path().join(name));
+    assert_finished(&run(request(&straight)?, &mut (), &|| Stop::No)?);
+
+    let mut log = Log::default();
+    let polls = Cell::new(0);
+    let stop = || {
+        polls.set(polls.get() + 1);
+        if polls.get() > 2 { Stop::AfterFrame } else { Stop::No }
+    };
+    let stopped = run(request(&out)?, &mut log, &stop)?;
+    assert!(matches!(stopped.end, RunEnd::Interrupted) && stopped.resumable, "{stopped:?}");
+    let frames = stopped.complete_frames as u32;
+    assert!((1..5).contains(&frames));
+    assert_eq!((log.started, log.frames), (vec![0], (0..frames).collect()));
+
+    // The folder contains all settings; none has to be given again.
+    let mut log = Log::default();
+    let resumed = run(RunRequest::resume(&out, RunSettings::default())?, &mut log, &|| Stop::No)?;
+    assert_finished(&resumed);
+    assert_eq!((log.started, log.frames), (vec![frames - 1], (frames..5).collect()));
+    assert_eq!(log.warnings, [""; 0]);
+    for frame in 0..5 {
+        let name = format!("particles/particles_{frame:04}.ply");
+        assert!(fs::read(straight.join(&name))? == fs::read(out.join(&name))?, "{name}");
+    }
+
+    // There is nothing left to resume.
+    let again = run(RunRequest::resume(&out, RunSettings::default())?, &mut (), &|| Stop::No);
+    assert!(matches!(again, Err(RunError::AlreadyFinished { .. })), "{again:?}");
+    Ok(())
+}
+
+#[test]
+fn a_folder_is_used_by_one_run_at_a_time() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("out");
+    let first = Session::start(request(&out)?, &mut ())?;
+    let second = Session::start(request(&out)?, &mut ());
+    assert!(matches!(second, Err(RunError::FolderInUse { .. })));
+    assert_finished(&first.finish(&mut (), &|| Stop::No));
+    assert_finished(&run(request(&out)?, &mut (), &|| Stop::No)?);
+    Ok(())
+}
+
+#[test]
+fn a_failure_after_the_start_leaves_complete_frames() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("out");
+    // A folder in place of the third frame's file.
+    fs::create_dir_all(out.join("particles/particles_0002.ply/x"))?;
+    let outcome = run(request(&out)?, &mut (), &|| Stop::No)?;
+    let RunEnd::Failed(RunError::Io(error)) = &outcome.end else { panic!("{outcome:?}") };
+    assert!(error.to_string().contains("particles_0002.ply"), "{error}");
+    assert_eq!(outcome.complete_frames, 2);
+    let report = fs::read_to_string(outcome.folder.report())?;
+    assert!(report.contains("\"failed\"") && report.contains("particles_0002.ply"), "{report}");
+    Ok(())
+}
+
+#[test]
+fn pictures_of_the_surface_require_a_surface() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let mut settings = settings();
+    settings.surface = false;
+    settings.pictures = Some(vec![splashdown::scene::PictureKind::Surface]);
+    let mut request = RunRequest::new(Scene::parse(SCENE, "small.toml")?, settings);
+    request.out = Some(folder.path().join("out"));
+    assert!(matches!(Session::start(request, &mut ()), Err(RunError::SurfaceRequired)));
+    assert!(!folder.path().join("out").exists());
+    Ok(())
+}
