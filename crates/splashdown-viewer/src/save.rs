@@ -27,8 +27,10 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     // The text must read back as the same scene.
     let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
     read.camera = scene.camera;
-    let (source, warnings, text) = (scene.source.clone(), scene.warnings.clone(), scene.text.clone());
-    if (Scene { source, warnings, text, ..read }) != *scene {
+    read.source.clone_from(&scene.source);
+    read.warnings.clone_from(&scene.warnings);
+    read.text = scene.text.clone();
+    if read != *scene {
         return Err("this scene has changes that a scene file cannot express".to_owned());
     }
     Ok(written)

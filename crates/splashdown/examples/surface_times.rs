@@ -49,10 +49,11 @@ fn input() -> Result<(Vec<[f32; 3]>, f32), Failure> {
 fn main() -> Result<(), Failure> {
     let (points, spacing) = input()?;
     for (cell_ratio, smoothing_iterations) in [(0.5, 0), (0.5, 25), (0.25, 0)] {
-        let params = SurfaceParams {
-            cell_size: cell_ratio * spacing,
-            smoothing_iterations,
-            ..SurfaceParams::new(spacing)
+        let params = {
+            let mut params = SurfaceParams::new(spacing);
+            params.cell_size = cell_ratio * spacing;
+            params.smoothing_iterations = smoothing_iterations;
+            params
         };
         println!(
             "{} particles, cells of {cell_ratio} spacings, {smoothing_iterations} rounds of smoothing",

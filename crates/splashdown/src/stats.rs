@@ -2,6 +2,7 @@
 
 /// The state of a simulation at the end of a call of [`Simulation::advance`](crate::Simulation::advance).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct Stats {
     /// Simulated time in seconds.
     pub time: f64,

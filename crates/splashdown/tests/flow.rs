@@ -21,7 +21,11 @@ fn tank(size: [f32; 3], water: [f32; 3]) -> Scene {
 fn empty() -> Scene {
     let mut scene = tank([1.0, 1.0, 1.0], [0.02; 3]);
     scene.fluid.blocks.clear();
-    Scene { gravity: Vec3::ZERO, ..scene }
+    {
+        let mut changed = scene;
+        changed.gravity = Vec3::ZERO;
+        changed
+    }
 }
 
 fn emitter() -> Emitter {
@@ -51,7 +55,11 @@ fn born(particles: &Particles) -> impl Iterator<Item = (Vec3, Vec3)> {
 
 #[test]
 fn a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere() {
-    let scene = Scene { emitters: vec![emitter()], ..empty() };
+    let scene = {
+        let mut changed = empty();
+        changed.emitters = vec![emitter()];
+        changed
+    };
     let layer = splashdown::flow::outlet::disc_layer(0.1, SPACING).len() as f32;
     for (name, executor) in testing::executors("a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere") {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
@@ -77,7 +85,11 @@ fn a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere() {
 
 #[test]
 fn a_submerged_inlet_does_not_burst() {
-    let mut scene = Scene { emitters: vec![emitter()], ..tank([0.8, 1.0, 0.4], [0.8, 0.4, 0.4]) };
+    let mut scene = {
+        let mut changed = tank([0.8, 1.0, 0.4], [0.8, 0.4, 0.4]);
+        changed.emitters = vec![emitter()];
+        changed
+    };
     // In the wall, under water.
     scene.emitters[0].position = Vec3::new(0.0, 0.2, 0.2);
     scene.emitters[0].outlet = Outlet::Rectangle { size: [0.12, 0.12] };
@@ -95,7 +107,11 @@ fn a_submerged_inlet_does_not_burst() {
 
 #[test]
 fn emission_is_the_same_to_the_last_bit_every_time() {
-    let scene = Scene { emitters: vec![emitter()], ..empty() };
+    let scene = {
+        let mut changed = empty();
+        changed.emitters = vec![emitter()];
+        changed
+    };
     let results = [0, 1].map(|_| {
         let mut simulation = Simulation::with_executor(&scene, Executor::from(CpuExecutor::new())).unwrap();
         run(&mut simulation, 2, 0.1);
@@ -111,7 +127,12 @@ fn a_sink_drains_everything_inside_and_its_places_are_used_again() {
         name: "outlet".into(),
         region: SinkRegion::Box { min: Vec3::new(0.3, 0.0, 0.0), max: Vec3::ONE },
     };
-    let mut scene = Scene { emitters: vec![emitter()], sinks: vec![sink], ..empty() };
+    let mut scene = {
+        let mut changed = empty();
+        changed.emitters = vec![emitter()];
+        changed.sinks = vec![sink];
+        changed
+    };
     // A third of the room that the emitter needs.
     scene.duration = 0.15;
     for (name, executor) in
@@ -134,13 +155,21 @@ fn a_sink_drains_everything_inside_and_its_places_are_used_again() {
 #[test]
 fn a_limit_is_kept_and_a_lack_of_room_is_told_once() {
     let few = Emitter { max_particles: Some(300), ..emitter() };
-    let scene = Scene { emitters: vec![few], ..empty() };
+    let scene = {
+        let mut changed = empty();
+        changed.emitters = vec![few];
+        changed
+    };
     let mut simulation = Simulation::with_executor(&scene, Executor::from(CpuExecutor::new())).unwrap();
     let (stats, _) = run(&mut simulation, 3, 0.1);
     assert!(stats.emitted <= 300 && stats.emitted > 200, "{}", stats.emitted);
     assert_eq!(stats.refused, 0);
 
-    let mut scene = Scene { emitters: vec![emitter()], ..empty() };
+    let mut scene = {
+        let mut changed = empty();
+        changed.emitters = vec![emitter()];
+        changed
+    };
     scene.duration = 0.1;
     let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(12), ..RunOptions::new(&scene) };
     let events: Vec<Event> = Run::new(&scene, options).unwrap().map(Result::unwrap).collect();

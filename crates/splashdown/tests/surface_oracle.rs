@@ -84,7 +84,11 @@ fn hausdorff(a: &Mesh, b: &Mesh, reach: f32) -> f32 {
 
 /// Compares with equal parameters and, as a control, with another iso level.
 fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
-    let params = SurfaceParams { cell_size: cell_ratio * SPACING, ..SurfaceParams::new(SPACING) };
+    let params = {
+        let mut params = SurfaceParams::new(SPACING);
+        params.cell_size = cell_ratio * SPACING;
+        params
+    };
     let cell = params.cell_size;
     let theirs = oracle(points, &params);
     for (name, mut executor) in testing::executors(test_name) {
@@ -96,7 +100,11 @@ fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
         assert!(distance < 0.5, "{test_name}, {name}: {distance} cells");
         assert!((volume - 1.0).abs() < 0.01, "{test_name}, {name}: volume ratio {volume}");
         // The smallest change worth noticing: the level of a layer one tenth of a spacing farther out.
-        let other = SurfaceParams { iso_level: 0.5, ..params };
+        let other = {
+            let mut params = params;
+            params.iso_level = 0.5;
+            params
+        };
         let (control, _) = reconstruct(points, &other, &mut executor).unwrap();
         let volume = control.volume() / theirs.volume();
         assert!(volume > 1.01, "{test_name}, {name}: the control's volume ratio is {volume}");

@@ -64,13 +64,11 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
         attributes::check_format(&arguments.attribute, output, &ending(output))?;
     }
     let spacing = spacing(arguments, &steps)?;
-    let params = SurfaceParams {
-        support_radius: arguments.support_radius.unwrap_or(2.0 * spacing),
-        cell_size: arguments.cell_size.unwrap_or(0.5 * spacing),
-        iso_level: arguments.iso_level,
-        smoothing_iterations: arguments.smoothing,
-        ..SurfaceParams::new(spacing)
-    };
+    let mut params = SurfaceParams::new(spacing);
+    params.support_radius = arguments.support_radius.unwrap_or(params.support_radius);
+    params.cell_size = arguments.cell_size.unwrap_or(params.cell_size);
+    params.iso_level = arguments.iso_level;
+    params.smoothing_iterations = arguments.smoothing;
     params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
     if let Some(folder) = steps[0].output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         prepare_folder(folder)?;

@@ -47,7 +47,10 @@ impl Viewer {
                     .as_ref()
                     .map_or_else(|| self.state.scene.name.clone(), |path| path.display().to_string());
                 match Scene::parse(&self.state.scene.text, &name) {
-                    Ok(scene) => self.open(Scene { source, ..scene }),
+                    Ok(mut scene) => {
+                        scene.source = source;
+                        self.open(scene);
+                    }
                     Err(error) => self.state.notify(error.to_string(), true, now),
                 }
             }

@@ -46,6 +46,7 @@ const MOTION_COLUMNS: usize = 19;
 
 /// A body's shape.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BodyMesh {
     /// The body's name in the scene.
     pub name: String,
@@ -57,6 +58,7 @@ pub struct BodyMesh {
 
 /// Where a body is, and what the fluid does to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BodyState {
     /// Where the mesh's origin is, in m.
     pub position: Vec3,

@@ -172,6 +172,7 @@ pub enum SinkRegion {
 
 /// Something measured while running.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Probe {
     /// Its name: the file's and the column's.
     pub name: String,

@@ -14,6 +14,7 @@ use super::things::{Body, Emitter, MeshSource, Probe, Sink};
 
 /// A whole scene: what to simulate, how, and what to write.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Scene {
     /// Short name; names the output folder. Letters, digits, `-` and `_`.
     pub name: String,
@@ -118,6 +119,7 @@ impl Shake {
 
 /// The fluid: resolution, material and starting shape.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Fluid {
     /// Distance of neighbouring particles on the starting lattice, in m: the one resolution number.
     pub particle_spacing: f32,
@@ -329,6 +331,7 @@ impl Format {
 
 /// How the fluid is computed. [`Solver::default`] holds the scene file's defaults.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Solver {
     /// The method.
     pub method: Method,
@@ -397,6 +400,7 @@ impl Default for Solver {
 
 /// How the surface is extracted.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceSettings {
     /// Whether it is extracted at all.
     pub enabled: bool,
@@ -425,6 +429,7 @@ impl SurfaceSettings {
 
 /// Whether and how a splash makes foam, spray and bubbles (Ihmsen et al. 2012).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct FoamSettings {
     /// Whether it does at all.
     pub enabled: bool,
@@ -484,6 +489,7 @@ pub struct Camera {
 
 /// What is written.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Output {
     /// File formats of the frames.
     pub formats: Vec<Format>,

@@ -27,6 +27,7 @@ pub struct SurfaceInput {
 
 /// How large a mesh is, and what it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SurfaceStats {
     /// Vertices.
     pub vertices: u32,

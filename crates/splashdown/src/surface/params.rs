@@ -20,6 +20,7 @@ const MAX_BLOCKS: u64 = 1 << 26;
 
 /// What a surface looks like and how finely it is resolved. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceParams {
     /// Distance of particles on the initial lattice; it sets the first guess of the mesh's size.
     pub particle_spacing: f32,
