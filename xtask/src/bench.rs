@@ -24,7 +24,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let mut page = Page::new("Benchmarks", command, &binary)?;
     page.add(
         "Each section names its command. The scene is a dam break that grows with the number of particles; the support radius is two \
-         spacings. *Over the floor* is the time of a step divided by the minimum time that the device needs for the memory traffic, the \
+         spacings. *Over the roofline* is the time of a step divided by the minimum time that the device needs for the memory traffic, the \
          arithmetic and the dispatches of a step; these limits are measured in the same process. [Performance](performance.md) \
          explains the results, and [Comparison](peers.md) compares them with other programs.",
     );

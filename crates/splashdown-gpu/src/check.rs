@@ -2,40 +2,43 @@
 //!
 //! It parses and validates the WGSL with `naga` and compares entry point, workgroup size, override constants
 //! and, for every binding, number, name, access, element type as spelled, size, and a struct's members with
-//! their offsets, sizes and scalars. Its own tests hold one mutation for each of these, which it must catch.
+//! their offsets, sizes and scalars. Every binding must be used, and every writable one written. The tests contain one
+//! mutation for each of these, which the gate must catch.
 
 use naga::proc::Layouter;
+use naga::valid::{FunctionInfo, GlobalUse};
 use naga::{AddressSpace, Handle, Module, StorageAccess, StructMember, Type, TypeInner};
 
-use crate::{Access, Binding, Field, PassDesc, wgsl};
+use crate::{Access, Binding, Field, PassDesc};
 
 /// Most storage buffers of a pass, so that it runs in every browser.
 pub const MAX_STORAGE_BUFFERS: usize = 8;
 /// Most invocations of a workgroup, so that it runs in every browser.
 pub const MAX_INVOCATIONS: u32 = 256;
 
-/// Compares a pass with its own WGSL.
+/// Compares a pass with its WGSL.
 ///
 /// # Errors
-/// The first difference, in words.
+/// A description of the first difference.
 pub fn check(pass: &PassDesc) -> Result<(), String> {
-    check_source(pass, &wgsl::expand(pass.wgsl, pass.imports)?)
+    check_source(pass, &pass.source()?)
 }
 
-/// Compares a pass with this WGSL, imports already expanded.
+/// Compares a pass with this WGSL, in which imports and bindings are expanded.
 ///
 /// # Errors
-/// The first difference, in words.
+/// A description of the first difference.
 pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| error.emit_to_string(source))?;
+    let info =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
+            .validate(&module)
+            .map_err(|error| error.emit_to_string(source))?;
     let [entry] = module.entry_points.as_slice() else {
         return Err(format!("{} entry points; a pass has one", module.entry_points.len()));
     };
     if entry.stage != naga::ShaderStage::Compute {
-        return Err(format!("`{}` is no compute shader", entry.name));
+        return Err(format!("`{}` is not a compute shader", entry.name));
     }
     if entry.name != pass.entry {
         return Err(format!("entry point `{}` in WGSL, `{}` in Rust", entry.name, pass.entry));
@@ -64,14 +67,14 @@ pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
             return Err(format!("`override {name}` has no value, in WGSL or in Rust"));
         }
     }
-    check_bindings(pass, &module)
+    check_bindings(pass, &module, info.get_entry_point(0))
 }
 
-fn check_bindings(pass: &PassDesc, module: &Module) -> Result<(), String> {
+fn check_bindings(pass: &PassDesc, module: &Module, info: &FunctionInfo) -> Result<(), String> {
     let mut layouter = Layouter::default();
     layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
     let mut found = 0;
-    for (_, variable) in module.global_variables.iter() {
+    for (handle, variable) in module.global_variables.iter() {
         let Some(place) = &variable.binding else { continue };
         let name = variable.name.as_deref().unwrap_or_default();
         if place.group != 0 {
@@ -97,6 +100,13 @@ fn check_bindings(pass: &PassDesc, module: &Module) -> Result<(), String> {
             _ => (variable.ty, layouter[variable.ty].size as usize),
         };
         check_element(declared, module, element, size, &layouter)?;
+        let usage = info[handle];
+        if usage.is_empty() {
+            return Err(format!("`{name}` is bound and never used"));
+        }
+        if access == Access::ReadWrite && !usage.intersects(GlobalUse::WRITE | GlobalUse::ATOMIC) {
+            return Err(format!("`{name}` is bound as writable and never written"));
+        }
         found += 1;
     }
     if found != pass.bindings.len() {
@@ -151,12 +161,12 @@ fn check_members(
     Ok(())
 }
 
-/// A member in words, to compare and to show.
+/// A member as text, to compare and to show.
 fn line(name: &str, offset: usize, size: usize, scalar: &str) -> String {
     format!("{name}: {size} bytes of {scalar} at {offset}")
 }
 
-/// What a member is made of, as [`Field::scalar`] has it.
+/// The scalar of a member, as in [`Field::scalar`].
 fn scalar(module: &Module, ty: Handle<Type>) -> String {
     match &module.types[ty].inner {
         TypeInner::Vector { scalar, .. } | TypeInner::Matrix { scalar, .. } => spell_scalar(*scalar),

@@ -1,15 +1,15 @@
-//! Adapters: which there are, what they can do, and opening one.
+//! Adapters: listing them, their capabilities, and opening one.
 //!
-//! On Linux, Mesa's layer that chooses a device asks for a Wayland display whenever adapters are listed, and prints
-//! "XDG_RUNTIME_DIR is invalid or not set" to the standard error where there is none. It is harmless. A program that
-//! wants silence sets that variable to any directory before its first thread starts; a library must not.
+//! On Linux, Mesa's device selection layer connects to a Wayland display whenever adapters are listed, and prints
+//! "XDG_RUNTIME_DIR is invalid or not set" to the standard error if there is none. The message is harmless. A program
+//! avoids it by setting that variable to any directory before its first thread starts; a library must not.
 
 use std::sync::{Arc, Mutex};
 
 use crate::exec::Mapping;
 use crate::{GpuError, block_on};
 
-/// How to get a driver where there is none.
+/// How to install a driver.
 pub const MISSING_DRIVER_HINT: &str = "install your graphics card's Vulkan driver or, for drawing without a GPU, \
      a software one: on Debian and Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`, on Fedora \
      `dnf install mesa-vulkan-drivers vulkan-loader`; Windows and macOS bring theirs";
@@ -17,14 +17,14 @@ pub const MISSING_DRIVER_HINT: &str = "install your graphics card's Vulkan drive
 /// Which device to use.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum DeviceRequest {
-    /// The best real GPU, else a software driver.
+    /// The best hardware GPU, otherwise a software driver.
     #[default]
     Auto,
-    /// The best real GPU; software drivers do not count.
+    /// The best hardware GPU; software drivers are not considered.
     Hardware,
-    /// A software driver, even where there is a GPU.
+    /// A software driver, even if there is a GPU.
     Software,
-    /// The adapter whose name or backend contains this, whatever the case.
+    /// The adapter whose name or backend contains this text, ignoring case.
     Named(String),
 }
 
@@ -35,27 +35,27 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// What it calls itself.
+    /// Its name and kind.
     pub info: wgpu::AdapterInfo,
-    /// What it allows.
+    /// Its limits.
     pub limits: wgpu::Limits,
     checks_shaders: bool,
     trouble: Arc<Mutex<Option<Trouble>>>,
 }
 
-/// What the device reported outside of any call.
+/// An error that the device reported asynchronously.
 #[derive(Clone, Debug)]
 enum Trouble {
     Lost(String),
     Refused(String),
 }
 
-/// What [`list_adapters`] tells of an adapter.
+/// An adapter in [`list_adapters`].
 #[derive(Clone, Debug)]
 pub struct AdapterReport {
-    /// What it calls itself.
+    /// Its name and kind.
     pub info: wgpu::AdapterInfo,
-    /// What it allows.
+    /// Its limits.
     pub limits: wgpu::Limits,
     /// True if it runs on the CPU.
     pub software: bool,
@@ -64,7 +64,7 @@ pub struct AdapterReport {
 }
 
 impl AdapterReport {
-    /// The largest number of bytes one buffer may have.
+    /// The largest size of a buffer in bytes.
     pub fn largest_buffer(&self) -> u64 {
         largest_buffer(&self.limits)
     }
@@ -74,10 +74,18 @@ fn largest_buffer(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
+/// The flags of an instance whose indirect arguments are written by passes of this project. They need no validation,
+/// which costs another dispatch and two barriers for each indirect one. `WGPU_VALIDATION_INDIRECT_CALL=1` enables it.
+pub fn instance_flags() -> wgpu::InstanceFlags {
+    let flags = wgpu::InstanceFlags::from_build_config() - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
+    flags.with_env()
+}
+
 fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // OpenGL's compute shaders lack what the passes need; where it is the only API, the CPU does better.
+    // The compute shaders of OpenGL lack features that the passes need; where it is the only API, the CPU is faster.
     descriptor.backends.remove(wgpu::Backends::GL);
+    descriptor.flags = instance_flags();
     wgpu::Instance::new(descriptor)
 }
 
@@ -85,7 +93,7 @@ fn is_software(info: &wgpu::AdapterInfo) -> bool {
     info.device_type == wgpu::DeviceType::Cpu
 }
 
-/// Real hardware first.
+/// Hardware first.
 fn rank(kind: wgpu::DeviceType) -> u8 {
     use wgpu::DeviceType as D;
     match kind {
@@ -97,7 +105,7 @@ fn rank(kind: wgpu::DeviceType) -> u8 {
     }
 }
 
-/// Adapters, the best first.
+/// All adapters, the best first.
 async fn adapters() -> Vec<wgpu::Adapter> {
     let mut found = instance().enumerate_adapters(wgpu::Backends::all()).await;
     found.sort_by_key(|adapter| rank(adapter.get_info().device_type));
@@ -127,7 +135,7 @@ impl Gpu {
         block_on(Self::open_async(request))
     }
 
-    /// [`open`](Self::open) where blocking is not possible, as on a web page.
+    /// Asynchronous [`open`](Self::open), for a web page, which cannot block.
     ///
     /// # Errors
     /// As [`open`](Self::open).
@@ -136,7 +144,7 @@ impl Gpu {
         Self::from_adapter(Self::choose(&found, request)?).await
     }
 
-    /// The best of these adapters that is meant. Those of OpenGL are not, whatever is asked for.
+    /// The best of these adapters that meets the request; never one of OpenGL.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`], [`GpuError::NoneOfKind`], [`GpuError::UnknownDevice`].
@@ -172,8 +180,8 @@ impl Gpu {
         })
     }
 
-    /// What to ask of an adapter: its own limits, not WebGPU's smallest, so that a buffer may be as large as
-    /// the memory allows; and clocks, where it has them.
+    /// The device to request from an adapter: with the adapter's own limits instead of WebGPU's defaults, so that a
+    /// buffer may be as large as the memory allows, and with timestamps if it has them.
     pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("splashdown"),
@@ -191,7 +199,7 @@ impl Gpu {
         Ok(Self::from_device(device, queue, info))
     }
 
-    /// Takes over a device that is open already: a window's. From now on its errors are noted here.
+    /// Takes over an open device, such as that of a window. From now on its errors are recorded here.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
         let trouble = Arc::new(Mutex::new(None));
         let report = Arc::clone(&trouble);
@@ -200,7 +208,7 @@ impl Gpu {
         }));
         let report = Arc::clone(&trouble);
         device.set_device_lost_callback(move |reason, message| {
-            // On a page it is the browser that destroys; elsewhere it is the end of this program.
+            // On a web page the browser destroys the device; elsewhere this is the end of the program.
             if reason != wgpu::DeviceLostReason::Destroyed || cfg!(target_arch = "wasm32") {
                 note(&report, Trouble::Lost(format!("{reason:?}: {message}")));
             }
@@ -208,11 +216,11 @@ impl Gpu {
         Self { limits: device.limits(), device, queue, info, checks_shaders: true, trouble }
     }
 
-    /// The same device without the checks that keep shaders inside their buffers and out of endless loops: for
-    /// measuring what the checks cost. A browser has its own, which stay.
+    /// The same device without the checks that keep shaders inside their buffers and out of endless loops, to measure
+    /// the cost of the checks. A browser keeps its own checks.
     ///
     /// # Safety
-    /// Every pass that runs on it, with whatever its buffers hold, must stay inside its buffers and end by itself.
+    /// Every pass that runs on it must stay inside its buffers and terminate, whatever its buffers hold.
     #[must_use]
     pub unsafe fn without_shader_checks(self) -> Self {
         Self { checks_shaders: false, ..self }
@@ -223,7 +231,7 @@ impl Gpu {
         self.checks_shaders
     }
 
-    /// The name and the API behind it, e.g. "NVIDIA H200 (Vulkan)".
+    /// The name and the API, e.g. "NVIDIA H200 (Vulkan)".
     pub fn name(&self) -> String {
         describe(&self.info)
     }
@@ -233,12 +241,12 @@ impl Gpu {
         is_software(&self.info)
     }
 
-    /// The largest number of bytes one buffer may have.
+    /// The largest size of a buffer in bytes.
     pub fn largest_buffer(&self) -> u64 {
         largest_buffer(&self.limits)
     }
 
-    /// The content of a buffer with [`wgpu::BufferUsages::MAP_READ`] that a submission fills, as soon as that is done.
+    /// The content of a buffer with [`wgpu::BufferUsages::MAP_READ`] that a submission fills, once it is complete.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].
@@ -250,17 +258,17 @@ impl Gpu {
         Mapping::new(self, staging, submission).take().await
     }
 
-    /// Lets finished work report itself, without waiting.
+    /// Runs the callbacks of completed work, without waiting.
     ///
     /// # Errors
     /// As [`health`](Self::health).
     pub fn poll(&self) -> Result<(), GpuError> {
-        // An error of `poll` says that nothing was finished; a lost device shows in `health`.
+        // An error of `poll` means that nothing is complete; `health` reports a lost device.
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.health("work on the device")
     }
 
-    /// Waits for this submission and those before it, or for all. On a web page it does not wait: the browser reports.
+    /// Waits for this submission and those before it, or for all. On a web page it returns immediately.
     ///
     /// # Errors
     /// As [`health`](Self::health).
@@ -270,7 +278,7 @@ impl Gpu {
         outcome.map(drop).map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
     }
 
-    /// What `make` makes, and the error of this kind that the device had with it. On a web page errors come later, by
+    /// The result of `make`, and the error of this kind that it caused. On a web page errors arrive later, through
     /// [`health`](Self::health).
     pub(crate) fn scoped<T>(
         &self,
@@ -285,7 +293,7 @@ impl Gpu {
         (made, block_on(scope.pop()))
     }
 
-    /// What the device has reported since, outside of any call.
+    /// The first error that the device reported asynchronously, if any.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`], [`GpuError::Refused`].
@@ -299,7 +307,7 @@ impl Gpu {
     }
 }
 
-/// Keeps the first report: what follows is mostly its consequence.
+/// Keeps the first report: later ones are mostly its consequences.
 fn note(trouble: &Mutex<Option<Trouble>>, new: Trouble) {
     if let Ok(mut trouble) = trouble.lock() {
         trouble.get_or_insert(new);

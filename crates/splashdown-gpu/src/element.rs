@@ -1,4 +1,4 @@
-//! Which Rust types may lie in a buffer, and how WGSL spells them.
+//! The Rust types that buffers may hold, and how WGSL spells them.
 
 /// A type that may be the element of a storage buffer.
 ///
@@ -19,15 +19,15 @@ pub struct Field {
     pub offset: usize,
     /// Its size in bytes.
     pub size: usize,
-    /// What it is made of: `f32` for `f32`, `vec3<f32>`, `mat4x4<f32>` and arrays of them; a struct's name.
+    /// The scalar: `f32` for `f32`, `vec3<f32>`, `mat4x4<f32>` and arrays of them; a struct's name.
     pub scalar: &'static str,
 }
 
 /// A type that may be a member of a [`gpu_struct!`](crate::gpu_struct).
 ///
-/// The scalar tells `count: u32` from `count: f32`, which name, offset and size cannot.
+/// The scalar distinguishes `count: u32` from `count: f32`, which have the same name, offset and size.
 pub trait GpuMember: bytemuck::Pod {
-    /// What it is made of, see [`Field::scalar`].
+    /// See [`Field::scalar`].
     const SCALAR: &'static str;
 }
 
@@ -66,10 +66,10 @@ impl GpuElement for glam::UVec4 {
     const WGSL: &'static str = "vec4<u32>";
 }
 
-/// Declares a struct that is laid out equally in Rust and in WGSL, with the table that the gate compares.
+/// Declares a struct with the same layout in Rust and in WGSL, with the table that the gate compares.
 ///
-/// Give fields in WGSL's order and fill the padding that WGSL inserts with fields of your own: the gate reports any
-/// difference in names, order, offsets, sizes and scalars.
+/// Give the fields in the order of the WGSL, and fill the padding that WGSL inserts with explicit fields: the gate
+/// reports any difference in names, order, offsets, sizes and scalars.
 ///
 /// ```
 /// splashdown_gpu::gpu_struct! {

@@ -1,4 +1,4 @@
-//! What can go wrong between this crate and a device.
+//! The errors of this crate.
 
 /// An error of the GPU layer.
 #[derive(Debug, thiserror::Error)]
@@ -7,35 +7,35 @@ pub enum GpuError {
     /// No adapter at all.
     #[error("no usable GPU or software Vulkan driver was found; {hint}")]
     NoAdapter {
-        /// How to get one.
+        /// How to install one.
         hint: &'static str,
     },
-    /// Adapters there are, but not of the kind asked for.
+    /// There are adapters, but none of the requested kind.
     #[error(
         "no {wanted} was found; available are: {available}. Use auto, cpu or a part of one of these names"
     )]
     NoneOfKind {
-        /// The kind asked for.
+        /// The requested kind.
         wanted: &'static str,
-        /// The names there are.
+        /// The names of the available adapters.
         available: String,
     },
-    /// Adapters there are, but not the one asked for.
+    /// There are adapters, but not the requested one.
     #[error(
         "no device is called {name:?}; available are: {available}. Use auto, gpu, cpu or a part of one of these names"
     )]
     UnknownDevice {
         /// The name given.
         name: String,
-        /// The names there are.
+        /// The names of the available adapters.
         available: String,
     },
-    /// The driver refused to make a device.
+    /// The driver refused to open the device.
     #[error("the driver of {adapter} refused to open it: {reason}")]
     OpenFailed {
         /// The adapter's name.
         adapter: String,
-        /// The driver's words.
+        /// The driver's message.
         reason: String,
     },
     /// A buffer is larger than the device can bind or allocate.
@@ -45,13 +45,13 @@ pub enum GpuError {
     TooLarge {
         /// The buffer's name.
         label: String,
-        /// Elements asked for.
+        /// Requested elements.
         len: u64,
-        /// Bytes asked for.
+        /// Requested bytes.
         bytes: u64,
-        /// Most bytes.
+        /// The largest number of bytes.
         limit: u64,
-        /// Most elements.
+        /// The largest number of elements.
         fits: u64,
     },
     /// The device ran out of memory.
@@ -61,47 +61,53 @@ pub enum GpuError {
     OutOfMemory {
         /// The buffer's name.
         label: String,
-        /// Bytes asked for.
+        /// Requested bytes.
         bytes: u64,
     },
-    /// The device went away: unplugged, reset by the system, or hung.
+    /// The device was lost: unplugged, reset by the system, or hung.
     #[error(
-        "the device was lost ({reason}); what was written before stays valid. Start again, or use --device cpu"
+        "the device was lost ({reason}); files written before stay valid. Start again, or use --device cpu"
     )]
     DeviceLost {
-        /// The driver's words.
+        /// The driver's message.
         reason: String,
     },
     /// wgpu refused a command; a bug in this crate or in a pass.
     #[error("the device refused {what}: {reason}")]
     Refused {
-        /// What was asked for.
+        /// The refused operation.
         what: String,
-        /// wgpu's words.
+        /// wgpu's message.
         reason: String,
     },
-    /// A recording names a buffer of the wrong type, or misses one; a bug in whoever recorded it.
+    /// A buffer was used after it was freed, or in another executor.
+    #[error("buffer {label:?} was freed, or belongs to another executor")]
+    NoSuchBuffer {
+        /// The buffer's label.
+        label: String,
+    },
+    /// A pass gets a buffer of the wrong type, or none, for one of its bindings; a bug in the recording code.
     #[error("pass {pass}: {reason}")]
     BadBinding {
         /// The pass's label.
         pass: &'static str,
-        /// What differs.
+        /// The difference.
         reason: String,
     },
-    /// A command does not fit its buffers; a bug in whoever recorded it.
+    /// A command does not fit its buffers; a bug in the recording code.
     #[error("recording {recording:?}: {reason}")]
     BadCommand {
         /// The recording's label.
         recording: String,
-        /// What does not fit.
+        /// The misfit.
         reason: String,
     },
-    /// A WGSL text could not be put together.
+    /// The WGSL of a pass could not be assembled or compiled.
     #[error("pass {pass}: {reason}")]
     BadShader {
         /// The pass's label.
         pass: &'static str,
-        /// What is wrong.
+        /// The problem.
         reason: String,
     },
 }

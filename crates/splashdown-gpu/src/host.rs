@@ -1,81 +1,68 @@
-//! Buffers in host memory, and how a pass's CPU side sees them.
+//! Buffers in host memory, and how the CPU code of a pass views them.
 
-use std::cell::{Ref, RefCell, RefMut};
 use std::sync::atomic::AtomicU32;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::GpuElement;
+use crate::{BindingType, GpuElement};
 
-/// Sixteen bytes on a sixteen-byte border, so that every element type may be viewed in place.
+/// Sixteen bytes aligned to sixteen, so that every element type may be viewed in place.
 #[repr(C, align(16))]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Chunk([u8; 16]);
 
 /// A buffer in host memory.
+#[derive(Default)]
 pub(crate) struct HostBuffer {
-    chunks: RefCell<Vec<Chunk>>,
+    chunks: Vec<Chunk>,
     bytes: usize,
 }
 
 impl HostBuffer {
-    /// `None` if the memory cannot be had. Zeros come from the system, which gives real memory on first use.
+    /// `None` if the memory cannot be allocated. Zeros come from the system, which gives real memory on first use.
     pub(crate) fn new(bytes: u64, fill: u8) -> Option<Self> {
         let bytes = usize::try_from(bytes).ok()?;
         let mut chunks: Vec<Chunk> = bytemuck::try_zeroed_vec(bytes.div_ceil(16)).ok()?;
         if fill != 0 {
             chunks.fill(Chunk([fill; 16]));
         }
-        Some(Self { chunks: RefCell::new(chunks), bytes })
+        Some(Self { chunks, bytes })
     }
 
-    pub(crate) fn read<T: Pod>(&self) -> Ref<'_, [T]> {
-        Ref::map(self.chunks.borrow(), |chunks| {
-            bytemuck::cast_slice(&bytemuck::cast_slice::<_, u8>(chunks)[..self.bytes])
-        })
+    pub(crate) fn read<T: Pod>(&self) -> &[T] {
+        bytemuck::cast_slice(&bytemuck::cast_slice::<_, u8>(&self.chunks)[..self.bytes])
     }
 
-    pub(crate) fn write<T: Pod>(&self) -> RefMut<'_, [T]> {
-        RefMut::map(self.chunks.borrow_mut(), |chunks| {
-            bytemuck::cast_slice_mut(&mut bytemuck::cast_slice_mut::<_, u8>(chunks)[..self.bytes])
-        })
-    }
-
-    /// Borrowed for one dispatch; `None` if another binding of the same dispatch already holds it.
-    pub(crate) fn slot(&self, writable: bool) -> Option<Slot<'_>> {
-        Some(Slot {
-            bytes: self.bytes,
-            held: if writable {
-                Held::Write(self.chunks.try_borrow_mut().ok()?)
-            } else {
-                Held::Read(self.chunks.try_borrow().ok()?)
-            },
-        })
+    pub(crate) fn write<T: Pod>(&mut self) -> &mut [T] {
+        bytemuck::cast_slice_mut(&mut bytemuck::cast_slice_mut::<_, u8>(&mut self.chunks)[..self.bytes])
     }
 }
 
-enum Held<'a> {
-    Read(Ref<'a, Vec<Chunk>>),
-    Write(RefMut<'a, Vec<Chunk>>),
+pub(crate) enum Bytes<'a> {
+    Read(&'a [u8]),
+    Write(&'a mut [u8]),
 }
 
-/// One binding as the CPU side of a pass sees it.
+/// One binding of a dispatch on the CPU; a [`bindings!`](crate::bindings) struct converts from the slots of a pass.
 ///
-/// The executor has already compared the element type with the declaration; asking for another type, or writing to a
-/// binding declared as read, is a bug in the pass and panics.
+/// The executor has already compared the element type with the declaration. A pass whose CPU code views other bindings
+/// than it declares panics.
 pub struct Slot<'a> {
-    held: Held<'a>,
-    bytes: usize,
+    name: &'static str,
+    bytes: Bytes<'a>,
 }
 
-impl Slot<'_> {
+impl<'a> Slot<'a> {
+    pub(crate) fn new(name: &'static str, bytes: Bytes<'a>) -> Self {
+        Self { name, bytes }
+    }
+
     /// The elements.
     pub fn read<T: GpuElement>(&self) -> &[T] {
-        let chunks: &[Chunk] = match &self.held {
-            Held::Read(chunks) => chunks,
-            Held::Write(chunks) => chunks,
-        };
-        bytemuck::cast_slice(&bytemuck::cast_slice::<_, u8>(chunks)[..self.bytes])
+        bytemuck::cast_slice(match &self.bytes {
+            Bytes::Read(bytes) => bytes,
+            Bytes::Write(bytes) => bytes,
+        })
     }
 
     /// The elements, writable.
@@ -83,11 +70,9 @@ impl Slot<'_> {
     /// # Panics
     /// If the binding is declared as read or uniform.
     pub fn write<T: GpuElement>(&mut self) -> &mut [T] {
-        match &mut self.held {
-            Held::Read(_) => panic!("the pass writes to a binding that it declares as read"),
-            Held::Write(chunks) => {
-                bytemuck::cast_slice_mut(&mut bytemuck::cast_slice_mut::<_, u8>(chunks)[..self.bytes])
-            }
+        match &mut self.bytes {
+            Bytes::Read(_) => panic!("the pass writes to binding {:?}, which it declares as read", self.name),
+            Bytes::Write(bytes) => bytemuck::cast_slice_mut(bytes),
         }
     }
 
@@ -98,13 +83,32 @@ impl Slot<'_> {
 
     /// The elements as atomics, for passes whose invocations write to the same places.
     pub fn atomics(&mut self) -> &[AtomicU32] {
-        as_atomic(self.write::<u32>())
+        as_atomic::<u32>(self.write())
+    }
+
+    /// The content of the binding `name`, which must be the next one. [`bindings!`](crate::bindings) calls it.
+    #[doc(hidden)]
+    pub fn view<'b, T: BindingType + ?Sized>(slot: Option<&'b mut Self>, name: &str) -> &'b T {
+        T::view(Self::named(slot, name).read())
+    }
+
+    /// The writable content of the binding `name`, which must be the next one. [`bindings!`](crate::bindings) calls it.
+    #[doc(hidden)]
+    pub fn view_mut<'b, T: BindingType + ?Sized>(slot: Option<&'b mut Self>, name: &str) -> &'b mut T {
+        T::view_mut(Self::named(slot, name).write())
+    }
+
+    fn named<'b>(slot: Option<&'b mut Self>, name: &str) -> &'b mut Self {
+        let found = slot.as_ref().map(|slot| slot.name);
+        assert!(found == Some(name), "the CPU code views binding {name:?}, but the pass declares {found:?}");
+        slot.expect("it has a name")
     }
 }
 
-/// Views exclusively borrowed integers as atomics.
-pub fn as_atomic(values: &mut [u32]) -> &[AtomicU32] {
+/// Views exclusively borrowed elements as atomic 32-bit words.
+pub fn as_atomic<T: GpuElement>(elements: &mut [T]) -> &[AtomicU32] {
+    let words: &mut [u32] = bytemuck::cast_slice_mut(elements);
     // SAFETY: `AtomicU32` has the size, alignment and bit validity of `u32`, and the exclusive borrow guarantees that
     // for its lifetime nobody accesses the values except through these atomics.
-    unsafe { &*(std::ptr::from_mut(values) as *const [AtomicU32]) }
+    unsafe { &*(std::ptr::from_mut(words) as *const [AtomicU32]) }
 }

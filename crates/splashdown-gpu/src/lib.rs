@@ -1,15 +1,19 @@
 //! A thin layer on [`wgpu`] that knows nothing of fluids.
 //!
-//! Work is written down once and executed in two ways:
+//! Work is recorded once and executed in two ways:
 //!
 //! 1. A [`PassDesc`] declares one compute pass as data: its WGSL, its bindings with their types, and the Rust
-//!    function that does the same work on a machine without a GPU. The [gate](check::check) parses the WGSL with
-//!    `naga` and compares it with the declaration, so that the two cannot drift apart unnoticed.
-//! 2. A [`Recording`] is a list of commands (dispatches, copies, clears, bounded repeats) over buffers.
+//!    function that does the same work on a machine without a GPU. [`bindings!`] lists the bindings once; the WGSL, the
+//!    CPU code and the recordings refer to them by name. The [gate](check::check) parses the WGSL with `naga` and
+//!    compares it with the declaration, so that the two stay in agreement.
+//! 2. A [`Recording`] is a list of commands (dispatches, copies, clears, bounded repetitions) over buffers, which a
+//!    [`BufferSet`] finds by name.
 //! 3. An [`Executor`] owns the buffers and runs recordings: on the GPU ([`GpuExecutor`]) or on the CPU
 //!    ([`CpuExecutor`]), from equal input to comparable output.
-//! 4. On these stand four primitives, each a folder that shows how a pass is written: [`scan`], [`reduce`],
-//!    [`compact`] and [`sort`].
+//! 4. Three primitives are built on these, each a folder that shows how a pass is written: [`scan`], [`compact`] and
+//!    [`sort`].
+//!
+//! With the feature `roofline` there are also measurements of what a device can do at best.
 //!
 //! ```
 //! use splashdown_gpu::{CpuExecutor, Executor, Recording, scan};
@@ -24,42 +28,51 @@
 //! # Ok::<(), splashdown_gpu::GpuError>(())
 //! ```
 
-// `gpu_struct!` names this crate by its own name, here as everywhere.
+// The macros name this crate by its own name, here as in other crates.
 extern crate self as splashdown_gpu;
 
+mod binding;
+mod buffer;
 pub mod check;
 pub mod compact;
 mod device;
 mod element;
 mod error;
 mod exec;
-pub mod floors;
 mod host;
 mod pass;
 mod record;
-pub mod reduce;
+#[cfg(feature = "roofline")]
+pub mod roofline;
 pub mod scan;
 pub mod sort;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod testing;
+mod timer;
 mod timing;
 mod wait;
 pub mod wgsl;
 
-pub use device::{AdapterReport, DeviceRequest, Gpu, MISSING_DRIVER_HINT, list_adapters};
+pub use binding::{Access, Binding, BindingType, Shape};
+pub use buffer::{Buffer, BufferId, BufferSet};
+pub use device::{AdapterReport, DeviceRequest, Gpu, MISSING_DRIVER_HINT, instance_flags, list_adapters};
 pub use element::{Field, GpuElement, GpuMember, GpuStruct};
 pub use error::GpuError;
 pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback, refused_passes};
 pub use host::{Slot, as_atomic};
-pub use pass::{Access, Binding, CpuWork, PassDesc, read, uniform, uniform_array, write};
-pub use record::{Buffer, BufferId, Command, Flag, Grid, Recording, dispatch_groups};
+pub use pass::{CpuWork, PassDesc, read, uniform, uniform_array, write};
+pub use record::{Bind, Command, DispatchSize, Flag, Grid, Recording, Rounds, dispatch_groups};
+pub use timer::PassTimer;
 pub use timing::{PassTime, Timings};
 pub use wait::block_on;
 pub use wgsl::WgslModule;
 
 /// Every pass of this crate, for the gate and the tests.
 pub fn passes() -> Vec<&'static PassDesc> {
-    [&scan::PASSES[..], &reduce::PASSES, &compact::PASSES, &sort::PASSES, &floors::PASSES].concat()
+    let primitives = [&scan::PASSES[..], &compact::PASSES, &sort::PASSES];
+    #[cfg(feature = "roofline")]
+    let primitives = [&primitives[..], &[&roofline::PASSES]].concat();
+    primitives.concat()
 }
 
 #[doc(hidden)]

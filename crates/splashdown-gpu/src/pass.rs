@@ -1,62 +1,41 @@
 //! One declaration per compute pass, read by the executors, the gate and the tests.
 
-use crate::{Field, GpuElement, GpuStruct, Slot, WgslModule};
-
-/// How a pass uses a binding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Access {
-    /// `var<uniform>`
-    Uniform,
-    /// `var<storage, read>`
-    Read,
-    /// `var<storage, read_write>`
-    ReadWrite,
-}
-
-/// One binding of a pass: its place is its index in [`PassDesc::bindings`], in bind group 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Binding {
-    /// The variable's name in WGSL.
-    pub name: &'static str,
-    /// How the pass uses it.
-    pub access: Access,
-    /// The element's type as WGSL spells it, without `atomic<>`.
-    pub element: &'static str,
-    /// The element's size in bytes.
-    pub size: usize,
-    /// Members and offsets if the element is a struct.
-    pub fields: &'static [Field],
-}
+use crate::{Access, Binding, Field, GpuElement, GpuStruct, Shape, Slot, WgslModule, wgsl};
 
 const fn binding<T: GpuElement>(name: &'static str, access: Access) -> Binding {
-    Binding { name, access, element: T::WGSL, size: size_of::<T>(), fields: T::FIELDS }
+    let (element, size, fields): (_, _, &[Field]) = (T::WGSL, size_of::<T>(), T::FIELDS);
+    Binding { name, access, atomic: false, shape: Shape::Array, element, size, fields }
 }
 
-/// Declares a uniform struct.
+/// A uniform struct, until every pass has a [`bindings!`](crate::bindings) list.
+#[doc(hidden)]
 pub const fn uniform<T: GpuStruct>(name: &'static str) -> Binding {
     binding::<T>(name, Access::Uniform)
 }
 
-/// Declares a uniform array of vectors of four.
+/// A uniform array, until every pass has a [`bindings!`](crate::bindings) list.
+#[doc(hidden)]
 pub const fn uniform_array(name: &'static str) -> Binding {
     binding::<glam::Vec4>(name, Access::Uniform)
 }
 
-/// Declares a storage array, or a storage struct, that the pass reads.
+/// A storage buffer that is read, until every pass has a [`bindings!`](crate::bindings) list.
+#[doc(hidden)]
 pub const fn read<T: GpuElement>(name: &'static str) -> Binding {
     binding::<T>(name, Access::Read)
 }
 
-/// Declares a storage array, or a storage struct, that the pass reads and writes.
+/// A storage buffer that is written, until every pass has a [`bindings!`](crate::bindings) list.
+#[doc(hidden)]
 pub const fn write<T: GpuElement>(name: &'static str) -> Binding {
     binding::<T>(name, Access::ReadWrite)
 }
 
-/// What a pass's CPU side is asked to do.
+/// The amount of work of one dispatch, for the CPU code of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CpuWork {
-    /// Number of invocations: the exact number of a [`Grid::Items`](crate::Grid::Items), else workgroups times the
-    /// workgroup's size.
+    /// Number of invocations: the exact number of a [`DispatchSize::Items`](crate::DispatchSize::Items), otherwise
+    /// workgroups times the size of a workgroup.
     pub items: u32,
     /// Number of workgroups.
     pub groups: u32,
@@ -64,7 +43,7 @@ pub struct CpuWork {
 
 /// A compute pass declared as data.
 ///
-/// The WGSL file has one entry point, named by `entry`; its bindings are those of group 0 in the order given here.
+/// The WGSL file has one entry point, named by `entry`, and the line `#bindings` in place of its bindings.
 pub struct PassDesc {
     /// Name in timings, errors and tests, e.g. `"cells.count"`. Unique.
     pub label: &'static str,
@@ -72,15 +51,16 @@ pub struct PassDesc {
     pub wgsl: &'static str,
     /// The modules that `#import` lines in the text may name.
     pub imports: &'static [WgslModule],
-    /// The entry point.
+    /// The entry point, which has the name of the file.
     pub entry: &'static str,
-    /// Invocations per workgroup; at most 256 in all, which every browser grants.
+    /// Invocations per workgroup; at most 256 in all, the limit that every browser grants.
     pub workgroup_size: [u32; 3],
     /// Values for the WGSL's `override` constants.
     pub constants: &'static [(&'static str, f64)],
-    /// The bindings; at most 8 storage buffers, which every browser grants.
+    /// The bindings: the `LIST` of a [`bindings!`](crate::bindings) struct. At most 8 storage buffers, the limit that
+    /// every browser grants.
     pub bindings: &'static [Binding],
-    /// The same work in Rust; receives one slot per binding, in order.
+    /// The same work in Rust. The slots convert into the [`bindings!`](crate::bindings) struct.
     pub cpu: fn(CpuWork, &mut [Slot<'_>]),
 }
 
@@ -94,5 +74,13 @@ impl PassDesc {
     /// Invocations per workgroup.
     pub const fn invocations(&self) -> u32 {
         self.workgroup_size[0] * self.workgroup_size[1] * self.workgroup_size[2]
+    }
+
+    /// The complete WGSL: imports pasted, bindings declared.
+    ///
+    /// # Errors
+    /// The name of an import that [`imports`](Self::imports) lacks.
+    pub fn source(&self) -> Result<String, String> {
+        wgsl::expand(self.wgsl, self.imports, self.bindings)
     }
 }

@@ -1,56 +1,16 @@
-//! A list of commands over buffers: what a step is, before anybody executes it.
+//! A list of commands over buffers: a step before any executor runs it.
 
-use std::marker::PhantomData;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::{GpuElement, PassDesc};
+use crate::{Buffer, BufferId, BufferSet, GpuElement, PassDesc};
 
-/// Names a buffer of one [`Executor`](crate::Executor).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct BufferId(pub(crate) u32);
-
-/// A buffer of `T` in one [`Executor`](crate::Executor). A plain handle: copying it copies no data.
-pub struct Buffer<T> {
-    pub(crate) id: BufferId,
-    pub(crate) len: u32,
-    pub(crate) element: PhantomData<fn() -> T>,
-}
-
-impl<T> Clone for Buffer<T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-impl<T> Copy for Buffer<T> {}
-
-impl<T> std::fmt::Debug for Buffer<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Buffer#{}[{}]", self.id.0, self.len)
-    }
-}
-
-impl<T> Buffer<T> {
-    /// The name by which commands refer to it.
-    pub fn id(&self) -> BufferId {
-        self.id
-    }
-
-    /// Number of elements.
-    pub fn len(&self) -> u32 {
-        self.len
-    }
-
-    /// True if it has no elements.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-}
-
-/// One 32-bit word of a buffer that says "stop" when it is not zero.
+/// One 32-bit word of a buffer that ends a repetition when it is not zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Flag {
     /// The buffer.
     pub buffer: BufferId,
-    /// The word's place in the buffer, in words.
+    /// The index of the word in the buffer.
     pub word: u32,
 }
 
@@ -61,27 +21,71 @@ impl Flag {
     }
 }
 
-/// How much of a pass to run.
+/// How many rounds of a repetition a submission contains. The host may change the number between submissions without
+/// recording again: clones share it.
+///
+/// A GPU cannot skip the rounds behind the one that raises the flag; each costs a dispatch that does nothing. So the
+/// host sets the number to a little more than the rounds that the last submission needed.
+#[derive(Clone, Debug)]
+pub struct Rounds {
+    most: u32,
+    current: Arc<AtomicU32>,
+}
+
+impl Rounds {
+    /// `most` rounds, until [`set`](Self::set) chooses fewer.
+    pub fn new(most: u32) -> Self {
+        Self { most, current: Arc::new(AtomicU32::new(most)) }
+    }
+
+    /// Chooses the number of rounds of the next submissions, limited to [`most`](Self::most).
+    pub fn set(&self, rounds: u32) {
+        self.current.store(rounds.min(self.most), Ordering::Relaxed);
+    }
+
+    /// The number of rounds of the next submission.
+    pub fn get(&self) -> u32 {
+        self.current.load(Ordering::Relaxed)
+    }
+
+    /// The largest number of rounds.
+    pub fn most(&self) -> u32 {
+        self.most
+    }
+}
+
+/// The number of invocations or workgroups of a dispatch.
 #[derive(Clone, Copy, Debug)]
-pub enum Grid {
-    /// This many invocations in one dimension. Past 65,535 workgroups the GPU uses two dimensions, so shaders find
-    /// their number with `#import gpu/index`, and check it against the number of items themselves.
+pub enum DispatchSize {
+    /// This many invocations in one dimension. Past 65,535 workgroups the GPU uses two dimensions, so shaders compute
+    /// their index with `#import gpu/index` and compare it with the number of items themselves.
     Items(u32),
     /// This many workgroups, numbered likewise.
     Groups(u32),
-    /// As many workgroups as the three words of this buffer at `word` say when the command is reached.
+    /// The number of workgroups in each dimension is read from three words of a buffer when the command runs.
     Indirect {
         /// A buffer of `u32`.
         buffer: BufferId,
-        /// Where the three words begin.
+        /// The index of the first of the three words.
         word: u32,
     },
 }
 
-/// Most workgroups in one dimension of a dispatch, on every adapter.
+impl DispatchSize {
+    /// As many workgroups as the first three words of this buffer say.
+    pub fn indirect(buffer: Buffer<u32>) -> Self {
+        Self::Indirect { buffer: buffer.id, word: 0 }
+    }
+}
+
+/// Former name of [`DispatchSize`], until every user has changed.
+#[doc(hidden)]
+pub type Grid = DispatchSize;
+
+/// The largest number of workgroups in one dimension of a dispatch, on every adapter.
 const MAX_GROUPS: u32 = 65_535;
 
-/// Splits a number of workgroups so that no dimension is past 65,535; the last row may be longer than needed.
+/// Splits a number of workgroups so that no dimension exceeds 65,535; the last row may be longer than needed.
 pub fn dispatch_groups(groups: u32) -> [u32; 3] {
     let rows = groups.div_ceil(MAX_GROUPS).max(1);
     [groups.div_ceil(rows), rows, 1]
@@ -92,11 +96,11 @@ pub fn dispatch_groups(groups: u32) -> [u32; 3] {
 pub enum Command {
     /// Run a pass.
     Dispatch {
-        /// Which.
+        /// The pass.
         pass: &'static PassDesc,
-        /// How much.
-        grid: Grid,
-        /// Its buffers, in the order of [`PassDesc::bindings`].
+        /// The size of the dispatch.
+        size: DispatchSize,
+        /// The buffers, in the order of [`PassDesc::bindings`].
         buffers: Vec<BufferId>,
     },
     /// Copy a whole buffer into the beginning of another one.
@@ -108,21 +112,55 @@ pub enum Command {
     },
     /// Set every byte of a buffer to zero.
     Clear {
-        /// Which.
+        /// The buffer.
         buffer: BufferId,
     },
-    /// Run the body until the flag is set, at most `most` times.
+    /// Run the body until the flag is set, at most as often as `rounds` says.
     ///
-    /// The CPU tests the flag before every round. A GPU cannot, without asking the host: it runs all rounds in one
-    /// submission, and the body's passes find the flag set and do nothing.
+    /// The CPU tests the flag before every round. A GPU runs all rounds in one submission; the passes of the body
+    /// read the flag and do nothing once it is set. So each of them has to bind the flag's buffer, and the body
+    /// contains no copy and no clear, which know no flag.
     Repeat {
         /// The commands of a round.
         body: Vec<Command>,
-        /// Most rounds.
-        most: u32,
+        /// The number of rounds, which the host may change between submissions.
+        rounds: Rounds,
         /// When to stop.
         until: Flag,
     },
+}
+
+/// What a [`Recording`] accepts as the buffers of a dispatch.
+#[doc(hidden)]
+pub trait Bind {
+    fn bind(&self, pass: &'static PassDesc) -> Result<Vec<BufferId>, String>;
+}
+
+impl Bind for BufferSet {
+    fn bind(&self, pass: &'static PassDesc) -> Result<Vec<BufferId>, String> {
+        pass.bindings.iter().map(|binding| self.find(binding.name)).collect()
+    }
+}
+
+/// Positional lists, until every user has changed.
+impl Bind for [BufferId] {
+    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
+        Ok(self.to_vec())
+    }
+}
+
+/// Positional lists, until every user has changed.
+impl<const N: usize> Bind for [BufferId; N] {
+    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
+        Ok(self.to_vec())
+    }
+}
+
+/// Positional lists, until every user has changed.
+impl Bind for Vec<BufferId> {
+    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
+        Ok(self.clone())
+    }
 }
 
 /// A list of commands with a name.
@@ -132,17 +170,23 @@ pub struct Recording {
     pub label: String,
     /// The commands, in order; each sees what those before it wrote.
     pub commands: Vec<Command>,
+    /// The first dispatch whose buffers were not found: the pass and the reason.
+    pub(crate) error: Option<(&'static str, String)>,
 }
 
 impl Recording {
     /// An empty list.
     pub fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), commands: Vec::new() }
+        Self { label: label.into(), commands: Vec::new(), error: None }
     }
 
-    /// Appends a dispatch.
-    pub fn dispatch(&mut self, pass: &'static PassDesc, grid: Grid, buffers: &[BufferId]) {
-        self.commands.push(Command::Dispatch { pass, grid, buffers: buffers.to_vec() });
+    /// Appends a dispatch; every binding of the pass gets the buffer of its name. Where the set has no such buffer,
+    /// running the recording is an error that names pass and binding.
+    pub fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, buffers: &(impl Bind + ?Sized)) {
+        match buffers.bind(pass) {
+            Ok(buffers) => self.commands.push(Command::Dispatch { pass, size, buffers }),
+            Err(reason) => self.note(Some((pass.label, reason))),
+        }
     }
 
     /// Appends a copy of all of `from` to the beginning of `to`.
@@ -158,11 +202,17 @@ impl Recording {
     /// Appends all of another recording.
     pub fn append(&mut self, other: &Recording) {
         self.commands.extend(other.commands.iter().cloned());
+        self.note(other.error.clone());
     }
 
-    /// Appends a bounded repetition of another recording.
-    pub fn repeat(&mut self, body: &Recording, most: u32, until: Flag) {
-        self.commands.push(Command::Repeat { body: body.commands.clone(), most, until });
+    /// Appends a bounded repetition of another recording; see [`Command::Repeat`].
+    pub fn repeat(&mut self, body: &Recording, rounds: &Rounds, until: Flag) {
+        self.commands.push(Command::Repeat { body: body.commands.clone(), rounds: rounds.clone(), until });
+        self.note(body.error.clone());
+    }
+
+    fn note(&mut self, error: Option<(&'static str, String)>) {
+        self.error = self.error.take().or(error);
     }
 }
 
@@ -171,7 +221,7 @@ mod tests {
     use super::dispatch_groups;
 
     #[test]
-    fn no_dimension_is_past_the_limit_and_none_is_missing() {
+    fn no_dimension_exceeds_the_limit_and_no_group_is_missing() {
         for groups in [1, 65_535, 65_536, 131_070, 131_071, 1 << 24, 3_000_000_000] {
             let [x, y, z] = dispatch_groups(groups);
             assert!(x <= 65_535 && y <= 65_535 && z == 1, "{groups}: {x} x {y}");

@@ -4,13 +4,13 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-/// Runs a future to its end.
+/// Runs a future to completion.
 ///
-/// Outside of a web page a future of this project waits for the device whenever it is polled, so that this is
-/// the same as calling a function that blocks.
+/// Outside of a web page a future of this project waits for the device whenever it is polled, so this is the same as
+/// calling a blocking function.
 ///
 /// # Panics
-/// On a web page, if the future has to wait for the browser: nothing can block there. Work on the CPU never has to.
+/// On a web page, which cannot block, if the future has to wait for the browser. Work on the CPU never waits.
 pub fn block_on<T>(future: impl Future<Output = T>) -> T {
     if cfg!(not(target_arch = "wasm32")) {
         return pollster::block_on(future);

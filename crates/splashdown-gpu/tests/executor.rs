@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use splashdown_gpu::{
-    Buffer, CpuExecutor, Executor, Flag, GpuError, GpuExecutor, Grid, PassDesc, Recording, gpu_struct,
-    testing, uniform, wgsl, write,
+    Buffer, BufferSet, CpuExecutor, DispatchSize, Executor, Flag, GpuError, GpuExecutor, PassDesc, Recording,
+    Rounds, bindings, gpu_struct, testing, wgsl,
 };
 
 gpu_struct! {
@@ -16,14 +16,33 @@ gpu_struct! {
     }
 }
 
+bindings! {
+    struct AddBindings {
+        params: uniform Params,
+        numbers: write [u32],
+    }
+}
+
+bindings! {
+    struct CountDownBindings {
+        state: write [u32],
+    }
+}
+
+bindings! {
+    struct TwiceBindings {
+        a: write [u32],
+        b: write [u32],
+    }
+}
+
 /// Adds `amount` to every element.
 static ADD: PassDesc = PassDesc {
     label: "test.add",
     wgsl: "\
 #import gpu/index
 struct Params { len: u32, amount: u32 }
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read_write> numbers: array<u32>;
+#bindings
 @compute @workgroup_size(64)
 fn add(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
@@ -35,13 +54,10 @@ fn add(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) g
     entry: "add",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[uniform::<Params>("params"), write::<u32>("numbers")],
+    bindings: AddBindings::LIST,
     cpu: |work, slots| {
-        let [params, numbers] = slots else { unreachable!() };
-        let Params { len, amount } = params.get();
-        numbers.write::<u32>()[..len.min(work.items) as usize]
-            .iter_mut()
-            .for_each(|number| *number += amount);
+        let AddBindings { params: Params { len, amount }, numbers } = slots.into();
+        numbers[..*len.min(&work.items) as usize].iter_mut().for_each(|number| *number += amount);
     },
 };
 
@@ -49,7 +65,7 @@ fn add(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) g
 static COUNT_DOWN: PassDesc = PassDesc {
     label: "test.count_down",
     wgsl: "\
-@group(0) @binding(0) var<storage, read_write> state: array<u32>;
+#bindings
 @compute @workgroup_size(1)
 fn count_down() {
     if (state[1] != 0u) {
@@ -63,10 +79,10 @@ fn count_down() {
     entry: "count_down",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[write::<u32>("state")],
+    bindings: CountDownBindings::LIST,
     cpu: |_, slots| {
         ROUNDS.fetch_add(1, Ordering::Relaxed);
-        let state = slots[0].write::<u32>();
+        let CountDownBindings { state } = slots.into();
         if state[1] == 0 {
             state[0] -= 1;
             state[1] = u32::from(state[0] == 0);
@@ -82,8 +98,12 @@ static ROUNDS: AtomicU32 = AtomicU32::new(0);
 fn adding(executor: &mut Executor, numbers: Buffer<u32>, amount: u32) -> (Recording, Buffer<Params>) {
     let params = executor.create_uniform("params", &Params { len: numbers.len(), amount }).unwrap();
     let mut recording = Recording::new("adding");
-    recording.dispatch(&ADD, Grid::Items(numbers.len()), &[params.id(), numbers.id()]);
+    recording.dispatch(&ADD, DispatchSize::Items(numbers.len()), &to_add(params, numbers));
     (recording, params)
+}
+
+fn to_add(params: Buffer<Params>, numbers: Buffer<u32>) -> BufferSet {
+    BufferSet::new().with("params", params).with("numbers", numbers)
 }
 
 #[test]
@@ -115,9 +135,10 @@ fn repetition_stops_at_the_flag_and_at_the_bound() {
     for (name, mut executor) in testing::executors("repetition_stops_at_the_flag_and_at_the_bound") {
         let state = executor.create_from("state", &[5_u32, 0, 0]).unwrap();
         let mut round = Recording::new("round");
-        round.dispatch(&COUNT_DOWN, Grid::Groups(1), &[state.id()]);
+        round.dispatch(&COUNT_DOWN, DispatchSize::Groups(1), &BufferSet::new().with("state", state));
         let mut recording = Recording::new("repeat");
-        recording.repeat(&round, 20, Flag::new(state, 4));
+        let rounds = Rounds::new(20);
+        recording.repeat(&round, &rounds, Flag::new(state, 4));
         ROUNDS.store(0, Ordering::Relaxed);
         executor.run(&recording).unwrap();
         assert_eq!(executor.read(state).unwrap(), [0, 1, 5], "{name}: the flag");
@@ -127,6 +148,14 @@ fn repetition_stops_at_the_flag_and_at_the_bound() {
         executor.write(state, &[50, 0, 0]).unwrap();
         executor.run(&recording).unwrap();
         assert_eq!(executor.read(state).unwrap(), [30, 0, 20], "{name}: the bound");
+        for (chosen, done) in [(3, 3), (0, 0), (100, 20)] {
+            rounds.set(chosen);
+            assert_eq!((rounds.get(), rounds.most()), (done, 20));
+            executor.write(state, &[50, 0, 0]).unwrap();
+            executor.run(&recording).unwrap();
+            let expected = [50 - done, 0, done];
+            assert_eq!(executor.read(state).unwrap(), expected, "{name}: {chosen} rounds, same recording");
+        }
     }
 }
 
@@ -137,8 +166,8 @@ fn indirect_dispatches_take_their_size_from_a_buffer() {
         let arguments = executor.create_from("arguments", &[7_u32, 2, 1, 1]).unwrap();
         let params = executor.create_uniform("params", &Params { len: 1000, amount: 1 }).unwrap();
         let mut recording = Recording::new("indirect");
-        let grid = Grid::Indirect { buffer: arguments.id(), word: 1 };
-        recording.dispatch(&ADD, grid, &[params.id(), numbers.id()]);
+        let size = DispatchSize::Indirect { buffer: arguments.id(), word: 1 };
+        recording.dispatch(&ADD, size, &to_add(params, numbers));
         executor.run(&recording).unwrap();
         let ones = |count: usize| [vec![1; count], vec![0; 1000 - count]].concat();
         assert_eq!(executor.read(numbers).unwrap(), ones(128), "{name}: two workgroups");
@@ -172,31 +201,122 @@ fn commands_that_do_not_fit_are_refused_before_anything_runs() {
         let floats = executor.create::<f32>("floats", 3).unwrap();
         let storage_params = executor.create::<Params>("storage params", 1).unwrap();
         let (add, params) = adding(&mut executor, numbers, 10);
+        let freed = executor.create::<u32>("freed", 3).unwrap();
+        executor.free([freed]).unwrap();
         let foreign = {
             let mut other = Executor::from(CpuExecutor::new());
             (0..20).map(|_| other.create::<u32>("foreign", 3).unwrap()).last().unwrap()
         };
-        let (p, n) = (params.id(), numbers.id());
-        let items = Grid::Items(3);
-        let indirect = |buffer, word| Grid::Indirect { buffer, word };
+        let items = DispatchSize::Items(3);
+        let set = BufferSet::new;
+        let fits = to_add(params, numbers);
+        let indirect = |buffer: Buffer<u32>, word| DispatchSize::Indirect { buffer: buffer.id(), word };
+        let twice = set().with("a", numbers).with("b", numbers);
+        let state = executor.create::<u32>("state", 3).unwrap();
+        let mut unflagged = Recording::new("round");
+        unflagged.dispatch(&COUNT_DOWN, DispatchSize::Groups(1), &set().with("state", state));
+        unflagged.append(&add);
+        let mut clearing = Recording::new("round");
+        clearing.dispatch(&COUNT_DOWN, DispatchSize::Groups(1), &set().with("state", state));
+        clearing.clear(short);
+        let mut inner = Recording::new("round");
+        inner.repeat(&add, &Rounds::new(2), Flag::new(numbers, 0));
         type Record<'a> = Box<dyn Fn(&mut Recording) + 'a>;
-        let cases: [(&str, Record<'_>); 14] = [
-            ("wrong type", Box::new(|r| r.dispatch(&ADD, items, &[p, floats.id()]))),
-            ("too few", Box::new(|r| r.dispatch(&ADD, items, &[p]))),
-            ("too many", Box::new(|r| r.dispatch(&ADD, items, &[p, n, n]))),
-            ("swapped", Box::new(|r| r.dispatch(&ADD, items, &[n, p]))),
-            ("storage as uniform", Box::new(|r| r.dispatch(&ADD, items, &[storage_params.id(), n]))),
-            ("bound twice", Box::new(|r| r.dispatch(&TWICE, items, &[n, n]))),
-            ("of another executor", Box::new(|r| r.dispatch(&ADD, items, &[p, foreign.id()]))),
-            ("arguments too short", Box::new(|r| r.dispatch(&ADD, indirect(short.id(), 0), &[p, n]))),
-            ("arguments past the end", Box::new(|r| r.dispatch(&ADD, indirect(n, 1), &[p, n]))),
-            ("arguments written", Box::new(|r| r.dispatch(&ADD, indirect(n, 0), &[p, n]))),
-            ("copy to a shorter one", Box::new(|r| r.copy(numbers, short))),
-            ("copy to itself", Box::new(|r| r.copy(numbers, numbers))),
-            ("clear of another executor's", Box::new(|r| r.clear(foreign))),
-            ("flag past the end", Box::new(|r| r.repeat(&add, 2, Flag::new(numbers, 12)))),
+        let cases: [(&str, &str, Record<'_>); 19] = [
+            (
+                "wrong type",
+                "binding \"numbers\" has elements of type u32",
+                Box::new(|r| r.dispatch(&ADD, items, &set().with("params", params).with("numbers", floats))),
+            ),
+            (
+                "missing",
+                "binding \"numbers\": the set has no buffer of this name, only [\"params\"]",
+                Box::new(|r| r.dispatch(&ADD, items, &set().with("params", params))),
+            ),
+            (
+                "swapped",
+                "binding \"params\"",
+                Box::new(|r| {
+                    r.dispatch(&ADD, items, &set().with("params", numbers).with("numbers", params));
+                }),
+            ),
+            (
+                "two buffers of one name",
+                "binding \"numbers\": the set has two buffers of this name",
+                Box::new(|r| {
+                    let mut buffers = set().with("params", params);
+                    buffers.add("numbers", numbers);
+                    buffers.add("numbers", short);
+                    r.dispatch(&ADD, items, &buffers);
+                }),
+            ),
+            (
+                "a label that is not the name",
+                "binding \"numbers\": the set holds buffer \"short\" under this name",
+                Box::new(|r| {
+                    let mut buffers = set().with("params", params);
+                    buffers.add("numbers", short);
+                    r.dispatch(&ADD, items, &buffers);
+                }),
+            ),
+            (
+                "storage as uniform",
+                "only one is a uniform",
+                Box::new(|r| {
+                    r.dispatch(&ADD, items, &fits.clone().with("params", storage_params));
+                }),
+            ),
+            ("bound twice", "bound twice and written", Box::new(|r| r.dispatch(&TWICE, items, &twice))),
+            (
+                "of another executor",
+                "buffer \"foreign\" was freed, or belongs to another executor",
+                Box::new(|r| r.dispatch(&ADD, items, &fits.clone().with("numbers", foreign))),
+            ),
+            (
+                "freed",
+                "buffer \"freed\" was freed",
+                Box::new(|r| r.dispatch(&ADD, items, &fits.clone().with("numbers", freed))),
+            ),
+            (
+                "arguments too short",
+                "has no 3 words",
+                Box::new(|r| r.dispatch(&ADD, indirect(short, 0), &fits)),
+            ),
+            (
+                "arguments past the end",
+                "has no 3 words from word 1 on",
+                Box::new(|r| r.dispatch(&ADD, indirect(numbers, 1), &fits)),
+            ),
+            (
+                "arguments written",
+                "writes to its own indirect arguments",
+                Box::new(|r| r.dispatch(&ADD, indirect(numbers, 0), &fits)),
+            ),
+            ("copy to a shorter one", "cannot be copied", Box::new(|r| r.copy(numbers, short))),
+            ("copy to itself", "cannot be copied", Box::new(|r| r.copy(numbers, numbers))),
+            ("clear of another executor's", "\"foreign\"", Box::new(|r| r.clear(foreign))),
+            (
+                "flag past the end",
+                "has no 1 words from word 3 on",
+                Box::new(|r| r.repeat(&add, &Rounds::new(2), Flag::new(numbers, 12))),
+            ),
+            (
+                "a repeated pass without the flag",
+                "pass test.add is repeated until a flag in buffer \"state\"",
+                Box::new(|r| r.repeat(&unflagged, &Rounds::new(2), Flag::new(state, 4))),
+            ),
+            (
+                "a repeated clear",
+                "a copy or clear is repeated",
+                Box::new(|r| r.repeat(&clearing, &Rounds::new(2), Flag::new(state, 4))),
+            ),
+            (
+                "a pass without the flag of the outer repetition",
+                "until a flag in buffer \"state\"",
+                Box::new(|r| r.repeat(&inner, &Rounds::new(2), Flag::new(state, 4))),
+            ),
         ];
-        for (what, record) in cases {
+        for (what, reason, record) in cases {
             let mut recording = add.clone();
             record(&mut recording);
             let error = executor.run(&recording).expect_err(what);
@@ -204,6 +324,7 @@ fn commands_that_do_not_fit_are_refused_before_anything_runs() {
                 matches!(error, GpuError::BadBinding { .. } | GpuError::BadCommand { .. }),
                 "{name}, {what}: {error}"
             );
+            assert!(error.to_string().contains(reason), "{name}, {what}: {error}");
             assert_eq!(executor.read(numbers).unwrap(), [1, 2, 3], "{name}, {what}: something ran");
         }
         executor.run(&add).unwrap();
@@ -219,7 +340,7 @@ static TWICE: PassDesc = PassDesc {
     entry: "twice",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[write::<u32>("a"), write::<u32>("b")],
+    bindings: TwiceBindings::LIST,
     cpu: |_, _| panic!("refused before"),
 };
 
@@ -229,9 +350,9 @@ fn a_shader_that_does_not_compile_is_an_error_with_its_name() {
         return;
     };
     let mut executor = Executor::from(GpuExecutor::new(gpu));
-    let [a, b] = [1, 2].map(|len| executor.create::<u32>("buffer", len).unwrap().id());
+    let [a, b] = [1, 2].map(|len| executor.create::<u32>("buffer", len).unwrap());
     let mut recording = Recording::new("bad");
-    recording.dispatch(&TWICE, Grid::Items(1), &[a, b]);
+    recording.dispatch(&TWICE, DispatchSize::Items(1), &BufferSet::new().with("a", a).with("b", b));
     let error = executor.run(&recording).unwrap_err();
     assert!(matches!(error, GpuError::BadShader { pass: "test.twice", .. }), "{error}");
 }
@@ -256,6 +377,76 @@ fn resizing_keeps_recordings_valid() {
         assert_eq!(executor.read(old_handle).unwrap(), after, "{name}: a handle copied before");
         executor.resize(&mut numbers, 0).unwrap();
         assert_eq!(executor.read(numbers).unwrap(), [], "{name}");
+    }
+}
+
+#[test]
+fn executors_may_be_used_from_any_thread() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Executor>();
+    shared::<Recording>();
+    shared::<splashdown_gpu::Readback<f32>>();
+}
+
+#[test]
+fn freed_buffers_cannot_be_used_and_give_their_memory_back() {
+    for (name, mut executor) in testing::executors("freed_buffers_cannot_be_used_and_give_their_memory_back")
+    {
+        let numbers = executor.create_from("numbers", &[1_u32; 1000]).unwrap();
+        let other = executor.create_from("other", &[5_u32; 10]).unwrap();
+        let (recording, params) = adding(&mut executor, numbers, 1);
+        executor.run(&recording).unwrap();
+        let before = executor.bytes();
+        executor.free([numbers]).unwrap();
+        assert_eq!(before - executor.bytes(), 4000, "{name}");
+        // The new buffer takes the slot of the freed one; the old handle does not reach it.
+        let mut again = executor.create_from("again", &[7_u32; 3]).unwrap();
+        let mut stale = numbers;
+        let copy = |from, to| {
+            let mut recording = Recording::new("copy");
+            recording.copy(from, to);
+            recording
+        };
+        let uses = [
+            ("run", executor.run(&recording).unwrap_err()),
+            ("read", executor.read(numbers).unwrap_err()),
+            ("read_first", executor.read_first(numbers, 0).unwrap_err()),
+            ("request", executor.request(numbers, 1).err().unwrap()),
+            ("write", executor.write(numbers, &[1]).unwrap_err()),
+            ("resize", executor.resize(&mut stale, 5).unwrap_err()),
+            ("free", executor.free([numbers]).unwrap_err()),
+            ("free with others", executor.free([again, numbers]).unwrap_err()),
+            ("copy from", executor.run(&copy(numbers, other)).unwrap_err()),
+            ("copy to", executor.run(&copy(other, numbers)).unwrap_err()),
+        ];
+        for (what, error) in uses {
+            let message = "buffer \"numbers\" was freed, or belongs to another executor";
+            assert!(error.to_string().contains(message), "{name}, {what}: {error}");
+        }
+        assert!(
+            executor.wgpu_buffer(numbers.id()).is_none() && executor.with_host(numbers, |_| ()).is_none()
+        );
+        assert_eq!(executor.read(again).unwrap(), [7; 3], "{name}: the control");
+        let (recording, other_params) = adding(&mut executor, again, 1);
+        executor.run(&recording).unwrap();
+        executor.resize(&mut again, 2).unwrap();
+        executor.write(again, &[1, 2]).unwrap();
+        assert_eq!(executor.read(again).unwrap(), [1, 2], "{name}");
+        executor.free([params.id(), other_params.id(), again.id(), other.id(), other.id()]).unwrap();
+        assert_eq!(executor.bytes(), 0, "{name}");
+    }
+}
+
+#[test]
+fn primitives_give_their_memory_back() {
+    use splashdown_gpu::{compact::Compact, scan::Scan, sort::Sort};
+    for (name, mut executor) in testing::executors("primitives_give_their_memory_back") {
+        for len in [10, 100_000, 20_000_000] {
+            Scan::new(&mut executor, len).unwrap().free(&mut executor).unwrap();
+        }
+        Compact::new(&mut executor, 100_000, 64).unwrap().free(&mut executor).unwrap();
+        Sort::new(&mut executor, 10_000).unwrap().free(&mut executor).unwrap();
+        assert_eq!(executor.bytes(), 0, "{name}");
     }
 }
 

@@ -4,7 +4,10 @@ use std::path::Path;
 
 use glam::{Vec3, Vec4};
 use splashdown_gpu::check::{check, check_source};
-use splashdown_gpu::{PassDesc, WgslModule, gpu_struct, passes, read, testing, uniform, wgsl, write};
+use splashdown_gpu::{
+    Access, Binding, BufferSet, DispatchSize, PassDesc, Recording, WgslModule, bindings, gpu_struct, passes,
+    testing,
+};
 
 const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
 
@@ -15,15 +18,24 @@ fn every_pass_agrees_with_its_wgsl_and_every_wgsl_has_a_pass() {
 }
 
 #[test]
-fn a_file_without_a_pass_and_a_label_given_twice_are_found() {
+fn misplaced_files_and_passes_are_found() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gate/below");
+    let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("orphan.wgsl"), "fn nobody() {}").unwrap();
+    std::fs::write(folder.join("orphan.wgsl"), "fn orphan() {}").unwrap();
     let first = passes()[0];
-    let wrong = testing::gate(folder.parent().unwrap(), &[first, first]);
-    assert_eq!(wrong.len(), 2, "{wrong:?}");
-    assert!(wrong[0].contains("two passes"), "{wrong:?}");
-    assert!(wrong[1].contains("orphan.wgsl"), "{wrong:?}");
+    std::fs::write(folder.join("renamed.wgsl"), first.wgsl).unwrap();
+    let forgotten = "pub static FORGOTTEN: PassDesc = PassDesc { label: \"forgotten\", ..OTHER };";
+    std::fs::write(folder.join("mod.rs"), forgotten).unwrap();
+    let mut wrong = testing::gate(folder.parent().unwrap(), &[first, first]);
+    wrong.sort();
+    wrong.dedup();
+    assert_eq!(wrong.len(), 4, "{wrong:?}");
+    let has = |parts: [&str; 2]| wrong.iter().any(|line| parts.iter().all(|part| line.contains(part)));
+    assert!(has(["two passes have the label", first.label]), "{wrong:?}");
+    assert!(has(["orphan.wgsl", "no pass uses it"]), "{wrong:?}");
+    assert!(has(["renamed.wgsl", "not `renamed`"]), "{wrong:?}");
+    assert!(has(["mod.rs", "`passes()` lacks FORGOTTEN (\"forgotten\")"]), "{wrong:?}");
 }
 
 gpu_struct! {
@@ -48,11 +60,7 @@ struct Sim {
     domain_min: vec3<f32>,
     dt: f32,
 }
-@group(0) @binding(0) var<uniform> sim: Sim;
-@group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read_write> densities: array<f32>;
-@group(0) @binding(4) var<storage, read_write> counts: array<atomic<u32>>;
+#bindings
 
 override FACTOR: f32 = 1.0;
 
@@ -69,6 +77,16 @@ fn density(@builtin(global_invocation_id) gid: vec3<u32>) {
 }
 ";
 
+bindings! {
+    struct Bindings {
+        sim: uniform Sim,
+        positions: read [Vec4],
+        cell_start: read [u32],
+        densities: write [f32],
+        counts: atomic [u32],
+    }
+}
+
 const SQUARE: WgslModule =
     WgslModule { name: "test/square", source: "fn square(x: f32) -> f32 { return x * x; }" };
 
@@ -79,14 +97,10 @@ const PASS: PassDesc = PassDesc {
     entry: "density",
     workgroup_size: [64, 1, 1],
     constants: &[("FACTOR", 2.0)],
-    bindings: &[
-        uniform::<Sim>("sim"),
-        read::<Vec4>("positions"),
-        read::<u32>("cell_start"),
-        write::<f32>("densities"),
-        write::<u32>("counts"),
-    ],
-    cpu: |_, _| {},
+    bindings: Bindings::LIST,
+    cpu: |_, slots| {
+        let Bindings { .. } = slots.into();
+    },
 };
 
 #[test]
@@ -171,13 +185,23 @@ const MUTATIONS: &[Mutation] = &[
         &[("override FACTOR", "override EXTRA: f32;\noverride FACTOR"), ("rho = 0.0", "rho = EXTRA")],
         "`override EXTRA` has no value",
     ),
+    (
+        "a binding that is never used",
+        &[("square(positions[i].x)", "1.0")],
+        "`positions` is bound and never used",
+    ),
+    (
+        "a writable binding that is never written",
+        &[("densities[i] = rho;", "rho += densities[i];")],
+        "`densities` is bound as writable and never written",
+    ),
     ("type error", &[("var rho = 0.0", "var rho = 0u")], "error"),
     ("syntax error", &[("var rho", "var var rho")], "error"),
 ];
 
 #[test]
 fn every_mutation_of_the_wgsl_is_caught() {
-    let source = wgsl::expand(WGSL, PASS.imports).unwrap();
+    let source = PASS.source().unwrap();
     for (what, replacements, word) in MUTATIONS {
         let mut mutated = source.clone();
         for (from, to) in *replacements {
@@ -191,7 +215,7 @@ fn every_mutation_of_the_wgsl_is_caught() {
 
 #[test]
 fn every_mutation_of_the_declaration_is_caught() {
-    let many = &const { [read::<u32>("many"); 9] };
+    let many = &const { [Binding::new::<[u32]>("many", Access::Read, false); 9] };
     let mutations = [
         (
             "a constant the WGSL lacks",
@@ -201,14 +225,201 @@ fn every_mutation_of_the_declaration_is_caught() {
         ("a module that is not given", PassDesc { imports: &[], ..PASS }, "\"test/square\""),
         ("another entry", PassDesc { entry: "densities", ..PASS }, "`densities` in Rust"),
         ("too many storage buffers", PassDesc { bindings: many, ..PASS }, "9 storage buffers"),
-        ("no bindings", PassDesc { bindings: &[], ..PASS }, "does not declare"),
+        ("no bindings", PassDesc { bindings: &[], ..PASS }, "no definition in scope for identifier"),
     ];
     for (what, pass, word) in mutations {
         let message = check(&pass).expect_err(what);
         assert!(message.contains(word), "{what}: caught for another reason: {message}");
     }
-    let source = wgsl::expand(WGSL, PASS.imports).unwrap();
+    let source = PASS.source().unwrap();
+    let message = check_source(&PassDesc { bindings: &[], ..PASS }, &source).unwrap_err();
+    assert!(message.contains("which Rust does not declare"), "{message}");
     let large = PassDesc { workgroup_size: [512, 1, 1], ..PASS };
     let message = check_source(&large, &source.replace("size(64)", "size(512)")).unwrap_err();
     assert!(message.contains("512 invocations"), "{message}");
+}
+
+/// Declarations of `PASS` with one binding changed.
+mod changed {
+    use super::*;
+
+    bindings! {
+        pub struct Access {
+            sim: uniform Sim,
+            positions: read [Vec4],
+            cell_start: read [u32],
+            densities: read [f32],
+            counts: atomic [u32],
+        }
+    }
+    bindings! {
+        pub struct NeverWritten {
+            sim: uniform Sim,
+            positions: read [Vec4],
+            cell_start: write [u32],
+            densities: write [f32],
+            counts: atomic [u32],
+        }
+    }
+    bindings! {
+        pub struct NotAtomic {
+            sim: uniform Sim,
+            positions: read [Vec4],
+            cell_start: read [u32],
+            densities: write [f32],
+            counts: write [u32],
+        }
+    }
+    bindings! {
+        pub struct Element {
+            sim: uniform Sim,
+            positions: read [f32],
+            cell_start: read [u32],
+            densities: write [f32],
+            counts: atomic [u32],
+        }
+    }
+    bindings! {
+        pub struct TooMany {
+            sim: uniform Sim,
+            positions: read [Vec4],
+            velocities: read [Vec4],
+            cell_start: read [u32],
+            densities: write [f32],
+            counts: atomic [u32],
+        }
+    }
+    bindings! {
+        pub struct Swapped {
+            sim: uniform Sim,
+            cell_start: read [Vec4],
+            positions: read [u32],
+            densities: write [f32],
+            counts: atomic [u32],
+        }
+    }
+}
+
+#[test]
+fn every_mutation_of_the_list_is_caught() {
+    let mutations = [
+        ("written, declared as read", changed::Access::LIST, "Store"),
+        (
+            "read, declared as writable",
+            changed::NeverWritten::LIST,
+            "`cell_start` is bound as writable and never",
+        ),
+        ("atomic, declared as plain", changed::NotAtomic::LIST, "atomic"),
+        ("another element", changed::Element::LIST, "error"),
+        ("a binding too many", changed::TooMany::LIST, "`velocities` is bound and never used"),
+        ("swapped types", changed::Swapped::LIST, "error"),
+    ];
+    for (what, bindings, word) in mutations {
+        let message = check(&PassDesc { bindings, ..PASS }).expect_err(what);
+        assert!(message.contains(word), "{what}: caught for another reason: {message}");
+    }
+}
+
+bindings! {
+    struct Difference {
+        minuends: read [f32],
+        subtrahends: read [f32],
+        differences: write [f32],
+    }
+}
+
+bindings! {
+    /// The same with two bindings of one type swapped.
+    struct SwappedDifference {
+        subtrahends: read [f32],
+        minuends: read [f32],
+        differences: write [f32],
+    }
+}
+
+static SUBTRACT: PassDesc = PassDesc {
+    label: "test.subtract",
+    wgsl: "\
+#bindings
+@compute @workgroup_size(1)
+fn subtract() {
+    differences[0] = minuends[0] - subtrahends[0];
+}",
+    imports: &[],
+    entry: "subtract",
+    workgroup_size: [1, 1, 1],
+    constants: &[],
+    bindings: Difference::LIST,
+    cpu: |_, slots| {
+        let Difference { minuends, subtrahends, differences } = slots.into();
+        differences[0] = minuends[0] - subtrahends[0];
+    },
+};
+
+/// The WGSL and the executors follow the swapped list; the CPU code is still that of the other list.
+static HALF_SWAPPED: PassDesc = PassDesc { bindings: SwappedDifference::LIST, ..SUBTRACT };
+
+static SWAPPED: PassDesc = PassDesc {
+    cpu: |_, slots| {
+        let SwappedDifference { minuends, subtrahends, differences } = slots.into();
+        differences[0] = minuends[0] - subtrahends[0];
+    },
+    ..HALF_SWAPPED
+};
+
+/// 5 - 3 by this pass. The labels are those of the buffers that hold 5 and 3.
+fn difference(
+    executor: &mut splashdown_gpu::Executor,
+    pass: &'static PassDesc,
+    labels: [&'static str; 2],
+) -> Result<f32, splashdown_gpu::GpuError> {
+    let minuends = executor.create_from(labels[0], &[5.0_f32])?;
+    let subtrahends = executor.create_from(labels[1], &[3.0_f32])?;
+    let differences = executor.create::<f32>("differences", 1)?;
+    let mut buffers = BufferSet::new();
+    buffers.add("minuends", minuends);
+    buffers.add("subtrahends", subtrahends);
+    buffers.add("differences", differences);
+    let mut recording = Recording::new("difference");
+    recording.dispatch(pass, DispatchSize::Groups(1), &buffers);
+    executor.run(&recording)?;
+    Ok(executor.read(differences)?[0])
+}
+
+#[test]
+fn swapped_bindings_of_one_type_fail_or_make_no_difference() {
+    let names = ["minuends", "subtrahends"];
+    // In the declaration alone, against the WGSL that the device compiles: refused by the gate.
+    let message = check_source(&SWAPPED, &SUBTRACT.source().unwrap()).unwrap_err();
+    assert!(message.contains("binding 0: `minuends` in WGSL, `subtrahends` in Rust"), "{message}");
+    for (name, mut executor) in testing::executors("swapped_bindings_of_one_type_fail_or_make_no_difference")
+    {
+        // In the one list that everything follows by name: no difference.
+        for pass in [&SUBTRACT, &SWAPPED] {
+            check(pass).unwrap();
+            assert_eq!(difference(&mut executor, pass, names).unwrap(), 2.0, "{name}");
+        }
+        // Where the buffers are created: refused.
+        let error = difference(&mut executor, &SUBTRACT, ["subtrahends", "minuends"]).unwrap_err();
+        let expected =
+            "pass test.subtract: binding \"minuends\": the set holds buffer \"subtrahends\" under this name";
+        assert_eq!(error.to_string(), expected, "{name}");
+    }
+}
+
+#[test]
+#[should_panic(
+    expected = "the CPU code views binding \"minuends\", but the pass declares Some(\"subtrahends\")"
+)]
+fn cpu_code_of_another_list_is_caught() {
+    let mut executor = splashdown_gpu::CpuExecutor::new().into();
+    let _ = difference(&mut executor, &HALF_SWAPPED, ["minuends", "subtrahends"]);
+}
+
+#[test]
+fn errors_in_the_wgsl_show_the_line() {
+    let wgsl = "#bindings\n@compute @workgroup_size(1)\nfn subtract() {\n    differences[0] = minuend[0];\n}";
+    let message = check(&PassDesc { wgsl, ..SUBTRACT }).unwrap_err();
+    assert!(message.contains("differences[0] = minuend[0];"), "{message}");
+    assert!(message.contains("no definition in scope for identifier: `minuend`"), "{message}");
 }

@@ -5,10 +5,7 @@ struct CompactParams {
     workgroup_size: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: CompactParams;
-@group(0) @binding(1) var<storage, read> starts: array<u32>;
-@group(0) @binding(2) var<storage, read_write> indices: array<u32>;
-@group(0) @binding(3) var<storage, read_write> counted: array<u32>;
+#bindings
 
 @compute @workgroup_size(64)
 fn compact_gather(

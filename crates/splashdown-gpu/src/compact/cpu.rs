@@ -1,22 +1,20 @@
-//! The same on the cores: every stretch of flags fills its own stretch of the list.
+//! The same on the CPU: each task compacts a range of flags into its own part of the list.
 
 use rayon::prelude::*;
 
-use super::CompactParams;
-use crate::{CpuWork, Slot, dispatch_groups};
+use super::{CompactParams, GatherBindings};
+use crate::dispatch_groups;
 
 /// Flags per task.
 const TASK: usize = 16_384;
 
-pub(super) fn gather(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, starts, indices, counted] = slots else { unreachable!("four bindings") };
-    let CompactParams { len, workgroup_size } = params.get();
-    let starts = &starts.read::<u32>()[..=len as usize];
-    let indices = indices.write::<u32>();
+pub(super) fn gather(GatherBindings { params, starts, indices, counted }: GatherBindings<'_>) {
+    let CompactParams { len, workgroup_size } = *params;
+    let starts = &starts[..=len as usize];
     let count = starts[len as usize];
     let fitting = count.min(indices.len() as u32);
     let [x, y, z] = dispatch_groups(fitting.div_ceil(workgroup_size));
-    counted.write::<u32>()[..4].copy_from_slice(&[x, y, z, count]);
+    counted[..4].copy_from_slice(&[x, y, z, count]);
 
     let mut rest = &mut indices[..fitting as usize];
     let mut tasks = Vec::with_capacity(len as usize / TASK + 1);
@@ -28,7 +26,7 @@ pub(super) fn gather(_: CpuWork, slots: &mut [Slot<'_>]) {
         tasks.push((first, &starts[first..=end], part));
     }
     tasks.into_par_iter().for_each(|(first, starts, part)| {
-        // Every number is written to the next free place, and only a set flag moves on: no branch to mispredict.
+        // Every index is written to the next free place, and only a set flag advances it: no branch to mispredict.
         let mut kept = 0;
         for (i, pair) in starts.windows(2).enumerate() {
             if let Some(place) = part.get_mut(kept) {

@@ -13,7 +13,9 @@
 mod cpu;
 
 use crate::scan::Scan;
-use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, gpu_struct, read, uniform, wgsl, write};
+use crate::{
+    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, bindings, gpu_struct, wgsl,
+};
 
 gpu_struct! {
     /// Mirrors `CompactParams` in `compact_gather.wgsl`.
@@ -25,6 +27,15 @@ gpu_struct! {
     }
 }
 
+bindings! {
+    struct GatherBindings {
+        params: uniform CompactParams,
+        starts: read [u32],
+        indices: write [u32],
+        counted: write [u32],
+    }
+}
+
 static GATHER: PassDesc = PassDesc {
     label: "compact.gather",
     wgsl: include_str!("compact_gather.wgsl"),
@@ -32,13 +43,8 @@ static GATHER: PassDesc = PassDesc {
     entry: "compact_gather",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<CompactParams>("params"),
-        read::<u32>("starts"),
-        write::<u32>("indices"),
-        write::<u32>("counted"),
-    ],
-    cpu: cpu::gather,
+    bindings: GatherBindings::LIST,
+    cpu: |_, slots| cpu::gather(slots.into()),
 };
 
 pub(crate) static PASSES: [&PassDesc; 1] = [&GATHER];
@@ -69,7 +75,7 @@ pub struct Compact {
 
 impl Compact {
     /// Where in `counted` the number of set flags lies; before it are the arguments of
-    /// [`Grid::Indirect`].
+    /// [`DispatchSize::Indirect`].
     pub const COUNT_WORD: u32 = 3;
 
     /// Prepares compactions of `len` flags into lists over which passes with `workgroup_size` invocations run.
@@ -83,9 +89,9 @@ impl Compact {
         assert!(workgroup_size > 0, "a workgroup has at least one invocation");
         Ok(Self {
             len,
-            params: executor.create_uniform("compact params", &CompactParams { len, workgroup_size })?,
+            params: executor.create_uniform("compact_params", &CompactParams { len, workgroup_size })?,
             scan: Scan::of_flags(executor, len)?,
-            starts: executor.create("compact starts", len as usize + 1)?,
+            starts: executor.create("compact_starts", len as usize + 1)?,
         })
     }
 
@@ -97,7 +103,7 @@ impl Compact {
     }
 
     /// Appends: `indices` becomes the ascending list of every `i` with `flags[i] != 0`, as many as it has room for, and
-    /// `counted` becomes four words: the arguments of a [`Grid::Indirect`] over the
+    /// `counted` becomes four words: the arguments of a [`DispatchSize::Indirect`] over the
     /// list, then the number of flags set, which may be more than fit. Passes over the list check their number against
     /// that number and their list's length.
     ///
@@ -113,7 +119,20 @@ impl Compact {
         assert!(!indices.is_empty(), "a compaction cannot write {indices:?}");
         assert!(counted.len() >= 4, "a compaction writes four words, not {counted:?}");
         self.scan.record(recording, flags, self.starts);
-        let buffers = [self.params.id(), self.starts.id(), indices.id(), counted.id()];
-        recording.dispatch(&GATHER, Grid::Items(self.len.max(1)), &buffers);
+        let buffers = BufferSet::new()
+            .with("params", self.params)
+            .with("starts", self.starts)
+            .with("indices", indices)
+            .with("counted", counted);
+        recording.dispatch(&GATHER, DispatchSize::Items(self.len.max(1)), &buffers);
+    }
+
+    /// Frees the buffers; recordings of this compaction become invalid.
+    ///
+    /// # Errors
+    /// [`GpuError::NoSuchBuffer`] if a copy was freed before.
+    pub fn free(self, executor: &mut Executor) -> Result<(), GpuError> {
+        self.scan.free(executor)?;
+        executor.free([self.params.id(), self.starts.id()])
     }
 }

@@ -1,22 +1,23 @@
-//! Runs recordings in host memory on the cores.
+//! Runs recordings in host memory on the CPU cores.
 
-use std::cell::Ref;
 use web_time::Instant;
 
 use bytemuck::Pod;
 
 use super::table::{Meta, Table};
 use super::{Readback, readback};
-use crate::host::HostBuffer;
+use crate::host::{Bytes, HostBuffer};
 use crate::{
-    Access, BufferId, Command, CpuWork, GpuElement, GpuError, Grid, PassDesc, Recording, Slot, Timings,
+    Access, BufferId, Command, CpuWork, DispatchSize, GpuElement, GpuError, PassDesc, Recording, Slot,
+    Timings,
 };
 
 /// Buffers in host memory; passes run by their Rust functions, parallel over rayon's threads.
 ///
-/// The threads are those of the rayon pool that the caller is in (`pool.install(..)`), else all cores.
+/// The threads are those of the rayon pool that the caller is in (`pool.install(..)`), otherwise all cores.
 #[derive(Default)]
 pub struct CpuExecutor {
+    /// By slot; empty where a buffer was freed.
     buffers: Vec<HostBuffer>,
     table: Table,
     timings: Option<Timings>,
@@ -37,30 +38,39 @@ impl CpuExecutor {
     }
 
     pub(super) fn create(&mut self, meta: Meta) -> Result<BufferId, GpuError> {
-        self.buffers.push(self.allocate(&meta)?);
-        Ok(self.table.add(meta))
+        let buffer = self.allocate(&meta)?;
+        let id = self.table.add(meta);
+        self.buffers.resize_with(self.buffers.len().max(id.slot as usize + 1), HostBuffer::default);
+        self.buffers[id.slot as usize] = buffer;
+        Ok(id)
     }
 
-    pub(super) fn resize(&mut self, id: BufferId, len: usize) -> Result<(), GpuError> {
-        let meta = Meta { len, ..self.table.get(id).clone() };
-        self.buffers[id.0 as usize] = self.allocate(&meta)?;
-        *self.table.get_mut(id) = meta;
+    pub(super) fn free(&mut self, ids: &[BufferId]) {
+        for id in ids {
+            self.table.remove(*id);
+            self.buffers[id.slot as usize] = HostBuffer::default();
+        }
+    }
+
+    pub(super) fn resize(&mut self, id: BufferId, meta: Meta) -> Result<(), GpuError> {
+        self.buffers[id.slot as usize] = self.allocate(&meta)?;
+        self.table.replace(id, meta);
         Ok(())
     }
 
     fn allocate(&self, meta: &Meta) -> Result<HostBuffer, GpuError> {
         meta.check_len()?;
         HostBuffer::new(meta.size as u64 * meta.len as u64, self.table.fill())
-            .ok_or_else(|| GpuError::OutOfMemory { label: meta.label.clone(), bytes: meta.bytes() })
+            .ok_or_else(|| GpuError::OutOfMemory { label: meta.label.into(), bytes: meta.bytes() })
     }
 
     pub(super) fn write(&mut self, id: BufferId, bytes: &[u8]) -> Result<(), GpuError> {
-        self.buffers[id.0 as usize].write::<u8>()[..bytes.len()].copy_from_slice(bytes);
+        self.buffers[id.slot as usize].write::<u8>()[..bytes.len()].copy_from_slice(bytes);
         Ok(())
     }
 
-    pub(super) fn view<T: Pod>(&self, id: BufferId) -> Ref<'_, [T]> {
-        self.buffers[id.0 as usize].read()
+    pub(super) fn view<T: Pod>(&self, id: BufferId) -> &[T] {
+        self.buffers[id.slot as usize].read()
     }
 
     pub(super) fn request<T: GpuElement>(
@@ -93,14 +103,16 @@ impl CpuExecutor {
     fn commands(&mut self, commands: &[Command]) {
         for command in commands {
             match command {
-                Command::Dispatch { pass, grid, buffers } => self.dispatch(pass, *grid, buffers),
+                Command::Dispatch { pass, size, buffers } => self.dispatch(pass, *size, buffers),
                 Command::Copy { from, to } => {
-                    let from = self.buffers[from.0 as usize].read::<u8>();
-                    self.buffers[to.0 as usize].write::<u8>()[..from.len()].copy_from_slice(&from);
+                    let slots = [from.slot as usize, to.slot as usize];
+                    let [from, to] = self.buffers.get_disjoint_mut(slots).expect("the table has checked");
+                    let from = from.read::<u8>();
+                    to.write::<u8>()[..from.len()].copy_from_slice(from);
                 }
-                Command::Clear { buffer } => self.buffers[buffer.0 as usize].write::<u8>().fill(0),
-                Command::Repeat { body, most, until } => {
-                    for _ in 0..*most {
+                Command::Clear { buffer } => self.buffers[buffer.slot as usize].write::<u8>().fill(0),
+                Command::Repeat { body, rounds, until } => {
+                    for _ in 0..rounds.get() {
                         if self.word(until.buffer, until.word) != 0 {
                             break;
                         }
@@ -112,14 +124,16 @@ impl CpuExecutor {
     }
 
     fn word(&self, buffer: BufferId, word: u32) -> u32 {
-        self.buffers[buffer.0 as usize].read::<u32>()[word as usize]
+        self.view::<u32>(buffer)[word as usize]
     }
 
-    fn dispatch(&mut self, pass: &'static PassDesc, grid: Grid, ids: &[BufferId]) {
-        let work = match grid {
-            Grid::Items(items) => CpuWork { items, groups: items.div_ceil(pass.invocations()) },
-            Grid::Groups(groups) => CpuWork { items: groups.saturating_mul(pass.invocations()), groups },
-            Grid::Indirect { buffer, word } => {
+    fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, ids: &[BufferId]) {
+        let work = match size {
+            DispatchSize::Items(items) => CpuWork { items, groups: items.div_ceil(pass.invocations()) },
+            DispatchSize::Groups(groups) => {
+                CpuWork { items: groups.saturating_mul(pass.invocations()), groups }
+            }
+            DispatchSize::Indirect { buffer, word } => {
                 let groups = (0..3).map(|i| self.word(buffer, word + i)).fold(1, u32::saturating_mul);
                 CpuWork { items: groups.saturating_mul(pass.invocations()), groups }
             }
@@ -128,19 +142,35 @@ impl CpuExecutor {
             return;
         }
         let started = Instant::now();
-        let mut slots: Vec<Slot<'_>> = ids
-            .iter()
-            .zip(pass.bindings)
-            .map(|(id, binding)| {
-                self.buffers[id.0 as usize]
-                    .slot(binding.access == Access::ReadWrite)
-                    .expect("the table has refused a buffer bound twice and written")
-            })
-            .collect();
-        (pass.cpu)(work, &mut slots);
-        drop(slots);
+        (pass.cpu)(work, &mut slots(&mut self.buffers, pass, ids));
         if let Some(timings) = &mut self.timings {
             timings.add(pass.label, started.elapsed());
         }
     }
+}
+
+/// Borrows the buffers of a dispatch, in the order of its bindings. A buffer that is bound twice is only read, which
+/// the table has checked.
+fn slots<'a>(buffers: &'a mut [HostBuffer], pass: &'static PassDesc, ids: &[BufferId]) -> Vec<Slot<'a>> {
+    let mut by_buffer: Vec<usize> = (0..ids.len()).collect();
+    by_buffer.sort_unstable_by_key(|&k| ids[k].slot);
+    let mut slots: Vec<Option<Slot<'a>>> = ids.iter().map(|_| None).collect();
+    let (mut rest, mut first) = (buffers, 0);
+    for same in by_buffer.chunk_by(|&a, &b| ids[a].slot == ids[b].slot) {
+        let index = ids[same[0]].slot as usize;
+        let (head, tail) = rest.split_at_mut(index + 1 - first);
+        (rest, first) = (tail, index + 1);
+        let buffer = &mut head[head.len() - 1];
+        if let &[k] = same
+            && pass.bindings[k].access == Access::ReadWrite
+        {
+            slots[k] = Some(Slot::new(pass.bindings[k].name, Bytes::Write(buffer.write())));
+        } else {
+            let bytes: &[u8] = buffer.read();
+            for &k in same {
+                slots[k] = Some(Slot::new(pass.bindings[k].name, Bytes::Read(bytes)));
+            }
+        }
+    }
+    slots.into_iter().flatten().collect()
 }

@@ -1,16 +1,15 @@
 //! Runs recordings on a device: one submission each, bind groups and pipelines made once.
 
+use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
-use std::time::Duration;
 
 use super::pipeline::Pipeline;
 use super::readback::Mapping;
 use super::table::{Kind, Meta, Table};
 use super::{Readback, readback};
 use crate::{
-    BufferId, Command, Gpu, GpuElement, GpuError, Grid, PassDesc, Recording, Timings, block_on,
+    BufferId, Command, DispatchSize, Gpu, GpuElement, GpuError, PassDesc, PassTimer, Recording, Timings,
     dispatch_groups,
 };
 
@@ -20,23 +19,26 @@ const TIMED_DISPATCHES: u32 = 2048;
 /// Buffers on a device; passes run by their WGSL.
 pub struct GpuExecutor {
     gpu: Arc<Gpu>,
-    buffers: Vec<wgpu::Buffer>,
+    /// By slot; `None` where a buffer was freed.
+    buffers: Vec<Option<wgpu::Buffer>>,
     table: Table,
     pipelines: HashMap<usize, Pipeline>,
     timer: Option<Timer>,
 }
 
 struct Timer {
-    queries: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    /// The passes of each submission, and their times on the way.
-    underway: VecDeque<(Vec<&'static str>, Mapping)>,
+    passes: PassTimer,
     timings: Timings,
 }
 
-/// The address of a declaration names its pipeline: declarations are statics.
+/// The address of a declaration identifies its pipeline: declarations are statics.
 fn key(pass: &'static PassDesc) -> usize {
     std::ptr::from_ref(pass) as usize
+}
+
+/// A buffer that the table knows.
+fn live(buffers: &[Option<wgpu::Buffer>], id: BufferId) -> &wgpu::Buffer {
+    buffers[id.slot as usize].as_ref().expect("the table has checked")
 }
 
 impl GpuExecutor {
@@ -55,8 +57,13 @@ impl GpuExecutor {
         &self.gpu
     }
 
-    pub(super) fn wgpu_buffer(&self, id: BufferId) -> &wgpu::Buffer {
-        &self.buffers[id.0 as usize]
+    pub(super) fn wgpu_buffer(&self, id: BufferId) -> Option<&wgpu::Buffer> {
+        self.table.find(id)?;
+        self.buffers[id.slot as usize].as_ref()
+    }
+
+    fn buffer(&self, id: BufferId) -> &wgpu::Buffer {
+        live(&self.buffers, id)
     }
 
     pub(super) fn table(&mut self) -> &mut Table {
@@ -69,18 +76,32 @@ impl GpuExecutor {
 
     pub(super) fn create(&mut self, meta: Meta) -> Result<BufferId, GpuError> {
         let buffer = self.allocate(&meta)?;
-        self.buffers.push(buffer);
-        Ok(self.table.add(meta))
+        let id = self.table.add(meta);
+        self.buffers.resize(self.buffers.len().max(id.slot as usize + 1), None);
+        self.buffers[id.slot as usize] = Some(buffer);
+        Ok(id)
     }
 
-    pub(super) fn resize(&mut self, id: BufferId, len: usize) -> Result<(), GpuError> {
-        let meta = Meta { len, ..self.table.get(id).clone() };
-        self.buffers[id.0 as usize] = self.allocate(&meta)?;
-        *self.table.get_mut(id) = meta;
-        for pipeline in self.pipelines.values_mut() {
-            pipeline.bind_groups.retain(|ids, _| !ids.contains(&id));
+    /// The device gives the memory back when submitted work no longer uses it.
+    pub(super) fn free(&mut self, ids: &[BufferId]) {
+        for id in ids {
+            self.table.remove(*id);
+            self.buffers[id.slot as usize] = None;
         }
+        self.drop_bind_groups(ids);
+    }
+
+    pub(super) fn resize(&mut self, id: BufferId, meta: Meta) -> Result<(), GpuError> {
+        self.buffers[id.slot as usize] = Some(self.allocate(&meta)?);
+        self.table.replace(id, meta);
+        self.drop_bind_groups(&[id]);
         Ok(())
+    }
+
+    fn drop_bind_groups(&mut self, ids: &[BufferId]) {
+        for pipeline in self.pipelines.values_mut() {
+            pipeline.bind_groups.retain(|bound, _| !bound.iter().any(|id| ids.contains(id)));
+        }
     }
 
     fn allocate(&self, meta: &Meta) -> Result<wgpu::Buffer, GpuError> {
@@ -90,7 +111,7 @@ impl GpuExecutor {
         let limit = self.gpu.largest_buffer();
         if bytes > limit {
             return Err(GpuError::TooLarge {
-                label: meta.label.clone(),
+                label: meta.label.into(),
                 len: meta.len as u64,
                 bytes,
                 limit,
@@ -104,14 +125,14 @@ impl GpuExecutor {
         };
         let (buffer, error) = self.gpu.scoped(wgpu::ErrorFilter::OutOfMemory, |device| {
             device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(&meta.label),
+                label: Some(meta.label),
                 size: bytes.next_multiple_of(4),
                 usage: kind | Use::COPY_SRC | Use::COPY_DST,
                 mapped_at_creation: false,
             })
         });
         if error.is_some() {
-            return Err(GpuError::OutOfMemory { label: meta.label.clone(), bytes });
+            return Err(GpuError::OutOfMemory { label: meta.label.into(), bytes });
         }
         if self.table.poison && meta.kind != Kind::Uniform {
             self.gpu.queue.write_buffer(
@@ -124,7 +145,7 @@ impl GpuExecutor {
     }
 
     pub(super) fn write(&mut self, id: BufferId, bytes: &[u8]) -> Result<(), GpuError> {
-        self.gpu.queue.write_buffer(&self.buffers[id.0 as usize], 0, bytes);
+        self.gpu.queue.write_buffer(self.buffer(id), 0, bytes);
         self.gpu.health("an upload")
     }
 
@@ -144,7 +165,7 @@ impl GpuExecutor {
             mapped_at_creation: false,
         });
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&self.buffers[id.0 as usize], 0, &staging, 0, bytes);
+        encoder.copy_buffer_to_buffer(self.buffer(id), 0, &staging, 0, bytes);
         let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.health("a read-back")?;
         Ok(readback::mapping(Mapping::new(&self.gpu, staging, submission)))
@@ -155,54 +176,33 @@ impl GpuExecutor {
     }
 
     pub(super) fn enable_timing(&mut self) -> bool {
-        if !self.gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-            return false;
+        if self.timer.is_none() {
+            let passes = PassTimer::new(&self.gpu.device, &self.gpu.queue, TIMED_DISPATCHES, usize::MAX);
+            self.timer = passes.map(|passes| Timer { passes, timings: Timings::default() });
         }
-        let device = &self.gpu.device;
-        self.timer.get_or_insert_with(|| Timer {
-            queries: device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("pass times"),
-                ty: wgpu::QueryType::Timestamp,
-                count: 2 * TIMED_DISPATCHES,
-            }),
-            resolved: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pass times"),
-                size: u64::from(2 * TIMED_DISPATCHES) * 8,
-                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
-            underway: VecDeque::new(),
-            timings: Timings::default(),
-        });
-        true
+        self.timer.is_some()
     }
 
     pub(super) fn disable_timing(&mut self) {
         self.timer = None;
     }
 
-    /// On a web page, where nobody can wait, only the times that have arrived.
+    /// On a web page, which cannot wait, only the times that have arrived.
     pub(super) fn take_timings(&mut self) -> Timings {
-        self.collect_timings(!cfg!(target_arch = "wasm32"));
-        self.timer.as_mut().map(|timer| std::mem::take(&mut timer.timings)).unwrap_or_default()
-    }
-
-    /// Adds up the times that have arrived; with `all`, waits for those that have not. Times that a lost device
-    /// keeps are not missed: the next call to it fails.
-    fn collect_timings(&mut self, all: bool) {
-        let Some(timer) = &mut self.timer else { return };
-        let period = f64::from(self.gpu.queue.get_timestamp_period());
-        while let Some((labels, mapping)) = timer.underway.pop_front() {
-            if !all && !mapping.is_ready().unwrap_or(true) {
-                timer.underway.push_front((labels, mapping));
-                return;
-            }
-            let stamps: Vec<u64> = block_on(mapping.take()).unwrap_or_default();
-            for (label, pair) in labels.iter().zip(stamps.chunks_exact(2)) {
-                let nanoseconds = pair[1].saturating_sub(pair[0]) as f64 * period;
-                timer.timings.add(label, Duration::from_nanos(nanoseconds as u64));
+        let Some(timer) = &mut self.timer else { return Timings::default() };
+        timer.collect();
+        if cfg!(not(target_arch = "wasm32")) && timer.passes.is_pending() {
+            // The next call to a lost device reports the error.
+            let mut healthy = self.gpu.wait_for(None);
+            timer.collect();
+            // Another thread that uses the device may have to finish the mapping.
+            while timer.passes.is_pending() && healthy.is_ok() {
+                std::thread::yield_now();
+                healthy = self.gpu.poll();
+                timer.collect();
             }
         }
+        std::mem::take(&mut timer.timings)
     }
 
     pub(super) fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
@@ -212,12 +212,23 @@ impl GpuExecutor {
             .gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(&recording.label) });
-        let mut timed = Vec::new();
-        {
-            let mut target = Target { encoder: &mut encoder, pass: None };
-            self.encode(&recording.commands, &mut target, &mut timed);
+        let mut timer = self.timer.take();
+        if let Some(timer) = &mut timer {
+            timer.collect();
+            timer.passes.begin();
         }
-        self.finish_timing(encoder, timed);
+        let mut target = Target {
+            encoder: &mut encoder,
+            pass: None,
+            timer: timer.as_mut().map(|timer| &mut timer.passes),
+        };
+        self.encode(&recording.commands, &mut target);
+        drop(target);
+        if let Some(timer) = &mut timer {
+            timer.passes.end(&mut encoder);
+        }
+        self.timer = timer;
+        self.gpu.queue.submit([encoder.finish()]);
         self.gpu.health(&recording.label)
     }
 
@@ -238,7 +249,7 @@ impl GpuExecutor {
                         .enumerate()
                         .map(|(i, id)| wgpu::BindGroupEntry {
                             binding: i as u32,
-                            resource: self.buffers[id.0 as usize].as_entire_binding(),
+                            resource: live(&self.buffers, *id).as_entire_binding(),
                         })
                         .collect();
                     let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -255,68 +266,52 @@ impl GpuExecutor {
         Ok(())
     }
 
-    fn encode(&self, commands: &[Command], target: &mut Target<'_>, timed: &mut Vec<&'static str>) {
+    fn encode(&self, commands: &[Command], target: &mut Target<'_>) {
         for command in commands {
             match command {
-                Command::Dispatch { pass, grid, buffers } => {
-                    let groups = match *grid {
-                        Grid::Items(items) => items.div_ceil(pass.invocations()),
-                        Grid::Groups(groups) => groups,
-                        Grid::Indirect { .. } => 1,
+                Command::Dispatch { pass, size, buffers } => {
+                    let groups = match *size {
+                        DispatchSize::Items(items) => items.div_ceil(pass.invocations()),
+                        DispatchSize::Groups(groups) => groups,
+                        DispatchSize::Indirect { .. } => 1,
                     };
                     if groups == 0 {
                         continue;
                     }
-                    let compute = target.compute(pass.label, self.timer.as_ref(), timed);
+                    let compute = target.compute(pass.label);
                     let pipeline = &self.pipelines[&key(pass)];
                     compute.set_pipeline(&pipeline.pipeline);
                     compute.set_bind_group(0, &pipeline.bind_groups[buffers.as_slice()], &[]);
-                    if let Grid::Indirect { buffer, word } = *grid {
-                        compute.dispatch_workgroups_indirect(
-                            &self.buffers[buffer.0 as usize],
-                            u64::from(word) * 4,
-                        );
+                    if let DispatchSize::Indirect { buffer, word } = *size {
+                        compute.dispatch_workgroups_indirect(self.buffer(buffer), u64::from(word) * 4);
                     } else {
                         let [x, y, z] = dispatch_groups(groups);
                         compute.dispatch_workgroups(x, y, z);
                     }
                 }
                 Command::Copy { from, to } => {
-                    let meta = self.table.get(*from);
-                    let bytes = if meta.len == 0 { 0 } else { meta.bytes() };
-                    let (from, to) = (&self.buffers[from.0 as usize], &self.buffers[to.0 as usize]);
+                    let bytes = self.table.find(*from).filter(|meta| meta.len > 0).map_or(0, Meta::bytes);
+                    let (from, to) = (self.buffer(*from), self.buffer(*to));
                     target.encoder().copy_buffer_to_buffer(from, 0, to, 0, bytes);
                 }
                 Command::Clear { buffer } => {
-                    target.encoder().clear_buffer(&self.buffers[buffer.0 as usize], 0, None);
+                    target.encoder().clear_buffer(self.buffer(*buffer), 0, None);
                 }
-                Command::Repeat { body, most, .. } => {
-                    for _ in 0..*most {
-                        self.encode(body, target, timed);
+                Command::Repeat { body, rounds, .. } => {
+                    for _ in 0..rounds.get() {
+                        self.encode(body, target);
                     }
                 }
             }
         }
     }
+}
 
-    /// Submits, and sends for the times if there are any.
-    fn finish_timing(&mut self, mut encoder: wgpu::CommandEncoder, timed: Vec<&'static str>) {
-        let Some(timer) = self.timer.as_mut().filter(|_| !timed.is_empty()) else {
-            self.gpu.queue.submit([encoder.finish()]);
-            return;
-        };
-        let stamps = 2 * timed.len() as u32;
-        encoder.resolve_query_set(&timer.queries, 0..stamps, &timer.resolved, 0);
-        let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("pass times"),
-            size: u64::from(stamps) * 8,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        encoder.copy_buffer_to_buffer(&timer.resolved, 0, &staging, 0, staging.size());
-        let submission = self.gpu.queue.submit([encoder.finish()]);
-        timer.underway.push_back((timed, Mapping::new(&self.gpu, staging, submission)));
-        self.collect_timings(false);
+impl Timer {
+    fn collect(&mut self) {
+        for (label, time) in self.passes.collect().into_iter().flatten() {
+            self.timings.add(label, time);
+        }
     }
 }
 
@@ -324,31 +319,18 @@ impl GpuExecutor {
 struct Target<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     pass: Option<wgpu::ComputePass<'static>>,
+    timer: Option<&'a mut PassTimer>,
 }
 
 impl Target<'_> {
-    /// The open compute pass; one of its own per dispatch while timing.
-    fn compute(
-        &mut self,
-        label: &'static str,
-        timer: Option<&Timer>,
-        timed: &mut Vec<&'static str>,
-    ) -> &mut wgpu::ComputePass<'static> {
-        if timer.is_some() {
+    /// The open compute pass; while timing, each dispatch has its own.
+    fn compute(&mut self, label: &'static str) -> &mut wgpu::ComputePass<'static> {
+        if self.timer.is_some() {
             self.pass = None;
         }
-        let timer = timer.filter(|_| timed.len() < TIMED_DISPATCHES as usize);
-        let encoder = &mut *self.encoder;
-        self.pass.get_or_insert_with(|| {
-            let timestamp_writes = timer.map(|timer| {
-                let first = 2 * timed.len() as u32;
-                timed.push(label);
-                wgpu::ComputePassTimestampWrites {
-                    query_set: &timer.queries,
-                    beginning_of_pass_write_index: Some(first),
-                    end_of_pass_write_index: Some(first + 1),
-                }
-            });
+        let Self { encoder, pass, timer } = self;
+        pass.get_or_insert_with(|| {
+            let timestamp_writes = timer.as_mut().and_then(|timer| timer.compute_pass(label));
             encoder
                 .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes })
                 .forget_lifetime()

@@ -47,7 +47,7 @@ macro_rules! either {
     };
 }
 
-/// Compiles passes on a device and tells of those that it refuses: what works with one driver need not with another.
+/// Compiles passes on a device and returns the error of each that it refuses: drivers differ.
 pub async fn refused_passes(gpu: &crate::Gpu, passes: &[&'static crate::PassDesc]) -> Vec<GpuError> {
     let mut refused = Vec::new();
     for pass in passes {
@@ -57,8 +57,8 @@ pub async fn refused_passes(gpu: &crate::Gpu, passes: &[&'static crate::PassDesc
 }
 
 impl Executor {
-    /// An executor without buffers on the same device. It takes over the compiled passes; this one compiles
-    /// again what it needs again.
+    /// An executor without buffers on the same device. It takes over the compiled passes; this executor compiles
+    /// again the passes that it still runs.
     pub fn successor(&mut self) -> Self {
         match self {
             Self::Cpu(_) => Self::Cpu(CpuExecutor::new()),
@@ -70,7 +70,7 @@ impl Executor {
     ///
     /// # Errors
     /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
-    pub fn create<T: GpuElement>(&mut self, label: &str, len: usize) -> Result<Buffer<T>, GpuError> {
+    pub fn create<T: GpuElement>(&mut self, label: &'static str, len: usize) -> Result<Buffer<T>, GpuError> {
         let id = either!(self, e => e.create(Meta::new::<T>(label, len, Kind::Storage))?);
         Ok(Buffer { id, len: len as u32, element: PhantomData })
     }
@@ -79,18 +79,25 @@ impl Executor {
     ///
     /// # Errors
     /// As [`create`](Self::create).
-    pub fn create_from<T: GpuElement>(&mut self, label: &str, data: &[T]) -> Result<Buffer<T>, GpuError> {
+    pub fn create_from<T: GpuElement>(
+        &mut self,
+        label: &'static str,
+        data: &[T],
+    ) -> Result<Buffer<T>, GpuError> {
         let buffer = self.create(label, data.len())?;
         self.write(buffer, data)?;
         Ok(buffer)
     }
 
-    /// Makes a storage buffer with this content that passes may bind as a uniform too. For what is small: at
-    /// most 64 KiB.
+    /// Makes a storage buffer with this content that passes may bind as a uniform too; at most 64 KiB.
     ///
     /// # Errors
     /// As [`create`](Self::create).
-    pub fn create_small<T: GpuElement>(&mut self, label: &str, data: &[T]) -> Result<Buffer<T>, GpuError> {
+    pub fn create_small<T: GpuElement>(
+        &mut self,
+        label: &'static str,
+        data: &[T],
+    ) -> Result<Buffer<T>, GpuError> {
         let id = either!(self, e => e.create(Meta::new::<T>(label, data.len(), Kind::Either))?);
         let buffer = Buffer { id, len: data.len() as u32, element: PhantomData };
         self.write(buffer, data)?;
@@ -101,38 +108,63 @@ impl Executor {
     ///
     /// # Errors
     /// As [`create`](Self::create).
-    pub fn create_uniform<T: GpuStruct>(&mut self, label: &str, value: &T) -> Result<Buffer<T>, GpuError> {
+    pub fn create_uniform<T: GpuStruct>(
+        &mut self,
+        label: &'static str,
+        value: &T,
+    ) -> Result<Buffer<T>, GpuError> {
         let id = either!(self, e => e.create(Meta::new::<T>(label, 1, Kind::Uniform))?);
         let buffer = Buffer { id, len: 1, element: PhantomData };
         self.write(buffer, std::slice::from_ref(value))?;
         Ok(buffer)
     }
 
-    /// Replaces a buffer by one of another length under the same name. The content is lost; recordings that name the
-    /// buffer stay valid.
+    /// Changes the length of a buffer. The content is lost; handles and recordings of the buffer stay valid.
     ///
     /// # Errors
-    /// As [`create`](Self::create).
+    /// As [`create`](Self::create), and [`GpuError::NoSuchBuffer`].
     pub fn resize<T: GpuElement>(&mut self, buffer: &mut Buffer<T>, len: usize) -> Result<(), GpuError> {
-        either!(self, e => e.resize(buffer.id, len)?);
+        let meta = Meta { len, ..*self.table().get(buffer.id)? };
+        either!(self, e => e.resize(buffer.id, meta)?);
         buffer.len = len as u32;
         Ok(())
     }
 
-    /// The number of elements now; a handle copied before a [`resize`](Self::resize) does not know it.
-    fn len<T>(&self, buffer: Buffer<T>) -> usize {
-        either!(self, e => e.table_ref().get(buffer.id).len)
+    /// Frees buffers: one handle in an array, or the [ids](crate::BufferSet::ids) of a set. Every later use of their
+    /// handles, also in recordings, is an error that names the buffer.
+    ///
+    /// # Errors
+    /// [`GpuError::NoSuchBuffer`] if one of them was freed before or belongs to another executor; then none is freed.
+    pub fn free<I: Into<BufferId>>(&mut self, buffers: impl IntoIterator<Item = I>) -> Result<(), GpuError> {
+        let mut ids: Vec<BufferId> = Vec::new();
+        for id in buffers.into_iter().map(Into::into) {
+            self.table().get(id)?;
+            if !ids.contains(&id) {
+                ids.push(id);
+            }
+        }
+        either!(self, e => e.free(&ids));
+        Ok(())
+    }
+
+    fn table(&self) -> &table::Table {
+        either!(self, e => e.table_ref())
+    }
+
+    /// The number of elements now; a handle copied before a [`resize`](Self::resize) has the former one.
+    fn len<T>(&self, buffer: Buffer<T>) -> Result<usize, GpuError> {
+        Ok(self.table().get(buffer.id)?.len)
     }
 
     /// Overwrites the beginning of a buffer.
     ///
     /// # Errors
-    /// If the device was lost.
+    /// [`GpuError::NoSuchBuffer`], or if the device was lost.
     ///
     /// # Panics
     /// If `data` is longer than the buffer.
     pub fn write<T: GpuElement>(&mut self, buffer: Buffer<T>, data: &[T]) -> Result<(), GpuError> {
-        let len = self.len(buffer);
+        let len = self.len(buffer)?;
         assert!(data.len() <= len, "{} elements do not fit into the {len} of {buffer:?}", data.len());
         either!(self, e => e.write(buffer.id, bytemuck::cast_slice(data)))
     }
@@ -140,9 +172,9 @@ impl Executor {
     /// Reads a whole buffer, waiting for all work before it. For set-up, tests and the end of a frame.
     ///
     /// # Errors
-    /// If the device was lost or refused earlier work.
+    /// [`GpuError::NoSuchBuffer`], or if the device was lost or refused earlier work.
     pub fn read<T: GpuElement>(&mut self, buffer: Buffer<T>) -> Result<Vec<T>, GpuError> {
-        self.read_first(buffer, self.len(buffer))
+        self.read_first(buffer, self.len(buffer)?)
     }
 
     /// Reads the first `len` elements, waiting for all work before it.
@@ -158,7 +190,7 @@ impl Executor {
     /// # Errors
     /// As [`read`](Self::read).
     pub async fn fetch<T: GpuElement>(&mut self, buffer: Buffer<T>) -> Result<Vec<T>, GpuError> {
-        self.fetch_first(buffer, self.len(buffer)).await
+        self.fetch_first(buffer, self.len(buffer)?).await
     }
 
     /// [`read_first`](Self::read_first) where blocking is not possible, as on a web page.
@@ -173,7 +205,7 @@ impl Executor {
         self.request(buffer, len)?.take().await
     }
 
-    /// Asks for the first `len` elements as they are after all work submitted so far, without waiting.
+    /// Requests the first `len` elements as they are after all work submitted so far, without waiting.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -181,21 +213,21 @@ impl Executor {
     /// # Panics
     /// If the buffer has fewer elements.
     pub fn request<T: GpuElement>(&mut self, buffer: Buffer<T>, len: usize) -> Result<Readback<T>, GpuError> {
-        let has = self.len(buffer);
+        let has = self.len(buffer)?;
         assert!(len <= has, "{len} elements are more than the {has} of {buffer:?}");
         either!(self, e => e.request(buffer.id, len))
     }
 
-    /// Runs a recording: at once on the CPU, as one submission on a GPU.
+    /// Runs a recording: immediately on the CPU, as one submission on a GPU.
     ///
     /// # Errors
-    /// [`GpuError::BadBinding`] and [`GpuError::BadCommand`] if a command names buffers that do not fit it: nothing has
-    /// run then. [`GpuError::BadShader`] if the device does not compile a pass. [`GpuError::DeviceLost`].
+    /// [`GpuError::BadBinding`] and [`GpuError::BadCommand`] if a command and its buffers do not fit: then nothing has
+    /// run. [`GpuError::BadShader`] if the device does not compile a pass. [`GpuError::DeviceLost`].
     pub fn run(&mut self, recording: &Recording) -> Result<(), GpuError> {
         either!(self, e => e.run(recording))
     }
 
-    /// Waits until all submitted work is done.
+    /// Waits until all submitted work is complete.
     ///
     /// # Errors
     /// If the device was lost or refused earlier work.
@@ -206,16 +238,16 @@ impl Executor {
         }
     }
 
-    /// From now on new buffers are filled with ones (NaN, or 4,294,967,295) instead of zeros. For tests: it shows
-    /// passes that rely on memory nobody wrote.
+    /// From now on every bit of new buffers is one (NaN, or 4,294,967,295) instead of zero. For tests: it exposes
+    /// passes that rely on memory that was never written.
     pub fn poison(&mut self) {
         either!(self, e => e.table().poison = true);
     }
 
-    /// From now on dispatches are timed: all of them on the CPU, the first 2,048 of each recording on a GPU, where this
-    /// separates dispatches and waits after every submission.
+    /// From now on dispatches are timed: all of them on the CPU, the first 2,048 of each recording on a GPU, where each
+    /// dispatch then has a compute pass of its own.
     ///
-    /// Returns false where the device has no timestamps.
+    /// Returns false if the device has no timestamps.
     pub fn enable_timing(&mut self) -> bool {
         either!(self, e => e.enable_timing())
     }
@@ -230,9 +262,9 @@ impl Executor {
         either!(self, e => e.take_timings())
     }
 
-    /// Bytes in buffers.
+    /// Bytes in buffers that have not been freed.
     pub fn bytes(&self) -> u64 {
-        either!(self, e => e.table_ref().bytes())
+        self.table().bytes()
     }
 
     /// The largest number of bytes one buffer may have.
@@ -251,18 +283,18 @@ impl Executor {
         }
     }
 
-    /// The wgpu buffer behind a name, for drawing straight from where the simulation left it; `None` on the CPU.
+    /// The wgpu buffer of an identifier, for drawing without a copy; `None` on the CPU and for a freed buffer.
     pub fn wgpu_buffer(&self, id: BufferId) -> Option<&wgpu::Buffer> {
         match self {
             Self::Cpu(_) => None,
-            Self::Gpu(e) => Some(e.wgpu_buffer(id)),
+            Self::Gpu(e) => e.wgpu_buffer(id),
         }
     }
 
-    /// Runs a closure over a buffer in host memory without copying it; `None` on a GPU.
+    /// Runs a closure over a buffer in host memory without copying it; `None` on a GPU and for a freed buffer.
     pub fn with_host<T: GpuElement, R>(&self, buffer: Buffer<T>, f: impl FnOnce(&[T]) -> R) -> Option<R> {
         match self {
-            Self::Cpu(e) => Some(f(&e.view(buffer.id))),
+            Self::Cpu(e) => e.table_ref().find(buffer.id).map(|_| f(e.view(buffer.id))),
             Self::Gpu(_) => None,
         }
     }

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::{Access, BufferId, Gpu, GpuError, PassDesc, wgsl};
+use crate::{Access, BufferId, Gpu, GpuError, PassDesc};
 
-/// A pass on a device, and the sets of buffers it has been run with.
+/// A pass on a device, and the bind groups of the buffers it has run with.
 pub(super) struct Pipeline {
     pub pipeline: wgpu::ComputePipeline,
     pub layout: wgpu::BindGroupLayout,
@@ -14,8 +14,7 @@ pub(super) struct Pipeline {
 impl Pipeline {
     /// Compiles a pass.
     pub fn build(gpu: &Gpu, pass: &'static PassDesc) -> Result<Self, GpuError> {
-        let source = wgsl::expand(pass.wgsl, pass.imports)
-            .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
+        let source = pass.source().map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
         let ((pipeline, layout), error) =
             gpu.scoped(wgpu::ErrorFilter::Validation, |_| Self::compile(gpu, pass, &source));
         if let Some(error) = error {
@@ -24,10 +23,9 @@ impl Pipeline {
         Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
     }
 
-    /// Compiles a pass for the sake of what the device has to say about it.
+    /// Compiles a pass to learn whether the device accepts it.
     pub async fn try_out(gpu: &Gpu, pass: &'static PassDesc) -> Result<(), GpuError> {
-        let source = wgsl::expand(pass.wgsl, pass.imports)
-            .map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
+        let source = pass.source().map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         Self::compile(gpu, pass, &source);
         match scope.pop().await {
@@ -49,7 +47,8 @@ impl Pipeline {
         let module = if gpu.checks_shaders() {
             device.create_shader_module(descriptor)
         } else {
-            // SAFETY: whoever took the checks off the device has promised that its passes do without.
+            // SAFETY: the caller of `without_shader_checks` guarantees that its passes stay inside their buffers and
+            // end.
             unsafe { device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
         };
         let entries: Vec<_> = pass

@@ -1,4 +1,4 @@
-//! Data on its way from the device to the host, without anybody waiting for it.
+//! Transfers from the device to the host that do not block.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use bytemuck::Pod;
 
 use crate::{Gpu, GpuElement, GpuError, block_on};
 
-/// The answer to [`Executor::request`](crate::Executor::request).
+/// A pending transfer: see [`Executor::request`](crate::Executor::request).
 pub struct Readback<T> {
     state: State,
     element: PhantomData<fn() -> T>,
@@ -28,7 +28,7 @@ pub(super) fn mapping<T>(mapping: Mapping) -> Readback<T> {
 }
 
 impl<T: GpuElement> Readback<T> {
-    /// True once [`wait`](Self::wait) returns at once.
+    /// True if [`wait`](Self::wait) would return without waiting.
     ///
     /// # Errors
     /// If the device was lost.
@@ -39,18 +39,18 @@ impl<T: GpuElement> Readback<T> {
         }
     }
 
-    /// The data, waiting for it if need be, but not for work submitted after the request.
+    /// Waits for the data, but not for work submitted after the request.
     ///
     /// # Errors
     /// If the device was lost.
     ///
     /// # Panics
-    /// On a web page, where nothing can wait, if the data is not there: use [`take`](Self::take).
+    /// On a web page, which cannot wait, if the data has not arrived: use [`take`](Self::take).
     pub fn wait(self) -> Result<Vec<T>, GpuError> {
         block_on(self.take())
     }
 
-    /// The data, as soon as it is there. Outside of a web page this future waits when it is polled, and is then ready.
+    /// The data, once it has arrived. Outside of a web page this future blocks when it is polled, and is then ready.
     ///
     /// # Errors
     /// If the device was lost.
@@ -66,7 +66,7 @@ const PENDING: u8 = 0;
 const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
-/// A staging buffer on its way to the host.
+/// A staging buffer that is being mapped.
 pub(crate) struct Mapping {
     gpu: Arc<Gpu>,
     staging: wgpu::Buffer,
@@ -75,11 +75,11 @@ pub(crate) struct Mapping {
     report: Arc<Report>,
 }
 
-/// What the device has to say about a mapping.
+/// The state of a mapping.
 #[derive(Default)]
 struct Report {
     status: AtomicU8,
-    /// Who waits for it: on a web page the browser makes the report, and nobody can ask for it.
+    /// The task that waits: on a web page the browser reports, and the state cannot be polled for.
     #[cfg(target_arch = "wasm32")]
     waker: std::sync::Mutex<Option<std::task::Waker>>,
 }
@@ -123,7 +123,7 @@ impl Mapping {
         Ok(self.report.status() != PENDING)
     }
 
-    /// The content, as soon as the submission is done.
+    /// The content, once the submission is complete.
     pub async fn take<T: Pod>(self) -> Result<Vec<T>, GpuError> {
         self.finish().await?;
         if self.report.status() != MAPPED {
@@ -139,7 +139,7 @@ impl Mapping {
         if self.report.status() == PENDING {
             self.gpu.wait_for(Some(self.submission.clone()))?;
         }
-        // Another thread that uses the device may have taken the report off its queue without having made it yet.
+        // Another thread that uses the device may have dequeued the callback without having run it yet.
         while self.report.status() == PENDING {
             self.gpu.poll()?;
             std::thread::yield_now();

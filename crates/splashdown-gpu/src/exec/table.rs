@@ -1,23 +1,25 @@
-//! What both executors know about their buffers, and the check of a dispatch against it.
+//! What both executors know about their buffers, and the check of commands against it.
 
-use crate::{Access, BufferId, Command, Flag, GpuElement, GpuError, Grid, PassDesc, Recording};
+use crate::{
+    Access, BufferId, Command, DispatchSize, Flag, GpuElement, GpuError, PassDesc, Recording, Shape,
+};
 
 /// How passes may bind a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Storage,
     Uniform,
-    /// As either, in turn.
+    /// Either, in different passes.
     Either,
 }
 
-/// Most bytes of a uniform on every adapter.
+/// The largest number of bytes of a uniform on every adapter.
 const LARGEST_UNIFORM: u64 = 65_536;
 
-/// A buffer's name, type and length.
-#[derive(Clone, Debug)]
+/// A buffer's label, element type and length.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Meta {
-    pub label: String,
+    pub label: &'static str,
     pub element: &'static str,
     pub size: usize,
     pub len: usize,
@@ -25,8 +27,8 @@ pub(crate) struct Meta {
 }
 
 impl Meta {
-    pub fn new<T: GpuElement>(label: &str, len: usize, kind: Kind) -> Self {
-        Self { label: label.to_owned(), element: T::WGSL, size: size_of::<T>(), len, kind }
+    pub fn new<T: GpuElement>(label: &'static str, len: usize, kind: Kind) -> Self {
+        Self { label, element: T::WGSL, size: size_of::<T>(), len, kind }
     }
 
     /// WebGPU binds no empty buffers, so the smallest has room for one element.
@@ -34,8 +36,8 @@ impl Meta {
         self.size as u64 * self.len.max(1) as u64
     }
 
-    /// Refuses more elements than 32-bit numbers can tell apart, which passes have no others than, and more
-    /// bytes than a uniform may have.
+    /// Refuses more elements than a 32-bit index reaches, which is all that passes have, and more bytes than a uniform
+    /// may have.
     pub fn check_len(&self) -> Result<(), GpuError> {
         let fits = match self.kind {
             Kind::Storage => u64::from(u32::MAX),
@@ -45,7 +47,7 @@ impl Meta {
             return Ok(());
         }
         Err(GpuError::TooLarge {
-            label: self.label.clone(),
+            label: self.label.into(),
             len: self.len as u64,
             bytes: self.bytes(),
             limit: fits * self.size as u64,
@@ -56,26 +58,45 @@ impl Meta {
 
 #[derive(Default)]
 pub(crate) struct Table {
-    metas: Vec<Meta>,
+    /// By slot; `None` where a buffer was freed.
+    entries: Vec<Option<(BufferId, Meta)>>,
+    free_slots: Vec<u32>,
     pub poison: bool,
 }
 
 impl Table {
     pub fn add(&mut self, meta: Meta) -> BufferId {
-        self.metas.push(meta);
-        BufferId(self.metas.len() as u32 - 1)
+        let slot = self.free_slots.pop().unwrap_or_else(|| {
+            self.entries.push(None);
+            self.entries.len() as u32 - 1
+        });
+        let id = BufferId::new(slot, meta.label);
+        self.entries[slot as usize] = Some((id, meta));
+        id
     }
 
-    pub fn get(&self, id: BufferId) -> &Meta {
-        &self.metas[id.0 as usize]
+    /// Forgets a buffer. Its slot is used again, its identifier is not.
+    pub fn remove(&mut self, id: BufferId) {
+        self.entries[id.slot as usize] = None;
+        self.free_slots.push(id.slot);
     }
 
-    pub fn get_mut(&mut self, id: BufferId) -> &mut Meta {
-        &mut self.metas[id.0 as usize]
+    pub fn replace(&mut self, id: BufferId, meta: Meta) {
+        self.entries[id.slot as usize] = Some((id, meta));
+    }
+
+    /// What is known of a buffer; `None` if it was freed or belongs to another executor.
+    pub fn find(&self, id: BufferId) -> Option<&Meta> {
+        let (known, meta) = self.entries.get(id.slot as usize)?.as_ref()?;
+        (*known == id).then_some(meta)
+    }
+
+    pub fn get(&self, id: BufferId) -> Result<&Meta, GpuError> {
+        self.find(id).ok_or_else(|| GpuError::NoSuchBuffer { label: id.label().into() })
     }
 
     pub fn bytes(&self) -> u64 {
-        self.metas.iter().map(Meta::bytes).sum()
+        self.entries.iter().flatten().map(|(_, meta)| meta.bytes()).sum()
     }
 
     /// The byte that new buffers are filled with.
@@ -83,22 +104,34 @@ impl Table {
         if self.poison { 0xff } else { 0 }
     }
 
-    /// Compares every command with the buffers it names, so that an executor need not look again.
+    /// Compares every command with the buffers it names, so that an executor need not check again.
     pub fn check(&self, recording: &Recording) -> Result<(), GpuError> {
+        if let Some((pass, reason)) = &recording.error {
+            return Err(GpuError::BadBinding { pass, reason: reason.clone() });
+        }
         let bad = |reason| GpuError::BadCommand { recording: recording.label.clone(), reason };
-        self.check_commands(&recording.commands, &bad)
+        self.check_commands(&recording.commands, &mut Vec::new(), &bad)
     }
 
+    /// `flags`: those of the repetitions around these commands.
     fn check_commands(
         &self,
         commands: &[Command],
+        flags: &mut Vec<BufferId>,
         bad: &impl Fn(String) -> GpuError,
     ) -> Result<(), GpuError> {
         for command in commands {
             match command {
-                Command::Dispatch { pass, grid, buffers } => {
+                Command::Dispatch { pass, size, buffers } => {
                     self.check_dispatch(pass, buffers)?;
-                    if let Grid::Indirect { buffer, word } = *grid {
+                    if let Some(flag) = flags.iter().find(|flag| !buffers.contains(flag)) {
+                        return Err(bad(format!(
+                            "pass {} is repeated until a flag in {flag:?} is set, and does not bind that buffer: on a \
+                             GPU it would not stop",
+                            pass.label
+                        )));
+                    }
+                    if let DispatchSize::Indirect { buffer, word } = *size {
                         self.check_words(buffer, word, 3).map_err(bad)?;
                         let written = buffers
                             .iter()
@@ -112,6 +145,11 @@ impl Table {
                         }
                     }
                 }
+                Command::Copy { .. } | Command::Clear { .. } if !flags.is_empty() => {
+                    return Err(bad(
+                        "a copy or clear is repeated until a flag is set: on a GPU it would not stop".into(),
+                    ));
+                }
                 Command::Copy { from, to } => {
                     let (source, target) = (self.known(*from).map_err(bad)?, self.known(*to).map_err(bad)?);
                     if from == to || source.element != target.element || source.len > target.len {
@@ -123,7 +161,9 @@ impl Table {
                 }
                 Command::Repeat { body, until: Flag { buffer, word }, .. } => {
                     self.check_words(*buffer, *word, 1).map_err(bad)?;
-                    self.check_commands(body, bad)?;
+                    flags.push(*buffer);
+                    self.check_commands(body, flags, bad)?;
+                    flags.pop();
                 }
             }
         }
@@ -131,7 +171,7 @@ impl Table {
     }
 
     fn known(&self, id: BufferId) -> Result<&Meta, String> {
-        self.metas.get(id.0 as usize).ok_or_else(|| format!("buffer #{} is not of this executor", id.0))
+        self.get(id).map_err(|error| error.to_string())
     }
 
     fn check_words(&self, id: BufferId, word: u32, count: u64) -> Result<(), String> {
@@ -148,16 +188,28 @@ impl Table {
             return Err(bad(format!("{} buffers given, {} declared", buffers.len(), pass.bindings.len())));
         }
         for (i, (binding, id)) in pass.bindings.iter().zip(buffers).enumerate() {
-            let meta = self.known(*id).map_err(bad)?;
+            let meta =
+                self.known(*id).map_err(|reason| bad(format!("binding {:?}: {reason}", binding.name)))?;
             if binding.element != meta.element || binding.size != meta.size {
                 return Err(bad(format!(
-                    "binding {:?} is of {}, and given is {meta}",
+                    "binding {:?} has elements of type {}, which {meta} has not",
                     binding.name, binding.element
+                )));
+            }
+            let needed = match binding.shape {
+                Shape::Array => 0,
+                Shape::One => 1,
+                Shape::Fixed(len) => len,
+            };
+            if meta.len < needed {
+                return Err(bad(format!(
+                    "binding {:?} has {needed} elements, more than {meta}",
+                    binding.name
                 )));
             }
             let is_uniform = binding.access == Access::Uniform;
             if meta.kind != Kind::Either && is_uniform != (meta.kind == Kind::Uniform) {
-                return Err(bad(format!("binding {:?} and {meta}: one is a uniform", binding.name)));
+                return Err(bad(format!("binding {:?} and {meta}: only one is a uniform", binding.name)));
             }
             let twice = buffers[..i].iter().zip(pass.bindings).any(|(other, other_binding)| {
                 other == id && [binding.access, other_binding.access].contains(&Access::ReadWrite)

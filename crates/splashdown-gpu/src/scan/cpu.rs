@@ -3,42 +3,33 @@
 
 use rayon::prelude::*;
 
-use super::ScanParams;
-use crate::{CpuWork, Slot};
+use super::{ReduceBindings, ScanParams, SingleBindings, SpreadBindings};
 
 /// Blocks per task: 16,384 words, enough to hide what a task costs.
 const BLOCKS_PER_TASK: usize = 4;
 
 /// The sum of every block of `256 * RUN` counts.
-pub(super) fn reduce<const RUN: usize, const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, counts, sums] = slots else { unreachable!("three bindings") };
-    let len = params.get::<ScanParams>().len as usize;
-    counts.read::<u32>()[..len]
-        .par_chunks(256 * RUN)
-        .with_min_len(BLOCKS_PER_TASK)
-        .zip(sums.write::<u32>())
-        .for_each(|(block, sum)| {
-            *sum = block.iter().fold(0, |sum, count| sum.wrapping_add(*count.min(&MOST)))
-        });
+pub(super) fn reduce<const RUN: usize, const MOST: u32>(
+    ReduceBindings { params, counts, sums }: ReduceBindings<'_>,
+) {
+    counts[..params.len as usize].par_chunks(256 * RUN).with_min_len(BLOCKS_PER_TASK).zip(sums).for_each(
+        |(block, sum)| *sum = block.iter().fold(0, |sum, count| sum.wrapping_add(*count.min(&MOST))),
+    );
 }
 
 /// All of it, serial.
-pub(super) fn single<const MOST: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, counts, starts] = slots else { unreachable!("three bindings") };
-    let len = params.get::<ScanParams>().len as usize;
-    let starts = starts.write::<u32>();
-    starts[len] = run::<MOST>(&counts.read::<u32>()[..len], &mut starts[..len], 0);
+pub(super) fn single<const MOST: u32>(SingleBindings { params, counts, starts }: SingleBindings<'_>) {
+    let len = params.len as usize;
+    starts[len] = run::<MOST>(&counts[..len], &mut starts[..len], 0);
 }
 
 /// The prefix sums inside every block, on top of the sums of the blocks before.
 pub(super) fn spread<const RUN: usize, const MOST: u32, const SCANNED: bool>(
-    _: CpuWork,
-    slots: &mut [Slot<'_>],
+    SpreadBindings { params, counts, sums, starts }: SpreadBindings<'_>,
 ) {
-    let [params, counts, sums, starts] = slots else { unreachable!("four bindings") };
-    let ScanParams { len, blocks } = params.get();
-    let (starts, total) = starts.write::<u32>()[..=len as usize].split_at_mut(len as usize);
-    let (sums, blocks) = (sums.read::<u32>(), blocks as usize);
+    let ScanParams { len, blocks } = *params;
+    let (len, blocks) = (len as usize, blocks as usize);
+    let (starts, total) = starts[..=len].split_at_mut(len);
     let mut scanned = Vec::new();
     let offsets = if SCANNED {
         sums
@@ -48,7 +39,7 @@ pub(super) fn spread<const RUN: usize, const MOST: u32, const SCANNED: bool>(
         &scanned
     };
     total[0] = offsets[blocks];
-    counts.read::<u32>()[..len as usize]
+    counts[..len]
         .par_chunks(256 * RUN)
         .with_min_len(BLOCKS_PER_TASK)
         .zip(starts.par_chunks_mut(256 * RUN))

@@ -27,12 +27,18 @@
 
 mod cpu;
 
-use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, gpu_struct, read, uniform, wgsl, write};
+use crate::{
+    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, bindings, gpu_struct, wgsl,
+};
 
 /// Up to this length one workgroup does it all.
 const SINGLE_MAX: u32 = 16_384;
 /// Up to this many blocks every workgroup adds up by itself what is before its block.
 const MOST_SUMS: u32 = 4096;
+/// Counts per invocation.
+const RUN: usize = 16;
+/// Counts in a block.
+const BLOCK: u32 = 256 * RUN as u32;
 
 gpu_struct! {
     /// Mirrors `ScanParams` in the passes' WGSL.
@@ -44,96 +50,139 @@ gpu_struct! {
     }
 }
 
-/// The passes of one kind of scan. Counts above `most` count as `most`: 1 makes flags of them.
-#[derive(Debug)]
-struct Passes {
-    run: u32,
-    reduce: PassDesc,
-    single: PassDesc,
-    spread: PassDesc,
-    spread_scanned: PassDesc,
-}
-
-/// The constants: those of all, and for the last pass that its sums are scanned.
-type Constants = [(&'static str, f64); 3];
-
-const fn passes<const RUN: usize, const MOST: u32>(
-    constants: &'static Constants,
-    [reduce, single, spread, spread_scanned]: [&'static str; 4],
-) -> Passes {
-    let (run_and_most, _) = constants.split_at(2);
-    let spread = PassDesc {
-        label: spread,
-        wgsl: include_str!("scan_spread.wgsl"),
-        imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
-        entry: "scan_spread",
-        workgroup_size: [256, 1, 1],
-        constants: run_and_most,
-        bindings: const {
-            &[
-                uniform::<ScanParams>("params"),
-                read::<u32>("counts"),
-                read::<u32>("sums"),
-                write::<u32>("starts"),
-            ]
-        },
-        cpu: cpu::spread::<RUN, MOST, false>,
-    };
-    Passes {
-        run: RUN as u32,
-        reduce: PassDesc {
-            label: reduce,
-            wgsl: include_str!("scan_reduce.wgsl"),
-            imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
-            entry: "scan_reduce",
-            workgroup_size: [256, 1, 1],
-            constants: run_and_most,
-            bindings: const { &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("sums")] },
-            cpu: cpu::reduce::<RUN, MOST>,
-        },
-        single: PassDesc {
-            label: single,
-            wgsl: include_str!("scan_single.wgsl"),
-            imports: &[wgsl::WORKGROUP_PREFIX],
-            entry: "scan_single",
-            workgroup_size: [256, 1, 1],
-            constants: run_and_most.split_at(1).1,
-            bindings: const { &[uniform::<ScanParams>("params"), read::<u32>("counts"), write::<u32>("starts")] },
-            cpu: cpu::single::<MOST>,
-        },
-        spread_scanned: PassDesc {
-            label: spread_scanned,
-            constants,
-            cpu: cpu::spread::<RUN, MOST, true>,
-            ..spread
-        },
-        spread,
+bindings! {
+    struct ReduceBindings {
+        params: uniform ScanParams,
+        counts: read [u32],
+        sums: write [u32],
     }
 }
 
-const fn constants(run: f64, most: f64) -> Constants {
-    [("RUN", run), ("MOST", most), ("SCANNED", 1.0)]
+bindings! {
+    struct SingleBindings {
+        params: uniform ScanParams,
+        counts: read [u32],
+        starts: write [u32],
+    }
 }
 
-static COUNTS: Passes = passes::<16, { u32::MAX }>(
-    const { &constants(16.0, u32::MAX as f64) },
-    ["scan.reduce", "scan.single", "scan.spread", "scan.spread_scanned"],
-);
-static FLAGS: Passes = passes::<16, 1>(
-    const { &constants(16.0, 1.0) },
-    ["scan.flags.reduce", "scan.flags.single", "scan.flags.spread", "scan.flags.spread_scanned"],
-);
+bindings! {
+    struct SpreadBindings {
+        params: uniform ScanParams,
+        counts: read [u32],
+        sums: read [u32],
+        starts: write [u32],
+    }
+}
+
+/// The value of `MOST` that leaves counts as they are.
+const ANY: u32 = u32::MAX;
+
+static REDUCE: PassDesc = PassDesc {
+    label: "scan.reduce",
+    wgsl: include_str!("scan_reduce.wgsl"),
+    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
+    entry: "scan_reduce",
+    workgroup_size: [256, 1, 1],
+    constants: &[("RUN", RUN as f64), ("MOST", ANY as f64)],
+    bindings: ReduceBindings::LIST,
+    cpu: |_, slots| cpu::reduce::<RUN, ANY>(slots.into()),
+};
+
+static SINGLE: PassDesc = PassDesc {
+    label: "scan.single",
+    wgsl: include_str!("scan_single.wgsl"),
+    imports: &[wgsl::WORKGROUP_PREFIX],
+    entry: "scan_single",
+    workgroup_size: [256, 1, 1],
+    constants: &[("MOST", ANY as f64)],
+    bindings: SingleBindings::LIST,
+    cpu: |_, slots| cpu::single::<ANY>(slots.into()),
+};
+
+static SPREAD: PassDesc = PassDesc {
+    label: "scan.spread",
+    wgsl: include_str!("scan_spread.wgsl"),
+    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
+    entry: "scan_spread",
+    workgroup_size: [256, 1, 1],
+    constants: &[("RUN", RUN as f64), ("MOST", ANY as f64)],
+    bindings: SpreadBindings::LIST,
+    cpu: |_, slots| cpu::spread::<RUN, ANY, false>(slots.into()),
+};
+
+/// With sums that have been scanned.
+static SPREAD_SCANNED: PassDesc = PassDesc {
+    label: "scan.spread_scanned",
+    constants: &[("RUN", RUN as f64), ("MOST", ANY as f64), ("SCANNED", 1.0)],
+    cpu: |_, slots| cpu::spread::<RUN, ANY, true>(slots.into()),
+    ..SPREAD
+};
+
+static FLAGS_REDUCE: PassDesc = PassDesc {
+    label: "scan.flags.reduce",
+    constants: &[("RUN", RUN as f64), ("MOST", 1.0)],
+    cpu: |_, slots| cpu::reduce::<RUN, 1>(slots.into()),
+    ..REDUCE
+};
+
+static FLAGS_SINGLE: PassDesc = PassDesc {
+    label: "scan.flags.single",
+    constants: &[("MOST", 1.0)],
+    cpu: |_, slots| cpu::single::<1>(slots.into()),
+    ..SINGLE
+};
+
+static FLAGS_SPREAD: PassDesc = PassDesc {
+    label: "scan.flags.spread",
+    constants: &[("RUN", RUN as f64), ("MOST", 1.0)],
+    cpu: |_, slots| cpu::spread::<RUN, 1, false>(slots.into()),
+    ..SPREAD
+};
+
+static FLAGS_SPREAD_SCANNED: PassDesc = PassDesc {
+    label: "scan.flags.spread_scanned",
+    constants: &[("RUN", RUN as f64), ("MOST", 1.0), ("SCANNED", 1.0)],
+    cpu: |_, slots| cpu::spread::<RUN, 1, true>(slots.into()),
+    ..SPREAD
+};
 
 pub(crate) static PASSES: [&PassDesc; 8] = [
-    &COUNTS.reduce,
-    &COUNTS.single,
-    &COUNTS.spread,
-    &COUNTS.spread_scanned,
-    &FLAGS.reduce,
-    &FLAGS.single,
-    &FLAGS.spread,
-    &FLAGS.spread_scanned,
+    &REDUCE,
+    &SINGLE,
+    &SPREAD,
+    &SPREAD_SCANNED,
+    &FLAGS_REDUCE,
+    &FLAGS_SINGLE,
+    &FLAGS_SPREAD,
+    &FLAGS_SPREAD_SCANNED,
 ];
+
+/// The passes of one kind of scan. Counts above `MOST` count as `MOST`: 1 makes flags of them.
+#[derive(Debug)]
+struct Passes {
+    block: u32,
+    reduce: &'static PassDesc,
+    single: &'static PassDesc,
+    spread: &'static PassDesc,
+    spread_scanned: &'static PassDesc,
+}
+
+static COUNTS: Passes = Passes {
+    block: BLOCK,
+    reduce: &REDUCE,
+    single: &SINGLE,
+    spread: &SPREAD,
+    spread_scanned: &SPREAD_SCANNED,
+};
+
+static FLAGS: Passes = Passes {
+    block: BLOCK,
+    reduce: &FLAGS_REDUCE,
+    single: &FLAGS_SINGLE,
+    spread: &FLAGS_SPREAD,
+    spread_scanned: &FLAGS_SPREAD_SCANNED,
+};
 
 /// Exclusive prefix sums of a fixed number of counts, with the buffers that takes.
 #[derive(Clone, Copy, Debug)]
@@ -144,12 +193,12 @@ pub struct Scan {
     levels: Option<Levels>,
 }
 
-/// What a scan in blocks has besides.
+/// The further buffers of a scan in blocks.
 #[derive(Clone, Copy, Debug)]
 struct Levels {
     blocks: u32,
     sums: Buffer<u32>,
-    /// What the pass in the middle needs, where there is one.
+    /// The buffers of the pass that scans the sums, if there are too many for every workgroup to add them up.
     middle: Option<(Buffer<ScanParams>, Buffer<u32>)>,
 }
 
@@ -177,17 +226,17 @@ impl Scan {
         single_max: u32,
         most_sums: u32,
     ) -> Result<Self, GpuError> {
-        let blocks = len.div_ceil(256 * passes.run);
-        let params = executor.create_uniform("scan params", &ScanParams { len, blocks })?;
+        let blocks = len.div_ceil(passes.block);
+        let params = executor.create_uniform("scan_params", &ScanParams { len, blocks })?;
         let mut scan = Self { len, passes, params, levels: None };
         if len > single_max {
             let mut levels =
-                Levels { blocks, sums: executor.create("scan block sums", blocks as usize)?, middle: None };
+                Levels { blocks, sums: executor.create("scan_sums", blocks as usize)?, middle: None };
             if blocks > most_sums {
                 let params = ScanParams { len: blocks, blocks: 1 };
                 levels.middle = Some((
-                    executor.create_uniform("scan block params", &params)?,
-                    executor.create("scan block offsets", blocks as usize + 1)?,
+                    executor.create_uniform("scan_sums_params", &params)?,
+                    executor.create("scan_offsets", blocks as usize + 1)?,
                 ));
             }
             scan.levels = Some(levels);
@@ -209,21 +258,37 @@ impl Scan {
     pub fn record(&self, recording: &mut Recording, counts: Buffer<u32>, starts: Buffer<u32>) {
         assert!(counts.len() >= self.len, "a scan of {} counts was given {counts:?}", self.len);
         assert!(starts.len() > self.len, "a scan of {} counts cannot write {starts:?}", self.len);
-        let (counts, starts) = (counts.id(), starts.id());
-        let Passes { reduce, single, spread, spread_scanned, .. } = self.passes;
-        let params = self.params.id();
+        let Passes { reduce, single, spread, spread_scanned, .. } = *self.passes;
+        let buffers =
+            BufferSet::new().with("params", self.params).with("counts", counts).with("starts", starts);
         let Some(levels) = &self.levels else {
-            recording.dispatch(single, Grid::Groups(1), &[params, counts, starts]);
+            recording.dispatch(single, DispatchSize::Groups(1), &buffers);
             return;
         };
-        let (groups, sums) = (Grid::Groups(levels.blocks), levels.sums.id());
-        recording.dispatch(reduce, groups, &[params, counts, sums]);
-        let Some((block_params, offsets)) = &levels.middle else {
-            recording.dispatch(spread, groups, &[params, counts, sums, starts]);
+        let groups = DispatchSize::Groups(levels.blocks);
+        let buffers = buffers.with("sums", levels.sums);
+        recording.dispatch(reduce, groups, &buffers);
+        let Some((params, offsets)) = levels.middle else {
+            recording.dispatch(spread, groups, &buffers);
             return;
         };
-        recording.dispatch(&COUNTS.single, Grid::Groups(1), &[block_params.id(), sums, offsets.id()]);
-        recording.dispatch(spread_scanned, groups, &[params, counts, offsets.id(), starts]);
+        let middle =
+            BufferSet::new().with("params", params).with("counts", levels.sums).with("starts", offsets);
+        recording.dispatch(&SINGLE, DispatchSize::Groups(1), &middle);
+        recording.dispatch(spread_scanned, groups, &buffers.with("sums", offsets));
+    }
+
+    /// Frees the buffers; recordings of this scan become invalid.
+    ///
+    /// # Errors
+    /// [`GpuError::NoSuchBuffer`] if a copy was freed before.
+    pub fn free(self, executor: &mut Executor) -> Result<(), GpuError> {
+        let mut ids = vec![self.params.id()];
+        if let Some(Levels { sums, middle, .. }) = self.levels {
+            ids.push(sums.id());
+            ids.extend(middle.into_iter().flat_map(|(params, offsets)| [params.id(), offsets.id()]));
+        }
+        executor.free(ids)
     }
 }
 
@@ -232,11 +297,28 @@ mod tests {
     use super::*;
     use crate::{Command, testing};
 
+    static NARROW_REDUCE: PassDesc = PassDesc {
+        label: "narrow.reduce",
+        constants: &[("RUN", 1.0)],
+        cpu: |_, slots| cpu::reduce::<1, ANY>(slots.into()),
+        ..REDUCE
+    };
+
+    static NARROW_SPREAD: PassDesc = PassDesc {
+        label: "narrow.spread",
+        constants: &[("RUN", 1.0), ("SCANNED", 1.0)],
+        cpu: |_, slots| cpu::spread::<1, ANY, true>(slots.into()),
+        ..SPREAD
+    };
+
     /// One count per invocation, so that two dimensions of workgroups are reached with 67 MB.
-    static NARROW: Passes = passes::<1, { u32::MAX }>(
-        const { &constants(1.0, u32::MAX as f64) },
-        ["narrow", "narrow", "narrow", "narrow"],
-    );
+    static NARROW: Passes = Passes {
+        block: 256,
+        reduce: &NARROW_REDUCE,
+        single: &SINGLE,
+        spread: &NARROW_SPREAD,
+        spread_scanned: &NARROW_SPREAD,
+    };
 
     #[test]
     fn a_dispatch_past_65_535_workgroups_is_right() {

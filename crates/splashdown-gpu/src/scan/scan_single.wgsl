@@ -5,9 +5,7 @@ struct ScanParams {
     blocks: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: ScanParams;
-@group(0) @binding(1) var<storage, read> counts: array<u32>;
-@group(0) @binding(2) var<storage, read_write> starts: array<u32>;
+#bindings
 
 const RUN: u32 = 16u;
 override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value

@@ -1,4 +1,4 @@
-//! The same network on the cores.
+//! The same network on the CPU.
 //!
 //! Not rayon's sort, which is several times faster: the network is here as the thesis's baseline, to be measured as
 //! such, and each of its passes must do on the CPU what it does on a GPU for any input. Blocks of 512 are sorted by the
@@ -7,8 +7,7 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
-use super::{BLOCK, SortParams};
-use crate::{CpuWork, Slot};
+use super::{BLOCK, SortBindings, SortParams};
 
 /// Pairs per task.
 const TASK: usize = 4096;
@@ -26,19 +25,15 @@ fn compare(low: &mut UVec2, high: &mut UVec2) {
 }
 
 /// Sorts each block of 512.
-pub(super) fn blocks(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, pairs] = slots else { unreachable!("two bindings") };
-    let len = params.get::<SortParams>().len as usize;
-    pairs.write::<UVec2>()[..len]
+pub(super) fn blocks(SortBindings { params, pairs }: SortBindings<'_>) {
+    pairs[..params.len as usize]
         .par_chunks_mut(BLOCK as usize)
         .for_each(|block| block.sort_unstable_by_key(key));
 }
 
 /// The last nine steps of a merge, inside blocks of 512.
-pub(super) fn merge(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, pairs] = slots else { unreachable!("two bindings") };
-    let len = params.get::<SortParams>().len as usize;
-    pairs.write::<UVec2>()[..len].par_chunks_mut(BLOCK as usize).for_each(|block| {
+pub(super) fn merge(SortBindings { params, pairs }: SortBindings<'_>) {
+    pairs[..params.len as usize].par_chunks_mut(BLOCK as usize).for_each(|block| {
         let mut span = BLOCK as usize;
         while span > 1 {
             for part in block.chunks_mut(span) {
@@ -51,11 +46,10 @@ pub(super) fn merge(_: CpuWork, slots: &mut [Slot<'_>]) {
 }
 
 /// One step over spans that are longer than a block.
-pub(super) fn step(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, pairs] = slots else { unreachable!("two bindings") };
-    let SortParams { len, span, flip } = params.get();
+pub(super) fn step(SortBindings { params, pairs }: SortBindings<'_>) {
+    let SortParams { len, span, flip } = *params;
     let half = span as usize / 2;
-    pairs.write::<UVec2>()[..len as usize].par_chunks_mut(span as usize).for_each(|part| {
+    pairs[..len as usize].par_chunks_mut(span as usize).for_each(|part| {
         let (low, high) = part.split_at_mut(part.len().min(half));
         if flip == 1 {
             // The first of `high` meets the last of `low`; where `high` is cut short, the first of `low` meet padding.

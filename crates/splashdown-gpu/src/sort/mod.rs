@@ -1,4 +1,4 @@
-//! Bitonic sort of pairs of a key and a value: the way the thesis found neighbours, kept as a baseline.
+//! Bitonic sort of pairs of a key and a value: the neighbour search of the thesis, kept as a baseline.
 //!
 //! # How it works
 //!
@@ -29,8 +29,10 @@ mod cpu;
 
 use glam::UVec2;
 
-use crate::{Buffer, Executor, GpuError, Grid, PassDesc, Recording, WgslModule};
-use crate::{gpu_struct, uniform, wgsl, write};
+use crate::{
+    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, bindings,
+    gpu_struct, wgsl,
+};
 
 /// Pairs per workgroup in workgroup memory.
 const BLOCK: u32 = 512;
@@ -40,10 +42,17 @@ gpu_struct! {
     struct SortParams {
         /// Number of pairs.
         len: u32,
-        /// What a step's halves are halves of.
+        /// Pairs in the two halves that a step compares.
         span: u32,
         /// 1 if the step compares mirrored places.
         flip: u32,
+    }
+}
+
+bindings! {
+    struct SortBindings {
+        params: uniform SortParams,
+        pairs: write [UVec2],
     }
 }
 
@@ -56,12 +65,16 @@ static BLOCKS: PassDesc = PassDesc {
     entry: "sort_local",
     workgroup_size: [256, 1, 1],
     constants: &[("WHOLE", 1.0)],
-    bindings: &[uniform::<SortParams>("params"), write::<UVec2>("pairs")],
-    cpu: cpu::blocks,
+    bindings: SortBindings::LIST,
+    cpu: |_, slots| cpu::blocks(slots.into()),
 };
 
-static MERGE: PassDesc =
-    PassDesc { label: "sort.merge", constants: &[("WHOLE", 0.0)], cpu: cpu::merge, ..BLOCKS };
+static MERGE: PassDesc = PassDesc {
+    label: "sort.merge",
+    constants: &[("WHOLE", 0.0)],
+    cpu: |_, slots| cpu::merge(slots.into()),
+    ..BLOCKS
+};
 
 static STEP: PassDesc = PassDesc {
     label: "sort.step",
@@ -70,8 +83,8 @@ static STEP: PassDesc = PassDesc {
     entry: "sort_step",
     workgroup_size: [256, 1, 1],
     constants: &[],
-    bindings: &[uniform::<SortParams>("params"), write::<UVec2>("pairs")],
-    cpu: cpu::step,
+    bindings: SortBindings::LIST,
+    cpu: |_, slots| cpu::step(slots.into()),
 };
 
 pub(crate) static PASSES: [&PassDesc; 3] = [&BLOCKS, &MERGE, &STEP];
@@ -107,12 +120,13 @@ impl Sort {
     /// If `len` is more than 2^31.
     pub fn new(executor: &mut Executor, len: u32) -> Result<Self, GpuError> {
         assert!(len <= 1 << 31, "{len} pairs are more than 2^31");
-        let params = executor.create_uniform("sort params", &SortParams { len, span: BLOCK, flip: 0 })?;
+        let params = executor.create_uniform("sort_params", &SortParams { len, span: BLOCK, flip: 0 })?;
         let mut sort = Self { len, params, steps: Vec::new() };
         let mut span = BLOCK;
         while span < len {
             span *= 2;
-            let mut step = |flip| executor.create_uniform("sort step", &SortParams { len, span, flip });
+            let mut step =
+                |flip| executor.create_uniform("sort_step_params", &SortParams { len, span, flip });
             sort.steps.push([step(1)?, step(0)?]);
         }
         Ok(sort)
@@ -125,20 +139,28 @@ impl Sort {
     /// If `pairs` has fewer elements.
     pub fn record(&self, recording: &mut Recording, pairs: Buffer<UVec2>) {
         assert!(pairs.len() >= self.len, "a sort of {} pairs was given {pairs:?}", self.len);
-        let blocks = Grid::Groups(self.len.div_ceil(BLOCK));
-        let pairs = pairs.id();
-        recording.dispatch(&BLOCKS, blocks, &[self.params.id(), pairs]);
+        let blocks = DispatchSize::Groups(self.len.div_ceil(BLOCK));
+        let buffers = |params| BufferSet::new().with("params", params).with("pairs", pairs);
+        recording.dispatch(&BLOCKS, blocks, &buffers(self.params));
         for (level, [flip, _]) in self.steps.iter().enumerate() {
             let comparisons = |span_level: usize| {
                 let half = BLOCK << span_level;
-                Grid::Items(self.len.div_ceil(2 * half).saturating_mul(half))
+                DispatchSize::Items(self.len.div_ceil(2 * half).saturating_mul(half))
             };
-            recording.dispatch(&STEP, comparisons(level), &[flip.id(), pairs]);
+            recording.dispatch(&STEP, comparisons(level), &buffers(*flip));
             for (lower, [_, straight]) in self.steps[..level].iter().enumerate().rev() {
-                recording.dispatch(&STEP, comparisons(lower), &[straight.id(), pairs]);
+                recording.dispatch(&STEP, comparisons(lower), &buffers(*straight));
             }
-            recording.dispatch(&MERGE, blocks, &[self.params.id(), pairs]);
+            recording.dispatch(&MERGE, blocks, &buffers(self.params));
         }
+    }
+
+    /// Frees the buffers; recordings of this sort become invalid.
+    ///
+    /// # Errors
+    /// [`GpuError::NoSuchBuffer`] if a copy was freed before.
+    pub fn free(self, executor: &mut Executor) -> Result<(), GpuError> {
+        executor.free(self.steps.into_iter().flatten().chain([self.params]))
     }
 }
 
@@ -168,8 +190,13 @@ mod tests {
                 let buffer = executor.create_from("pairs", &pairs)?;
                 let params = executor.create_uniform("params", &SortParams { len, span, flip })?;
                 let mut recording = Recording::new("step");
-                let grid = if std::ptr::eq(pass, &STEP) { Grid::Items(8192) } else { Grid::Groups(10) };
-                recording.dispatch(pass, grid, &[params.id(), buffer.id()]);
+                let step = std::ptr::eq(pass, &STEP);
+                let size = if step { DispatchSize::Items(8192) } else { DispatchSize::Groups(10) };
+                recording.dispatch(
+                    pass,
+                    size,
+                    &BufferSet::new().with("params", params).with("pairs", buffer),
+                );
                 executor.run(&recording)?;
                 executor.read(buffer)
             };

@@ -7,8 +7,7 @@ struct SortParams {
     flip: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: SortParams;
-@group(0) @binding(1) var<storage, read_write> pairs: array<vec2<u32>>;
+#bindings
 
 // 1: sort each block of 512. 0: only the last merge, of spans from 512 down.
 override WHOLE: u32;

@@ -7,8 +7,7 @@ struct SortParams {
     flip: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: SortParams;
-@group(0) @binding(1) var<storage, read_write> pairs: array<vec2<u32>>;
+#bindings
 
 @compute @workgroup_size(256)
 fn sort_step(

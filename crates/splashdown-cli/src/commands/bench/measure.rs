@@ -7,7 +7,7 @@ use serde::Serialize;
 use splashdown::Simulation;
 use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
-use splashdown_gpu::floors::Floors;
+use splashdown_gpu::roofline::Roofline;
 use splashdown_run::{PassNumbers, pass_numbers};
 
 use crate::args::BenchArguments;
@@ -27,12 +27,12 @@ const BUDGET: Duration = Duration::from_secs(2);
 /// Steps in which dispatches are counted if passes are not measured.
 const COUNTED: u32 = 2;
 
-/// What a step must at least move and compute per particle, with about 28 neighbours: every array once, in a
-/// step whose passes are joined as far as they can be; and the arithmetic of tests, density and forces.
+/// The least memory traffic and arithmetic of a step per particle with about 28 neighbours: every array once, in a
+/// step whose passes are fused as far as possible; and the arithmetic of distance tests, density and forces.
 /// docs/performance.md derives both.
-const FLOOR_BYTES: f64 = 192.0;
-const FLOOR_OPERATIONS: f64 = 6047.0;
-/// Number of particles in the sample for the mean number of neighbours.
+const LEAST_BYTES: f64 = 192.0;
+const LEAST_OPERATIONS: f64 = 6047.0;
+/// Particles of whose neighbours the mean is told.
 const SAMPLED: usize = 256;
 
 /// The measurement of one size.
@@ -61,11 +61,11 @@ pub struct Row {
     pub memory: u64,
     /// Peak resident bytes of this process so far, if the system reports them.
     pub peak_memory: Option<u64>,
-    /// The shortest time that this device could take, in s.
-    pub floor: f64,
-    /// `seconds_per_step` over `floor`.
-    pub over_floor: f64,
-    /// What the floor is made of.
+    /// The shortest possible time of a step on this device, in s.
+    pub roofline_seconds: f64,
+    /// `seconds_per_step` over `roofline_seconds`.
+    pub over_roofline: f64,
+    /// The limits that make the roofline.
     pub copy_bytes_per_second: f64,
     pub flops: f64,
     pub dispatch_seconds: f64,
@@ -81,7 +81,7 @@ pub struct Row {
 ///
 /// # Errors
 /// Those of the simulation.
-pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Result<Row, Failure> {
+pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) -> Result<Row, Failure> {
     let device = &arguments.device.device;
     let unchecked = arguments.unchecked_shaders;
     let executor = if unchecked {
@@ -108,7 +108,8 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     }
     rounds.sort_by(f64::total_cmp);
     let seconds = rounds[ROUNDS / 2];
-    // After the rounds, because timing every pass slows a GPU down a little.
+    // After the rounds, because timestamps around every pass cost a little on a GPU. The roofline needs the number of
+    // dispatches in any case.
     let mut timed_steps = 0;
     if simulation.enable_timing() {
         let steps = if arguments.no_passes { COUNTED.min(steps) } else { steps };
@@ -118,9 +119,9 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
     let count = u64::from(simulation.stats().particles);
     let dispatches: u64 = timings.passes.values().map(|time| time.count).sum();
     let dispatches = if timed_steps > 0 { dispatches as f64 / f64::from(timed_steps) } else { 0.0 };
-    let (bytes, operations) = (FLOOR_BYTES * count as f64, FLOOR_OPERATIONS * count as f64);
-    // The floor of the dispatches that there are: fewer of them would lower it.
-    let floor = floors.seconds(bytes, operations, dispatches);
+    let (bytes, operations) = (LEAST_BYTES * count as f64, LEAST_OPERATIONS * count as f64);
+    // With the present number of dispatches; fewer would lower it.
+    let roofline_seconds = roofline.seconds(bytes, operations, dispatches);
     let support_radius = simulation.params().support_radius;
     let positions = simulation.particles()?.positions;
     Ok(Row {
@@ -142,11 +143,11 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, floors: Floors) -> Res
         neighbours: neighbours(&positions, support_radius),
         memory: simulation.memory(),
         peak_memory: memory::peak(),
-        floor,
-        over_floor: seconds / floor,
-        copy_bytes_per_second: floors.bytes_per_second,
-        flops: floors.flops,
-        dispatch_seconds: floors.dispatch,
+        roofline_seconds,
+        over_roofline: seconds / roofline_seconds,
+        copy_bytes_per_second: roofline.bytes_per_second,
+        flops: roofline.flops,
+        dispatch_seconds: roofline.dispatch,
         dispatches_per_step: dispatches,
         timed_steps: timed_steps.into(),
         passes: if arguments.no_passes { BTreeMap::new() } else { pass_numbers(&timings) },

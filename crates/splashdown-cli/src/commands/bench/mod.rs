@@ -1,5 +1,5 @@
-//! `splashdown bench`: the time per step, by number of particles, by threads and by pass, compared with the roofline of
-//! the device, as Markdown or JSON.
+//! `splashdown bench`: the time of a step, by number of particles, by threads and by pass, and its ratio to the roofline
+//! of the device, as Markdown or JSON.
 
 mod measure;
 mod page;
@@ -7,7 +7,7 @@ mod page;
 use serde::Serialize;
 use splashdown::Device;
 use splashdown::scene::Scene;
-use splashdown_gpu::floors::Floors;
+use splashdown_gpu::roofline::Roofline;
 
 use crate::args::BenchArguments;
 use crate::exit::{Exit, Failure};
@@ -47,9 +47,9 @@ pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
 /// The rows of one number of threads.
 fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let device = &arguments.device.device;
-    let floors = Floors::measure(&mut device.executor()?)?;
+    let roofline = Roofline::measure(&mut device.executor()?)?;
     if let Some(path) = &arguments.scene {
-        return one_size(scene_file::load(path)?, arguments, floors, rows);
+        return one_size(scene_file::load(path)?, arguments, roofline, rows);
     }
     let compared: Vec<u32> = (COMPARED.0..=COMPARED.1).map(|power| 1 << power).collect();
     let sizes = if arguments.compare { &compared } else { &arguments.particles };
@@ -59,9 +59,9 @@ fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Fail
             Some(reason) if arguments.compare => Err(Failure::new(Exit::Device, reason)),
             _ => bench_scene(particles)
                 .map_err(Failure::from)
-                .and_then(|scene| one_size(scene, arguments, floors, rows)),
+                .and_then(|scene| one_size(scene, arguments, roofline, rows)),
         };
-        // A comparison ends at the first size that does not fit on the device.
+        // A comparison ends at the first size that the device refuses.
         match outcome {
             Err(failure) if arguments.compare && rows.len() > before => {
                 missing(particles, &failure.message, arguments.json);
@@ -77,17 +77,17 @@ fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Fail
 fn one_size(
     mut scene: Scene,
     arguments: &BenchArguments,
-    floors: Floors,
+    roofline: Roofline,
     rows: &mut Vec<Row>,
 ) -> Result<(), Failure> {
     if let Some(solver) = arguments.solver {
         scene.solver.method = solver;
     }
-    let row = measure(&scene, arguments, floors)?;
+    let row = measure(&scene, arguments, roofline)?;
     if arguments.json {
         console::print_json(&row);
     } else {
-        // One heading per number of threads.
+        // The heading is for the rows of one number of threads.
         if rows.last().is_none_or(|last| last.device != row.device) {
             console::print(page::header(&row, !rows.is_empty()));
         }

@@ -7,8 +7,8 @@ use crate::{human, summary};
 pub fn header(row: &Row, another: bool) -> String {
     format!(
         "{}`{}` on {}: median of {} rounds after {WARM_UP} steps.\n\n\
-         Measured floors: copies {}/s, {:.0} GFLOP/s, {:.2} us per dependent dispatch.\n\n\
-         | particles | neighbours | memory | ms per step | fastest | ns per particle | particle-steps/s | over the floor |\n\
+         Measured limits: copies {}/s, {:.0} GFLOP/s, {:.2} us per dependent dispatch.\n\n\
+         | particles | neighbours | memory | ms per step | fastest | ns per particle | particle-steps/s | over the roofline |\n\
          |---:|---:|---:|---:|---:|---:|---:|---:|",
         if another { "\n" } else { "" },
         row.solver,
@@ -31,7 +31,7 @@ pub fn line(row: &Row) -> String {
         1e3 * row.fastest,
         row.nanoseconds_per_particle,
         human::scaled(row.particle_steps_per_second).trim_end(),
-        row.over_floor
+        row.over_roofline
     )
 }
 

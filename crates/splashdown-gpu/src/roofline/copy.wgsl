@@ -1,7 +1,6 @@
 #import gpu/index
 
-@group(0) @binding(0) var<storage, read> values: array<vec4<f32>>;
-@group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
+#bindings
 
 @compute @workgroup_size(256)
 fn copy(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

@@ -1,4 +1,4 @@
-@group(0) @binding(0) var<storage, read_write> counter: array<u32>;
+#bindings
 
 @compute @workgroup_size(1)
 fn nothing() {

@@ -1,31 +1,27 @@
-//! The same work on the cores.
+//! The same work on the CPU.
 
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::LINKS;
-use crate::{CpuWork, Slot};
+use super::{CountBindings, LINKS, StreamBindings};
+use crate::CpuWork;
 
 /// Vectors per task of the copy: half a mebibyte.
 const COPIED_PER_TASK: usize = 1 << 15;
-/// Vectors that are worked on together: as many lanes as the widest registers hold, times enough of them.
+/// Vectors processed together: enough lanes to fill several of the widest registers.
 const TOGETHER: usize = 16;
 
-pub(super) fn copy(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [values, results] = slots else { unreachable!("two bindings") };
-    let (values, results) = (values.read::<Vec4>(), results.write::<Vec4>());
+pub(super) fn copy(StreamBindings { values, results }: StreamBindings<'_>) {
     let n = values.len().min(results.len());
     let tasks = results[..n].par_chunks_mut(COPIED_PER_TASK).zip(values[..n].par_chunks(COPIED_PER_TASK));
     tasks.for_each(|(to, from)| to.copy_from_slice(from));
 }
 
-pub(super) fn madd(work: CpuWork, slots: &mut [Slot<'_>]) {
-    let [values, results] = slots else { unreachable!("two bindings") };
-    let (values, results) = (values.read::<Vec4>(), results.write::<Vec4>());
+pub(super) fn madd(work: CpuWork, StreamBindings { values, results }: StreamBindings<'_>) {
     let n = values.len().min(results.len()).min(work.items as usize);
     let tasks = results[..n].par_chunks_mut(TOGETHER).zip(values[..n].par_chunks(TOGETHER)).with_min_len(64);
     tasks.for_each(|(to, from)| {
-        // A part that is not full is made full: the loop has one length.
+        // A short chunk is padded, so that the loop has a fixed length.
         let mut block = [Vec4::ZERO; TOGETHER];
         block[..from.len()].copy_from_slice(from);
         chains(bytemuck::cast_mut(&mut block));
@@ -49,7 +45,7 @@ fn fused(x: &mut [f32; 4 * TOGETHER]) {
     work(x, f32::mul_add);
 }
 
-/// One factor after the other, each over all lanes: the lanes are the independent chains here.
+/// One factor after the other, each over all lanes: here the lanes are the independent chains.
 #[inline(always)]
 fn work(x: &mut [f32; 4 * TOGETHER], fma: impl Fn(f32, f32, f32) -> f32) {
     let begin = *x;
@@ -68,8 +64,6 @@ fn work(x: &mut [f32; 4 * TOGETHER], fma: impl Fn(f32, f32, f32) -> f32) {
     *x = sum;
 }
 
-pub(super) fn nothing(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [counter] = slots else { unreachable!("one binding") };
-    let counter = &mut counter.write::<u32>()[0];
-    *counter = counter.wrapping_add(1);
+pub(super) fn nothing(CountBindings { counter }: CountBindings<'_>) {
+    counter[0] = counter[0].wrapping_add(1);
 }

@@ -1,7 +1,6 @@
 #import gpu/index
 
-@group(0) @binding(0) var<storage, read> values: array<vec4<f32>>;
-@group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
+#bindings
 
 override LINKS: u32;
 

@@ -1,1 +1,0 @@
-alias Element = vec4<f32>;
