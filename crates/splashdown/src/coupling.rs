@@ -1,6 +1,6 @@
 //! Couplings: what acts on the fluid beside its own forces, or measures it. Each declares where in a step it acts.
 
-use splashdown_gpu::{Grid as DispatchSize, Recording};
+use splashdown_gpu::{BufferSet, DispatchSize, PassDesc, Recording};
 
 use crate::cells::Cells;
 use crate::state::Fields;
@@ -38,6 +38,8 @@ impl Stage {
 pub struct StepRecorder<'a> {
     /// The passes so far.
     pub recording: Recording,
+    /// The buffers of fields, cells and couplings, which passes find by name.
+    pub buffers: BufferSet,
     /// The sorting grid and its buffers.
     pub cells: &'a Cells,
     /// The buffers that passes share.
@@ -48,10 +50,25 @@ pub struct StepRecorder<'a> {
     pub is_density_integrated: bool,
 }
 
+impl StepRecorder<'_> {
+    /// Appends a pass.
+    pub fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize) {
+        self.recording.dispatch(pass, size, &self.buffers);
+    }
+
+    /// Appends a pass with one invocation for each particle.
+    pub fn dispatch_particles(&mut self, pass: &'static PassDesc) {
+        self.dispatch(pass, self.particles);
+    }
+}
+
 /// Something that acts on the fluid in a step, or measures it.
 pub trait Coupling {
     /// The stages in which it acts.
     fn stages(&self) -> &'static [Stage];
+
+    /// The buffers that its passes bind beside those of fields and cells.
+    fn buffers(&self) -> BufferSet;
 
     /// Appends its passes of one of its [`stages`](Self::stages).
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>);

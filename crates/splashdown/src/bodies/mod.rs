@@ -29,7 +29,7 @@ pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample, WGSL as 
 use std::sync::Arc;
 
 use glam::{Quat, UVec3, Vec2, Vec3, Vec4};
-use splashdown_gpu::{Buffer, BufferId, Executor, GpuError, Grid as Extent, PassDesc};
+use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, buffer_set};
 use splashdown_io::{Mesh, Particles};
 
 use crate::SimulationError;
@@ -168,73 +168,31 @@ impl Bodies {
     }
 
     fn record_boundary_lookup(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, particles, .. } = step;
-        let pass = self.by_kernels(
+        step.dispatch_particles(self.by_kernels(
             &boundary_lookup::WENDLAND_C2,
             &boundary_lookup::CUBIC_SPLINE,
             &boundary_lookup::MUELLER,
-        );
-        let buffers = [
-            fields.params.id(),
-            cells.cell_start.id(),
-            self.bodies.id(),
-            self.maps.id(),
-            fields.sorted_positions.id(),
-            self.contacts.id(),
-            fields.counters.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+        ));
     }
 
     fn record_boundary_density(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, particles, is_density_integrated } = step;
-        let pass =
-            if *is_density_integrated { &boundary_density::CONTINUITY } else { &boundary_density::SUMMATION };
-        let buffers = [
-            fields.params.id(),
-            fields.state.id(),
-            cells.cell_start.id(),
-            self.bodies.id(),
-            self.contacts.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.densities.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+        step.dispatch_particles(if step.is_density_integrated {
+            &boundary_density::CONTINUITY
+        } else {
+            &boundary_density::SUMMATION
+        });
     }
 
     fn record_boundary_force(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, fields, particles, .. } = step;
-        let buffers = [
-            fields.params.id(),
-            fields.state.id(),
-            self.bodies.id(),
-            self.contacts.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.densities.id(),
-            fields.accelerations.id(),
-            self.sums.id(),
-        ];
-        let pass = self.by_kernels(
+        step.dispatch_particles(self.by_kernels(
             &boundary_force::WENDLAND_C2,
             &boundary_force::CUBIC_SPLINE,
             &boundary_force::MUELLER,
-        );
-        recording.dispatch(pass, *particles, &buffers);
+        ));
     }
 
     fn record_motion(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, fields, .. } = step;
-        let buffers: [BufferId; 6] = [
-            fields.params.id(),
-            fields.state.id(),
-            self.scripts.id(),
-            self.bodies.id(),
-            self.sums.id(),
-            fields.counters.id(),
-        ];
-        recording.dispatch(&motion::MOTION, Extent::Items(self.bodies.len()), &buffers);
+        step.dispatch(&motion::MOTION, DispatchSize::Items(self.bodies.len()));
     }
 
     fn by_kernels(
@@ -452,6 +410,10 @@ impl Bodies {
 impl Coupling for Bodies {
     fn stages(&self) -> &'static [Stage] {
         &[Stage::BoundaryLookup, Stage::BoundaryDensity, Stage::BoundaryForces]
+    }
+
+    fn buffers(&self) -> BufferSet {
+        buffer_set!(self => bodies, maps, contacts, sums, scripts)
     }
 
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {

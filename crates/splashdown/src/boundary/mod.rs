@@ -18,7 +18,7 @@ pub mod part;
 mod walls;
 
 pub(crate) use near::{NearWalls, closed_bounds};
-pub use walls::{KernelPair, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};
+pub use walls::{KernelPair, TABLE_LEN, TABLE_STEPS, WallKernel, WallTerms, Walls, wall_offset, wall_table};
 
 use splashdown_gpu::WgslModule;
 

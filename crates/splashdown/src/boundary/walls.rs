@@ -19,6 +19,8 @@ use crate::state::Params;
 /// Steps of the table along each axis; it has one node more.
 pub const TABLE_STEPS: usize = 32;
 const NODES: usize = TABLE_STEPS + 1;
+/// Entries of the [`wall_table`].
+pub const TABLE_LEN: usize = NODES * NODES;
 
 /// Which kernels the density and the pressure gradient use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,7 +24,9 @@ pub use grid::{Grid, WGSL as GRID};
 use glam::UVec2;
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::sort::Sort as BitonicSort;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule};
+use splashdown_gpu::{
+    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, buffer_set,
+};
 
 use crate::state::{Fields, end_step};
 
@@ -93,74 +95,50 @@ impl Cells {
         })
     }
 
+    /// The buffers by name, for recordings.
+    pub fn buffers(&self) -> BufferSet {
+        let mut buffers = buffer_set!(self => cell_start, cell_counts, entries);
+        buffers.add("grid", self.grid_uniform);
+        if let Way::Bitonic { pairs, .. } = self.way {
+            buffers.add("pairs", pairs);
+        }
+        buffers
+    }
+
     /// Appends the count that the first sort of a frame needs.
     pub fn record_first_count(&self, recording: &mut Recording, fields: &Fields) {
-        // A frame that was given up leaves a count that nobody has used.
+        // An abandoned frame leaves a count that was not used.
         recording.clear(self.cell_counts);
         self.record_count(recording, fields);
     }
 
     /// Appends the count for the next step where the pass that moves particles does not count.
     pub fn record_count(&self, recording: &mut Recording, fields: &Fields) {
-        let buffers = [
-            fields.params.id(),
-            self.grid_uniform.id(),
-            fields.state.id(),
-            fields.positions.id(),
-            fields.velocities.id(),
-            self.cell_counts.id(),
-            fields.counters.id(),
-        ];
+        let buffers = fields.buffers().and(&self.buffers());
         recording.dispatch(&count::COUNT, self.all(), &buffers);
     }
 
     /// Appends the sort of the persistent arrays, whose particles have been counted, into the sorted ones, ids
     /// into `sorted_ids`; and ends the step before, if there is one.
     pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
-        let (state, grid, ids) = (fields.state.id(), self.grid_uniform.id(), fields.ids.id());
-        let (cell_counts, cell_start, entries) =
-            (self.cell_counts.id(), self.cell_start.id(), self.entries.id());
+        let buffers = fields.buffers().and(&self.buffers());
         match &self.way {
             Way::Counting(scan) => {
                 scan.record(recording, self.cell_counts, self.cell_start);
-                let (params, counters) = (fields.params.id(), fields.counters.id());
-                recording.dispatch(
-                    &scatter::SCATTER,
-                    self.all(),
-                    &[params, grid, state, counters, cell_counts, cell_start, ids, entries],
-                );
+                recording.dispatch(&scatter::SCATTER, self.all(), &buffers);
             }
             Way::Bitonic { sort, pairs } => {
                 recording.append(&end_step::record(fields));
-                recording.dispatch(&keys::KEYS, self.all(), &[grid, state, cell_counts, pairs.id()]);
+                recording.dispatch(&keys::KEYS, self.all(), &buffers);
                 sort.record(recording, *pairs);
-                let one_more = Extent::Items(self.particles + 1);
-                recording.dispatch(
-                    &bounds::BOUNDS,
-                    one_more,
-                    &[grid, state, pairs.id(), ids, cell_start, entries],
-                );
+                recording.dispatch(&bounds::BOUNDS, DispatchSize::Items(self.particles + 1), &buffers);
             }
         }
-        recording.dispatch(
-            &reorder::REORDER,
-            self.all(),
-            &[
-                grid,
-                cell_counts,
-                cell_start,
-                entries,
-                fields.positions.id(),
-                fields.velocities.id(),
-                fields.sorted_positions.id(),
-                fields.sorted_velocities.id(),
-                sorted_ids.id(),
-            ],
-        );
+        recording.dispatch(&reorder::REORDER, self.all(), &buffers.with("sorted_ids", sorted_ids));
     }
 
     /// An invocation per particle; one where there is none, so that steps end and time advances.
-    fn all(&self) -> Extent {
-        Extent::Items(self.particles.max(1))
+    fn all(&self) -> DispatchSize {
+        DispatchSize::Items(self.particles.max(1))
     }
 }

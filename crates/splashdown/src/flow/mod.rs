@@ -17,7 +17,7 @@ mod types;
 pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
 use glam::{UVec3, Vec3, Vec4};
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, WgslModule};
+use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, WgslModule, buffer_set};
 
 use crate::bodies::{BodyError, closed_solid, owner};
 use crate::checkpoint::hash;
@@ -234,57 +234,19 @@ impl Flow {
 
     /// Appends the inflow constraint of the emitters, and the sinks.
     fn record_forces(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, particles, .. } = step;
-        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
-        if let Some(nozzles) = &self.nozzles {
-            let buffers = [
-                fields.params.id(),
-                grid,
-                fields.state.id(),
-                cell_start,
-                nozzles.nozzles.id(),
-                nozzles.schedules.id(),
-                fields.sorted_positions.id(),
-                fields.sorted_velocities.id(),
-                fields.accelerations.id(),
-            ];
-            recording.dispatch(&inflow_constraint::INFLOW_CONSTRAINT, *particles, &buffers);
+        if self.nozzles.is_some() {
+            step.dispatch_particles(&inflow_constraint::INFLOW_CONSTRAINT);
         }
-        if let Some((drains, maps)) = &self.drains {
-            let buffers = [
-                grid,
-                fields.state.id(),
-                cell_start,
-                drains.id(),
-                maps.id(),
-                fields.sorted_positions.id(),
-                fields.counters.id(),
-            ];
-            recording.dispatch(&sink::SINK, *particles, &buffers);
+        if self.drains.is_some() {
+            step.dispatch_particles(&sink::SINK);
         }
     }
 
     /// Appends the emission of particles into the persistent arrays.
     fn record_emission(&self, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, .. } = step;
         let Some(nozzles) = &self.nozzles else { return };
-        let (params, grid, cell_start) = (fields.params.id(), cells.grid_uniform.id(), cells.cell_start.id());
-        let buffers =
-            [params, grid, fields.state.id(), cell_start, nozzles.nozzles.id(), nozzles.schedules.id()];
-        recording.dispatch(&emission_schedule::EMISSION_SCHEDULE, Extent::Groups(1), &buffers);
-        let buffers = [
-            params,
-            grid,
-            cell_start,
-            nozzles.nozzles.id(),
-            nozzles.points.id(),
-            nozzles.schedules.id(),
-            fields.positions.id(),
-            fields.velocities.id(),
-            fields.ids.id(),
-            fields.densities.id(),
-        ];
-        recording.dispatch(&emit::EMIT, Extent::Items(nozzles.points.len()), &buffers);
+        step.dispatch(&emission_schedule::EMISSION_SCHEDULE, DispatchSize::Groups(1));
+        step.dispatch(&emit::EMIT, DispatchSize::Items(nozzles.points.len()));
     }
 
     /// What has been made so far, and a sentence for each emitter that found no room for the first time.
@@ -315,6 +277,18 @@ impl Flow {
 impl Coupling for Flow {
     fn stages(&self) -> &'static [Stage] {
         if self.emits() { &[Stage::ExternalForces, Stage::Emission] } else { &[Stage::ExternalForces] }
+    }
+
+    fn buffers(&self) -> BufferSet {
+        let mut buffers = BufferSet::new();
+        if let Some(emitters) = &self.nozzles {
+            buffers.extend(&buffer_set!(emitters => nozzles, points, schedules));
+        }
+        if let Some((drains, drain_maps)) = self.drains {
+            buffers.add("drains", drains);
+            buffers.add("drain_maps", drain_maps);
+        }
+        buffers
     }
 
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {

@@ -41,7 +41,7 @@ use glam::Vec4;
 use splashdown_gpu::bytemuck::Zeroable;
 use splashdown_gpu::compact::Compact;
 use splashdown_gpu::scan::Scan;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc, Recording, WgslModule, wgsl};
+use splashdown_gpu::{Buffer, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, wgsl};
 use splashdown_io::Particles;
 
 use crate::SimulationError;
@@ -169,64 +169,51 @@ impl Foam {
     ) -> Result<Self, GpuError> {
         let (n, capacity) = (particles as usize, constants.capacity);
         let most = capacity as usize;
-        let params = executor.create_uniform("foam params", constants)?;
-        let state = executor.create_from("foam state", &[FoamState::zeroed()])?;
-        let pool = executor.create("foam", most)?;
-        let moved = executor.create::<Diffuse>("foam moved", most)?;
-        let alive = executor.create::<u32>("foam alive", most)?;
-        let indices = executor.create::<u32>("foam indices", most)?;
-        let counted = executor.create::<u32>("foam counted", 4)?;
-        let groups = executor.create::<u32>("foam groups", 3)?;
-        let normals = executor.create::<Vec4>("foam normals", n)?;
-        let potentials = executor.create::<Vec4>("foam potentials", n)?;
-        let counts = executor.create::<u32>("foam counts", n)?;
-        let starts = executor.create::<u32>("foam starts", n + 1)?;
+        let params = executor.create_uniform("foam", constants)?;
+        let state = executor.create_from("foam_state", &[FoamState::zeroed()])?;
+        let pool = executor.create("foam_pool", most)?;
+        let moved = executor.create::<Diffuse>("foam_moved", most)?;
+        let alive = executor.create::<u32>("foam_alive", most)?;
+        let indices = executor.create::<u32>("foam_indices", most)?;
+        let counted = executor.create::<u32>("foam_counted", 4)?;
+        let groups = executor.create::<u32>("foam_groups", 3)?;
+        let normals = executor.create::<Vec4>("foam_normals", n)?;
+        let potentials = executor.create::<Vec4>("foam_potentials", n)?;
+        let counts = executor.create::<u32>("foam_counts", n)?;
+        let starts = executor.create::<u32>("foam_starts", n + 1)?;
         let compact = Compact::new(executor, capacity, 64)?;
         let scan = Scan::new(executor, particles)?;
 
-        let all = Extent::Items(particles);
-        let (constants, grid, foam, now) =
-            (fields.params.id(), cells.grid_uniform.id(), params.id(), state.id());
-        let cell_start = cells.cell_start.id();
-        let (positions, velocities, ids) =
-            (fields.sorted_positions.id(), fields.sorted_velocities.id(), fields.sorted_ids.id());
+        let mut buffers = fields.buffers().and(&cells.buffers());
+        buffers.add("foam", params);
+        buffers.add("foam_state", state);
+        buffers.add("foam_pool", pool);
+        buffers.add("foam_moved", moved);
+        buffers.add("foam_alive", alive);
+        buffers.add("foam_indices", indices);
+        buffers.add("foam_counted", counted);
+        buffers.add("foam_groups", groups);
+        buffers.add("foam_normals", normals);
+        buffers.add("foam_potentials", potentials);
+        buffers.add("foam_counts", counts);
+        buffers.add("foam_starts", starts);
+
+        let one = DispatchSize::Groups(1);
+        let all = DispatchSize::Items(particles);
+        let diffuse = DispatchSize::indirect(groups);
         let mut r = Recording::new("foam");
-        r.dispatch(&begin::BEGIN, Extent::Groups(1), &[foam, fields.state.id(), now, groups.id()]);
-        r.dispatch(&normals::NORMALS, all, &[constants, grid, now, cell_start, positions, normals.id()]);
-        r.dispatch(
-            &potentials::POTENTIALS,
-            all,
-            &[constants, grid, foam, now, cell_start, positions, velocities, normals.id(), potentials.id()],
-        );
+        r.dispatch(&begin::BEGIN, one, &buffers);
+        r.dispatch(&normals::NORMALS, all, &buffers);
+        r.dispatch(&potentials::POTENTIALS, all, &buffers);
         r.clear(counts);
-        r.dispatch(&count::COUNT, all, &[grid, foam, now, cell_start, ids, potentials.id(), counts.id()]);
+        r.dispatch(&count::COUNT, all, &buffers);
         scan.record(&mut r, counts, starts);
         r.clear(alive);
-        let some = Extent::Indirect { buffer: groups.id(), word: 0 };
-        r.dispatch(
-            &advect::ADVECT,
-            some,
-            &[
-                constants,
-                grid,
-                foam,
-                now,
-                cell_start,
-                positions,
-                velocities,
-                pool.id(),
-                moved.id(),
-                alive.id(),
-            ],
-        );
+        r.dispatch(&advect::ADVECT, diffuse, &buffers);
         compact.record(&mut r, alive, indices, counted);
-        r.dispatch(&plan::PLAN, Extent::Groups(1), &[constants, foam, starts.id(), counted.id(), now]);
-        r.dispatch(&settle::SETTLE, some, &[now, indices.id(), moved.id(), pool.id()]);
-        r.dispatch(
-            &emit::EMIT,
-            all,
-            &[constants, grid, foam, now, cell_start, starts.id(), positions, velocities, ids, pool.id()],
-        );
+        r.dispatch(&plan::PLAN, one, &buffers);
+        r.dispatch(&settle::SETTLE, diffuse, &buffers);
+        r.dispatch(&emit::EMIT, all, &buffers);
         Ok(Self { params, capacity, state, pool, potentials, recording: r, has_told: false })
     }
 

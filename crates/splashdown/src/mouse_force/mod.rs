@@ -6,7 +6,7 @@
 pub mod apply;
 
 use glam::Vec3;
-use splashdown_gpu::{Buffer, Executor, GpuError, PassDesc, WgslModule, gpu_struct};
+use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, PassDesc, WgslModule, buffer_set, gpu_struct};
 
 use crate::coupling::{Coupling, Stage, StepRecorder};
 
@@ -94,17 +94,11 @@ impl Coupling for MouseForceCoupling {
         &[Stage::ExternalForces]
     }
 
+    fn buffers(&self) -> BufferSet {
+        buffer_set!(self => mouse_force)
+    }
+
     fn record(&self, _: Stage, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, particles, .. } = step;
-        let buffers = [
-            cells.grid_uniform.id(),
-            fields.state.id(),
-            cells.cell_start.id(),
-            self.mouse_force.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.accelerations.id(),
-        ];
-        recording.dispatch(&apply::APPLY, *particles, &buffers);
+        step.dispatch_particles(&apply::APPLY);
     }
 }

@@ -15,7 +15,7 @@ pub(crate) use fluid::FluidProbes;
 pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
 
 use glam::Vec3;
-use splashdown_gpu::{Buffer, Executor, GpuError, Grid as Extent, PassDesc};
+use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc};
 
 use crate::bodies::{Bodies, Body};
 use crate::coupling::{Coupling, Stage, StepRecorder};
@@ -98,12 +98,12 @@ impl Probes {
             probes: executor.create_from("probes", &points)?,
             bodies: match bodies {
                 Some(bodies) => bodies.bodies,
-                None => executor.create("no bodies", 1)?,
+                None => executor.create("bodies", 1)?,
             },
-            values: executor.create("probe values", points.len() * VALUES)?,
-            counts: executor.create_from("probe counts", &vec![0; points.len()])?,
-            accounts: executor.create_from("probe accounts", &accounts)?,
-            rows: executor.create("probe rows", rows as usize * ROW)?,
+            values: executor.create("probe_values", points.len() * VALUES)?,
+            counts: executor.create_from("probe_counts", &vec![0; points.len()])?,
+            accounts: executor.create_from("probe_accounts", &accounts)?,
+            rows: executor.create("probe_rows", rows as usize * ROW)?,
             points,
         }))
     }
@@ -151,40 +151,24 @@ impl Coupling for Probes {
         &[Stage::Measurement]
     }
 
+    fn buffers(&self) -> BufferSet {
+        let Self { probes, bodies, values, counts, accounts, rows, .. } = *self;
+        let mut buffers = BufferSet::new();
+        buffers.add("probes", probes);
+        buffers.add("bodies", bodies);
+        buffers.add("probe_values", values);
+        buffers.add("probe_counts", counts);
+        buffers.add("probe_accounts", accounts);
+        buffers.add("probe_rows", rows);
+        buffers
+    }
+
     fn record(&self, _: Stage, step: &mut StepRecorder<'_>) {
-        let StepRecorder { recording, cells, fields, particles, .. } = step;
-        let (grid, cell_start) = (cells.grid_uniform.id(), cells.cell_start.id());
-        let (params, state) = (fields.params.id(), fields.state.id());
-        let probes = self.probes.id();
-        let buffers = [
-            params,
-            grid,
-            state,
-            cell_start,
-            probes,
-            fields.sorted_positions.id(),
-            fields.densities.id(),
-            fields.accelerations.id(),
-            self.values.id(),
-        ];
-        recording.dispatch(&sample::SAMPLE, Extent::Groups(self.points.len() as u32), &buffers);
+        step.dispatch(&sample::SAMPLE, DispatchSize::Groups(self.points.len() as u32));
         if self.has_flow {
-            let sorted_positions = fields.sorted_positions.id();
-            let counts = self.counts.id();
-            let buffers = [grid, state, cell_start, probes, sorted_positions, fields.positions.id(), counts];
-            recording.dispatch(&flux::FLUX, *particles, &buffers);
+            step.dispatch_particles(&flux::FLUX);
         }
-        let buffers = [
-            params,
-            state,
-            probes,
-            self.bodies.id(),
-            self.values.id(),
-            self.counts.id(),
-            self.accounts.id(),
-            self.rows.id(),
-        ];
-        recording.dispatch(&accumulate::ACCUMULATE, Extent::Items(self.probes.len()), &buffers);
+        step.dispatch(&accumulate::ACCUMULATE, DispatchSize::Items(self.probes.len()));
     }
 }
 

@@ -18,7 +18,7 @@ mod wcsph;
 pub use params::params;
 pub use step::{Couplings, Step};
 
-use splashdown_gpu::{Grid as DispatchSize, Recording};
+use splashdown_gpu::{DispatchSize, Recording};
 
 use crate::boundary::KernelPair;
 use crate::cells::{self, Cells};
@@ -100,8 +100,7 @@ impl Scheme {
 /// Begins a frame of the length that `duration` holds, and counts the particles for the first sort.
 pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
     let mut recording = Recording::new("begin frame");
-    let buffers = [fields.params.id(), fields.duration.id(), fields.state.id()];
-    recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &buffers);
+    recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &fields.buffers());
     cells.record_first_count(&mut recording, fields);
     recording
 }

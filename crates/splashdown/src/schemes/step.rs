@@ -1,6 +1,6 @@
 //! The operations from which schemes compose a step.
 
-use splashdown_gpu::{Grid as DispatchSize, PassDesc, Recording};
+use splashdown_gpu::{DispatchSize, PassDesc, Recording};
 
 use super::Scheme;
 use crate::bodies::Bodies;
@@ -72,8 +72,11 @@ impl<'a> Step<'a> {
         couplings: &Couplings<'a>,
         count: u32,
     ) -> Self {
+        let mut buffers = fields.buffers().and(&cells.buffers());
+        couplings.all().for_each(|coupling| buffers.extend(&coupling.buffers()));
         let recorder = StepRecorder {
             recording: Recording::new(label),
+            buffers,
             cells,
             fields,
             // An invocation where there is no particle, so that time advances.
@@ -108,42 +111,14 @@ impl<'a> Step<'a> {
 
     /// Density of fluid and walls, by summation or by the continuity equation, and the pressure that follows.
     pub(super) fn density_and_pressure(&mut self) {
-        match self.scheme.method {
-            Method::Mueller2003 => self.summed_density(&density::POLY6),
-            Method::Wcsph if self.scheme.is_density_integrated => self.continuity(),
-            Method::Wcsph => {
-                self.summed_density(self.by_kernel(&density::WENDLAND_C2, &density::CUBIC_SPLINE));
+        let pass = match self.scheme.method {
+            Method::Mueller2003 => &density::POLY6,
+            Method::Wcsph if self.scheme.is_density_integrated => {
+                self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE)
             }
-        }
-    }
-
-    fn summed_density(&mut self, pass: &'static PassDesc) {
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let buffers = [
-            fields.params.id(),
-            cells.grid_uniform.id(),
-            cells.cell_start.id(),
-            fields.sorted_positions.id(),
-            fields.wall_table.id(),
-            fields.densities.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
-    }
-
-    fn continuity(&mut self) {
-        let pass = self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE);
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let buffers = [
-            fields.params.id(),
-            cells.grid_uniform.id(),
-            fields.state.id(),
-            cells.cell_start.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.wall_table.id(),
-            fields.densities.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+            Method::Wcsph => self.by_kernel(&density::WENDLAND_C2, &density::CUBIC_SPLINE),
+        };
+        self.recorder.dispatch_particles(pass);
     }
 
     /// The normals that surface tension needs.
@@ -152,80 +127,22 @@ impl<'a> Step<'a> {
             return;
         }
         let pass = self.by_kernel(&normals::WENDLAND_C2, &normals::CUBIC_SPLINE);
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let buffers = [
-            fields.params.id(),
-            cells.grid_uniform.id(),
-            cells.cell_start.id(),
-            fields.sorted_positions.id(),
-            fields.densities.id(),
-            fields.normals.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+        self.recorder.dispatch_particles(pass);
     }
 
     /// Accelerations by fluid, walls and body forces, in one visit of the neighbours.
     pub(super) fn acceleration(&mut self) {
         let wcsph = self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE);
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let (params, grid, state) = (fields.params.id(), cells.grid_uniform.id(), fields.state.id());
-        let neighbours = [cells.cell_start.id(), fields.sorted_positions.id(), fields.sorted_velocities.id()];
-        let [cell_start, positions, velocities] = neighbours;
-        let (densities, wall_table) = (fields.densities.id(), fields.wall_table.id());
-        let accelerations = fields.accelerations.id();
-        match self.scheme.method {
-            Method::Wcsph => {
-                let normals = fields.normals.id();
-                let buffers = [
-                    params,
-                    grid,
-                    state,
-                    cell_start,
-                    positions,
-                    velocities,
-                    densities,
-                    normals,
-                    wall_table,
-                    accelerations,
-                ];
-                recording.dispatch(wcsph, *particles, &buffers);
-            }
-            Method::Mueller2003 => {
-                let buffers = [
-                    params,
-                    grid,
-                    state,
-                    cell_start,
-                    positions,
-                    velocities,
-                    densities,
-                    wall_table,
-                    accelerations,
-                ];
-                recording.dispatch(&mueller::MUELLER, *particles, &buffers);
-            }
-        }
+        self.recorder.dispatch_particles(match self.scheme.method {
+            Method::Wcsph => wcsph,
+            Method::Mueller2003 => &mueller::MUELLER,
+        });
     }
 
     /// Forces and integration in one pass.
     pub(super) fn force_integrate(&mut self) {
         let pass = self.by_kernel(&force_integrate::WENDLAND_C2, &force_integrate::CUBIC_SPLINE);
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let buffers = [
-            fields.params.id(),
-            cells.grid_uniform.id(),
-            fields.state.id(),
-            fields.wall_table.id(),
-            cells.cell_start.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.densities.id(),
-            fields.positions.id(),
-            fields.velocities.id(),
-            fields.counters.id(),
-            cells.cell_counts.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+        self.recorder.dispatch_particles(pass);
     }
 
     /// Velocity, then position (symplectic Euler), and the count for the next sort.
@@ -235,21 +152,7 @@ impl<'a> Step<'a> {
         } else {
             &integrate::INTEGRATE
         };
-        let StepRecorder { recording, cells, fields, particles, .. } = &mut self.recorder;
-        let buffers = [
-            fields.params.id(),
-            cells.grid_uniform.id(),
-            fields.state.id(),
-            fields.sorted_positions.id(),
-            fields.sorted_velocities.id(),
-            fields.densities.id(),
-            fields.accelerations.id(),
-            fields.positions.id(),
-            fields.velocities.id(),
-            fields.counters.id(),
-            cells.cell_counts.id(),
-        ];
-        recording.dispatch(pass, *particles, &buffers);
+        self.recorder.dispatch_particles(pass);
     }
 
     /// The count for the next sort, where emitted particles have to be counted with the others.
@@ -268,14 +171,12 @@ impl<'a> Step<'a> {
         recording.append(&super::begin_frame(cells, fields));
         self.sort();
         self.couple(Stage::BoundaryLookup);
-        let StepRecorder { recording, fields, particles, .. } = &mut self.recorder;
+        let StepRecorder { recording, fields, .. } = &mut self.recorder;
         recording.copy(fields.sorted_positions, fields.positions);
         recording.copy(fields.sorted_velocities, fields.velocities);
         if self.scheme.is_density_integrated {
             // The densities are those the particles come with.
-            let buffers =
-                [fields.params.id(), fields.state.id(), fields.sorted_velocities.id(), fields.densities.id()];
-            recording.dispatch(&state_equation::STATE_EQUATION, *particles, &buffers);
+            self.recorder.dispatch_particles(&state_equation::STATE_EQUATION);
         } else {
             self.density_and_pressure();
             self.couple(Stage::BoundaryDensity);

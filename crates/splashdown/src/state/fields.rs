@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{Buffer, Executor, GpuError};
+use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
 use super::{Params, StepCounters, StepState};
 
@@ -69,6 +69,14 @@ impl Fields {
             accelerations: executor.create("accelerations", 1)?,
             normals: executor.create("normals", if normals { n } else { 1 })?,
         })
+    }
+
+    /// The buffers by name, for recordings.
+    pub fn buffers(&self) -> BufferSet {
+        buffer_set!(self =>
+            params, state, duration, counters, wall_table, positions, velocities, ids, sorted_positions,
+            sorted_velocities, sorted_ids, densities, accelerations, normals,
+        )
     }
 
     /// Makes room for the accelerations, which a step in one pass less does without.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
 use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
-use splashdown_gpu::{Grid as Extent, testing};
+use splashdown_gpu::{DispatchSize, testing};
 
 use super::harness::{Case, Check, Compare, Data, close, exact, wide};
 use super::oracle;
@@ -88,7 +88,7 @@ fn begin(name: &str, length: f32) -> Case {
     Case {
         pass: pass("begin"),
         name: name.into(),
-        extent: Extent::Groups(1),
+        size: DispatchSize::Groups(1),
         input: vec![Data::Params(params), Data::F32(vec![length]), Data::State(old)],
         compare: compare_states(),
         oracle: Box::new(move |out| same_state(&state_of(&out[0]), &expected)),
@@ -143,7 +143,7 @@ fn end_step(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> C
     Case {
         pass: pass("end_step"),
         name: name.into(),
-        extent: Extent::Groups(1),
+        size: DispatchSize::Groups(1),
         input: vec![Data::Params(params), Data::State(state), Data::U32(counters)],
         compare: compare_states(),
         oracle,
@@ -210,7 +210,7 @@ fn state_equation(name: &str, params: Params) -> Case {
     Case {
         pass: pass("state_equation"),
         name: name.into(),
-        extent: Extent::Items(n as u32),
+        size: DispatchSize::Items(n as u32),
         input: vec![
             Data::Params(params),
             Data::State(state(n)),
@@ -287,7 +287,7 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
     Case {
         pass: pass(label),
         name: name.into(),
-        extent: Extent::Items(n as u32),
+        size: DispatchSize::Items(n as u32),
         input,
         compare: Box::new(|a, b| same_motion(a, &wide(b[0].floats()), &wide(b[1].floats()), b[2].words())),
         oracle: Box::new(move |out| {

@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::flow::{EmissionSchedule, Nozzle, SinkShape};
 use splashdown::state::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
-use splashdown_gpu::Grid as Extent;
+use splashdown_gpu::DispatchSize;
 
 use super::harness::{Case, Data, close, exact, wide};
 use super::sort_cases::pass;
@@ -104,7 +104,7 @@ fn plan() -> Case {
     Case {
         pass: pass("flow.emission_schedule"),
         name: "due, late, over, without room, at its limit".into(),
-        extent: Extent::Groups(1),
+        size: DispatchSize::Groups(1),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -191,7 +191,7 @@ fn emit() -> Case {
     Case {
         pass: pass("flow.emit"),
         name: "two layers, some places taken".into(),
-        extent: Extent::Items(points.len() as u32),
+        size: DispatchSize::Items(points.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -248,7 +248,7 @@ fn drive() -> Case {
     Case {
         pass: pass("flow.inflow_constraint"),
         name: "a disc and a rectangle on, others off".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -328,7 +328,7 @@ fn drain() -> Case {
     Case {
         pass: pass("flow.sink"),
         name: "a box, a plane, a ball".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Grid(world.grid),
             Data::State(world.state),

@@ -9,7 +9,7 @@ use splashdown::foam::{Diffuse, FoamParams, FoamState};
 use splashdown::probes::ProbePoint;
 use splashdown::state::{Params, StepState};
 use splashdown_gpu::{
-    Access, Buffer, BufferId, Executor, GpuElement, Grid as Extent, PassDesc, Recording, bytemuck,
+    Access, Buffer, BufferSet, DispatchSize, Executor, GpuElement, GpuStruct, PassDesc, Recording, bytemuck,
 };
 
 /// The content of one binding.
@@ -106,7 +106,7 @@ pub struct Case {
     pub pass: &'static PassDesc,
     /// What is special about the input.
     pub name: String,
-    pub extent: Extent,
+    pub size: DispatchSize,
     /// One entry per binding.
     pub input: Vec<Data>,
     /// GPU against CPU.
@@ -136,18 +136,17 @@ impl Case {
 
     fn run_with(&self, executor: &mut Executor, input: &[Data]) -> Vec<Data> {
         assert_eq!(input.len(), self.pass.bindings.len(), "{}", self.title());
-        let mut ids = Vec::new();
+        let mut buffers = BufferSet::new();
         let mut readers: Vec<Reader> = Vec::new();
         for (data, binding) in input.iter().zip(self.pass.bindings) {
             let uniform = binding.access == Access::Uniform;
-            let (id, reader) = upload(executor, binding.name, data, uniform);
-            ids.push(id);
+            let reader = upload(executor, &mut buffers, binding.name, data, uniform);
             if binding.access == Access::ReadWrite {
                 readers.push(reader);
             }
         }
         let mut recording = Recording::new(self.title());
-        recording.dispatch(self.pass, self.extent, &ids);
+        recording.dispatch(self.pass, self.size, &buffers);
         executor.run(&recording).unwrap_or_else(|error| panic!("{}: {error}", self.title()));
         readers.iter().map(|read| read(executor)).collect()
     }
@@ -155,56 +154,58 @@ impl Case {
 
 type Reader = Box<dyn Fn(&mut Executor) -> Data>;
 
-fn upload(executor: &mut Executor, name: &str, data: &Data, uniform: bool) -> (BufferId, Reader) {
-    fn array<T: GpuElement>(
-        executor: &mut Executor,
-        name: &str,
-        values: &[T],
-        wrap: fn(Vec<T>) -> Data,
-        uniform: bool,
-    ) -> (BufferId, Reader) {
-        let buffer: Buffer<T> = if uniform {
-            executor.create_small(name, values).unwrap()
-        } else {
-            executor.create_from(name, values).unwrap()
-        };
-        (buffer.id(), Box::new(move |executor| wrap(executor.read(buffer).unwrap())))
-    }
+fn upload(
+    executor: &mut Executor,
+    buffers: &mut BufferSet,
+    name: &'static str,
+    data: &Data,
+    uniform: bool,
+) -> Reader {
+    let mut target = Target { executor, buffers, name, uniform };
     match data {
-        Data::U32(v) => array(executor, name, v, Data::U32, uniform),
-        Data::F32(v) => array(executor, name, v, Data::F32, uniform),
-        Data::Vec2(v) => array(executor, name, v, Data::Vec2, uniform),
-        Data::Vec4(v) => array(executor, name, v, Data::Vec4, uniform),
-        Data::UVec2(v) => array(executor, name, v, Data::UVec2, uniform),
-        Data::Nozzles(v) => array(executor, name, v, Data::Nozzles, uniform),
-        Data::Drains(v) => array(executor, name, v, Data::Drains, uniform),
-        Data::Probes(v) => array(executor, name, v, Data::Probes, uniform),
-        Data::Bodies(v) => array(executor, name, v, Data::Bodies, uniform),
-        Data::MouseForce(v) => array(executor, name, &[*v], |v| Data::MouseForce(v[0]), uniform),
-        Data::FoamState(v) => array(executor, name, &[*v], |v| Data::FoamState(v[0]), uniform),
-        Data::Diffuse(v) => array(executor, name, v, Data::Diffuse, uniform),
-        Data::State(v) => array(executor, name, &[*v], |v| Data::State(v[0]), uniform),
-        Data::Params(v) => {
-            assert!(uniform, "{name} is no uniform");
-            (
-                executor.create_uniform(name, v).unwrap().id(),
-                Box::new(|_| unreachable!("uniforms are not written")),
-            )
-        }
-        Data::Foam(v) => {
-            assert!(uniform, "{name} is no uniform");
-            (
-                executor.create_uniform(name, v).unwrap().id(),
-                Box::new(|_| unreachable!("uniforms are not written")),
-            )
-        }
-        Data::Grid(v) => {
-            assert!(uniform, "{name} is no uniform");
-            (
-                executor.create_uniform(name, v).unwrap().id(),
-                Box::new(|_| unreachable!("uniforms are not written")),
-            )
-        }
+        Data::U32(v) => target.array(v, Data::U32),
+        Data::F32(v) => target.array(v, Data::F32),
+        Data::Vec2(v) => target.array(v, Data::Vec2),
+        Data::Vec4(v) => target.array(v, Data::Vec4),
+        Data::UVec2(v) => target.array(v, Data::UVec2),
+        Data::Nozzles(v) => target.array(v, Data::Nozzles),
+        Data::Drains(v) => target.array(v, Data::Drains),
+        Data::Probes(v) => target.array(v, Data::Probes),
+        Data::Bodies(v) => target.array(v, Data::Bodies),
+        Data::MouseForce(v) => target.array(&[*v], |v| Data::MouseForce(v[0])),
+        Data::FoamState(v) => target.array(&[*v], |v| Data::FoamState(v[0])),
+        Data::Diffuse(v) => target.array(v, Data::Diffuse),
+        Data::State(v) => target.array(&[*v], |v| Data::State(v[0])),
+        Data::Params(v) => target.uniform(v),
+        Data::Foam(v) => target.uniform(v),
+        Data::Grid(v) => target.uniform(v),
+    }
+}
+
+/// The binding that receives the data.
+struct Target<'a> {
+    executor: &'a mut Executor,
+    buffers: &'a mut BufferSet,
+    name: &'static str,
+    uniform: bool,
+}
+
+impl Target<'_> {
+    fn array<T: GpuElement>(&mut self, values: &[T], wrap: fn(Vec<T>) -> Data) -> Reader {
+        let buffer: Buffer<T> = if self.uniform {
+            self.executor.create_small(self.name, values).unwrap()
+        } else {
+            self.executor.create_from(self.name, values).unwrap()
+        };
+        self.buffers.add(self.name, buffer);
+        Box::new(move |executor| wrap(executor.read(buffer).unwrap()))
+    }
+
+    fn uniform<T: GpuStruct>(&mut self, value: &T) -> Reader {
+        assert!(self.uniform, "{} is not a uniform", self.name);
+        let buffer = self.executor.create_uniform(self.name, value).unwrap();
+        self.buffers.add(self.name, buffer);
+        Box::new(|_| unreachable!("uniforms are not written"))
     }
 }
 

@@ -1,6 +1,6 @@
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
 use splashdown::MouseForce;
-use splashdown_gpu::Grid as Extent;
+use splashdown_gpu::DispatchSize;
 
 use super::harness::{Case, Data, close, wide};
 use super::sort_cases::pass;
@@ -45,7 +45,7 @@ fn stir() -> Case {
     Case {
         pass: pass("mouse_force.apply"),
         name: "a rod through the cloud".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Grid(world.grid),
             Data::State(world.state),

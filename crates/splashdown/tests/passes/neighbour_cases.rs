@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::state::{Params, StepCounters};
-use splashdown_gpu::{CpuExecutor, Grid as Extent};
+use splashdown_gpu::{CpuExecutor, DispatchSize};
 
 use super::cases::census_of;
 use super::harness::{Case, Data, close, exact, wide};
@@ -139,7 +139,7 @@ impl Expected {
         Case {
             pass: pass(&label),
             name: name.into(),
-            extent: Extent::Items(world.len() as u32),
+            size: DispatchSize::Items(world.len() as u32),
             input,
             compare: Box::new(move |a, b| close("GPU, CPU", a[0].floats(), &wide(b[0].floats()), &rounding)),
             oracle: Box::new(move |out| close("sums", out[0].floats(), &values, &tables)),
@@ -327,7 +327,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     Case {
         pass: pass(&format!("force_integrate.{}", word(kernels))),
         name: name.into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(grid),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
 use splashdown::bodies::Body;
 use splashdown::probes::{Account, ProbePoint, ROW, VALUES};
-use splashdown_gpu::{Grid as Extent, bytemuck, testing};
+use splashdown_gpu::{DispatchSize, bytemuck, testing};
 
 use super::harness::{Case, Data, close, exact, wide};
 use super::sort_cases::pass;
@@ -98,7 +98,7 @@ fn gather() -> Case {
     Case {
         pass: pass("probes.sample"),
         name: "points in, in a corner of and outside the fluid, columns upright and leaning".into(),
-        extent: Extent::Groups(probes.len() as u32),
+        size: DispatchSize::Groups(probes.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -153,7 +153,7 @@ fn crossings() -> Case {
     Case {
         pass: pass("probes.flux"),
         name: "two rectangles that face each other".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Grid(world.grid),
             Data::State(world.state),
@@ -244,7 +244,7 @@ fn log() -> Case {
     Case {
         pass: pass("probes.accumulate"),
         name: "due, nearly due, not due, without room".into(),
-        extent: Extent::Items(probes.len() as u32),
+        size: DispatchSize::Items(probes.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::State(state),

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
 use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
-use splashdown_gpu::{Grid as Extent, PassDesc};
+use splashdown_gpu::{DispatchSize, PassDesc};
 
 use super::cases::{next_state, same_state, state_of};
 use super::harness::{Case, Check, Compare, Data, exact};
@@ -40,7 +40,7 @@ fn case(
     Case {
         pass: pass(label),
         name: name.into(),
-        extent: Extent::Items(items as u32),
+        size: DispatchSize::Items(items as u32),
         input,
         compare: exact_all(),
         oracle: expecting(expected),
@@ -114,7 +114,7 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     Case {
         pass: pass("cells.count"),
         name: name.into(),
-        extent: Extent::Items(n as u32),
+        size: DispatchSize::Items(n as u32),
         input,
         compare: exact_all(),
         oracle: expecting(expected),
@@ -248,7 +248,7 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
     Case {
         pass: pass("cells.scatter"),
         name: name.into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input,
         compare: Box::new(move |a, b| {
             same_state(&state_of(&a[0]), &state_of(&b[0]))?;

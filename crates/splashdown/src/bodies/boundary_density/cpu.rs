@@ -1,23 +1,26 @@
 use glam::{Vec2, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::BoundaryDensityBindings;
 use crate::bodies::types::{Body, Contact};
 use crate::state::{Params, StepState};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn boundary_density<const CONTINUITY: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, living, bodies, contacts, positions, velocities, densities] = slots else {
-        unreachable!()
-    };
-    let (params, state) = (&params.get::<Params>(), state.get::<StepState>());
-    let living = living.read::<u32>();
+pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityBindings<'_>) {
+    let BoundaryDensityBindings {
+        params,
+        state,
+        cell_start: living,
+        bodies,
+        contacts,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        densities,
+    } = buffers;
     let n = living[living.len() - 2] as usize;
-    let bodies = bodies.read::<Body>();
-    let contacts = contacts.read::<Contact>().as_chunks::<2>().0;
-    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
-    densities.write::<Vec2>()[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, densities)| {
+    let contacts = contacts.as_chunks::<2>().0;
+    densities[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, densities)| {
         for (k, density) in densities.iter_mut().enumerate() {
             let i = chunk * CHUNK + k;
             let pair = &contacts[i];

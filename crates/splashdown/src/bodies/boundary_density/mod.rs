@@ -7,10 +7,24 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::types::{self, Body, Contact};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `boundary_density.wgsl`.
+    pub(super) struct BoundaryDensityBindings {
+        params: uniform Params,
+        state: read StepState,
+        cell_start: read [u32],
+        bodies: read [Body],
+        contacts: read [Contact],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: write [Vec2],
+    }
+}
 
 /// For densities that are summed.
 pub static SUMMATION: PassDesc = PassDesc {
@@ -20,23 +34,14 @@ pub static SUMMATION: PassDesc = PassDesc {
     entry: "boundary_density",
     workgroup_size: [64, 1, 1],
     constants: &[("CONTINUITY", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<StepState>("state"),
-        read::<u32>("living"),
-        read::<Body>("bodies"),
-        read::<Contact>("contact_list"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        write::<Vec2>("densities"),
-    ],
-    cpu: cpu::boundary_density::<false>,
+    bindings: BoundaryDensityBindings::LIST,
+    cpu: |_, slots| cpu::boundary_density::<false>(slots.into()),
 };
 
 /// For densities that are integrated.
 pub static CONTINUITY: PassDesc = PassDesc {
     label: "bodies.boundary_density.continuity",
     constants: &[("CONTINUITY", 1.0)],
-    cpu: cpu::boundary_density::<true>,
+    cpu: |_, slots| cpu::boundary_density::<true>(slots.into()),
     ..SUMMATION
 };

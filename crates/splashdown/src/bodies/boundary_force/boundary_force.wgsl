@@ -4,15 +4,7 @@
 #import sph/boundary_law
 #import sph/body
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> bodies: array<Body>;
-@group(0) @binding(3) var<storage, read> contact_list: array<Contact>;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
-@group(0) @binding(7) var<storage, read_write> accelerations: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> sums: array<atomic<u32>>;
+#bindings
 
 // Adds to a 64-bit fixed-point number; see boundary_force/mod.rs.
 fn add(word: u32, value: f32) {
@@ -60,7 +52,7 @@ struct Effect {
 }
 
 fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: vec3<f32>) -> Effect {
-    let contact = contact_list[2u * i + k];
+    let contact = contacts[2u * i + k];
     let b = contact.body;
     let x = sorted_positions[i].xyz;
     let scale = 1.0 / params.support_radius;
@@ -105,7 +97,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
 
 // The acceleration that keeps a particle with velocity `v` after this step out of the body.
 fn held_off(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
-    let contact = contact_list[2u * i + k];
+    let contact = contacts[2u * i + k];
     let b = contact.body;
     let x = sorted_positions[i].xyz;
     let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
@@ -116,10 +108,10 @@ fn held_off(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
 @compute @workgroup_size(64)
 fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (i >= state.run_count || sorted_positions[i].w != 0.0 || contact_list[2u * i].body == NO_BODY) {
+    if (i >= state.run_count || sorted_positions[i].w != 0.0 || contacts[2u * i].body == NO_BODY) {
         return;
     }
-    let both = contact_list[2u * i + 1u].body != NO_BODY;
+    let both = contacts[2u * i + 1u].body != NO_BODY;
     let body = body_acceleration(state.time);
     // Body forces are among the other forces, and do not continue into the solid.
     let unchanged = select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
@@ -130,8 +122,8 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
         if (k == 1u && !both) {
             continue;
         }
-        let other_fraction = select(0.0, contact_list[2u * i + 1u - k].kernel_fraction, both);
-        let other_normal = contact_list[2u * i + 1u - k].normal;
+        let other_fraction = select(0.0, contacts[2u * i + 1u - k].kernel_fraction, both);
+        let other_normal = contacts[2u * i + 1u - k].normal;
         let one = effect(i, k, other_fraction, other_normal, body);
         reaction[k] = one.direct;
         normals[k] = one.normal;
@@ -139,7 +131,7 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     for (var k = 0u; k < 2u; k++) {
         if (k == 0u || both) {
             // What acts along the surface goes on in the solid.
-            let kernel_fraction = clamp(contact_list[2u * i + k].kernel_fraction, 0.0, 0.6);
+            let kernel_fraction = clamp(contacts[2u * i + k].kernel_fraction, 0.0, 0.6);
             a += kernel_fraction / (1.0 - kernel_fraction) * (a - dot(a, normals[k]) * normals[k]);
         }
     }
@@ -154,7 +146,7 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     }
     accelerations[i] = vec4(a, 0.0);
     for (var k = 0u; k < 2u; k++) {
-        let contact = contact_list[2u * i + k];
+        let contact = contacts[2u * i + k];
         if (contact.body != NO_BODY) {
             let x = sorted_positions[i].xyz - contact.distance * contact.normal;
             react(contact.body, x, -params.particle_mass * reaction[k]);

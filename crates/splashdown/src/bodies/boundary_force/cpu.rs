@@ -1,26 +1,29 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use super::quantum;
+use super::{BoundaryForceBindings, quantum};
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
 use crate::boundary::{KernelPair, WallKernel, law, part};
 use crate::state::{Params, StepState};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, bodies, contacts, positions, velocities, densities, accelerations, sums] = slots
-    else {
-        unreachable!()
-    };
-    let (params, state) = (&params.get::<Params>(), &state.get::<StepState>());
+pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: BoundaryForceBindings<'_>) {
+    let BoundaryForceBindings {
+        params,
+        state,
+        bodies,
+        contacts,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        densities,
+        accelerations,
+        sums,
+    } = buffers;
     let n = state.run_count as usize;
-    let (bodies, contacts) = (bodies.read::<Body>(), contacts.read::<Contact>().as_chunks::<2>().0);
-    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
-    let densities = densities.read::<Vec2>();
+    let (bodies, contacts) = (bodies, contacts.as_chunks::<2>().0);
     let wall_body = params.body_acceleration(state.time);
-    let totals: Vec<Vec<[i64; 6]>> = accelerations.write::<Vec4>()[..n]
+    let totals: Vec<Vec<[i64; 6]>> = accelerations[..n]
         .par_chunks_mut(CHUNK)
         .enumerate()
         .map(|(chunk, accelerations)| {
@@ -47,7 +50,6 @@ pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(_: CpuWork, slots
             totals
         })
         .collect();
-    let sums = sums.write::<u32>();
     for (b, words) in sums.chunks_exact_mut(SUM_WORDS).enumerate() {
         for (component, pair) in words.chunks_exact_mut(2).enumerate() {
             let before = u64::from(pair[0]) | u64::from(pair[1]) << 32;

@@ -14,7 +14,7 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair, part};
@@ -22,6 +22,21 @@ use crate::kernel;
 use crate::state::{PARAMS, Params, STATE, StepState};
 
 const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::PLANES, boundary::LAW, types::WGSL];
+
+bindings! {
+    /// The buffers of `boundary_force.wgsl`.
+    pub(super) struct BoundaryForceBindings {
+        params: uniform Params,
+        state: read StepState,
+        bodies: read [Body],
+        contacts: read [Contact],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: read [Vec2],
+        accelerations: write [Vec4],
+        sums: atomic [u32],
+    }
+}
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
@@ -31,25 +46,15 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "boundary_force",
     workgroup_size: [64, 1, 1],
     constants: &[("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<StepState>("state"),
-        read::<Body>("bodies"),
-        read::<Contact>("contact_list"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec2>("densities"),
-        write::<Vec4>("accelerations"),
-        write::<u32>("sums"),
-    ],
-    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::ALL }>,
+    bindings: BoundaryForceBindings::LIST,
+    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::ALL }>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "bodies.boundary_force.cubic_spline",
     constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::boundary_force::<kernel::CubicSpline, { part::ALL }>,
+    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::ALL }>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -57,7 +62,7 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static MUELLER: PassDesc = PassDesc {
     label: "bodies.boundary_force.mueller",
     constants: &[("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    cpu: cpu::boundary_force::<kernel::Poly6, { part::ALL }>,
+    cpu: |_, slots| cpu::boundary_force::<kernel::Poly6, { part::ALL }>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -65,7 +70,7 @@ pub static MUELLER: PassDesc = PassDesc {
 pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
     label: "bodies.boundary_force.wendland_c2.pressure",
     constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::PRESSURE as f64)],
-    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::PRESSURE }>,
+    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::PRESSURE }>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -73,7 +78,7 @@ pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
 pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
     label: "bodies.boundary_force.wendland_c2.other",
     constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::OTHER as f64)],
-    cpu: cpu::boundary_force::<kernel::WendlandC2, { part::OTHER }>,
+    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::OTHER }>(slots.into()),
     ..WENDLAND_C2
 };
 

@@ -5,13 +5,7 @@
 #import sph/planes
 #import sph/body
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> living: array<u32>;
-@group(0) @binding(2) var<storage, read> bodies: array<Body>;
-@group(0) @binding(3) var<storage, read> maps: array<vec2<f32>>;
-@group(0) @binding(4) var<storage, read_write> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> contact_list: array<Contact>;
-@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>>;
+#bindings
 
 // The map at a point of the mesh's frame: distance, effective distance and their gradients.
 struct Field {
@@ -150,7 +144,7 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
 @compute @workgroup_size(64)
 fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (i >= living[arrayLength(&living) - 2u]) {
+    if (i >= cell_start[arrayLength(&cell_start) - 2u]) {
         return;
     }
     var x = sorted_positions[i].xyz;
@@ -166,8 +160,8 @@ fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
             second = contact;
         }
     }
-    contact_list[2u * i] = first;
-    contact_list[2u * i + 1u] = second;
+    contacts[2u * i] = first;
+    contacts[2u * i + 1u] = second;
     let inside = min(first.distance, second.distance);
     if (inside < 0.0) {
         let deeper = first.distance <= second.distance;

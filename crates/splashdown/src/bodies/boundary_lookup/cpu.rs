@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::BoundaryLookupBindings;
 use crate::bodies::field;
 use crate::bodies::types::{Body, Contact};
 use crate::boundary::{KernelPair, WallKernel};
@@ -11,14 +11,20 @@ use crate::state::{Params, StepCounters};
 /// Particles of a chunk lie near one another, so that most bodies are far from all of them.
 const CHUNK: usize = 128;
 
-pub(super) fn boundary_lookup<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, living, bodies, maps, positions, contacts, counters] = slots else { unreachable!() };
-    let (params, living) = (&params.get::<Params>(), living.read::<u32>());
+pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBindings<'_>) {
+    let BoundaryLookupBindings {
+        params,
+        cell_start: living,
+        bodies,
+        maps,
+        sorted_positions: positions,
+        contacts,
+        counters,
+    } = buffers;
     let n = living[living.len() - 2] as usize;
-    let (bodies, maps) = (bodies.read::<Body>(), maps.read::<Vec2>());
-    let corrections: u32 = positions.write::<Vec4>()[..n]
+    let corrections: u32 = positions[..n]
         .par_chunks_mut(CHUNK)
-        .zip(contacts.write::<Contact>().par_chunks_mut(2 * CHUNK))
+        .zip(contacts.par_chunks_mut(2 * CHUNK))
         .with_min_len(8)
         .map_init(Vec::new, |near: &mut Vec<usize>, (positions, contacts)| {
             find_near(bodies, positions, near);
@@ -34,7 +40,7 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [S
             corrections
         })
         .sum();
-    counters.write::<u32>()[StepCounters::CORRECTIONS] += corrections;
+    counters[StepCounters::CORRECTIONS] += corrections;
 }
 
 const NOTHING: Contact = Contact {

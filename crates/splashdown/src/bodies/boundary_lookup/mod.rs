@@ -16,7 +16,7 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair};
@@ -26,6 +26,19 @@ use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS};
 const IMPORTS: &[WgslModule] =
     &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, kernel::WGSL, boundary::PLANES, types::WGSL];
 
+bindings! {
+    /// The buffers of `boundary_lookup.wgsl`.
+    pub(super) struct BoundaryLookupBindings {
+        params: uniform Params,
+        cell_start: read [u32],
+        bodies: read [Body],
+        maps: read [Vec2],
+        sorted_positions: write [Vec4],
+        contacts: write [Contact],
+        counters: atomic [u32],
+    }
+}
+
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "bodies.boundary_lookup.wendland_c2",
@@ -34,23 +47,15 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "boundary_lookup",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<u32>("living"),
-        read::<Body>("bodies"),
-        read::<Vec2>("maps"),
-        write::<Vec4>("sorted_positions"),
-        write::<Contact>("contact_list"),
-        write::<u32>("counters"),
-    ],
-    cpu: cpu::boundary_lookup::<kernel::WendlandC2>,
+    bindings: BoundaryLookupBindings::LIST,
+    cpu: |_, slots| cpu::boundary_lookup::<kernel::WendlandC2>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "bodies.boundary_lookup.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::boundary_lookup::<CubicSpline>,
+    cpu: |_, slots| cpu::boundary_lookup::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -58,6 +63,6 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static MUELLER: PassDesc = PassDesc {
     label: "bodies.boundary_lookup.mueller",
     constants: &[("KERNEL", Poly6::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    cpu: cpu::boundary_lookup::<Poly6>,
+    cpu: |_, slots| cpu::boundary_lookup::<Poly6>(slots.into()),
     ..WENDLAND_C2
 };

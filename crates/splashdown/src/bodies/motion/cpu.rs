@@ -1,20 +1,17 @@
 use glam::{Quat, Vec3, Vec4};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::MotionBindings;
 use crate::bodies::boundary_force::quantum;
 use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
 use crate::state::{Params, StepCounters, StepState};
 
-pub(super) fn motion(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, scripts, bodies, sums, counters] = slots else { unreachable!() };
-    let (params, state) = (&params.get::<Params>(), &state.get::<StepState>());
+pub(super) fn motion(buffers: MotionBindings<'_>) {
+    let MotionBindings { params, state, scripts, bodies, sums, counters } = buffers;
     if state.run_count == 0 {
         return;
     }
-    let scripts = scripts.read::<ScriptSample>();
-    let counters = counters.write::<u32>();
-    let sums = sums.write::<u32>().chunks_exact_mut(SUM_WORDS);
-    for (body, sums) in bodies.write::<Body>().iter_mut().zip(sums) {
+    let sums = sums.chunks_exact_mut(SUM_WORDS);
+    for (body, sums) in bodies.iter_mut().zip(sums) {
         let quantum = quantum(params);
         let [force, torque] = [0, 6].map(|first| {
             let sums = &sums[first..first + 6];

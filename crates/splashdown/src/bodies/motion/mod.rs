@@ -6,10 +6,22 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::types::{self, Body, ScriptSample};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+
+bindings! {
+    /// The buffers of `motion.wgsl`.
+    pub(super) struct MotionBindings {
+        params: uniform Params,
+        state: read StepState,
+        scripts: read [ScriptSample],
+        bodies: write [Body],
+        sums: write [u32],
+        counters: atomic [u32],
+    }
+}
 
 /// See the module.
 pub static MOTION: PassDesc = PassDesc {
@@ -19,13 +31,6 @@ pub static MOTION: PassDesc = PassDesc {
     entry: "motion",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<StepState>("state"),
-        read::<ScriptSample>("scripts"),
-        write::<Body>("bodies"),
-        write::<u32>("sums"),
-        write::<u32>("counters"),
-    ],
-    cpu: cpu::motion,
+    bindings: MotionBindings::LIST,
+    cpu: |_, slots| cpu::motion(slots.into()),
 };

@@ -2,12 +2,7 @@
 #import sph/step_counters
 #import sph/body
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> scripts: array<ScriptSample>;
-@group(0) @binding(3) var<storage, read_write> bodies: array<Body>;
-@group(0) @binding(4) var<storage, read_write> sums: array<u32>;
-@group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
+#bindings
 
 // A sum in its units, and back to zero. The sign first: the halves of a small negative number are large.
 fn taken(word: u32) -> f32 {

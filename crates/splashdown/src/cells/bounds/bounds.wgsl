@@ -2,12 +2,7 @@
 #import sph/state
 #import sph/grid
 
-@group(0) @binding(0) var<uniform> grid: Grid;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> pairs: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read> ids: array<u32>;
-@group(0) @binding(4) var<storage, read_write> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read_write> entries: array<vec2<u32>>;
+#bindings
 
 // One invocation more than particles: the last one closes the cells behind the last particle.
 @compute @workgroup_size(64)

@@ -4,10 +4,22 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{GRID, Grid};
 use crate::state::{STATE, StepState};
+
+bindings! {
+    /// The buffers of `bounds.wgsl`.
+    pub(super) struct BoundsBindings {
+        grid: uniform Grid,
+        state: read StepState,
+        pairs: read [UVec2],
+        ids: read [u32],
+        cell_start: write [u32],
+        entries: write [UVec2],
+    }
+}
 
 /// See the module.
 pub static BOUNDS: PassDesc = PassDesc {
@@ -17,13 +29,6 @@ pub static BOUNDS: PassDesc = PassDesc {
     entry: "bounds",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<UVec2>("pairs"),
-        read::<u32>("ids"),
-        write::<u32>("cell_start"),
-        write::<UVec2>("entries"),
-    ],
-    cpu: cpu::bounds,
+    bindings: BoundsBindings::LIST,
+    cpu: |_, slots| cpu::bounds(slots.into()),
 };

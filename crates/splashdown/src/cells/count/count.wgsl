@@ -3,13 +3,7 @@
 #import sph/grid
 #import sph/cell_counts
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> velocities: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> cell_counts: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>>;
+#bindings
 
 // A velocity (xyz) whose square has a value, and a density (w) that has one.
 fn is_moderate(v: vec4<f32>) -> bool {

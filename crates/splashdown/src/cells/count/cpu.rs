@@ -2,22 +2,22 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
+use splashdown_gpu::as_atomic;
 
+use super::CountBindings;
 use crate::cells::Grid;
 use crate::cells::cell_counts::{self, CellCounter};
 use crate::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, positions, velocities, cell_counts, counters] = slots else { unreachable!() };
-    let (params, grid, state) = (&params.get::<Params>(), &grid.get::<Grid>(), state.get::<StepState>());
+pub(super) fn count(buffers: CountBindings<'_>) {
+    let CountBindings { params, grid, state, positions, velocities, cell_counts, counters } = buffers;
     let n = state.run_count as usize;
-    let counters = counters.atomics();
+    let counters = as_atomic(counters);
     // After the last step of a frame there is no next one to count for.
     let counts_for_none = counters[StepCounters::MOVED].load(Relaxed) != 0 && state.is_last_step();
-    let (counts, cells) = cell_counts::split(grid, cell_counts.write());
+    let (counts, cells) = cell_counts::split(grid, cell_counts);
     let classify = |p: &mut Vec4, v: Vec4| {
         let x = p.xyz();
         if p.w != 0.0 {
@@ -37,8 +37,8 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
         }
         grid.cell_count
     };
-    let positions = positions.write::<Vec4>()[..n].par_chunks_mut(CHUNK);
-    let velocities = velocities.read::<Vec4>()[..n].par_chunks(CHUNK);
+    let positions = positions[..n].par_chunks_mut(CHUNK);
+    let velocities = velocities[..n].par_chunks(CHUNK);
     let cells = cells[..n].par_chunks_mut(CHUNK);
     positions.zip(velocities).zip(cells).for_each(|((positions, velocities), cells)| {
         let mut counter = CellCounter::new(counts);

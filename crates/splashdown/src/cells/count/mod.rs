@@ -8,10 +8,23 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{CELL_COUNTS, GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+
+bindings! {
+    /// The buffers of `count.wgsl`.
+    pub(super) struct CountBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        positions: write [Vec4],
+        velocities: read [Vec4],
+        cell_counts: atomic [u32],
+        counters: atomic [u32],
+    }
+}
 
 /// See the module.
 pub static COUNT: PassDesc = PassDesc {
@@ -21,14 +34,6 @@ pub static COUNT: PassDesc = PassDesc {
     entry: "count",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        write::<Vec4>("positions"),
-        read::<Vec4>("velocities"),
-        write::<u32>("cell_counts"),
-        write::<u32>("counters"),
-    ],
-    cpu: cpu::count,
+    bindings: CountBindings::LIST,
+    cpu: |_, slots| cpu::count(slots.into()),
 };

@@ -3,10 +3,20 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{GRID, Grid};
 use crate::state::{STATE, StepState};
+
+bindings! {
+    /// The buffers of `keys.wgsl`.
+    pub(super) struct KeysBindings {
+        grid: uniform Grid,
+        state: read StepState,
+        cell_counts: read [u32],
+        pairs: write [UVec2],
+    }
+}
 
 /// See the module.
 pub static KEYS: PassDesc = PassDesc {
@@ -16,11 +26,6 @@ pub static KEYS: PassDesc = PassDesc {
     entry: "keys",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_counts"),
-        write::<UVec2>("pairs"),
-    ],
-    cpu: cpu::keys,
+    bindings: KeysBindings::LIST,
+    cpu: |_, slots| cpu::keys(slots.into()),
 };

@@ -1,6 +1,7 @@
 use glam::{UVec2, Vec4};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
+
+use super::ReorderBindings;
 
 /// Cells per task.
 const CHUNK: usize = 2048;
@@ -15,25 +16,18 @@ struct Piece<'a> {
 }
 
 /// Sorts every cell's few entries in place of counting: the same order with less work.
-pub(super) fn reorder(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [
-        _grid,
-        _census,
+pub(super) fn reorder(buffers: ReorderBindings<'_>) {
+    let ReorderBindings {
         cell_start,
-        arrivals,
+        entries: arrivals,
         positions,
         velocities,
         sorted_positions,
         sorted_velocities,
         sorted_ids,
-    ] = slots
-    else {
-        unreachable!()
-    };
-    let (cell_start, arrivals) = (cell_start.read::<u32>(), arrivals.read::<UVec2>());
-    let (positions, velocities) = (positions.read::<Vec4>(), velocities.read::<Vec4>());
-    let mut rest =
-        (sorted_positions.write::<Vec4>(), sorted_velocities.write::<Vec4>(), sorted_ids.write::<u32>());
+        ..
+    } = buffers;
+    let mut rest = (sorted_positions, sorted_velocities, sorted_ids);
     let mut pieces = Vec::new();
     let cells = cell_start.len() - 1;
     for first in (0..cells).step_by(CHUNK) {

@@ -11,9 +11,24 @@
 mod cpu;
 
 use glam::{UVec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{GRID, Grid};
+
+bindings! {
+    /// The buffers of `reorder.wgsl`.
+    pub(super) struct ReorderBindings {
+        grid: uniform Grid,
+        cell_counts: read [u32],
+        cell_start: read [u32],
+        entries: read [UVec2],
+        positions: read [Vec4],
+        velocities: read [Vec4],
+        sorted_positions: write [Vec4],
+        sorted_velocities: write [Vec4],
+        sorted_ids: write [u32],
+    }
+}
 
 /// See the module.
 pub static REORDER: PassDesc = PassDesc {
@@ -23,16 +38,6 @@ pub static REORDER: PassDesc = PassDesc {
     entry: "reorder",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_counts"),
-        read::<u32>("cell_start"),
-        read::<UVec2>("entries"),
-        read::<Vec4>("positions"),
-        read::<Vec4>("velocities"),
-        write::<Vec4>("sorted_positions"),
-        write::<Vec4>("sorted_velocities"),
-        write::<u32>("sorted_ids"),
-    ],
-    cpu: cpu::reorder,
+    bindings: ReorderBindings::LIST,
+    cpu: |_, slots| cpu::reorder(slots.into()),
 };

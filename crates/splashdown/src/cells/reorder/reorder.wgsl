@@ -1,15 +1,7 @@
 #import gpu/index
 #import sph/grid
 
-@group(0) @binding(0) var<uniform> grid: Grid;
-@group(0) @binding(1) var<storage, read> cell_counts: array<u32>;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> entries: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> velocities: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> sorted_ids: array<u32>;
+#bindings
 
 // Nobody asks for the order of the dead behind the last cell. Past this many they stay as they arrived: they may be
 // all particles, and comparing each with each would hang the device.

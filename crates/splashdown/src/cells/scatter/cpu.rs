@@ -1,23 +1,23 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
+use splashdown_gpu::as_atomic;
 
+use super::ScatterBindings;
 use crate::cells::{Grid, cell_counts};
 use crate::state::{Params, StepState, finish_step};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn scatter(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, counters, cell_counts, cell_start, ids, out] = slots else { unreachable!() };
-    finish_step(&params.get::<Params>(), &mut state.write::<StepState>()[0], counters.write());
-    let grid = grid.get::<Grid>();
-    let cell_start = cell_start.read::<u32>();
+pub(super) fn scatter(buffers: ScatterBindings<'_>) {
+    let ScatterBindings { params, grid, state, counters, cell_counts, cell_start, ids, entries: out } =
+        buffers;
+    finish_step(params, state, counters);
     let n = cell_start[grid.cell_count as usize + 1] as usize;
-    let (counts, cells) = cell_counts::split(&grid, cell_counts.write());
+    let (counts, cells) = cell_counts::split(grid, cell_counts);
     // Every place is written once; relaxed atomic stores are plain ones that two threads may make side by side.
-    let out = out.atomics();
-    let chunks = cells[..n].par_chunks(CHUNK).zip(ids.read::<u32>()[..n].par_chunks(CHUNK));
+    let out = as_atomic(out);
+    let chunks = cells[..n].par_chunks(CHUNK).zip(ids[..n].par_chunks(CHUNK));
     chunks.enumerate().for_each(|(chunk, (cells, ids))| {
         let mut i = (chunk * CHUNK) as u32;
         let mut ids = ids.iter();

@@ -8,10 +8,24 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
+
+bindings! {
+    /// The buffers of `scatter.wgsl`.
+    pub(super) struct ScatterBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: write StepState,
+        counters: write [u32],
+        cell_counts: atomic [u32],
+        cell_start: read [u32],
+        ids: read [u32],
+        entries: write [UVec2],
+    }
+}
 
 /// See the module.
 pub static SCATTER: PassDesc = PassDesc {
@@ -21,15 +35,6 @@ pub static SCATTER: PassDesc = PassDesc {
     entry: "scatter",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        write::<StepState>("state"),
-        write::<u32>("counters"),
-        write::<u32>("cell_counts"),
-        read::<u32>("cell_start"),
-        read::<u32>("ids"),
-        write::<UVec2>("entries"),
-    ],
-    cpu: cpu::scatter,
+    bindings: ScatterBindings::LIST,
+    cpu: |_, slots| cpu::scatter(slots.into()),
 };

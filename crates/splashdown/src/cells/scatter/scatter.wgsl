@@ -3,14 +3,7 @@
 #import sph/grid
 #import sph/steps
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read_write> state: StepState;
-@group(0) @binding(3) var<storage, read_write> counters: array<u32>;
-@group(0) @binding(4) var<storage, read_write> cell_counts: array<atomic<u32>>;
-@group(0) @binding(5) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(6) var<storage, read> ids: array<u32>;
-@group(0) @binding(7) var<storage, read_write> entries: array<vec2<u32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn scatter(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

@@ -1,15 +1,12 @@
-use splashdown_gpu::{CpuWork, Slot};
-
+use super::EmissionScheduleBindings;
 use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
 use crate::state::{Params, StepState};
 
-pub(super) fn emission_schedule(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, cell_start, nozzles, schedules] = slots else { unreachable!() };
-    let (params, state) = (params.get::<Params>(), state.get::<StepState>());
-    let nozzles = nozzles.read::<Nozzle>();
-    let (schedules, next) = schedules.write::<u32>().split_at_mut(nozzles.len() * EmissionSchedule::WORDS);
-    let mut slot = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
+pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
+    let EmissionScheduleBindings { params, grid, state, cell_start, nozzles, schedules } = buffers;
+    let (schedules, next) = schedules.split_at_mut(nozzles.len() * EmissionSchedule::WORDS);
+    let mut slot = cell_start[grid.cell_count as usize];
     for (nozzle, plan) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
         plan[EmissionSchedule::LAYER] = 0;
         if state.run_count == 0 || state.time < nozzle.start || state.time >= nozzle.end {

@@ -2,12 +2,7 @@
 #import sph/grid
 #import sph/flow
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> nozzles: array<Nozzle>;
-@group(0) @binding(5) var<storage, read_write> schedules: array<u32>;
+#bindings
 
 @compute @workgroup_size(1)
 fn emission_schedule() {

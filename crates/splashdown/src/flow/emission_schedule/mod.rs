@@ -6,11 +6,23 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::{FLOW, Nozzle};
 use crate::cells::{GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `emission_schedule.wgsl`.
+    pub(super) struct EmissionScheduleBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        nozzles: read [Nozzle],
+        schedules: write [u32],
+    }
+}
 
 /// See the module.
 pub static EMISSION_SCHEDULE: PassDesc = PassDesc {
@@ -20,13 +32,6 @@ pub static EMISSION_SCHEDULE: PassDesc = PassDesc {
     entry: "emission_schedule",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<Nozzle>("nozzles"),
-        write::<u32>("schedules"),
-    ],
-    cpu: cpu::emission_schedule,
+    bindings: EmissionScheduleBindings::LIST,
+    cpu: |_, slots| cpu::emission_schedule(slots.into()),
 };

@@ -1,6 +1,6 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::EmitBindings;
 use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
 use crate::state::Params;
@@ -8,17 +8,21 @@ use crate::state::Params;
 /// Nothing is born nearer to another particle than this many spacings.
 const NEAREST: f32 = 0.7;
 
-pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, cell_start, nozzles, points, schedules, positions, velocities, ids, densities] = slots
-    else {
-        unreachable!()
-    };
-    let (params, grid) = (params.get::<Params>(), grid.get::<Grid>());
-    let (cell_start, points) = (cell_start.read::<u32>(), points.read::<Vec4>());
-    let (positions, velocities) = (positions.write::<Vec4>(), velocities.write::<Vec4>());
-    let (ids, densities) = (ids.write::<u32>(), densities.write::<Vec2>());
-    let schedules = schedules.write::<u32>().chunks_exact_mut(EmissionSchedule::WORDS);
-    for (nozzle, plan) in nozzles.read::<Nozzle>().iter().zip(schedules) {
+pub(super) fn emit(buffers: EmitBindings<'_>) {
+    let EmitBindings {
+        params,
+        grid,
+        cell_start,
+        nozzles,
+        points,
+        schedules,
+        positions,
+        velocities,
+        ids,
+        densities,
+    } = buffers;
+    let schedules = schedules.chunks_exact_mut(EmissionSchedule::WORDS);
+    for (nozzle, plan) in nozzles.iter().zip(schedules) {
         if plan[EmissionSchedule::LAYER] == 0 {
             continue;
         }
@@ -27,7 +31,7 @@ pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
         for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
             let forward = (distance + q.z) * nozzle.direction;
             let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
-            if !is_free(&params, &grid, cell_start, positions, x) {
+            if !is_free(params, grid, cell_start, positions, x) {
                 plan[EmissionSchedule::BLOCKED] += 1;
                 continue;
             }

@@ -4,16 +4,7 @@
 #import sph/rows
 #import sph/flow
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> nozzles: array<Nozzle>;
-@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> schedules: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> positions: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> velocities: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> ids: array<u32>;
-@group(0) @binding(9) var<storage, read_write> densities: array<vec2<f32>>;
+#bindings
 
 const NEAREST: f32 = 0.7;
 

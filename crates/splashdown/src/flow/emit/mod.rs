@@ -7,11 +7,27 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FLOW, Nozzle};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::state::{PARAMS, Params, STATE};
+
+bindings! {
+    /// The buffers of `emit.wgsl`.
+    pub(super) struct EmitBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        nozzles: read [Nozzle],
+        points: read [Vec4],
+        schedules: atomic [u32],
+        positions: write [Vec4],
+        velocities: write [Vec4],
+        ids: write [u32],
+        densities: write [Vec2],
+    }
+}
 
 /// See the module.
 pub static EMIT: PassDesc = PassDesc {
@@ -21,17 +37,6 @@ pub static EMIT: PassDesc = PassDesc {
     entry: "emit",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_start"),
-        read::<Nozzle>("nozzles"),
-        read::<Vec4>("points"),
-        write::<u32>("schedules"),
-        write::<Vec4>("positions"),
-        write::<Vec4>("velocities"),
-        write::<u32>("ids"),
-        write::<Vec2>("densities"),
-    ],
-    cpu: cpu::emit,
+    bindings: EmitBindings::LIST,
+    cpu: |_, slots| cpu::emit(slots.into()),
 };

@@ -3,15 +3,7 @@
 #import sph/grid
 #import sph/flow
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> nozzles: array<Nozzle>;
-@group(0) @binding(5) var<storage, read> schedules: array<u32>;
-@group(0) @binding(6) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> accelerations: array<vec4<f32>>;
+#bindings
 
 fn holds(nozzle: Nozzle, x: vec3<f32>) -> bool {
     let o = x - nozzle.back;

@@ -6,11 +6,26 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FLOW, Nozzle};
 use crate::cells::{GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `inflow_constraint.wgsl`.
+    pub(super) struct InflowConstraintBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        nozzles: read [Nozzle],
+        schedules: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        accelerations: write [Vec4],
+    }
+}
 
 /// See the module.
 pub static INFLOW_CONSTRAINT: PassDesc = PassDesc {
@@ -20,16 +35,6 @@ pub static INFLOW_CONSTRAINT: PassDesc = PassDesc {
     entry: "inflow_constraint",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<Nozzle>("nozzles"),
-        read::<u32>("schedules"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        write::<Vec4>("accelerations"),
-    ],
-    cpu: cpu::inflow_constraint,
+    bindings: InflowConstraintBindings::LIST,
+    cpu: |_, slots| cpu::inflow_constraint(slots.into()),
 };

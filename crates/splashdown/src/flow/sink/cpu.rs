@@ -1,26 +1,24 @@
 use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::SinkBindings;
 use crate::cells::Grid;
 use crate::flow::SinkShape;
 use crate::state::{DEAD_DRAINED, StepCounters, StepState};
 
-pub(super) fn sink(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [grid, state, cell_start, drains, drain_maps, sorted_positions, counters] = slots else {
-        unreachable!()
-    };
-    let living = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
-    let n = living.min(state.get::<StepState>().run_count) as usize;
-    let (drains, maps) = (drains.read::<SinkShape>(), drain_maps.read::<f32>());
-    let positions = sorted_positions.write::<Vec4>()[..n].par_iter_mut().with_min_len(4096);
+pub(super) fn sink(buffers: SinkBindings<'_>) {
+    let SinkBindings { grid, state, cell_start, drains, drain_maps, sorted_positions, counters } = buffers;
+    let living = cell_start[grid.cell_count as usize];
+    let n = living.min(state.run_count) as usize;
+    let maps = drain_maps;
+    let positions = sorted_positions[..n].par_iter_mut().with_min_len(4096);
     let drained = positions
         .filter_map(|p| {
             let gone = p.w == 0.0 && drains.iter().any(|drain| takes(drain, maps, p.xyz()));
             gone.then(|| p.w = DEAD_DRAINED)
         })
         .count();
-    counters.write::<u32>()[StepCounters::DRAINED] += drained as u32;
+    counters[StepCounters::DRAINED] += drained as u32;
 }
 
 fn takes(drain: &SinkShape, maps: &[f32], x: Vec3) -> bool {

@@ -3,11 +3,24 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FLOW, SinkShape};
 use crate::cells::{GRID, Grid};
 use crate::state::{STATE, STEP_COUNTERS, StepState};
+
+bindings! {
+    /// The buffers of `sink.wgsl`.
+    pub(super) struct SinkBindings {
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        drains: read [SinkShape],
+        drain_maps: read [f32],
+        sorted_positions: write [Vec4],
+        counters: atomic [u32],
+    }
+}
 
 /// See the module.
 pub static SINK: PassDesc = PassDesc {
@@ -17,14 +30,6 @@ pub static SINK: PassDesc = PassDesc {
     entry: "sink",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<SinkShape>("drains"),
-        read::<f32>("drain_maps"),
-        write::<Vec4>("sorted_positions"),
-        write::<u32>("counters"),
-    ],
-    cpu: cpu::sink,
+    bindings: SinkBindings::LIST,
+    cpu: |_, slots| cpu::sink(slots.into()),
 };

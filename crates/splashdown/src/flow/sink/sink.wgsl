@@ -4,13 +4,7 @@
 #import sph/step_counters
 #import sph/flow
 
-@group(0) @binding(0) var<uniform> grid: Grid;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> drains: array<SinkShape>;
-@group(0) @binding(4) var<storage, read> drain_maps: array<f32>;
-@group(0) @binding(5) var<storage, read_write> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>>;
+#bindings
 
 fn takes(drain: SinkShape, x: vec3<f32>) -> bool {
     if (drain.kind == 1u) {

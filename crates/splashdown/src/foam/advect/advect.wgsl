@@ -6,16 +6,7 @@
 #import sph/foam
 #import sph/foam_surroundings
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<uniform> foam: FoamParams;
-@group(0) @binding(3) var<storage, read> foam_state: FoamState;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> pool: array<Diffuse>;
-@group(0) @binding(8) var<storage, read_write> moved: array<Diffuse>;
-@group(0) @binding(9) var<storage, read_write> alive: array<u32>;
+#bindings
 
 @compute @workgroup_size(64)
 fn advect(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -23,7 +14,7 @@ fn advect(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     if (foam_state.is_due == 0u || i >= foam_state.count) {
         return;
     }
-    var p = pool[i];
+    var p = foam_pool[i];
     let dt = foam_state.dt;
     let v = p.velocity;
     let pull = body_acceleration(foam_state.time - 0.5 * dt);
@@ -75,6 +66,6 @@ fn advect(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     p.position = x;
     p.velocity = u;
     p.tag = (p.tag & 0xfffffffcu) | kind;
-    moved[i] = p;
-    alive[i] = select(0u, 1u, is_in && p.lifetime > 0.0);
+    foam_moved[i] = p;
+    foam_alive[i] = select(0u, 1u, is_in && p.lifetime > 0.0);
 }

@@ -1,35 +1,36 @@
 use glam::Vec4;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::AdvectBindings;
 use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::{Diffuse, DiffuseKind, FoamParams, FoamState};
 use crate::state::Params;
 
-pub(super) fn advect(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, foam, foam_state, cell_start, positions, velocities, pool, moved, alive] = slots
-    else {
-        unreachable!()
-    };
-    let now = foam_state.get::<FoamState>();
+pub(super) fn advect(buffers: AdvectBindings<'_>) {
+    let AdvectBindings {
+        params,
+        grid,
+        foam,
+        foam_state,
+        cell_start,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        foam_pool: pool,
+        foam_moved: moved,
+        foam_alive: alive,
+    } = buffers;
+    let now = *foam_state;
     if now.is_due == 0 {
         return;
     }
-    let (params, foam) = (params.get::<Params>(), foam.get::<FoamParams>());
-    let around = Around {
-        params: &params,
-        grid: &grid.get::<Grid>(),
-        cell_start: cell_start.read::<u32>(),
-        positions: positions.read::<Vec4>(),
-        velocities: velocities.read::<Vec4>(),
-    };
+    let around = Around { params, grid, cell_start, positions, velocities };
     let n = now.count as usize;
-    let moved = moved.write::<Diffuse>()[..n].par_iter_mut().with_min_len(256);
-    let alive = &mut alive.write::<u32>()[..n];
-    moved.zip(alive).zip(&pool.read::<Diffuse>()[..n]).for_each(|((moved, alive), before)| {
+    let moved = moved[..n].par_iter_mut().with_min_len(256);
+    let alive = &mut alive[..n];
+    moved.zip(alive).zip(&pool[..n]).for_each(|((moved, alive), before)| {
         let is_in;
-        (*moved, is_in) = advected(&around, &foam, &now, before);
+        (*moved, is_in) = advected(&around, foam, &now, before);
         *alive = u32::from(is_in && moved.lifetime > 0.0);
     });
 }

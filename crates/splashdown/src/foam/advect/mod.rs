@@ -18,11 +18,27 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
 use crate::cells::Grid;
 use crate::state::Params;
+
+bindings! {
+    /// The buffers of `advect.wgsl`.
+    pub(super) struct AdvectBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        foam: uniform FoamParams,
+        foam_state: read FoamState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        foam_pool: read [Diffuse],
+        foam_moved: write [Diffuse],
+        foam_alive: write [u32],
+    }
+}
 
 /// See the module.
 pub static ADVECT: PassDesc = PassDesc {
@@ -32,17 +48,6 @@ pub static ADVECT: PassDesc = PassDesc {
     entry: "advect",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        uniform::<FoamParams>("foam"),
-        read::<FoamState>("foam_state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Diffuse>("pool"),
-        write::<Diffuse>("moved"),
-        write::<u32>("alive"),
-    ],
-    cpu: cpu::advect,
+    bindings: AdvectBindings::LIST,
+    cpu: |_, slots| cpu::advect(slots.into()),
 };

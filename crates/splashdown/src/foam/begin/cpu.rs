@@ -1,12 +1,12 @@
-use splashdown_gpu::{CpuWork, Slot, dispatch_groups};
+use splashdown_gpu::dispatch_groups;
 
+use super::BeginBindings;
 use crate::foam::{FoamParams, FoamState};
 use crate::state::StepState;
 
-pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [foam, state, foam_state, groups] = slots else { unreachable!() };
-    let (foam, state) = (foam.get::<FoamParams>(), state.get::<StepState>());
-    let now = &mut foam_state.write::<FoamState>()[0];
+pub(super) fn begin(buffers: BeginBindings<'_>) {
+    let BeginBindings { foam, state, foam_state, foam_groups: groups } = buffers;
+    let now = foam_state;
     let dt = state.time - now.time;
     let is_sorted = state.run_count != 0;
     let is_late = dt >= foam.interval || state.frame_duration == 0.0;
@@ -22,5 +22,5 @@ pub(super) fn begin(_: CpuWork, slots: &mut [Slot<'_>]) {
         now.step = now.step.wrapping_add(1);
     }
     let items = if now.is_due == 1 { now.count } else { 0 };
-    groups.write::<u32>()[..3].copy_from_slice(&dispatch_groups(items.div_ceil(64)));
+    groups[..3].copy_from_slice(&dispatch_groups(items.div_ceil(64)));
 }

@@ -7,24 +7,29 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FOAM, FoamParams, FoamState};
 use crate::state::{STATE, StepState};
+
+bindings! {
+    /// The buffers of `begin.wgsl`.
+    pub(super) struct BeginBindings {
+        foam: uniform FoamParams,
+        state: read StepState,
+        foam_state: write FoamState,
+        foam_groups: write [u32],
+    }
+}
 
 /// See the module.
 pub static BEGIN: PassDesc = PassDesc {
     label: "foam.begin",
     wgsl: include_str!("begin.wgsl"),
     imports: &[wgsl::INDEX, STATE, FOAM],
-    entry: "begin_foam",
+    entry: "begin",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<FoamParams>("foam"),
-        read::<StepState>("state"),
-        write::<FoamState>("foam_state"),
-        write::<u32>("groups"),
-    ],
-    cpu: cpu::begin,
+    bindings: BeginBindings::LIST,
+    cpu: |_, slots| cpu::begin(slots.into()),
 };

@@ -7,27 +7,32 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FOAM, FoamParams, FoamState};
 use crate::cells::{GRID, Grid};
+
+bindings! {
+    /// The buffers of `count.wgsl`.
+    pub(super) struct CountBindings {
+        grid: uniform Grid,
+        foam: uniform FoamParams,
+        foam_state: read FoamState,
+        cell_start: read [u32],
+        sorted_ids: read [u32],
+        foam_potentials: read [Vec4],
+        foam_counts: write [u32],
+    }
+}
 
 /// See the module.
 pub static COUNT: PassDesc = PassDesc {
     label: "foam.count",
     wgsl: include_str!("count.wgsl"),
     imports: &[wgsl::INDEX, GRID, FOAM],
-    entry: "count_born",
+    entry: "count",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        uniform::<FoamParams>("foam"),
-        read::<FoamState>("foam_state"),
-        read::<u32>("cell_start"),
-        read::<u32>("sorted_ids"),
-        read::<Vec4>("potentials"),
-        write::<u32>("counts"),
-    ],
-    cpu: cpu::count,
+    bindings: CountBindings::LIST,
+    cpu: |_, slots| cpu::count(slots.into()),
 };

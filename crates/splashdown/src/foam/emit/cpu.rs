@@ -1,7 +1,7 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::EmitBindings;
 use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::types::{place_of, seed_of, unit};
@@ -11,32 +11,33 @@ use crate::state::Params;
 /// Velocity away from the cylinder's axis at its side, over the particle's speed.
 const SPREAD: f32 = 0.1;
 
-pub(super) fn emit(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, foam, foam_state, cell_start, starts, positions, velocities, ids, pool] = slots else {
-        unreachable!()
-    };
-    let now = foam_state.get::<FoamState>();
+pub(super) fn emit(buffers: EmitBindings<'_>) {
+    let EmitBindings {
+        params,
+        grid,
+        foam,
+        foam_state,
+        cell_start,
+        foam_starts: starts,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        sorted_ids: ids,
+        foam_pool: pool,
+    } = buffers;
+    let now = *foam_state;
     if now.is_due == 0 || now.born == 0 {
         return;
     }
-    let (params, foam) = (params.get::<Params>(), foam.get::<FoamParams>());
-    let around = Around {
-        params: &params,
-        grid: &grid.get::<Grid>(),
-        cell_start: cell_start.read::<u32>(),
-        positions: positions.read::<Vec4>(),
-        velocities: velocities.read::<Vec4>(),
-    };
-    let (starts, ids) = (starts.read::<u32>(), ids.read::<u32>());
+    let around = Around { params, grid, cell_start, positions, velocities };
     // The m-th that wants to be born is the i-th particle's if starts[i] <= m < starts[i + 1]. Its place in turn is
     // known, so that the places are filled in parallel, each from the last m that goes there.
     let (kept, born) = (now.kept as usize, now.born as usize);
-    let places = pool.write::<Diffuse>()[kept..kept + born].par_iter_mut().with_min_len(64);
+    let places = pool[kept..kept + born].par_iter_mut().with_min_len(64);
     places.enumerate().for_each(|(place, new)| {
         let m = last_at(place as u32, now.share);
         let i = starts.partition_point(|&start| start <= m) - 1;
         let number = now.next_id.wrapping_sub(now.born).wrapping_add(place as u32);
-        *new = newborn(&around, &foam, &now, i, ids[i], m - starts[i], number);
+        *new = newborn(&around, foam, &now, i, ids[i], m - starts[i], number);
     });
 }
 

@@ -6,27 +6,18 @@
 #import sph/foam
 #import sph/foam_surroundings
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<uniform> foam: FoamParams;
-@group(0) @binding(3) var<storage, read> foam_state: FoamState;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> starts: array<u32>;
-@group(0) @binding(6) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read> sorted_ids: array<u32>;
-@group(0) @binding(9) var<storage, read_write> pool: array<Diffuse>;
+#bindings
 
 const SPREAD: f32 = 0.1;
 
 @compute @workgroup_size(64)
-fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (foam_state.is_due == 0u || foam_state.born == 0u || i >= living()) {
         return;
     }
-    let first = starts[i];
-    let last = starts[i + 1u];
+    let first = foam_starts[i];
+    let last = foam_starts[i + 1u];
     if (first == last) {
         return;
     }
@@ -51,6 +42,6 @@ fn emit_foam(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgro
         let lifetime = foam.lifetime_least + foam.lifetime_range * unit(s + 4u);
         let kind = kind_of(surroundings(x).neighbours, false);
         let number = foam_state.next_id - foam_state.born + place;
-        pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, (number << 2u) | kind);
+        foam_pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, (number << 2u) | kind);
     }
 }

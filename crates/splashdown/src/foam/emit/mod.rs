@@ -8,31 +8,36 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
 use crate::cells::Grid;
 use crate::state::Params;
+
+bindings! {
+    /// The buffers of `emit.wgsl`.
+    pub(super) struct EmitBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        foam: uniform FoamParams,
+        foam_state: read FoamState,
+        cell_start: read [u32],
+        foam_starts: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        sorted_ids: read [u32],
+        foam_pool: write [Diffuse],
+    }
+}
 
 /// See the module.
 pub static EMIT: PassDesc = PassDesc {
     label: "foam.emit",
     wgsl: include_str!("emit.wgsl"),
     imports: LOOK_ROUND,
-    entry: "emit_foam",
+    entry: "emit",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        uniform::<FoamParams>("foam"),
-        read::<FoamState>("foam_state"),
-        read::<u32>("cell_start"),
-        read::<u32>("starts"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<u32>("sorted_ids"),
-        write::<Diffuse>("pool"),
-    ],
-    cpu: cpu::emit,
+    bindings: EmitBindings::LIST,
+    cpu: |_, slots| cpu::emit(slots.into()),
 };

@@ -1,6 +1,6 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::NormalsBindings;
 use crate::foam::FoamState;
 use crate::kernel::{Kernel, WendlandC2};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
@@ -9,17 +9,22 @@ use crate::state::Params;
 
 const LEAST_NORMAL: f32 = 0.5;
 
-pub(super) fn normals(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, foam_state, cell_start, positions, normals] = slots else { unreachable!() };
-    if foam_state.get::<FoamState>().is_due == 0 {
+pub(super) fn normals(buffers: NormalsBindings<'_>) {
+    let NormalsBindings {
+        params,
+        grid,
+        foam_state,
+        cell_start,
+        sorted_positions: positions,
+        foam_normals: normals,
+    } = buffers;
+    if foam_state.is_due == 0 {
         return;
     }
-    let (params, grid) = (&params.get::<Params>(), &grid.get());
-    let positions = positions.read();
     let scale = 1.0 / params.support_radius;
     let share = params.particle_spacing * scale;
     let pass = Normals { params, positions, scale, factor: -share * share * share * scale };
-    pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), normals.write(), &pass);
+    pairs::for_each(Sorted::new(params, grid, cell_start, positions), normals, &pass);
 }
 
 struct Normals<'a> {

@@ -8,28 +8,33 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FOAM, FoamState};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel;
 use crate::state::{PARAMS, Params, STATE};
 
+bindings! {
+    /// The buffers of `normals.wgsl`.
+    pub(super) struct NormalsBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        foam_state: read FoamState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        foam_normals: write [Vec4],
+    }
+}
+
 /// See the module.
 pub static NORMALS: PassDesc = PassDesc {
     label: "foam.normals",
     wgsl: include_str!("normals.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM],
-    entry: "foam_normals",
+    entry: "normals",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<FoamState>("foam_state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        write::<Vec4>("normals"),
-    ],
-    cpu: cpu::normals,
+    bindings: NormalsBindings::LIST,
+    cpu: |_, slots| cpu::normals(slots.into()),
 };

@@ -5,17 +5,12 @@
 #import sph/kernel
 #import sph/foam
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> foam_state: FoamState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
+#bindings
 
 const LEAST_NORMAL: f32 = 0.5;
 
 @compute @workgroup_size(64)
-fn foam_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (foam_state.is_due == 0u || i >= living()) {
         return;
@@ -45,5 +40,5 @@ fn foam_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_work
         }
     }
     let size = length(n);
-    normals[i] = select(vec4(0.0), vec4(n / max(size, 1e-20), 1.0), size >= LEAST_NORMAL);
+    foam_normals[i] = select(vec4(0.0), vec4(n / max(size, 1e-20), 1.0), size >= LEAST_NORMAL);
 }

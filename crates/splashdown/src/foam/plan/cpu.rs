@@ -1,20 +1,20 @@
 use splashdown_gpu::compact::Compact;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::PlanBindings;
 use crate::foam::types::place_of;
 use crate::foam::{FoamParams, FoamState};
 use crate::state::Params;
 
-pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, foam, starts, counted, foam_state] = slots else { unreachable!() };
-    let now = &mut foam_state.write::<FoamState>()[0];
+pub(super) fn plan(buffers: PlanBindings<'_>) {
+    let PlanBindings { params, foam, foam_starts: starts, foam_counted: counted, foam_state } = buffers;
+    let now = foam_state;
     if now.is_due == 0 {
         now.born = 0;
         return;
     }
-    let wanted = starts.read::<u32>()[params.get::<Params>().particle_count as usize];
-    let kept = counted.read::<u32>()[Compact::COUNT_WORD as usize];
-    let room = foam.get::<FoamParams>().capacity - kept;
+    let wanted = starts[params.particle_count as usize];
+    let kept = counted[Compact::COUNT_WORD as usize];
+    let room = foam.capacity - kept;
     let mut share = 4096;
     if wanted > room {
         // Rounded down, so that no more are born than there is room for.

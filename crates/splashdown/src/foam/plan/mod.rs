@@ -5,25 +5,30 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::{FOAM, FoamParams, FoamState};
 use crate::state::{PARAMS, Params, STATE};
+
+bindings! {
+    /// The buffers of `plan.wgsl`.
+    pub(super) struct PlanBindings {
+        params: uniform Params,
+        foam: uniform FoamParams,
+        foam_starts: read [u32],
+        foam_counted: read [u32],
+        foam_state: write FoamState,
+    }
+}
 
 /// See the module.
 pub static PLAN: PassDesc = PassDesc {
     label: "foam.plan",
     wgsl: include_str!("plan.wgsl"),
     imports: &[STATE, PARAMS, FOAM],
-    entry: "plan_foam",
+    entry: "plan",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<FoamParams>("foam"),
-        read::<u32>("starts"),
-        read::<u32>("counted"),
-        write::<FoamState>("foam_state"),
-    ],
-    cpu: cpu::plan,
+    bindings: PlanBindings::LIST,
+    cpu: |_, slots| cpu::plan(slots.into()),
 };

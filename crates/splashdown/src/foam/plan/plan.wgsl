@@ -1,20 +1,16 @@
 #import sph/params
 #import sph/foam
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> foam: FoamParams;
-@group(0) @binding(2) var<storage, read> starts: array<u32>;
-@group(0) @binding(3) var<storage, read> counted: array<u32>;
-@group(0) @binding(4) var<storage, read_write> foam_state: FoamState;
+#bindings
 
 @compute @workgroup_size(1)
-fn plan_foam() {
+fn plan() {
     if (foam_state.is_due == 0u) {
         foam_state.born = 0u;
         return;
     }
-    let wanted = starts[params.particle_count];
-    let kept = counted[3];
+    let wanted = foam_starts[params.particle_count];
+    let kept = foam_counted[3];
     let room = foam.capacity - kept;
     var share = 4096u;
     if (wanted > room) {

@@ -1,6 +1,6 @@
 use glam::{Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::PotentialsBindings;
 use crate::foam::{FoamParams, FoamState};
 use crate::kernel::{Kernel, WendlandC2};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
@@ -9,27 +9,32 @@ use crate::state::Params;
 
 const FORWARDS: f32 = 0.6;
 
-pub(super) fn potentials(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, foam, foam_state, cell_start, positions, velocities, normals, potentials] = slots
-    else {
-        unreachable!()
-    };
-    if foam_state.get::<FoamState>().is_due == 0 {
+pub(super) fn potentials(buffers: PotentialsBindings<'_>) {
+    let PotentialsBindings {
+        params,
+        grid,
+        foam,
+        foam_state,
+        cell_start,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        foam_normals: normals,
+        foam_potentials: potentials,
+    } = buffers;
+    if foam_state.is_due == 0 {
         return;
     }
-    let (params, grid) = (&params.get::<Params>(), &grid.get());
-    let positions = positions.read();
     let scale = 1.0 / params.support_radius;
     let share = params.particle_spacing * scale;
     let pass = Potentials {
         positions,
-        velocities: velocities.read(),
-        normals: normals.read(),
-        least: foam.get::<FoamParams>().energy_least,
+        velocities,
+        normals,
+        least: foam.energy_least,
         scale,
         volume: share * share * share,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), potentials.write(), &pass);
+    pairs::for_each(Sorted::new(params, grid, cell_start, positions), potentials, &pass);
 }
 
 struct Potentials<'a> {

@@ -15,31 +15,36 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FOAM, FoamParams, FoamState};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel;
 use crate::state::{PARAMS, Params, STATE};
 
+bindings! {
+    /// The buffers of `potentials.wgsl`.
+    pub(super) struct PotentialsBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        foam: uniform FoamParams,
+        foam_state: read FoamState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        foam_normals: read [Vec4],
+        foam_potentials: write [Vec4],
+    }
+}
+
 /// See the module.
 pub static POTENTIALS: PassDesc = PassDesc {
     label: "foam.potentials",
     wgsl: include_str!("potentials.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM],
-    entry: "foam_potentials",
+    entry: "potentials",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        uniform::<FoamParams>("foam"),
-        read::<FoamState>("foam_state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec4>("normals"),
-        write::<Vec4>("potentials"),
-    ],
-    cpu: cpu::potentials,
+    bindings: PotentialsBindings::LIST,
+    cpu: |_, slots| cpu::potentials(slots.into()),
 };

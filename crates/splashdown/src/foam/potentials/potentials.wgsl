@@ -5,21 +5,13 @@
 #import sph/kernel
 #import sph/foam
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<uniform> foam: FoamParams;
-@group(0) @binding(3) var<storage, read> foam_state: FoamState;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> normals: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> potentials: array<vec4<f32>>;
+#bindings
 
 // How much a crest must move along its normal: the cosine of the largest angle between them.
 const FORWARDS: f32 = 0.6;
 
 @compute @workgroup_size(64)
-fn foam_potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (foam_state.is_due == 0u || i >= living()) {
         return;
@@ -27,11 +19,11 @@ fn foam_potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     let v = sorted_velocities[i].xyz;
     let energy = 0.5 * dot(v, v);
     if (energy <= foam.energy_least) {
-        potentials[i] = vec4(0.0, 0.0, energy, 0.0);
+        foam_potentials[i] = vec4(0.0, 0.0, energy, 0.0);
         return;
     }
     let x = sorted_positions[i].xyz;
-    let n = normals[i];
+    let n = foam_normals[i];
     let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
@@ -46,7 +38,7 @@ fn foam_potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
                 let w = kernel_w(sqrt(r2) * scale);
                 let u = v - sorted_velocities[j].xyz;
                 trapped += w * (length(u) - dot(u, d) / sqrt(max(r2, 1e-20)));
-                let other = normals[j];
+                let other = foam_normals[j];
                 if (dot(d, n.xyz) > 0.0) {
                     curvature += w * other.w * (1.0 - dot(n.xyz, other.xyz));
                 }
@@ -56,5 +48,5 @@ fn foam_potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     let share = params.particle_spacing * scale;
     let volume = share * share * share;
     let is_crest = dot(v, n.xyz) >= FORWARDS * length(v) && n.w > 0.0;
-    potentials[i] = vec4(volume * trapped, select(0.0, volume * curvature, is_crest), energy, 0.0);
+    foam_potentials[i] = vec4(volume * trapped, select(0.0, volume * curvature, is_crest), energy, 0.0);
 }

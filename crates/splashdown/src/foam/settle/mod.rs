@@ -2,9 +2,19 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{Diffuse, FOAM, FoamState};
+
+bindings! {
+    /// The buffers of `settle.wgsl`.
+    pub(super) struct SettleBindings {
+        foam_state: read FoamState,
+        foam_indices: read [u32],
+        foam_moved: read [Diffuse],
+        foam_pool: write [Diffuse],
+    }
+}
 
 /// See the module.
 pub static SETTLE: PassDesc = PassDesc {
@@ -14,11 +24,6 @@ pub static SETTLE: PassDesc = PassDesc {
     entry: "settle",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        read::<FoamState>("foam_state"),
-        read::<u32>("indices"),
-        read::<Diffuse>("moved"),
-        write::<Diffuse>("pool"),
-    ],
-    cpu: cpu::settle,
+    bindings: SettleBindings::LIST,
+    cpu: |_, slots| cpu::settle(slots.into()),
 };

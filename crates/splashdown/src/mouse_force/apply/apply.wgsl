@@ -3,13 +3,7 @@
 #import sph/grid
 #import sph/mouse_force
 
-@group(0) @binding(0) var<uniform> grid: Grid;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> mouse_force: MouseForce;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> accelerations: array<vec4<f32>>;
+#bindings
 
 fn across(u: vec3<f32>) -> vec3<f32> {
     return u - mouse_force.direction * dot(mouse_force.direction, u);

@@ -3,11 +3,24 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{MOUSE_FORCE, MouseForce};
 use crate::cells::{GRID, Grid};
 use crate::state::{STATE, StepState};
+
+bindings! {
+    /// The buffers of `apply.wgsl`.
+    pub(super) struct ApplyBindings {
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        mouse_force: read MouseForce,
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        accelerations: write [Vec4],
+    }
+}
 
 /// See the module.
 pub static APPLY: PassDesc = PassDesc {
@@ -17,14 +30,6 @@ pub static APPLY: PassDesc = PassDesc {
     entry: "apply",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<MouseForce>("mouse_force"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        write::<Vec4>("accelerations"),
-    ],
-    cpu: cpu::apply,
+    bindings: ApplyBindings::LIST,
+    cpu: |_, slots| cpu::apply(slots.into()),
 };

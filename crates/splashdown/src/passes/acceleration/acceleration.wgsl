@@ -6,16 +6,7 @@
 #import sph/walls
 #import sph/forces
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
-@group(0) @binding(7) var<storage, read> normals: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read> wall_table: array<vec4<f32>>;
-@group(0) @binding(9) var<storage, read_write> accelerations: array<vec4<f32>>;
+#bindings
 
 const HAS_TENSION: bool = true;
 var<private> own_normal: vec3<f32>;

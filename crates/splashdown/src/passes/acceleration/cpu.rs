@@ -2,45 +2,33 @@ use std::f32::consts::PI;
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::AccelerationBindings;
 use crate::boundary::{NearWalls, WallKernel, part};
 use crate::kernel::{Kernel, SMALLEST_Q};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::{Lanes, Register};
 use crate::state::{Params, StepState};
 
-pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [
+pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(buffers: AccelerationBindings<'_>) {
+    let AccelerationBindings {
         params,
         grid,
         state,
         cell_start,
-        positions,
-        velocities,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
         densities,
         normals,
         wall_table,
         accelerations,
-    ] = slots
-    else {
-        unreachable!()
-    };
-    let (params, grid) = (&params.get::<Params>(), &grid.get());
-    let positions = positions.read();
-    let pass = Acceleration::<K, FORCES>::new(
-        params,
-        &state.get(),
-        positions,
-        velocities.read(),
-        densities.read(),
-        wall_table.read(),
-    );
-    let sorted = Sorted::new(params, grid, cell_start.read(), positions);
-    let out = accelerations.write();
+    } = buffers;
+    let pass = Acceleration::<K, FORCES>::new(params, state, positions, velocities, densities, wall_table);
+    let sorted = Sorted::new(params, grid, cell_start, positions);
+    let out = accelerations;
     // Columns and arithmetic that a scene does not ask for cost nothing.
     if FORCES & part::OTHER != 0 && params.surface_tension > 0.0 {
-        pairs::for_each(sorted, out, &WithTension { forces: pass, normals: normals.read() });
+        pairs::for_each(sorted, out, &WithTension { forces: pass, normals });
     } else {
         pairs::for_each(sorted, out, &pass);
     }

@@ -14,13 +14,29 @@
 pub(crate) mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::FORCES;
 use crate::boundary::{self, KernelPair, part};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `acceleration.wgsl`.
+    pub(super) struct AccelerationBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: read [Vec2],
+        normals: read [Vec4],
+        wall_table: read [Vec4],
+        accelerations: write [Vec4],
+    }
+}
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
@@ -41,26 +57,15 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "acceleration",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec2>("densities"),
-        read::<Vec4>("normals"),
-        read::<Vec4>("wall_table"),
-        write::<Vec4>("accelerations"),
-    ],
-    cpu: cpu::acceleration::<kernel::WendlandC2, { part::ALL }>,
+    bindings: AccelerationBindings::LIST,
+    cpu: |_, slots| cpu::acceleration::<kernel::WendlandC2, { part::ALL }>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "acceleration.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::acceleration::<CubicSpline, { part::ALL }>,
+    cpu: |_, slots| cpu::acceleration::<CubicSpline, { part::ALL }>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -68,7 +73,7 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
     label: "acceleration.wendland_c2.pressure",
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0), ("FORCES", part::PRESSURE as f64)],
-    cpu: cpu::acceleration::<kernel::WendlandC2, { part::PRESSURE }>,
+    cpu: |_, slots| cpu::acceleration::<kernel::WendlandC2, { part::PRESSURE }>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -76,6 +81,6 @@ pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
 pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
     label: "acceleration.wendland_c2.other",
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0), ("FORCES", part::OTHER as f64)],
-    cpu: cpu::acceleration::<kernel::WendlandC2, { part::OTHER }>,
+    cpu: |_, slots| cpu::acceleration::<kernel::WendlandC2, { part::OTHER }>(slots.into()),
     ..WENDLAND_C2
 };

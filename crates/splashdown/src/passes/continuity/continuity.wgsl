@@ -5,14 +5,7 @@
 #import sph/kernel
 #import sph/walls
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> wall_table: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> densities: array<vec2<f32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

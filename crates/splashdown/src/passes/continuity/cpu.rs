@@ -1,36 +1,41 @@
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::ContinuityBindings;
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::{Params, StepState};
 
-pub(super) fn continuity<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, cell_start, positions, velocities, wall_table, densities] = slots else {
-        unreachable!()
-    };
-    let (params, grid, state) = (&params.get::<Params>(), &grid.get(), state.get::<StepState>());
-    let positions = positions.read();
+pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>) {
+    let ContinuityBindings {
+        params,
+        grid,
+        state,
+        cell_start,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        wall_table,
+        densities,
+    } = buffers;
     let scale = 1.0 / params.support_radius;
     let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed);
     let pass = Continuity::<K> {
         params,
         dt: state.dt,
         positions,
-        velocities: velocities.read(),
-        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
+        velocities,
+        walls: NearWalls::new(params.walls(K::WALLS), wall_table),
         scale,
         soft: 0.01 * params.support_radius * params.support_radius,
         diffusion: params.density_diffusion * params.support_radius * params.sound_speed,
         hydrostatic: (hydrostatic * params.body_acceleration(state.time)).extend(0.0),
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params, grid, cell_start.read(), positions);
-    pairs::for_each(sorted, densities.write(), &pass);
+    let sorted = Sorted::new(params, grid, cell_start, positions);
+    pairs::for_each(sorted, densities, &pass);
 }
 
 struct Continuity<'a, K> {

@@ -18,12 +18,26 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `continuity.wgsl`.
+    pub(super) struct ContinuityBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        wall_table: read [Vec4],
+        densities: write [Vec2],
+    }
+}
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
@@ -43,23 +57,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "continuity",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec4>("wall_table"),
-        write::<Vec2>("densities"),
-    ],
-    cpu: cpu::continuity::<kernel::WendlandC2>,
+    bindings: ContinuityBindings::LIST,
+    cpu: |_, slots| cpu::continuity::<kernel::WendlandC2>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "continuity.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::continuity::<CubicSpline>,
+    cpu: |_, slots| cpu::continuity::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };

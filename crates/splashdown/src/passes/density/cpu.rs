@@ -1,29 +1,28 @@
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::DensityBindings;
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
-pub(super) fn density<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, cell_start, positions, wall_table, densities] = slots else { unreachable!() };
-    let (params, grid) = (&params.get::<Params>(), &grid.get());
-    let positions = positions.read();
+pub(super) fn density<K: Kernel + WallKernel>(buffers: DensityBindings<'_>) {
+    let DensityBindings { params, grid, cell_start, sorted_positions: positions, wall_table, densities } =
+        buffers;
     let scale = 1.0 / params.support_radius;
     let pass = Density::<K> {
         params,
         positions,
-        walls: NearWalls::new(params.walls(K::WALLS), wall_table.read()),
+        walls: NearWalls::new(params.walls(K::WALLS), wall_table),
         scale,
         factor: params.particle_mass * scale * scale * scale,
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params, grid, cell_start.read(), positions);
-    pairs::for_each(sorted, densities.write(), &pass);
+    let sorted = Sorted::new(params, grid, cell_start, positions);
+    pairs::for_each(sorted, densities, &pass);
 }
 
 struct Density<'a, K> {

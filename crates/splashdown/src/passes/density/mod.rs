@@ -6,7 +6,7 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, WgslModule, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
 use crate::cells::{GRID, Grid, ROWS};
@@ -16,6 +16,18 @@ use crate::state::{PARAMS, Params, STATE};
 const IMPORTS: &[WgslModule] =
     &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::LAW, boundary::WGSL];
 
+bindings! {
+    /// The buffers of `density.wgsl`.
+    pub(super) struct DensityBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        wall_table: read [Vec4],
+        densities: write [Vec2],
+    }
+}
+
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "density.wendland_c2",
@@ -24,22 +36,15 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "density",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("wall_table"),
-        write::<Vec2>("densities"),
-    ],
-    cpu: cpu::density::<kernel::WendlandC2>,
+    bindings: DensityBindings::LIST,
+    cpu: |_, slots| cpu::density::<kernel::WendlandC2>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "density.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::density::<CubicSpline>,
+    cpu: |_, slots| cpu::density::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };
 
@@ -47,6 +52,6 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static POLY6: PassDesc = PassDesc {
     label: "density.poly6",
     constants: &[("KERNEL", Poly6::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    cpu: cpu::density::<Poly6>,
+    cpu: |_, slots| cpu::density::<Poly6>(slots.into()),
     ..WENDLAND_C2
 };

@@ -1,6 +1,6 @@
 use glam::{Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::ForceIntegrateBindings;
 use crate::boundary::{WallKernel, part};
 use crate::cells::Grid;
 use crate::kernel::Kernel;
@@ -11,8 +11,8 @@ use crate::state::{Params, StepState};
 
 /// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 %
 /// of a step longer. The persistent velocities, which the second sweep writes, hold the accelerations in between.
-pub(super) fn force_integrate<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [
+pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBindings<'_>) {
+    let ForceIntegrateBindings {
         params,
         grid,
         state,
@@ -25,35 +25,16 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(_: CpuWork, slots: &mut [S
         velocities,
         counters,
         cell_counts,
-    ] = slots
-    else {
-        unreachable!()
-    };
-    let (params, grid, state) = (&params.get::<Params>(), &grid.get::<Grid>(), &state.get::<StepState>());
+    } = buffers;
     if state.done != 0 {
         return;
     }
-    let before = Before {
-        positions: sorted_positions.read(),
-        velocities: sorted_velocities.read(),
-        densities: densities.read(),
-    };
-    let persistent = Persistent {
-        positions: positions.write(),
-        velocities: velocities.write::<Vec4>(),
-        counters: counters.write(),
-        cell_counts: cell_counts.write(),
-    };
+    let before = Before { positions: sorted_positions, velocities: sorted_velocities, densities };
+    let persistent = Persistent { positions, velocities, counters, cell_counts };
     let Before { positions, velocities, densities } = before;
-    let forces = Acceleration::<K, { part::ALL }>::new(
-        params,
-        state,
-        positions,
-        velocities,
-        densities,
-        wall_table.read(),
-    );
-    let places = pairs::Sorted::new(params, grid, cell_start.read(), positions);
+    let forces =
+        Acceleration::<K, { part::ALL }>::new(params, state, positions, velocities, densities, wall_table);
+    let places = pairs::Sorted::new(params, grid, cell_start, positions);
     pairs::for_each(places, persistent.velocities, &forces);
     advance_all((params, grid, state), before, persistent, true, |_, a| a.xyz());
 }

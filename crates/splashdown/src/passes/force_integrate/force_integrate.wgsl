@@ -7,18 +7,7 @@
 #import sph/forces
 #import sph/advance
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<uniform> state: StepState;
-@group(0) @binding(3) var<uniform> wall_table: array<vec4<f32>, 1089>;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> sorted_velocities: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> densities: array<vec2<f32>>;
-@group(0) @binding(8) var<storage, read_write> positions: array<vec4<f32>>;
-@group(0) @binding(9) var<storage, read_write> velocities: array<vec4<f32>>;
-@group(0) @binding(10) var<storage, read_write> counters: array<atomic<u32>>;
-@group(0) @binding(11) var<storage, read_write> cell_counts: array<atomic<u32>>;
+#bindings
 
 // Surface tension needs one buffer more than there may be; scenes with it go the other way.
 const HAS_TENSION: bool = false;

@@ -8,13 +8,31 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, uniform_array, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{ADVANCE, FORCES};
 use crate::boundary::{self, KernelPair};
 use crate::cells::{CELL_COUNTS, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+
+bindings! {
+    /// The buffers of `force_integrate.wgsl`.
+    pub(super) struct ForceIntegrateBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: uniform StepState,
+        wall_table: uniform [Vec4; boundary::TABLE_LEN],
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: read [Vec2],
+        positions: write [Vec4],
+        velocities: write [Vec4],
+        counters: atomic [u32],
+        cell_counts: atomic [u32],
+    }
+}
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
@@ -38,27 +56,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     entry: "force_integrate",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        uniform::<StepState>("state"),
-        uniform_array("wall_table"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec2>("densities"),
-        write::<Vec4>("positions"),
-        write::<Vec4>("velocities"),
-        write::<u32>("counters"),
-        write::<u32>("cell_counts"),
-    ],
-    cpu: cpu::force_integrate::<kernel::WendlandC2>,
+    bindings: ForceIntegrateBindings::LIST,
+    cpu: |_, slots| cpu::force_integrate::<kernel::WendlandC2>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "force_integrate.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: cpu::force_integrate::<CubicSpline>,
+    cpu: |_, slots| cpu::force_integrate::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };

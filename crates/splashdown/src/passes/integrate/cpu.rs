@@ -1,11 +1,11 @@
 use glam::{Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::IntegrateBindings;
 use crate::passes::advance::{Before, Persistent, advance_all};
 use crate::state::StepState;
 
-pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [
+pub(super) fn integrate<const COUNTS: bool>(buffers: IntegrateBindings<'_>) {
+    let IntegrateBindings {
         params,
         grid,
         state,
@@ -17,26 +17,12 @@ pub(super) fn integrate<const COUNTS: bool>(_: CpuWork, slots: &mut [Slot<'_>]) 
         velocities,
         counters,
         cell_counts,
-    ] = slots
-    else {
-        unreachable!()
-    };
-    let state = state.get::<StepState>();
+    } = buffers;
     if state.done != 0 {
         return;
     }
-    let before = Before {
-        positions: sorted_positions.read(),
-        velocities: sorted_velocities.read(),
-        densities: densities.read(),
-    };
-    let persistent = Persistent {
-        positions: positions.write(),
-        velocities: velocities.write(),
-        counters: counters.write(),
-        cell_counts: cell_counts.write(),
-    };
-    let accelerations = accelerations.read::<Vec4>();
-    let constants = (&params.get(), &grid.get(), &state);
+    let before = Before { positions: sorted_positions, velocities: sorted_velocities, densities };
+    let persistent = Persistent { positions, velocities, counters, cell_counts };
+    let constants = (params, grid, state);
     advance_all(constants, before, persistent, COUNTS, |i, _| accelerations[i].xyz());
 }

@@ -13,12 +13,29 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::ADVANCE;
 use crate::boundary;
 use crate::cells::{CELL_COUNTS, GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+
+bindings! {
+    /// The buffers of `integrate.wgsl`.
+    pub(super) struct IntegrateBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: uniform StepState,
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: read [Vec2],
+        accelerations: read [Vec4],
+        positions: write [Vec4],
+        velocities: write [Vec4],
+        counters: atomic [u32],
+        cell_counts: atomic [u32],
+    }
+}
 
 /// See the module.
 pub static INTEGRATE: PassDesc = PassDesc {
@@ -28,26 +45,14 @@ pub static INTEGRATE: PassDesc = PassDesc {
     entry: "integrate",
     workgroup_size: [256, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        uniform::<StepState>("state"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec2>("densities"),
-        read::<Vec4>("accelerations"),
-        write::<Vec4>("positions"),
-        write::<Vec4>("velocities"),
-        write::<u32>("counters"),
-        write::<u32>("cell_counts"),
-    ],
-    cpu: cpu::integrate::<true>,
+    bindings: IntegrateBindings::LIST,
+    cpu: |_, slots| cpu::integrate::<true>(slots.into()),
 };
 
 /// Leaves the count for the next step to [`cells`](crate::cells).
 pub static UNCOUNTED: PassDesc = PassDesc {
     label: "integrate.uncounted",
     constants: &[("COUNTS", 0.0)],
-    cpu: cpu::integrate::<false>,
+    cpu: |_, slots| cpu::integrate::<false>(slots.into()),
     ..INTEGRATE
 };

@@ -1,31 +1,35 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::MuellerBindings;
 use crate::boundary::{KernelPair, NearWalls, part};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::{Params, StepState};
 
-pub(super) fn mueller(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, cell_start, positions, velocities, densities, wall_table, accelerations] =
-        slots
-    else {
-        unreachable!()
-    };
-    let (params, grid, state) = (&params.get::<Params>(), &grid.get(), state.get::<StepState>());
-    let positions = positions.read();
+pub(super) fn mueller(buffers: MuellerBindings<'_>) {
+    let MuellerBindings {
+        params,
+        grid,
+        state,
+        cell_start,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        densities,
+        wall_table,
+        accelerations,
+    } = buffers;
     let pass = Mueller {
         params,
         dt: state.dt,
         body: params.body_acceleration(state.time),
         positions,
-        velocities: velocities.read(),
-        densities: densities.read(),
-        walls: NearWalls::new(params.walls(KernelPair::Mueller), wall_table.read()),
+        velocities,
+        densities,
+        walls: NearWalls::new(params.walls(KernelPair::Mueller), wall_table),
         scale: 1.0 / params.support_radius,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), accelerations.write(), &pass);
+    pairs::for_each(Sorted::new(params, grid, cell_start, positions), accelerations, &pass);
 }
 
 struct Mueller<'a> {

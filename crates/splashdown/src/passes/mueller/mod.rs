@@ -8,12 +8,27 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, Kernel, Spiky};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `mueller.wgsl`.
+    pub(super) struct MuellerBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        densities: read [Vec2],
+        wall_table: read [Vec4],
+        accelerations: write [Vec4],
+    }
+}
 
 /// See the module.
 pub static MUELLER: PassDesc = PassDesc {
@@ -33,16 +48,6 @@ pub static MUELLER: PassDesc = PassDesc {
     entry: "mueller",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", Spiky::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("sorted_velocities"),
-        read::<Vec2>("densities"),
-        read::<Vec4>("wall_table"),
-        write::<Vec4>("accelerations"),
-    ],
-    cpu: cpu::mueller,
+    bindings: MuellerBindings::LIST,
+    cpu: |_, slots| cpu::mueller(slots.into()),
 };

@@ -1,26 +1,25 @@
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec3, Vec4};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::SurfaceNormalsBindings;
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
-pub(super) fn normals<K: Kernel>(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, cell_start, positions, densities, normals] = slots else { unreachable!() };
-    let (params, grid) = (&params.get::<Params>(), &grid.get());
-    let positions = positions.read();
+pub(super) fn normals<K: Kernel>(buffers: SurfaceNormalsBindings<'_>) {
+    let SurfaceNormalsBindings { params, grid, cell_start, sorted_positions: positions, densities, normals } =
+        buffers;
     let scale = 1.0 / params.support_radius;
     let pass = Normals::<K> {
         positions,
-        densities: densities.read(),
+        densities,
         scale,
         factor: params.particle_mass * (scale * scale) * (scale * scale),
         kernel: PhantomData,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start.read(), positions), normals.write(), &pass);
+    pairs::for_each(Sorted::new(params, grid, cell_start, positions), normals, &pass);
 }
 
 struct Normals<'a, K> {

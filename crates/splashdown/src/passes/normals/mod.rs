@@ -4,35 +4,40 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE};
 
+bindings! {
+    /// The buffers of `surface_normals.wgsl`.
+    pub(super) struct SurfaceNormalsBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        densities: read [Vec2],
+        normals: write [Vec4],
+    }
+}
+
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "normals.wendland_c2",
-    wgsl: include_str!("normals.wgsl"),
+    wgsl: include_str!("surface_normals.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL],
-    entry: "normals_of_surface",
+    entry: "surface_normals",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0)],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec2>("densities"),
-        write::<Vec4>("normals"),
-    ],
-    cpu: cpu::normals::<kernel::WendlandC2>,
+    bindings: SurfaceNormalsBindings::LIST,
+    cpu: |_, slots| cpu::normals::<kernel::WendlandC2>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "normals.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    cpu: cpu::normals::<CubicSpline>,
+    cpu: |_, slots| cpu::normals::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };

@@ -4,9 +4,19 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `state_equation.wgsl`.
+    pub(super) struct StateEquationBindings {
+        params: uniform Params,
+        state: read StepState,
+        sorted_velocities: read [Vec4],
+        densities: write [Vec2],
+    }
+}
 
 /// See the module.
 pub static STATE_EQUATION: PassDesc = PassDesc {
@@ -16,11 +26,6 @@ pub static STATE_EQUATION: PassDesc = PassDesc {
     entry: "state_equation",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<StepState>("state"),
-        read::<Vec4>("sorted_velocities"),
-        write::<Vec2>("densities"),
-    ],
-    cpu: cpu::state_equation,
+    bindings: StateEquationBindings::LIST,
+    cpu: |_, slots| cpu::state_equation(slots.into()),
 };

@@ -3,21 +3,14 @@
 #import sph/body
 #import sph/probe
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> probes: array<ProbePoint>;
-@group(0) @binding(3) var<storage, read> bodies: array<Body>;
-@group(0) @binding(4) var<storage, read> values: array<f32>;
-@group(0) @binding(5) var<storage, read_write> counts: array<u32>;
-@group(0) @binding(6) var<storage, read_write> accounts: array<u32>;
-@group(0) @binding(7) var<storage, read_write> rows: array<f32>;
+#bindings
 
 fn add(word: u32, value: f32) {
-    accounts[word] = bitcast<u32>(bitcast<f32>(accounts[word]) + value);
+    probe_accounts[word] = bitcast<u32>(bitcast<f32>(probe_accounts[word]) + value);
 }
 
 @compute @workgroup_size(64)
-fn log_values(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn accumulate(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let k = linear_index(gid, groups, 64u);
     if (k >= arrayLength(&probes) || state.run_count == 0u) {
         return;
@@ -35,27 +28,27 @@ fn log_values(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
         }
     } else if (probe.kind == PROBE_FLOW) {
         let volume = params.particle_spacing * params.particle_spacing * params.particle_spacing;
-        add(sums, f32(bitcast<i32>(counts[k])) * volume);
-        counts[k] = 0u;
+        add(sums, f32(bitcast<i32>(probe_counts[k])) * volume);
+        probe_counts[k] = 0u;
     } else {
-        add(sums, values[k * PROBE_VALUES] * dt);
+        add(sums, probe_values[k * PROBE_VALUES] * dt);
     }
     // The step whose end is nearest to the time that is due has the row.
     let elapsed = state.frame_duration - state.remaining + dt;
-    let row = accounts[account + ACCOUNT_ROWS];
-    let next = bitcast<f32>(accounts[account + ACCOUNT_NEXT]);
+    let row = probe_accounts[account + ACCOUNT_ROWS];
+    let next = bitcast<f32>(probe_accounts[account + ACCOUNT_NEXT]);
     if (elapsed + 0.5 * dt < next || row >= probe.most_rows) {
         return;
     }
     let at = (probe.first_row + row) * PROBE_ROW;
-    let duration = bitcast<f32>(accounts[account + ACCOUNT_TIME]);
-    rows[at] = elapsed;
+    let duration = bitcast<f32>(probe_accounts[account + ACCOUNT_TIME]);
+    probe_rows[at] = elapsed;
     for (var v = 0u; v < PROBE_VALUES; v++) {
-        rows[at + 1u + v] = bitcast<f32>(accounts[sums + v]) / duration;
-        accounts[sums + v] = 0u;
+        probe_rows[at + 1u + v] = bitcast<f32>(probe_accounts[sums + v]) / duration;
+        probe_accounts[sums + v] = 0u;
     }
-    accounts[account + ACCOUNT_TIME] = 0u;
-    accounts[account + ACCOUNT_ROWS] = row + 1u;
+    probe_accounts[account + ACCOUNT_TIME] = 0u;
+    probe_accounts[account + ACCOUNT_ROWS] = row + 1u;
     // Steps longer than the interval have a row each.
-    accounts[account + ACCOUNT_NEXT] = bitcast<u32>(max(next + probe.interval, elapsed));
+    probe_accounts[account + ACCOUNT_NEXT] = bitcast<u32>(max(next + probe.interval, elapsed));
 }

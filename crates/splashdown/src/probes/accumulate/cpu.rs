@@ -1,19 +1,25 @@
-use splashdown_gpu::{CpuWork, Slot};
-
+use super::AccumulateBindings;
 use crate::bodies::Body;
 use crate::probes::{Account, ProbePoint, ROW, VALUES};
 use crate::state::{Params, StepState};
 
-pub(super) fn accumulate(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, probes, bodies, values, counts, accounts, rows] = slots else { unreachable!() };
-    let (params, state) = (params.get::<Params>(), state.get::<StepState>());
+pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
+    let AccumulateBindings {
+        params,
+        state,
+        probes,
+        bodies,
+        probe_values: values,
+        probe_counts: counts,
+        probe_accounts: accounts,
+        probe_rows: rows,
+    } = buffers;
     if state.run_count == 0 {
         return;
     }
-    let (bodies, rows) = (bodies.read::<Body>(), rows.write::<f32>());
-    let values = values.read::<f32>().chunks_exact(VALUES);
-    let accounts = accounts.write::<u32>().chunks_exact_mut(Account::WORDS);
-    let probes = probes.read::<ProbePoint>().iter().zip(values).zip(counts.write::<u32>()).zip(accounts);
+    let values = values.chunks_exact(VALUES);
+    let accounts = accounts.chunks_exact_mut(Account::WORDS);
+    let probes = probes.iter().zip(values).zip(counts).zip(accounts);
     for (((probe, values), count), account) in probes {
         let dt = state.dt;
         let add = |word: &mut u32, value: f32| *word = (f32::from_bits(*word) + value).to_bits();

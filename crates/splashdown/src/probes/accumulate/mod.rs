@@ -6,29 +6,34 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{PROBE, ProbePoint};
 use crate::bodies::{BODY, Body};
 use crate::state::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `accumulate.wgsl`.
+    pub(super) struct AccumulateBindings {
+        params: uniform Params,
+        state: read StepState,
+        probes: read [ProbePoint],
+        bodies: read [Body],
+        probe_values: read [f32],
+        probe_counts: write [u32],
+        probe_accounts: write [u32],
+        probe_rows: write [f32],
+    }
+}
 
 /// See the module.
 pub static ACCUMULATE: PassDesc = PassDesc {
     label: "probes.accumulate",
     wgsl: include_str!("accumulate.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, BODY, PROBE],
-    entry: "log_values",
+    entry: "accumulate",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        read::<StepState>("state"),
-        read::<ProbePoint>("probes"),
-        read::<Body>("bodies"),
-        read::<f32>("values"),
-        write::<u32>("counts"),
-        write::<u32>("accounts"),
-        write::<f32>("rows"),
-    ],
-    cpu: cpu::accumulate,
+    bindings: AccumulateBindings::LIST,
+    cpu: |_, slots| cpu::accumulate(slots.into()),
 };

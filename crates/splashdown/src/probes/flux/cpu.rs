@@ -2,23 +2,21 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::FluxBindings;
 use crate::cells::Grid;
 use crate::probes::ProbePoint;
 use crate::state::StepState;
 
-pub(super) fn flux(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [grid, state, cell_start, probes, sorted_positions, positions, counts] = slots else {
-        unreachable!()
-    };
-    let living = cell_start.read::<u32>()[grid.get::<Grid>().cell_count as usize];
-    let n = living.min(state.get::<StepState>().run_count) as usize;
-    let probes = probes.read::<ProbePoint>();
+pub(super) fn flux(buffers: FluxBindings<'_>) {
+    let FluxBindings { grid, state, cell_start, probes, sorted_positions, positions, probe_counts: counts } =
+        buffers;
+    let living = cell_start[grid.cell_count as usize];
+    let n = living.min(state.run_count) as usize;
     let flows: Vec<_> =
         probes.iter().enumerate().filter(|(_, probe)| probe.kind == ProbePoint::FLOW).collect();
     let sums: Vec<AtomicU32> = probes.iter().map(|_| AtomicU32::new(0)).collect();
-    let ways = sorted_positions.read::<Vec4>()[..n].par_iter().zip(&positions.read::<Vec4>()[..n]);
+    let ways = sorted_positions[..n].par_iter().zip(&positions[..n]);
     ways.with_min_len(4096).filter(|(before, _)| before.w == 0.0).for_each(|(before, after)| {
         let (before, after) = (before.xyz(), after.xyz());
         for (k, probe) in &flows {
@@ -35,7 +33,7 @@ pub(super) fn flux(_: CpuWork, slots: &mut [Slot<'_>]) {
             }
         }
     });
-    for (count, sum) in counts.write::<u32>().iter_mut().zip(sums) {
+    for (count, sum) in counts.iter_mut().zip(sums) {
         *count = count.wrapping_add(sum.into_inner());
     }
 }

@@ -3,13 +3,7 @@
 #import sph/grid
 #import sph/probe
 
-@group(0) @binding(0) var<uniform> grid: Grid;
-@group(0) @binding(1) var<storage, read> state: StepState;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> probes: array<ProbePoint>;
-@group(0) @binding(4) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn flux(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -35,7 +29,7 @@ fn flux(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
         let at = before.xyz + a / (a - b) * (after - before.xyz) - probe.position;
         if (abs(dot(at, probe.along)) <= probe.half_along && abs(dot(at, probe.across)) <= probe.half_across) {
             // One up, or one down in two's complement.
-            atomicAdd(&counts[k], select(0xffffffffu, 1u, a < 0.0));
+            atomicAdd(&probe_counts[k], select(0xffffffffu, 1u, a < 0.0));
         }
     }
 }

@@ -7,11 +7,24 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{PROBE, ProbePoint};
 use crate::cells::{GRID, Grid};
 use crate::state::{STATE, StepState};
+
+bindings! {
+    /// The buffers of `flux.wgsl`.
+    pub(super) struct FluxBindings {
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        probes: read [ProbePoint],
+        sorted_positions: read [Vec4],
+        positions: read [Vec4],
+        probe_counts: atomic [u32],
+    }
+}
 
 /// See the module.
 pub static FLUX: PassDesc = PassDesc {
@@ -21,14 +34,6 @@ pub static FLUX: PassDesc = PassDesc {
     entry: "flux",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<ProbePoint>("probes"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec4>("positions"),
-        write::<u32>("counts"),
-    ],
-    cpu: cpu::flux,
+    bindings: FluxBindings::LIST,
+    cpu: |_, slots| cpu::flux(slots.into()),
 };

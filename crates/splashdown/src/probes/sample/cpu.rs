@@ -1,27 +1,31 @@
 use std::f32::consts::PI;
 
 use glam::{UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
-use super::{COLUMN, WETTED};
+use super::{COLUMN, SampleBindings, WETTED};
 use crate::cells::Grid;
 use crate::probes::{ProbePoint, VALUES};
 use crate::state::{Params, StepState};
 
-pub(super) fn sample(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, grid, state, cell_start, probes, sorted_positions, densities, accelerations, values] = slots
-    else {
-        unreachable!()
-    };
-    let (params, grid, state) = (params.get::<Params>(), grid.get::<Grid>(), state.get::<StepState>());
+pub(super) fn sample(buffers: SampleBindings<'_>) {
+    let SampleBindings {
+        params,
+        grid,
+        state,
+        cell_start,
+        probes,
+        sorted_positions,
+        densities,
+        accelerations,
+        probe_values: values,
+    } = buffers;
     if state.run_count == 0 {
         return;
     }
-    let (cell_start, positions) = (cell_start.read::<u32>(), sorted_positions.read::<Vec4>());
-    let (densities, accelerations) = (densities.read::<Vec2>(), accelerations.read::<Vec4>());
-    let values = values.write::<f32>().chunks_exact_mut(VALUES);
+    let positions = sorted_positions;
+    let values = values.chunks_exact_mut(VALUES);
     let volume = params.particle_spacing.powi(3);
-    for (probe, values) in probes.read::<ProbePoint>().iter().zip(values) {
+    for (probe, values) in probes.iter().zip(values) {
         let column = probe.kind == ProbePoint::HEIGHT;
         if !column && probe.kind != ProbePoint::PRESSURE {
             continue;
@@ -29,7 +33,7 @@ pub(super) fn sample(_: CpuWork, slots: &mut [Slot<'_>]) {
         let support = params.support_radius * if column { COLUMN } else { 1.0 };
         let (mut total, mut pressure) = (0.0, 0.0);
         let (mut offset, mut drive) = (Vec3::ZERO, Vec3::ZERO);
-        for_each_near(&grid, cell_start, probe, support, |j| {
+        for_each_near(grid, cell_start, probe, support, |j| {
             let p = positions[j];
             let mut d = p.xyz() - probe.position;
             if column {

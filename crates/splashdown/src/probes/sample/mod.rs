@@ -14,7 +14,7 @@
 mod cpu;
 
 use glam::{Vec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{PROBE, ProbePoint};
 use crate::cells::{GRID, Grid};
@@ -26,6 +26,21 @@ pub const WETTED: f32 = 0.1;
 /// Radius of a column over the support radius.
 pub const COLUMN: f32 = 1.5;
 
+bindings! {
+    /// The buffers of `sample.wgsl`.
+    pub(super) struct SampleBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: read StepState,
+        cell_start: read [u32],
+        probes: read [ProbePoint],
+        sorted_positions: read [Vec4],
+        densities: read [Vec2],
+        accelerations: read [Vec4],
+        probe_values: write [f32],
+    }
+}
+
 /// See the module.
 pub static SAMPLE: PassDesc = PassDesc {
     label: "probes.sample",
@@ -34,16 +49,6 @@ pub static SAMPLE: PassDesc = PassDesc {
     entry: "sample",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Params>("params"),
-        uniform::<Grid>("grid"),
-        read::<StepState>("state"),
-        read::<u32>("cell_start"),
-        read::<ProbePoint>("probes"),
-        read::<Vec4>("sorted_positions"),
-        read::<Vec2>("densities"),
-        read::<Vec4>("accelerations"),
-        write::<f32>("values"),
-    ],
-    cpu: cpu::sample,
+    bindings: SampleBindings::LIST,
+    cpu: |_, slots| cpu::sample(slots.into()),
 };

@@ -3,15 +3,7 @@
 #import sph/grid
 #import sph/probe
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> state: StepState;
-@group(0) @binding(3) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(4) var<storage, read> probes: array<ProbePoint>;
-@group(0) @binding(5) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> densities: array<vec2<f32>>;
-@group(0) @binding(7) var<storage, read> accelerations: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> values: array<f32>;
+#bindings
 
 const PI: f32 = 3.14159265;
 const WETTED: f32 = 0.1;
@@ -100,5 +92,5 @@ fn sample(
         let pressure = weights[0].y / total - dot(gradient, offsets[0] / total);
         value = pressure * min(wet / WETTED, 1.0);
     }
-    values[k * PROBE_VALUES] = value;
+    probe_values[k * PROBE_VALUES] = value;
 }

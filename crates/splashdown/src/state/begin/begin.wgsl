@@ -1,8 +1,6 @@
 #import sph/params
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> duration: array<f32>;
-@group(0) @binding(2) var<storage, read_write> state: StepState;
+#bindings
 
 @compute @workgroup_size(1)
 fn begin() {

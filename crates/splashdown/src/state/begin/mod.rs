@@ -4,9 +4,18 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 use super::{PARAMS, Params, STATE, StepState};
+
+bindings! {
+    /// The buffers of `begin.wgsl`.
+    pub(super) struct BeginBindings {
+        params: uniform Params,
+        duration: read [f32],
+        state: write StepState,
+    }
+}
 
 /// See the module.
 pub static BEGIN: PassDesc = PassDesc {
@@ -16,6 +25,6 @@ pub static BEGIN: PassDesc = PassDesc {
     entry: "begin",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[uniform::<Params>("params"), read::<f32>("duration"), write::<StepState>("state")],
-    cpu: cpu::begin,
+    bindings: BeginBindings::LIST,
+    cpu: |_, slots| cpu::begin(slots.into()),
 };

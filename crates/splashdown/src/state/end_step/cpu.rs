@@ -1,10 +1,9 @@
-use splashdown_gpu::{CpuWork, Slot};
-
+use super::EndStepBindings;
 use crate::state::{Params, StepCounters, StepState};
 
-pub(super) fn end_step(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [params, state, counters] = slots else { unreachable!() };
-    finish_step(&params.get(), &mut state.write::<StepState>()[0], counters.write());
+pub(super) fn end_step(buffers: EndStepBindings<'_>) {
+    let EndStepBindings { params, state, counters } = buffers;
+    finish_step(params, state, counters);
 }
 
 /// Ends the previous step, unless it has ended already.

@@ -11,13 +11,22 @@
 
 mod cpu;
 
-use splashdown_gpu::{Grid as Extent, PassDesc, Recording, uniform, write};
+use splashdown_gpu::{PassDesc, bindings};
 
 #[cfg(doc)]
 use super::StepCounters;
 use super::{Fields, PARAMS, Params, STATE, STEP_COUNTERS, STEPS, StepState};
 
 pub(crate) use cpu::finish_step;
+
+bindings! {
+    /// The buffers of `end_step.wgsl`.
+    pub(super) struct EndStepBindings {
+        params: uniform Params,
+        state: write StepState,
+        counters: write [u32],
+    }
+}
 
 /// See the module.
 pub static END_STEP: PassDesc = PassDesc {
@@ -27,14 +36,13 @@ pub static END_STEP: PassDesc = PassDesc {
     entry: "end_step",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[uniform::<Params>("params"), write::<StepState>("state"), write::<u32>("counters")],
-    cpu: cpu::end_step,
+    bindings: EndStepBindings::LIST,
+    cpu: |_, slots| cpu::end_step(slots.into()),
 };
 
 /// Ends the last step of a submission: afterwards the host, or another step's passes, may read the state.
 pub fn record(fields: &Fields) -> Recording {
     let mut recording = Recording::new("end_step");
-    let buffers = [fields.params.id(), fields.state.id(), fields.counters.id()];
-    recording.dispatch(&END_STEP, Extent::Groups(1), &buffers);
+    recording.dispatch(&END_STEP, DispatchSize::Groups(1), &fields.buffers());
     recording
 }

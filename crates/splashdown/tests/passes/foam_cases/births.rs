@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec3, Vec4};
 use splashdown::foam::{FoamParams, FoamState};
 use splashdown::state::Params;
-use splashdown_gpu::Grid as Extent;
+use splashdown_gpu::DispatchSize;
 
 use super::super::harness::{Case, Data, exact};
 use super::super::sort_cases::pass;
@@ -38,7 +38,7 @@ pub(super) fn begin(
     Case {
         pass: pass("foam.begin"),
         name: name.into(),
-        extent: Extent::Groups(1),
+        size: DispatchSize::Groups(1),
         input: vec![
             Data::Foam(foam()),
             Data::State(step),
@@ -96,7 +96,7 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
     Case {
         pass: pass("foam.plan"),
         name: name.into(),
-        extent: Extent::Groups(1),
+        size: DispatchSize::Groups(1),
         input: vec![
             Data::Params(Params { particle_count: 3, ..params(2.0) }),
             Data::Foam(FoamParams { capacity, ..foam() }),
@@ -169,7 +169,7 @@ pub(super) fn emit(name: &'static str, share: u32) -> Case {
     Case {
         pass: pass("foam.emit"),
         name: name.into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::Grid as Extent;
+use splashdown_gpu::DispatchSize;
 
 use super::super::harness::{Case, Data, exact, wide};
 use super::super::sort_cases::pass;
@@ -50,7 +50,7 @@ pub(super) fn normals() -> Case {
     Case {
         pass: pass("foam.normals"),
         name: "a cloud in a box".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -116,7 +116,7 @@ pub(super) fn potentials() -> Case {
     Case {
         pass: pass("foam.potentials"),
         name: "a cloud in a box".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -170,7 +170,7 @@ pub(super) fn count() -> Case {
     Case {
         pass: pass("foam.count"),
         name: "every potential".into(),
-        extent: Extent::Items(world.len() as u32),
+        size: DispatchSize::Items(world.len() as u32),
         input: vec![
             Data::Grid(world.grid),
             Data::Foam(foam),

@@ -98,7 +98,7 @@ fn when_not_due(case: &Case) -> Option<Case> {
     Some(Case {
         pass: case.pass,
         name: format!("{}, not due", case.name),
-        extent: case.extent,
+        size: case.size,
         input,
         compare: Box::new(same),
         oracle: Box::new(move |out| same(out, &before)),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use splashdown::foam::FoamState;
-use splashdown_gpu::Grid as Extent;
+use splashdown_gpu::DispatchSize;
 
 use super::super::harness::{Case, Data, exact};
 use super::super::sort_cases::pass;
@@ -76,7 +76,7 @@ pub(super) fn advect() -> Case {
     Case {
         pass: pass("foam.advect"),
         name: "in the air, on the water, under it".into(),
-        extent: Extent::Items(n),
+        size: DispatchSize::Items(n),
         input: vec![
             Data::Params(world.params),
             Data::Grid(world.grid),
@@ -112,7 +112,7 @@ pub(super) fn settle() -> Case {
     Case {
         pass: pass("foam.settle"),
         name: "a seventh has dissolved".into(),
-        extent: Extent::Items(300),
+        size: DispatchSize::Items(300),
         input: vec![
             Data::FoamState(FoamState { kept: kept as u32, count: 300, ..now() }),
             Data::U32(list),

@@ -4,15 +4,10 @@
 #import sph/rows
 #import sph/kernel
 
-@group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> sorted_positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> densities: array<vec2<f32>>;
-@group(0) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
+#bindings
 
 @compute @workgroup_size(64)
-fn normals_of_surface(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn surface_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     if (i >= living()) {
         return;
