@@ -10,6 +10,7 @@
 #[expect(dead_code, reason = "only the tests draw the ball")]
 mod sample;
 
+use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_render::*;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let folder = PathBuf::from(arguments.first().map_or("out/modes", String::as_str));
     std::fs::create_dir_all(&folder)?;
-    let (device, queue, info) = open_device()?;
+    let Gpu { device, queue, info, .. } = Gpu::open(&DeviceRequest::Auto)?;
     let (cloud, mesh, spacing) = match &arguments[..] {
         [_, particles, surface, spacing] => {
             (read_particles(Path::new(particles))?, read_mesh(Path::new(surface))?, spacing.parse()?)

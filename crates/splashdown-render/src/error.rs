@@ -6,23 +6,6 @@ use crate::Ticket;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The system has no graphics adapter.
-    #[error(
-        "no graphics adapter found ({reason}); pictures need a GPU driver or a software one: on Debian and Ubuntu \
-         `apt-get install mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
-    )]
-    NoAdapter {
-        /// The reason given by the system.
-        reason: String,
-    },
-    /// The adapter did not provide a device.
-    #[error("the adapter \"{adapter}\" did not provide a device: {reason}")]
-    NoDevice {
-        /// Name of the adapter.
-        adapter: String,
-        /// The reason given by the driver.
-        reason: String,
-    },
     /// The picture has no pixels, or exceeds the limit of the device.
     #[error(
         "a picture of {width} x {height} pixels cannot be drawn: each side must be between 1 and {limit} on this device"

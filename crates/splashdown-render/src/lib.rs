@@ -1,14 +1,16 @@
 //! Rendering of particles and liquid surfaces with wgpu, into any texture.
 //!
 //! ```no_run
+//! use splashdown_gpu::{DeviceRequest, Gpu};
 //! use splashdown_render::*;
 //!
-//! # fn main() -> Result<(), RenderError> {
-//! let (device, queue, _) = open_device()?;
-//! let mut renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, 4)?;
-//! let mut target = Offscreen::new(&device, &queue, [1280, 720])?;
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let gpu = Gpu::open(&DeviceRequest::Auto)?;
+//! let (device, queue) = (&gpu.device, &gpu.queue);
+//! let mut renderer = Renderer::new(device, queue, Offscreen::FORMAT, 4)?;
+//! let mut target = Offscreen::new(device, queue, [1280, 720])?;
 //!
-//! let particles = UploadedParticles::new(&device, &[[0.5, 0.1, 0.5]], &[[1.0, 0.0, 0.0]], &[], &[])?;
+//! let particles = UploadedParticles::new(device, &[[0.5, 0.1, 0.5]], &[[1.0, 0.0, 0.0]], &[], &[])?;
 //! let domain = Domain::closed([0.0; 3], [1.0; 3]);
 //! let camera = Camera::framing(&domain, 30.0, 20.0, 35.0, 16.0 / 9.0);
 //! let colouring = Colouring::new(Quantity::Speed, [0.0, 2.0]);
@@ -50,8 +52,6 @@ mod camera;
 mod chunks;
 mod colour_map;
 mod colouring;
-#[cfg(not(target_arch = "wasm32"))]
-mod device;
 mod domain;
 mod edges;
 mod error;
@@ -71,7 +71,6 @@ mod shadow;
 mod slice;
 mod surface;
 mod targets;
-mod timer;
 mod uploads;
 
 /// The version of wgpu whose types appear in this crate's interface.
@@ -82,8 +81,6 @@ pub use buffers::{BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffer
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 pub use colouring::{Colouring, Quantity};
-#[cfg(not(target_arch = "wasm32"))]
-pub use device::open_device;
 pub use domain::Domain;
 pub use error::RenderError;
 pub use foam::DrawnFoam;
@@ -91,9 +88,8 @@ pub use frame::Frame;
 pub use liquid::Liquid;
 pub use offscreen::{Offscreen, Ticket};
 pub use particles::DrawnParticles;
-pub use renderer::Renderer;
+pub use renderer::{PassTime, Renderer};
 pub use screen_space::DrawnLiquidParticles;
 pub use slice::{Axis, DrawnSlice};
 pub use surface::{DrawnSurface, SurfaceStyle};
-pub use timer::PassTime;
 pub use uploads::{UploadedFoam, UploadedParticles, UploadedSurface};

@@ -1,9 +1,9 @@
 //! Recording of the render passes of a picture.
 
 use crate::targets::Targets;
-use crate::timer::Timer;
+use splashdown_gpu::PassTimer;
 use wgpu::{
-    Color, CommandEncoder, Device, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
 };
 
@@ -11,7 +11,7 @@ use wgpu::{
 #[derive(Debug)]
 pub(crate) struct Recorder<'a> {
     encoder: &'a mut CommandEncoder,
-    timer: Option<&'a mut Timer>,
+    timer: Option<&'a mut PassTimer>,
 }
 
 /// Contents of the samples and depths at the start of a pass.
@@ -30,13 +30,9 @@ pub(crate) enum End {
 
 impl<'a> Recorder<'a> {
     /// Begins a picture; if there is a timer, it measures the passes.
-    pub fn new(
-        device: &Device,
-        encoder: &'a mut CommandEncoder,
-        mut timer: Option<&'a mut Timer>,
-    ) -> Recorder<'a> {
+    pub fn new(encoder: &'a mut CommandEncoder, mut timer: Option<&'a mut PassTimer>) -> Recorder<'a> {
         if let Some(timer) = &mut timer {
-            timer.begin(device);
+            timer.begin();
         }
         Recorder { encoder, timer }
     }
@@ -114,7 +110,7 @@ impl<'a> Recorder<'a> {
                 depth_ops: Some(operations),
                 stencil_ops: None,
             }),
-            timestamp_writes: self.timer.as_mut().and_then(|timer| timer.pass(label)),
+            timestamp_writes: self.timer.as_mut().and_then(|timer| timer.render_pass(label)),
             ..Default::default()
         })
     }

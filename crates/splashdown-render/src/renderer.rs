@@ -14,12 +14,27 @@ use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
 use crate::targets::Targets;
-use crate::timer::Timer;
-use crate::{Frame, PassTime, RenderError, SurfaceStyle};
+use crate::{Frame, RenderError, SurfaceStyle};
+use splashdown_gpu::PassTimer;
+use std::time::Duration;
 use wgpu::{
     BindGroup, BindGroupLayout, BufferUsages, Color, CommandEncoder, Device, Queue, RenderPass,
     TextureFormat, TextureView,
 };
+
+/// Most passes of a picture that are measured; a picture has less than half as many.
+const MEASURED_PASSES: u32 = 32;
+/// Most pictures whose times have not arrived; further ones are not measured.
+const MEASURED_PICTURES: usize = 4;
+
+/// Time that a pass of a picture took on the GPU.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassTime {
+    /// The label of the pass, which graphics debuggers show too.
+    pub label: &'static str,
+    /// Milliseconds, the sum over all passes of that label.
+    pub milliseconds: f32,
+}
 
 /// Draws frames into textures of one format. It owns the pipelines, so create it once and reuse it.
 ///
@@ -50,7 +65,9 @@ pub struct Renderer {
     screen_space: ScreenSpace,
     overlay: Overlay,
     targets: Option<Targets>,
-    timer: Option<Timer>,
+    timer: Option<PassTimer>,
+    /// Of the latest picture whose times have arrived.
+    pass_times: Vec<PassTime>,
 }
 
 impl Renderer {
@@ -91,6 +108,7 @@ impl Renderer {
             sample_count,
             targets: None,
             timer: None,
+            pass_times: Vec::new(),
         })
     }
 
@@ -103,9 +121,9 @@ impl Renderer {
     /// with [`wgpu::Features::TIMESTAMP_QUERY`].
     pub fn set_timing(&mut self, on: bool) -> bool {
         if !on {
-            self.timer = None;
+            (self.timer, self.pass_times) = (None, Vec::new());
         } else if self.timer.is_none() {
-            self.timer = Timer::new(&self.device, &self.queue);
+            self.timer = PassTimer::new(&self.device, &self.queue, MEASURED_PASSES, MEASURED_PICTURES);
         }
         self.timer.is_some()
     }
@@ -116,7 +134,10 @@ impl Renderer {
     /// The read-back is asynchronous: times arrive a few pictures late, and only if the device is
     /// polled, which every submission does.
     pub fn pass_times(&mut self) -> &[PassTime] {
-        self.timer.as_mut().map(Timer::latest).unwrap_or_default()
+        if let Some(times) = self.timer.as_mut().and_then(|timer| timer.collect().pop()) {
+            self.pass_times = sums(&times);
+        }
+        &self.pass_times
     }
 
     /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of
@@ -149,9 +170,11 @@ impl Renderer {
             self.targets = Some(Targets::new(&self.device, size, self.format, self.sample_count));
         }
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
+        // Makes room in the timer for this picture.
+        self.pass_times();
         let Some(targets) = &self.targets else { return Ok(()) };
 
-        let mut recorder = Recorder::new(&self.device, encoder, self.timer.as_mut());
+        let mut recorder = Recorder::new(encoder, self.timer.as_mut());
         self.shadow.record(&self.device, &mut recorder, &globals, frame);
         let slice = frame
             .slice
@@ -254,5 +277,32 @@ pub(crate) fn check_size(device: &Device, [width, height]: [u32; 2]) -> Result<(
     match (1..=limit).contains(&width) && (1..=limit).contains(&height) {
         true => Ok(()),
         false => Err(RenderError::PictureSize { width, height, limit }),
+    }
+}
+
+/// Sums times by label, in the order of the passes.
+fn sums(times: &[(&'static str, Duration)]) -> Vec<PassTime> {
+    let mut sums: Vec<PassTime> = Vec::new();
+    for &(label, time) in times {
+        let milliseconds = 1e3 * time.as_secs_f32();
+        match sums.iter_mut().find(|sum| sum.label == label) {
+            Some(sum) => sum.milliseconds += milliseconds,
+            None => sums.push(PassTime { label, milliseconds }),
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_summed_by_label() {
+        let times = [("smooth", 1_000_000), ("smooth", 500_000), ("clean", 0)]
+            .map(|(label, nanoseconds)| (label, Duration::from_nanos(nanoseconds)));
+        let expected =
+            [PassTime { label: "smooth", milliseconds: 1.5 }, PassTime { label: "clean", milliseconds: 0.0 }];
+        assert_eq!(sums(&times), expected);
     }
 }

@@ -58,17 +58,22 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     })
 }
 
-/// A device with all limits and features of its adapter, such as large buffers and timestamps.
+/// A device with the capabilities of its adapter: buffers as large as the memory allows, and timestamps for passes.
 fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
     let choose = move |adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>| {
         let shows =
             |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
         Gpu::choose(adapters.iter().filter(shows), &device).cloned().map_err(|error| error.to_string())
     };
+    let defaults = WgpuSetupCreateNew::without_display_handle();
     let setup = WgpuSetupCreateNew {
+        instance_descriptor: wgpu::InstanceDescriptor {
+            flags: splashdown_gpu::instance_flags(),
+            ..defaults.instance_descriptor
+        },
         native_adapter_selector: Some(Arc::new(choose)),
         device_descriptor: Arc::new(Gpu::descriptor),
-        ..WgpuSetupCreateNew::without_display_handle()
+        ..defaults
     };
     WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
 }

@@ -5,8 +5,10 @@
 
 pub mod sample;
 
+use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_render::*;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A device and a renderer.
 pub struct Harness {
@@ -17,8 +19,10 @@ pub struct Harness {
 
 /// Opens a device, or reports that the test is skipped. In CI a missing driver is a failure.
 pub fn harness() -> Option<Harness> {
-    match open_device() {
-        Ok((device, queue, _)) => {
+    match Gpu::open(&DeviceRequest::Auto) {
+        Ok(Gpu { device, queue, .. }) => {
+            // `Gpu` records errors; here they fail the test at once.
+            device.on_uncaptured_error(Arc::new(|error| panic!("{error}")));
             let renderer = Renderer::new(&device, &queue, Offscreen::FORMAT, 4).unwrap();
             Some(Harness { device, queue, renderer })
         }
