@@ -27,3 +27,16 @@ fn a_pass_left_out_is_noticed() {
         assert!(wrong.iter().any(|line| line.contains("no pass uses it")), "{}: {wrong:?}", left_out.label);
     }
 }
+
+/// Control: variants share their file with other passes, and are noticed too.
+#[test]
+fn a_variant_left_out_is_noticed() {
+    let passes = splashdown::passes();
+    for left_out in &passes {
+        let rest: Vec<_> = passes.iter().copied().filter(|pass| pass.label != left_out.label).collect();
+        let wrong = testing::gate(Path::new(SOURCES), &rest);
+        let label = format!("({:?})", left_out.label);
+        let found = wrong.iter().any(|line| line.contains("`passes()` lacks") && line.contains(&label));
+        assert!(found, "{}: {wrong:?}", left_out.label);
+    }
+}
