@@ -195,7 +195,8 @@ fn with_error_scopes<T>(
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
     // Both scopes must be popped, the inner one first.
-    let (validation, memory) = (pollster::block_on(validation.pop()), pollster::block_on(memory.pop()));
+    let (validation, memory) =
+        (splashdown_gpu::block_on(validation.pop()), splashdown_gpu::block_on(memory.pop()));
     match memory.or(validation) {
         Some(error) => Err(RenderError::DeviceLost { reason: error.to_string() }),
         None => result,

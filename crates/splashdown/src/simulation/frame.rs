@@ -1,17 +1,19 @@
 //! A frame, from its first step to its account.
 
 use glam::Vec4Swizzles;
-use splashdown_gpu::{Readback, block_on};
+use splashdown_gpu::{Executor, Readback, block_on};
 
 use super::Simulation;
+use super::phases::HostAction;
 use crate::bodies::Bodies;
 use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
 /// Most steps in one submission to a device: a bound on how long it does not answer.
 pub(super) const MOST_STEPS: u32 = 64;
-/// Steps in one batch on the CPU, which tests for the frame's end before each.
-const CPU_STEPS: u32 = 16;
+/// Steps in one submission on the CPU, which tests for the end of the frame before each, and where the host has to act
+/// between steps.
+pub(super) const HOST_STEPS: u32 = 16;
 
 /// A frame that has begun.
 pub(super) struct FrameInProgress {
@@ -90,17 +92,26 @@ impl Simulation {
             frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
         let to_come = (remaining / self.stable_dt).ceil() as u32;
         let expected = steps.saturating_add(to_come).saturating_add(1);
-        let collide = self.bodies.as_ref().is_some_and(Bodies::collide);
-        let most = if self.executor.gpu().is_some() && !collide { MOST_STEPS } else { CPU_STEPS };
+        let most = if self.executor.gpu().is_some() { self.schedule.most_steps() } else { HOST_STEPS };
         let most = most.min(self.most_steps);
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
-        let power = left.ilog2();
-        self.executor.run(&self.batches[power as usize])?;
-        frame.submitted += 1 << power;
+        let steps = 1 << left.ilog2();
+        let (mut state_before, mut action) = (remaining, None);
+        for submission in self.schedule.submissions(steps) {
+            // The action behind the last submission waits for the state that is read below.
+            if let Some(action) = action {
+                let left = self.executor.fetch(self.fields.state).await?[0].remaining;
+                act(action, &mut self.bodies, &mut self.executor, state_before - left).await?;
+                state_before = left;
+            }
+            self.executor.run(submission.recording())?;
+            action = submission.action();
+        }
+        frame.submitted += steps;
         let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
         // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never
-        // is. Bodies that may collide are looked at before they go on.
-        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || collide {
+        // is. A host action precedes the next step.
+        let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || action.is_some() {
             frame.pending.take()
         } else {
             behind
@@ -108,11 +119,9 @@ impl Simulation {
         if let Some(readback) = answer {
             let state = readback.take().await?[0];
             self.stable_dt = state.stable_dt;
-            if let Some(bodies) = &mut self.bodies
-                && collide
-            {
-                let passed = remaining - state.remaining;
-                bodies.resolve_collisions(&mut self.executor, passed).await?;
+            if let Some(action) = action {
+                let passed = state_before - state.remaining;
+                act(action, &mut self.bodies, &mut self.executor, passed).await?;
             }
             frame.state = Some(state);
             // A step too small for the scene would take for ever to reach the frame's end.
@@ -190,5 +199,20 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+}
+
+/// Does what a host phase asks for, `seconds` after the last time.
+async fn act(
+    action: HostAction,
+    bodies: &mut Option<Bodies>,
+    executor: &mut Executor,
+    seconds: f32,
+) -> Result<(), SimulationError> {
+    match action {
+        HostAction::ResolveCollisions => match bodies {
+            Some(bodies) => Ok(bodies.resolve_collisions(executor, seconds).await?),
+            None => Ok(()),
+        },
     }
 }

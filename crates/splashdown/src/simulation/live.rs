@@ -26,7 +26,7 @@ impl Simulation {
         };
         coupling.set(&mut self.executor, mouse_force.unwrap_or(MouseForce::NONE))?;
         self.mouse_force = Some(coupling);
-        if is_first && let Err(error) = self.record_batches() {
+        if is_first && let Err(error) = self.record_step() {
             // Without its pass a hand would do nothing, and nobody would be told.
             self.mouse_force = None;
             return Err(error);

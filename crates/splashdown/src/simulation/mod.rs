@@ -4,6 +4,7 @@ mod checkpoint;
 mod foam;
 mod frame;
 mod live;
+mod phases;
 mod results;
 mod start;
 
@@ -12,6 +13,7 @@ use std::sync::Arc;
 use splashdown_gpu::{Executor, Gpu, Recording, Timings};
 
 use self::frame::FrameInProgress;
+use self::phases::Schedule;
 use crate::Stats;
 use crate::bodies::{Bodies, BodyMesh};
 use crate::cells::Cells;
@@ -43,8 +45,7 @@ pub struct Simulation {
     cells: Cells,
     begin: Recording,
     prime: Recording,
-    /// The step, repeated 1, 2, 4, ... times.
-    batches: Vec<Recording>,
+    schedule: Schedule,
     stats: Stats,
     /// What `stable_dt` was when last heard of, in seconds.
     stable_dt: f32,

@@ -3,11 +3,12 @@
 use std::mem::offset_of;
 
 use glam::{Vec3, Vec4};
-use splashdown_gpu::{Executor, Flag, Recording, block_on};
+use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
 use super::Simulation;
-use super::frame::MOST_STEPS;
+use super::frame::{HOST_STEPS, MOST_STEPS};
+use super::phases::{HostAction, Phase, Schedule};
 use crate::bodies::{Bodies, LoadedBody};
 use crate::boundary::wall_table;
 use crate::cells::{Cells, Grid};
@@ -167,7 +168,7 @@ impl Simulation {
             params,
             fields,
             cells,
-            batches: Vec::new(),
+            schedule: Schedule::empty(),
             stats: Stats::default(),
             stable_dt,
             frame: None,
@@ -181,15 +182,15 @@ impl Simulation {
             initial: 0,
             told: Vec::new(),
         };
-        simulation.record_batches()?;
+        simulation.record_step()?;
         Ok(simulation)
     }
 
-    /// Records the step anew, with what is there now.
+    /// Records the step of this scene with the present couplings.
     ///
     /// # Errors
     /// As [`Executor::create`].
-    pub(super) fn record_batches(&mut self) -> Result<(), SimulationError> {
+    pub(super) fn record_step(&mut self) -> Result<(), SimulationError> {
         let scheme = Scheme::new(&self.scene);
         let couplings = Couplings {
             bodies: self.bodies.as_ref(),
@@ -201,17 +202,13 @@ impl Simulation {
             self.fields.make_accelerations(&mut self.executor)?;
         }
         let step = scheme.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
+        let mut phases = vec![Phase::Device(step)];
+        if self.bodies.as_ref().is_some_and(Bodies::collide) {
+            phases.push(Phase::Host { action: HostAction::ResolveCollisions, steps: HOST_STEPS });
+        }
         let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done));
-        self.batches = (0..=MOST_STEPS.ilog2())
-            .map(|power| {
-                let mut batch = Recording::new(format!("{} steps", 1 << power));
-                batch.repeat(&step, 1 << power, done);
-                // The next step ends the step before it; nothing follows the last one.
-                batch.append(&end_step);
-                batch
-            })
-            .collect();
+        self.schedule = Schedule::new(phases, &end_step, done, MOST_STEPS);
         Ok(())
     }
 }

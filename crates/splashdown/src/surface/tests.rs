@@ -129,7 +129,8 @@ fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Optio
             other => format!("{other:?}"),
         };
         copy_all(&surface.b, &mut cpu, gpu);
-        let one = Recording { label: label.clone(), commands: vec![command] };
+        let mut one = Recording::new(label.clone());
+        one.commands.push(command);
         cpu.run(&one).unwrap();
         gpu.run(&one).unwrap();
         let wrong = compare(&surface.b, params.iso_level, &mut cpu, gpu);

@@ -82,7 +82,8 @@ impl Rig {
 
     /// Runs a part of the step.
     fn run(&mut self, commands: &[Command]) {
-        let recording = Recording { label: "part of a step".into(), commands: commands.to_vec() };
+        let mut recording = Recording::new("part of a step");
+        recording.commands = commands.to_vec();
         self.executor.run(&recording).unwrap();
     }
 

@@ -1,9 +1,8 @@
-use glam::{Vec2, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::BoundaryDensityBindings;
-use crate::bodies::types::{Body, Contact};
-use crate::state::{Params, StepState};
+use crate::bodies::types::Contact;
 
 const CHUNK: usize = 4096;
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use super::{BoundaryForceBindings, quantum};
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
 use crate::boundary::{KernelPair, WallKernel, law, part};
-use crate::state::{Params, StepState};
+use crate::state::Params;
 
 const CHUNK: usize = 4096;
 

@@ -1,8 +1,6 @@
 use glam::UVec2;
 
 use super::BoundsBindings;
-use crate::cells::Grid;
-use crate::state::StepState;
 
 /// Serial: a baseline, and a small part of it.
 pub(super) fn bounds(buffers: BoundsBindings<'_>) {

@@ -5,9 +5,8 @@ use rayon::prelude::*;
 use splashdown_gpu::as_atomic;
 
 use super::CountBindings;
-use crate::cells::Grid;
 use crate::cells::cell_counts::{self, CellCounter};
-use crate::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Params, StepCounters, StepState};
+use crate::state::{DEAD_ESCAPED, DEAD_NON_FINITE, StepCounters};
 
 const CHUNK: usize = 4096;
 

@@ -2,8 +2,6 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::KeysBindings;
-use crate::cells::Grid;
-use crate::state::StepState;
 
 pub(super) fn keys(buffers: KeysBindings<'_>) {
     let KeysBindings { grid, state, cell_counts, pairs } = buffers;

@@ -1,4 +1,4 @@
-use glam::{UVec2, Vec4};
+use glam::Vec4;
 use rayon::prelude::*;
 
 use super::ReorderBindings;

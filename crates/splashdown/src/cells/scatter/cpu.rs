@@ -4,8 +4,8 @@ use rayon::prelude::*;
 use splashdown_gpu::as_atomic;
 
 use super::ScatterBindings;
-use crate::cells::{Grid, cell_counts};
-use crate::state::{Params, StepState, finish_step};
+use crate::cells::cell_counts;
+use crate::state::finish_step;
 
 const CHUNK: usize = 4096;
 

@@ -1,7 +1,5 @@
 use super::EmissionScheduleBindings;
-use crate::cells::Grid;
-use crate::flow::{EmissionSchedule, Nozzle};
-use crate::state::{Params, StepState};
+use crate::flow::EmissionSchedule;
 
 pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
     let EmissionScheduleBindings { params, grid, state, cell_start, nozzles, schedules } = buffers;

@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::EmitBindings;
 use crate::cells::Grid;
-use crate::flow::{EmissionSchedule, Nozzle};
+use crate::flow::EmissionSchedule;
 use crate::state::Params;
 
 /// Nothing is born nearer to another particle than this many spacings.

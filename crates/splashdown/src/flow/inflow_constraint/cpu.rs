@@ -1,10 +1,8 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::InflowConstraintBindings;
-use crate::cells::Grid;
 use crate::flow::{EmissionSchedule, Nozzle};
-use crate::state::{Params, StepState};
 
 pub(super) fn inflow_constraint(buffers: InflowConstraintBindings<'_>) {
     let InflowConstraintBindings {

@@ -1,10 +1,9 @@
-use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec3, Vec3, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::SinkBindings;
-use crate::cells::Grid;
 use crate::flow::SinkShape;
-use crate::state::{DEAD_DRAINED, StepCounters, StepState};
+use crate::state::{DEAD_DRAINED, StepCounters};
 
 pub(super) fn sink(buffers: SinkBindings<'_>) {
     let SinkBindings { grid, state, cell_start, drains, drain_maps, sorted_positions, counters } = buffers;

@@ -1,11 +1,8 @@
-use glam::Vec4;
 use rayon::prelude::*;
 
 use super::AdvectBindings;
-use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::{Diffuse, DiffuseKind, FoamParams, FoamState};
-use crate::state::Params;
 
 pub(super) fn advect(buffers: AdvectBindings<'_>) {
     let AdvectBindings {

@@ -1,8 +1,6 @@
 use splashdown_gpu::dispatch_groups;
 
 use super::BeginBindings;
-use crate::foam::{FoamParams, FoamState};
-use crate::state::StepState;
 
 pub(super) fn begin(buffers: BeginBindings<'_>) {
     let BeginBindings { foam, state, foam_state, foam_groups: groups } = buffers;

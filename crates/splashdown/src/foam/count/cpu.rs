@@ -1,10 +1,7 @@
-use glam::Vec4;
 use rayon::prelude::*;
 
 use super::CountBindings;
-use crate::cells::Grid;
 use crate::foam::types::{seed_of, unit};
-use crate::foam::{FoamParams, FoamState};
 
 pub(super) fn count(buffers: CountBindings<'_>) {
     let CountBindings {

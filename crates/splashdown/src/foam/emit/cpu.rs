@@ -1,12 +1,10 @@
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::EmitBindings;
-use crate::cells::Grid;
 use crate::foam::surroundings::Around;
 use crate::foam::types::{place_of, seed_of, unit};
 use crate::foam::{Diffuse, FoamParams, FoamState};
-use crate::state::Params;
 
 /// Velocity away from the cylinder's axis at its side, over the particle's speed.
 const SPREAD: f32 = 0.1;

@@ -1,7 +1,6 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use super::NormalsBindings;
-use crate::foam::FoamState;
 use crate::kernel::{Kernel, WendlandC2};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;

@@ -2,8 +2,6 @@ use splashdown_gpu::compact::Compact;
 
 use super::PlanBindings;
 use crate::foam::types::place_of;
-use crate::foam::{FoamParams, FoamState};
-use crate::state::Params;
 
 pub(super) fn plan(buffers: PlanBindings<'_>) {
     let PlanBindings { params, foam, foam_starts: starts, foam_counted: counted, foam_state } = buffers;

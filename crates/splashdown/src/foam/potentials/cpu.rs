@@ -1,11 +1,9 @@
 use glam::{Vec4, Vec4Swizzles};
 
 use super::PotentialsBindings;
-use crate::foam::{FoamParams, FoamState};
 use crate::kernel::{Kernel, WendlandC2};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
-use crate::state::Params;
 
 const FORWARDS: f32 = 0.6;
 

@@ -1,7 +1,6 @@
 use rayon::prelude::*;
 
 use super::SettleBindings;
-use crate::foam::{Diffuse, FoamState};
 
 pub(super) fn settle(buffers: SettleBindings<'_>) {
     let SettleBindings { foam_state, foam_indices: indices, foam_moved: moved, foam_pool: pool } = buffers;

@@ -1,10 +1,7 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::ApplyBindings;
-use crate::cells::Grid;
-use crate::mouse_force::MouseForce;
-use crate::state::StepState;
 
 pub(super) fn apply(buffers: ApplyBindings<'_>) {
     let ApplyBindings {

@@ -7,7 +7,7 @@ use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
-use crate::state::{Params, StepState};
+use crate::state::Params;
 
 pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>) {
     let ContinuityBindings {

@@ -1,13 +1,11 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 
 use super::ForceIntegrateBindings;
 use crate::boundary::{WallKernel, part};
-use crate::cells::Grid;
 use crate::kernel::Kernel;
 use crate::passes::acceleration::cpu::Acceleration;
 use crate::passes::advance::{Before, Persistent, advance_all};
 use crate::passes::pairs;
-use crate::state::{Params, StepState};
 
 /// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 %
 /// of a step longer. The persistent velocities, which the second sweep writes, hold the accelerations in between.

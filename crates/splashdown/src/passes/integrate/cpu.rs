@@ -1,8 +1,7 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 
 use super::IntegrateBindings;
 use crate::passes::advance::{Before, Persistent, advance_all};
-use crate::state::StepState;
 
 pub(super) fn integrate<const COUNTS: bool>(buffers: IntegrateBindings<'_>) {
     let IntegrateBindings {

@@ -5,7 +5,7 @@ use crate::boundary::{KernelPair, NearWalls, part};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
-use crate::state::{Params, StepState};
+use crate::state::Params;
 
 pub(super) fn mueller(buffers: MuellerBindings<'_>) {
     let MuellerBindings {

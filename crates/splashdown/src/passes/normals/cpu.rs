@@ -6,7 +6,6 @@ use super::SurfaceNormalsBindings;
 use crate::kernel::Kernel;
 use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
-use crate::state::Params;
 
 pub(super) fn normals<K: Kernel>(buffers: SurfaceNormalsBindings<'_>) {
     let SurfaceNormalsBindings { params, grid, cell_start, sorted_positions: positions, densities, normals } =

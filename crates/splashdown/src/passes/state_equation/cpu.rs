@@ -1,8 +1,7 @@
-use glam::{Vec2, Vec4};
+use glam::Vec2;
 use rayon::prelude::*;
 
 use super::StateEquationBindings;
-use crate::state::{Params, StepState};
 
 pub(super) fn state_equation(buffers: StateEquationBindings<'_>) {
     let StateEquationBindings { params, state, sorted_velocities: velocities, densities } = buffers;

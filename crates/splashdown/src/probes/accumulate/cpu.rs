@@ -1,7 +1,5 @@
 use super::AccumulateBindings;
-use crate::bodies::Body;
 use crate::probes::{Account, ProbePoint, ROW, VALUES};
-use crate::state::{Params, StepState};
 
 pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
     let AccumulateBindings {

@@ -1,12 +1,10 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::FluxBindings;
-use crate::cells::Grid;
 use crate::probes::ProbePoint;
-use crate::state::StepState;
 
 pub(super) fn flux(buffers: FluxBindings<'_>) {
     let FluxBindings { grid, state, cell_start, probes, sorted_positions, positions, probe_counts: counts } =

@@ -1,11 +1,10 @@
 use std::f32::consts::PI;
 
-use glam::{UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec3, Vec3, Vec4Swizzles};
 
 use super::{COLUMN, SampleBindings, WETTED};
 use crate::cells::Grid;
 use crate::probes::{ProbePoint, VALUES};
-use crate::state::{Params, StepState};
 
 pub(super) fn sample(buffers: SampleBindings<'_>) {
     let SampleBindings {

@@ -1,5 +1,5 @@
 use super::BeginBindings;
-use crate::state::{Params, StepState};
+use crate::state::StepState;
 
 pub(super) fn begin(buffers: BeginBindings<'_>) {
     let BeginBindings { params, duration, state } = buffers;

@@ -11,7 +11,7 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, bindings};
+use splashdown_gpu::{DispatchSize, PassDesc, Recording, bindings};
 
 #[cfg(doc)]
 use super::StepCounters;
