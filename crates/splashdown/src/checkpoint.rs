@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use splashdown_io::{Archive, IoError};
 
 use crate::Stats;
+use crate::bodies::{BodiesChanged, BodyKey};
 use crate::foam::{Diffuse, FoamState, KeptFoam};
 use crate::scene::{Scene, SceneErrors};
 
@@ -68,6 +69,19 @@ pub enum CheckpointError {
     },
 }
 
+impl From<BodiesChanged> for CheckpointError {
+    fn from(changed: BodiesChanged) -> Self {
+        match changed {
+            BodiesChanged::Mesh { now, then } => {
+                Self::BodyChanged { body: now.name.clone(), then: then.to_string(), now: now.to_string() }
+            }
+            BodiesChanged::Count { now, then } => {
+                Self::Malformed(format!("it has {then} bodies, its scene {now}"))
+            }
+        }
+    }
+}
+
 /// For people and scripts that look into the file.
 #[derive(Serialize, Deserialize)]
 struct About {
@@ -117,31 +131,6 @@ impl HostState {
             return Err("its counts of particles contradict one another");
         }
         Ok(())
-    }
-}
-
-/// By what a mesh is known again: FNV-1a over its bytes.
-pub(crate) fn hash(bytes: &[u8]) -> u64 {
-    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
-}
-
-/// By what a body is known again.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct BodyKey {
-    pub name: String,
-    pub vertices: usize,
-    pub triangles: usize,
-    /// Of the repaired mesh in m^3.
-    pub volume: f32,
-    /// Of its vertices and triangles.
-    pub hash: u64,
-}
-
-impl std::fmt::Display for BodyKey {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { vertices, triangles, volume, hash, .. } = self;
-        write!(f, "{vertices} vertices, {triangles} triangles, {volume:.4e} m^3 and the hash {hash:016x}")
     }
 }
 

@@ -64,3 +64,10 @@ pub enum SimulationError {
         seconds: f32,
     },
 }
+
+impl From<crate::foam::TooMuchFoam> for SimulationError {
+    fn from(crate::foam::TooMuchFoam { given, allowed }: crate::foam::TooMuchFoam) -> Self {
+        let advice = "lower foam.max_particles, or use a device with larger buffers (`splashdown doctor`)";
+        Self::TooMany { what: "particles of foam", given, allowed, advice: advice.into() }
+    }
+}

@@ -38,7 +38,24 @@
 //! Lengths are in metres, times in seconds, masses in kilograms; y is up. Modules without documentation here are
 //! internals: they are public for the other crates of this workspace, and may change in any release.
 //!
-//! Modules import only modules below them, in this order from the top: see ARCHITECTURE.md.
+//! # Modules
+//!
+//! A module imports modules of lower lines only, which a test of `xtask` checks.
+//!
+//! ```text
+//! run
+//! simulation
+//! memory reconstruct
+//! error
+//! checkpoint surface schemes
+//! check foam
+//! sample flow probes
+//! bodies mouse_force passes
+//! solid coupling scene
+//! boundary cells models
+//! state kernel marching_cubes
+//! simd fingerprint stats device
+//! ```
 
 #[doc(hidden)]
 pub mod bodies;
@@ -46,11 +63,14 @@ pub mod bodies;
 pub mod boundary;
 #[doc(hidden)]
 pub mod cells;
+#[doc(hidden)]
+pub mod check;
 mod checkpoint;
 #[doc(hidden)]
 pub mod coupling;
 mod device;
 mod error;
+mod fingerprint;
 #[doc(hidden)]
 pub mod flow;
 #[doc(hidden)]
@@ -98,6 +118,8 @@ pub use reconstruct::reconstruct;
 pub use run::{Event, Frame, Progress, ProgressFn, Run, RunOptions, Started, Summary};
 pub use scene::{Scene, SceneBuilder, SceneErrors};
 pub use simulation::Simulation;
+#[doc(hidden)]
+pub use simulation::inventory;
 #[doc(hidden)]
 pub use state::Fields;
 pub use stats::Stats;

@@ -1,7 +1,7 @@
 //! How much memory a simulation takes, before it takes it.
 
 use crate::cells::Grid;
-use crate::flow::LoadedFlow;
+use crate::check::Built;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
 use crate::schemes::Scheme;
@@ -59,20 +59,23 @@ pub fn check_particles(
 ///
 /// A splash with more surface than most makes the surface's buffers grow beyond this.
 pub fn memory_forecast(scene: &Scene) -> u64 {
-    forecast(scene, sample::count(scene))
+    forecast(scene, Built::of(scene).count(scene))
 }
 
-/// As [`memory_forecast`], for a scene whose particles have been counted by [`sample::inventory`].
+/// As [`memory_forecast`], for a scene whose particles have been counted by [`inventory`](crate::inventory).
 pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
     forecast(scene, inventory.particles)
 }
 
 fn forecast(scene: &Scene, particles: u64) -> u64 {
     // A mesh that cannot be read is reported where the simulation starts.
-    let flow = LoadedFlow::new(scene).unwrap_or_default();
-    let particles = flow.capacity(particles, u64::MAX);
-    let motion =
-        particles.saturating_mul(per_particle(scene)).saturating_add(bodies::forecast(scene, particles));
+    let built = Built::of(scene);
+    let particles = built.flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
+    let motion = particles.saturating_mul(per_particle(scene)).saturating_add(bodies::forecast(
+        scene,
+        &built.extents(scene),
+        particles,
+    ));
     // A domain of more cells than there can be is refused at the start.
     let Some(grid) = Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene)) else {
         return motion.saturating_add(PER_CELL << 31);
@@ -160,7 +163,7 @@ mod tests {
                 scene.surface.smoothing_iterations = smoothing_iterations;
                 scene.solver.sort = sort;
                 // Without what the bodies displace, which the simulation leaves out.
-                let inventory = sample::inventory(&scene).unwrap();
+                let inventory = crate::inventory(&scene).unwrap();
                 let forecast = memory_forecast_of(&scene, &inventory);
                 assert!(memory_forecast(&scene) >= forecast, "{name}");
                 let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use splashdown::sample::{self, Inventory};
+use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Scene, SceneWarning};
 use splashdown::{Device, Simulation, check_particles, memory_forecast_of};
 
@@ -57,7 +57,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         }
     })?;
     // Without the particles inside bodies, as in the simulation.
-    let inventory = sample::inventory(&scene)?;
+    let inventory = splashdown::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.

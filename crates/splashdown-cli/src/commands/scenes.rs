@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use splashdown::scene::{Derived, Scene, presets, reference, schema};
+use splashdown::check::reference;
+use splashdown::scene::{Derived, Scene, presets, schema};
 use splashdown_io::atomic;
 
 use crate::args::{ScenesAction, ScenesArguments};

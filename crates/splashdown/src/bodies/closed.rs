@@ -1,5 +1,7 @@
 //! Meshes that must have an inside: what is filled with fluid, pours or drains it.
 
+use splashdown_io::Mesh;
+
 use super::load::{BodyError, cell_size, check_scale, mesh_of};
 use crate::boundary::KernelPair;
 use crate::scene::{Domain, MeshSource};
@@ -16,10 +18,23 @@ pub(crate) fn closed_solid(
     domain: &Domain,
     spacing: f32,
 ) -> Result<Solid, BodyError> {
-    let mesh = mesh_of(owner, source)?;
-    check_scale(owner, source, &mesh, domain)?;
+    solid_of(owner, source, &mesh_of(owner, source)?, domain, spacing)
+}
+
+/// As [`closed_solid`], of a mesh that was read by [`mesh_of`].
+///
+/// # Errors
+/// As [`closed_solid`].
+pub(crate) fn solid_of(
+    owner: &str,
+    source: &MeshSource,
+    mesh: &Mesh,
+    domain: &Domain,
+    spacing: f32,
+) -> Result<Solid, BodyError> {
+    check_scale(owner, source, mesh, domain)?;
     let settings = SolidSettings {
-        cell_size: cell_size(&mesh, spacing, 0.0, 0.0),
+        cell_size: cell_size(solid::bounds(mesh), spacing, 0.0, 0.0),
         // Nothing feels it, so no node needs to know its share.
         support_radius: 0.0,
         kernels: KernelPair::WendlandC2,
@@ -28,7 +43,7 @@ pub(crate) fn closed_solid(
         cache: solid::default_cache_folder(),
     };
     let wrong = |source| BodyError::Solid { owner: owner.into(), source };
-    let solid = Solid::build(&mesh, &settings, &|_| {}).map_err(wrong)?;
+    let solid = Solid::build(mesh, &settings, &|_| {}).map_err(wrong)?;
     if solid.kind == SolidKind::Shell {
         return Err(BodyError::Open { owner: owner.into(), open_edges: solid.report.boundary_edges });
     }

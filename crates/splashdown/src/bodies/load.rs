@@ -151,23 +151,27 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     Ok(mesh)
 }
 
-/// Loads a scene's bodies. `told` hears of each body when it begins and how far it is, in [0, 1].
+/// Builds a scene's bodies from their meshes, which [`mesh_of`] read in the order of the scene. `told` hears of each body
+/// when it begins and how far it is, in [0, 1].
 ///
 /// # Errors
 /// [`BodyError`], the first.
 pub fn load(
     scene: &scene::Scene,
+    meshes: Vec<Result<Mesh, BodyError>>,
     params: &Params,
     kernels: KernelPair,
     cache: Option<PathBuf>,
     told: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<Vec<LoadedBody>, BodyError> {
-    scene.bodies.iter().map(|body| load_one(scene, body, params, kernels, cache.clone(), told)).collect()
+    let bodies = scene.bodies.iter().zip(meshes);
+    bodies.map(|(body, mesh)| load_one(scene, body, mesh, params, kernels, cache.clone(), told)).collect()
 }
 
 fn load_one(
     scene: &scene::Scene,
     body: &scene::Body,
+    mesh: Result<Mesh, BodyError>,
     params: &Params,
     kernels: KernelPair,
     cache: Option<PathBuf>,
@@ -177,12 +181,12 @@ fn load_one(
     if !cfg!(feature = "rigid") && matches!(body.motion, Motion::Dynamic { .. }) {
         return Err(BodyError::NoCollisions { owner });
     }
-    let mesh = mesh_of(&owner, &body.mesh)?;
+    let mesh = mesh?;
     check_scale(&owner, &body.mesh, &mesh, &scene.domain)?;
     let spacing = params.particle_spacing;
     let half_thickness = half_thickness(body, spacing);
     let settings = SolidSettings {
-        cell_size: cell_size(&mesh, spacing, params.support_radius, half_thickness),
+        cell_size: cell_size(solid::bounds(&mesh), spacing, params.support_radius, half_thickness),
         support_radius: params.support_radius,
         kernels,
         half_thickness,
@@ -261,9 +265,9 @@ fn parts(m: Mat3) -> (Vec3, Vec3) {
     (Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z), Vec3::new(m.y_axis.x, m.z_axis.x, m.z_axis.y))
 }
 
-/// Bytes of the maps and contacts that a scene's bodies take on a device; a mesh that cannot be read counts
-/// nothing here and is refused when it is loaded.
-pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
+/// Bytes of the maps and contacts that a scene's bodies take on a device. `extents` are the corners of their meshes; a mesh
+/// that cannot be read has none, counts nothing here, and is refused when it is loaded.
+pub(crate) fn forecast(scene: &scene::Scene, extents: &[Option<(Vec3, Vec3)>], particles: u64) -> u64 {
     if scene.bodies.is_empty() {
         return 0;
     }
@@ -272,10 +276,10 @@ pub(crate) fn forecast(scene: &scene::Scene, particles: u64) -> u64 {
     let maps: u64 = scene
         .bodies
         .iter()
-        .filter_map(|body| Some((mesh_of(&body.name, &body.mesh).ok()?, half_thickness(body, spacing))))
-        .map(|(mesh, half)| {
-            let cell = cell_size(&mesh, spacing, support, half);
-            let (low, high) = solid::bounds(&mesh);
+        .zip(extents)
+        .filter_map(|(body, extent)| Some(((*extent)?, half_thickness(body, spacing))))
+        .map(|((low, high), half)| {
+            let cell = cell_size((low, high), spacing, support, half);
             let nodes = ((high - low + 2.0 * (support + half + 2.0 * cell)) / cell).ceil() + 1.0;
             nodes.element_product() as u64 * size_of::<Vec2>() as u64
         })
@@ -289,9 +293,8 @@ fn half_thickness(body: &scene::Body, spacing: f32) -> f32 {
 }
 
 /// Half a particle spacing, or more where the grid would have more than this many nodes.
-pub(super) fn cell_size(mesh: &Mesh, spacing: f32, support: f32, half_thickness: f32) -> f32 {
+pub(super) fn cell_size((low, high): (Vec3, Vec3), spacing: f32, support: f32, half_thickness: f32) -> f32 {
     const MOST_NODES: f32 = 6e6;
-    let (low, high) = solid::bounds(mesh);
     let volume = |cell: f32| ((high - low + 2.0 * (support + half_thickness)) / cell + 4.0).element_product();
     let mut cell = 0.5 * spacing;
     while volume(cell) > MOST_NODES && cell.is_finite() {

@@ -11,6 +11,7 @@ mod boundary_force;
 mod boundary_lookup;
 mod closed;
 mod field;
+mod key;
 mod load;
 mod motion;
 #[cfg(feature = "rigid")]
@@ -20,7 +21,8 @@ mod rigid;
 mod rigid;
 mod types;
 
-pub(crate) use closed::closed_solid;
+pub(crate) use closed::{closed_solid, solid_of};
+pub(crate) use key::{BodiesChanged, BodyKey};
 pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, load, mesh_of};
 pub(crate) use load::{check_scale, owner};
@@ -32,9 +34,7 @@ use glam::{Quat, UVec3, Vec2, Vec3, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, buffer_set};
 use splashdown_io::{Mesh, Particles};
 
-use crate::SimulationError;
 use crate::boundary::KernelPair;
-use crate::checkpoint::{BodyKey, CheckpointError, hash};
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
@@ -130,7 +130,7 @@ impl Bodies {
         params: &Params,
         kernels: KernelPair,
         domain: &Domain,
-    ) -> Result<Self, SimulationError> {
+    ) -> Result<Self, GpuError> {
         let mut maps = Vec::new();
         let mut states = Vec::new();
         let mut written = Vec::new();
@@ -280,34 +280,17 @@ impl Bodies {
         executor.write(self.bodies, &bodies)
     }
 
-    /// By what the bodies are known again.
+    /// The fingerprints of the bodies, in the order of the scene.
     pub(crate) fn keys(&self) -> Vec<BodyKey> {
-        self.meshes
-            .iter()
-            .map(|BodyMesh { name, mesh, .. }| BodyKey {
-                name: name.clone(),
-                vertices: mesh.vertices.len(),
-                triangles: mesh.triangles.len(),
-                volume: mesh.volume() as f32,
-                hash: hash(bytemuck::cast_slice(&mesh.vertices))
-                    ^ hash(bytemuck::cast_slice(&mesh.triangles)).rotate_left(1),
-            })
-            .collect()
+        self.meshes.iter().map(BodyKey::new).collect()
     }
 
-    /// Refuses bodies that have another shape than those of a checkpoint.
-    pub(crate) fn check_keys(&self, then: &[BodyKey]) -> Result<(), CheckpointError> {
+    /// Refuses bodies whose meshes differ from those of a checkpoint.
+    pub(crate) fn check_keys(&self, then: &[BodyKey]) -> Result<(), BodiesChanged> {
         let now = self.keys();
         match now.iter().zip(then).find(|(now, then)| now != then) {
-            Some((now, then)) => Err(CheckpointError::BodyChanged {
-                body: now.name.clone(),
-                then: then.to_string(),
-                now: now.to_string(),
-            }),
-            None if now.len() != then.len() => {
-                let reason = format!("it has {} bodies, its scene {}", then.len(), now.len());
-                Err(CheckpointError::Malformed(reason))
-            }
+            Some((now, then)) => Err(BodiesChanged::Mesh { now: now.clone(), then: then.clone() }),
+            None if now.len() != then.len() => Err(BodiesChanged::Count { now: now.len(), then: then.len() }),
             None => Ok(()),
         }
     }

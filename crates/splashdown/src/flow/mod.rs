@@ -16,13 +16,13 @@ mod types;
 
 pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
-use glam::{UVec3, Vec3, Vec4};
+use glam::{UVec3, Vec2, Vec3, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, WgslModule, buffer_set};
 
 use crate::bodies::{BodyError, closed_solid, owner};
-use crate::checkpoint::hash;
 use crate::coupling::{Coupling, Stage, StepRecorder};
-use crate::scene::{Scene, Sink, SinkRegion};
+use crate::fingerprint::hash;
+use crate::scene::{Emitter, Scene, Sink, SinkRegion};
 
 /// The WGSL side of [`Nozzle`], [`SinkShape`] and [`EmissionSchedule`].
 pub const FLOW: WgslModule = WgslModule { name: "sph/flow", source: include_str!("flow.wgsl") };
@@ -59,22 +59,56 @@ impl LoadedFlow {
     /// [`BodyError`] of the meshes of outlets and sinks.
     pub fn new(scene: &Scene) -> Result<Self, BodyError> {
         let mut loaded = Self::default();
-        let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
-        let spacing = scene.fluid.particle_spacing;
         for emitter in &scene.emitters {
-            let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
-            nozzle.first_point = loaded.points.len() as u32;
-            loaded.expected = loaded.expected.saturating_add(outlet::expected(&nozzle, duration, spacing));
-            let depth = outlet::stagger(nozzle.direction, scene.gravity, spacing);
-            loaded.points.extend(outlet::staggered(&layer, spacing, depth));
-            loaded.nozzles.push(nozzle);
-            loaded.names.push(emitter.name.clone());
+            loaded.add_emitter(emitter, scene)?;
         }
         for sink in &scene.sinks {
-            let drain = loaded.drain(sink, scene)?;
-            loaded.drains.push(drain);
+            loaded.add_sink(sink, scene)?;
         }
         Ok(loaded)
+    }
+
+    /// Adds an emitter of the scene; returns its layer, in m along the axes of its outlet.
+    ///
+    /// # Errors
+    /// [`BodyError`] of the outlet's mesh.
+    pub(crate) fn add_emitter(&mut self, emitter: &Emitter, scene: &Scene) -> Result<Vec<Vec2>, BodyError> {
+        let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
+        let spacing = scene.fluid.particle_spacing;
+        let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
+        nozzle.first_point = self.points.len() as u32;
+        self.expected = self.expected.saturating_add(outlet::expected(&nozzle, duration, spacing));
+        let depth = outlet::stagger(nozzle.direction, scene.gravity, spacing);
+        self.points.extend(outlet::staggered(&layer, spacing, depth));
+        self.nozzles.push(nozzle);
+        self.names.push(emitter.name.clone());
+        Ok(layer)
+    }
+
+    /// Adds a sink of the scene.
+    ///
+    /// # Errors
+    /// [`BodyError`] of the sink's mesh.
+    pub(crate) fn add_sink(&mut self, sink: &Sink, scene: &Scene) -> Result<(), BodyError> {
+        let shape = self.drain(sink, scene)?;
+        self.drains.push(shape);
+        Ok(())
+    }
+
+    /// What the emitters bring until `duration` (s) at this spacing (m): how many particles, and how many of them are
+    /// there on average over that time, as fluid that is not held up and not drained.
+    pub(crate) fn forecast(&self, duration: f32, spacing: f32) -> (u64, f64) {
+        let (mut all, mut average) = (0u64, 0.0);
+        for nozzle in &self.nozzles {
+            let brought = outlet::expected(nozzle, duration, spacing);
+            // The flow is steady from its start until it is stopped or has made all it may.
+            let per_second = nozzle.points as f32 * nozzle.speed / spacing;
+            let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, brought as f32 / per_second);
+            let present = (duration - nozzle.start - 0.5 * busy) / duration;
+            all = all.saturating_add(brought);
+            average += brought as f64 * f64::from(present.clamp(0.0, 1.0));
+        }
+        (all, average)
     }
 
     /// By what the emitters and sinks are known again.

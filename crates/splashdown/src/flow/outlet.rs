@@ -1,45 +1,15 @@
-//! An emitter's outlet on the host: axes, the lattice of a layer, the nozzle behind it, and how much it will make.
+//! The outlet of an emitter on the host: the lattice of a layer, the nozzle behind it, and how many particles it emits.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use super::Nozzle;
 use crate::bodies::{BodyError, closed_solid, owner};
+pub use crate::scene::outlet::{axes, disc_layer, rectangle_layer};
 use crate::scene::{Domain, Emitter, MeshSource, Outlet, Scene};
 use crate::solid::Solid;
 
 /// More than any scene makes, and small enough to be added to.
 const UNLIMITED: u32 = u32::MAX / 2;
-
-/// The horizontal unit vector across a direction (x where the direction is vertical), and the third one.
-pub fn axes(direction: Vec3) -> (Vec3, Vec3) {
-    let across = Vec3::Y.cross(direction);
-    let across = if across.length_squared() < 1e-6 { Vec3::X } else { across.normalize_or_zero() };
-    (across, direction.cross(across))
-}
-
-/// A layer: points in m along [`axes`], on a square lattice of `spacing` that keeps half a spacing off the rim.
-/// Of the lattice with a point in the middle and that with a square there, the one whose points make up the
-/// outlet's area better is taken.
-pub fn disc_layer(radius: f32, spacing: f32) -> Vec<Vec2> {
-    let reach = (radius / spacing).ceil() as i32 + 1;
-    let area = std::f32::consts::PI * radius * radius / (spacing * spacing);
-    let inside = |q: &Vec2| q.length() <= radius - 0.499 * spacing;
-    let layers = [0.0, 0.5].map(|shift| {
-        let points = (-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| (i, j)));
-        let place = |(i, j): (i32, i32)| spacing * (Vec2::new(i as f32, j as f32) + shift);
-        points.map(place).filter(inside).collect::<Vec<_>>()
-    });
-    let best = layers.into_iter().filter(|layer| !layer.is_empty());
-    best.min_by(|a, b| (a.len() as f32 - area).abs().total_cmp(&(b.len() as f32 - area).abs()))
-        .unwrap_or_else(|| vec![Vec2::ZERO])
-}
-
-/// As [`disc_layer`] for a rectangle of this size in m: as many whole spacings as fit it best.
-pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Vec<Vec2> {
-    let [n, m] = size.map(|edge| ((edge / spacing).round() as i32).max(1));
-    let place = |i: i32, n: i32| spacing * (i as f32 - 0.5 * (n - 1) as f32);
-    (0..m).flat_map(|j| (0..n).map(move |i| Vec2::new(place(i, n), place(j, m)))).collect()
-}
 
 /// A layer with its points shifted forward, each by its own share of `depth` (m): columns of fluid keep their
 /// distances, and a jet that gravity stretches comes apart evenly instead of into a pile of discs. The shares
@@ -168,27 +138,6 @@ fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], lengt
     };
     let steps = (4.0 * length / spacing).ceil() as u32 + 2;
     (0..=steps).map(|k| 0.25 * spacing * k as f32).find(|&shift| fits(shift)).unwrap_or(0.0)
-}
-
-/// What a scene's emitters will bring until its end: how many particles, and how many of them are there on
-/// average over the scene's time, as fluid that is not held up and not drained.
-///
-/// # Errors
-/// As [`nozzle`].
-pub(crate) fn forecast(scene: &Scene) -> Result<(u64, f64), BodyError> {
-    let (spacing, duration) = (scene.fluid.particle_spacing, scene.duration);
-    let (mut all, mut average) = (0u64, 0.0);
-    for emitter in &scene.emitters {
-        let (nozzle, _) = nozzle(emitter, scene)?;
-        let brought = expected(&nozzle, duration, spacing);
-        // The flow is steady from its start until it is stopped or has made all it may.
-        let per_second = nozzle.points as f32 * nozzle.speed / spacing;
-        let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, brought as f32 / per_second);
-        let present = (duration - nozzle.start - 0.5 * busy) / duration;
-        all = all.saturating_add(brought);
-        average += brought as f64 * f64::from(present.clamp(0.0, 1.0));
-    }
-    Ok((all, average))
 }
 
 /// How many particles a nozzle makes until `duration` (s), one layer more than the flow asks for.

@@ -44,7 +44,6 @@ use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, wgsl};
 use splashdown_io::Particles;
 
-use crate::SimulationError;
 use crate::cells::{Cells, GRID, ROWS};
 use crate::kernel;
 use crate::scene::FoamSettings;
@@ -118,21 +117,18 @@ impl FoamParams {
     }
 }
 
+/// More diffuse particles than a device holds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TooMuchFoam {
+    pub given: u64,
+    pub allowed: u64,
+}
+
 /// How many diffuse particles a scene gets room for.
-pub(crate) fn capacity(
-    settings: &FoamSettings,
-    particles: u64,
-    largest: u64,
-) -> Result<u32, SimulationError> {
+pub(crate) fn capacity(settings: &FoamSettings, particles: u64, largest: u64) -> Result<u32, TooMuchFoam> {
     let allowed = (largest / LARGEST_PER_DIFFUSE).min(1 << 30);
     match settings.max_particles {
-        Some(given) if u64::from(given) > allowed => Err(SimulationError::TooMany {
-            what: "particles of foam",
-            given: given.into(),
-            allowed,
-            advice: "lower foam.max_particles, or use a device with larger buffers (`splashdown doctor`)"
-                .into(),
-        }),
+        Some(given) if u64::from(given) > allowed => Err(TooMuchFoam { given: given.into(), allowed }),
         Some(given) => Ok(given.max(1)),
         None => Ok((PER_PARTICLE * particles).clamp(1, STANDARD_MOST).min(allowed) as u32),
     }

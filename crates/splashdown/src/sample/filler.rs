@@ -1,13 +1,14 @@
 //! Puts a scene's sources of fluid together, each beside those before it.
 
 use glam::Vec3;
-use splashdown_io::Particles;
+use splashdown_io::{Mesh, Particles};
 
-use super::lattice::{self, Sampler};
 use super::near::Near;
+use super::sources::{bounds, placed, turned_velocities};
 use super::{MAX_PARTICLES, SampleError, fitting_spacing};
-use crate::bodies::{self, closed_solid};
-use crate::scene::{Domain, Fluid, FluidFile, FluidMesh, MeshShape};
+use crate::bodies::solid_of;
+use crate::scene::lattice::{self, Sampler};
+use crate::scene::{Domain, Fluid, FluidFile, FluidMesh};
 use crate::solid::Solid;
 
 /// A particle this near to one of an earlier mesh, file or block, in spacings, is left out.
@@ -47,7 +48,7 @@ impl<'a> Filler<'a> {
     /// # Errors
     /// [`SampleError`] if there are too many particles, or some outside the domain.
     pub fn blocks(&mut self, fluid: &Fluid) -> Result<(), SampleError> {
-        let estimate = super::estimate(fluid);
+        let estimate = lattice::estimate(fluid);
         self.room_for(estimate)?;
         self.positions.reserve(estimate as usize);
         self.velocities.reserve(estimate as usize);
@@ -77,13 +78,13 @@ impl<'a> Filler<'a> {
         Ok(())
     }
 
-    /// Fills a closed mesh; `what` names it in messages.
+    /// Fills a closed mesh as it was read; `what` names it in messages.
     ///
     /// # Errors
     /// [`SampleError`] of the mesh, its place and its number of particles.
-    pub fn mesh(&mut self, what: &str, filled: &FluidMesh) -> Result<Taken, SampleError> {
+    pub fn mesh(&mut self, what: &str, filled: &FluidMesh, mesh: &Mesh) -> Result<Taken, SampleError> {
         let source = &filled.mesh;
-        let solid = closed_solid(what, source, self.domain, self.spacing)?;
+        let solid = solid_of(what, source, mesh, self.domain, self.spacing)?;
         let place = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
         let (low, high) = bounds(solid.mesh.vertices.iter().map(place));
         let slack = SLACK * self.spacing;
@@ -115,16 +116,18 @@ impl<'a> Filler<'a> {
         points
     }
 
-    /// Takes in a file's particles as they lie.
+    /// Takes in the particles of a file at their positions; returns these positions, too.
     ///
     /// # Errors
-    /// [`SampleError`] of the file and its number of particles, or if most of them lie outside the domain.
-    pub fn file(&mut self, what: &str, file: &FluidFile) -> Result<(Taken, Vec<[f32; 3]>), SampleError> {
-        let read = splashdown_io::read_particles(&file.path)
-            .map_err(|source| SampleError::File { what: what.to_owned(), source: Box::new(source) })?;
-        let velocities = turned_velocities(&read, file);
-        let positions: Vec<[f32; 3]> =
-            read.positions.iter().map(|x| file.place(Vec3::from(*x)).to_array()).collect();
+    /// [`SampleError`] of the number of particles, or if most of them lie outside the domain.
+    pub fn file(
+        &mut self,
+        what: &str,
+        file: &FluidFile,
+        read: &Particles,
+    ) -> Result<(Taken, Vec<[f32; 3]>), SampleError> {
+        let velocities = turned_velocities(read, file);
+        let positions = placed(read, file);
         let taken = self.add(positions.iter().copied().zip(velocities))?;
         if 2 * taken.outside > positions.len() as u64 {
             let bounds = bounds(positions.iter().map(|x| Vec3::from(*x)));
@@ -177,59 +180,6 @@ impl<'a> Filler<'a> {
     }
 }
 
-fn turned_velocities(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
-    if read.velocities.is_empty() {
-        return vec![file.velocity.to_array(); read.positions.len()];
-    }
-    let turned = |v: &[f32; 3]| (file.rotation * (file.scale * Vec3::from(*v)) + file.velocity).to_array();
-    read.velocities.iter().map(turned).collect()
-}
-
 fn holds(domain: &Domain, x: [f32; 3]) -> bool {
     (0..3).all(|a| x[a] >= domain.min[a] && x[a] <= domain.max[a])
-}
-
-fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
-    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
-}
-
-/// What a piece of fluid from a mesh is called in messages.
-pub(crate) fn mesh_title(index: usize, filled: &FluidMesh) -> String {
-    match &filled.mesh.shape {
-        MeshShape::Model(name) => format!("fluid.mesh[{index}] ({name:?})"),
-        MeshShape::File(path) => format!("fluid.mesh[{index}] ({:?})", path.file_name().unwrap_or_default()),
-    }
-}
-
-/// What a file of particles is called in messages.
-pub(crate) fn file_title(index: usize, file: &FluidFile) -> String {
-    format!("fluid.file[{index}] ({:?})", file.path.file_name().unwrap_or_default())
-}
-
-/// How high and how fast.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Reach {
-    /// Lower corner in m.
-    pub low: Vec3,
-    /// Upper corner in m.
-    pub high: Vec3,
-    /// Largest speed in m/s.
-    pub speed: f32,
-}
-
-/// What meshes and files bring; those that cannot be read count nothing, they are refused elsewhere.
-pub(crate) fn reaches(fluid: &Fluid) -> Vec<Reach> {
-    let meshes = fluid.meshes.iter().filter_map(|filled| {
-        let mesh = bodies::mesh_of("", &filled.mesh).ok()?;
-        let place = |v: &[f32; 3]| filled.mesh.position + filled.mesh.rotation * Vec3::from(*v);
-        let (low, high) = bounds(mesh.vertices.iter().map(place));
-        Some(Reach { low, high, speed: filled.velocity.length() })
-    });
-    let files = fluid.files.iter().filter_map(|file| {
-        let read = splashdown_io::read_particles(&file.path).ok()?;
-        let (low, high) = bounds(read.positions.iter().map(|x| file.place(Vec3::from(*x))));
-        let speeds = turned_velocities(&read, file).into_iter().map(|v| Vec3::from(v).length());
-        Some(Reach { low, high, speed: speeds.fold(0.0, f32::max) })
-    });
-    meshes.chain(files).collect()
 }

@@ -8,8 +8,8 @@
 //! blocks, then meshes, then files. The order is theirs, x fastest, then y, then z; ids count from 0.
 
 mod filler;
-mod lattice;
 mod near;
+mod sources;
 mod spacing;
 
 use glam::Vec3;
@@ -18,15 +18,13 @@ use serde::Serialize;
 use splashdown_io::{IoError, Particles};
 
 use crate::bodies::{BodyError, LoadedBody};
-use crate::flow::outlet;
-use crate::scene::{DensityMode, Domain, Fluid, Scene, place};
-use crate::{Simulation, SimulationError};
-pub(crate) use filler::{Filler, Reach, Taken, file_title, mesh_title, reaches};
-pub(crate) use lattice::Sampler;
-pub use spacing::typical_spacing;
+use crate::scene::{DensityMode, Fluid, Scene, lattice, place};
 
-/// Most particles of a scene: 2^26.
-pub const MAX_PARTICLES: u64 = 1 << 26;
+pub use crate::scene::lattice::MAX_PARTICLES;
+pub(crate) use crate::scene::lattice::fitting_spacing;
+pub(crate) use filler::{Filler, Taken};
+pub(crate) use sources::{Sources, file_title, mesh_title};
+pub use spacing::typical_spacing;
 
 /// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
 ///
@@ -137,20 +135,30 @@ impl From<BodyError> for SampleError {
 /// # Errors
 /// [`SampleError`] if there are none, too many, or some outside the domain; or a mesh or file cannot be used.
 pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
+    let particles = fill(scene, Sources::read(&scene.fluid))?;
+    if particles.is_empty() && scene.emitters.is_empty() {
+        return Err(SampleError::Empty { spacing: scene.fluid.particle_spacing });
+    }
+    Ok(particles)
+}
+
+/// As [`particles`], from meshes and files that have been read. There may be none.
+pub(crate) fn fill(scene: &Scene, sources: Sources) -> Result<Particles, SampleError> {
     let fluid = &scene.fluid;
     let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
     filler.blocks(fluid)?;
-    for (index, mesh) in fluid.meshes.iter().enumerate() {
-        filler.mesh(&mesh_title(index, mesh), mesh)?;
+    for (index, (mesh, read)) in fluid.meshes.iter().zip(sources.meshes).enumerate() {
+        filler.mesh(&mesh_title(index, mesh), mesh, &read?)?;
     }
-    for (index, file) in fluid.files.iter().enumerate() {
-        filler.file(&file_title(index, file), file)?;
+    for (index, (file, read)) in fluid.files.iter().zip(sources.files).enumerate() {
+        filler.file(&file_title(index, file), file, &read?)?;
     }
-    let particles = filler.finish();
-    if particles.is_empty() && scene.emitters.is_empty() {
-        return Err(SampleError::Empty { spacing: fluid.particle_spacing });
-    }
-    Ok(particles)
+    Ok(filler.finish())
+}
+
+/// True if no part of the fluid is a mesh or a file.
+pub(crate) fn has_blocks_only(fluid: &Fluid) -> bool {
+    fluid.meshes.is_empty() && fluid.files.is_empty()
 }
 
 /// How many particles [`particles`] makes. Of blocks they are counted without storing them: exact up to
@@ -158,8 +166,8 @@ pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
 /// filled and files read; one that cannot be used counts as none.
 pub fn count(scene: &Scene) -> u64 {
     let fluid = &scene.fluid;
-    let of_blocks = count_in(&scene.domain, fluid);
-    if of_blocks > MAX_PARTICLES || (fluid.meshes.is_empty() && fluid.files.is_empty()) {
+    let of_blocks = lattice::count(&scene.domain, fluid);
+    if of_blocks > MAX_PARTICLES || has_blocks_only(fluid) {
         return of_blocks;
     }
     match particles(scene) {
@@ -179,47 +187,6 @@ pub struct Inventory {
     pub removed: u64,
     /// Particles that the emitters will bring until the scene's end.
     pub emitted: u64,
-}
-
-/// Counts a scene's particles as a [`Simulation`] would have them; bodies are loaded for it, which may take
-/// seconds the first time.
-///
-/// # Errors
-/// [`SimulationError`] of sampling, bodies and outlets.
-pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
-    let emitted = outlet::forecast(scene)?.0;
-    let count = count_in(&scene.domain, &scene.fluid);
-    if scene.bodies.is_empty() || count > MAX_PARTICLES {
-        return Ok(Inventory { particles: self::count(scene), removed: 0, emitted });
-    }
-    let mut particles = particles(scene)?;
-    let removed = remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
-    if removed > 0 && particles.is_empty() && emitted == 0 {
-        return Err(SampleError::AllInside { removed }.into());
-    }
-    Ok(Inventory { particles: particles.len() as u64, removed: u64::from(removed), emitted })
-}
-
-pub(crate) fn count_in(domain: &Domain, fluid: &Fluid) -> u64 {
-    let estimate = estimate(fluid);
-    if estimate > MAX_PARTICLES {
-        return estimate;
-    }
-    Sampler::all(domain, fluid).iter().map(|sampler| sampler.counts().0).sum()
-}
-
-/// Particles from the blocks' volumes, overlaps counted twice.
-pub(crate) fn estimate(fluid: &Fluid) -> u64 {
-    let spacing = f64::from(fluid.particle_spacing);
-    // `as` saturates, and makes a NaN 0.
-    fluid.blocks.iter().map(|block| lattice::estimate(&block.shape, spacing)).sum::<f64>() as u64
-}
-
-/// A spacing at which `count` particles become no more than `allowed`, rounded up to two digits.
-pub(crate) fn fitting_spacing(spacing: f32, count: u64, allowed: u64) -> f32 {
-    let exact = f64::from(spacing) * (count as f64 / allowed.max(1) as f64).cbrt();
-    let unit = 10f64.powf(exact.log10().floor() - 1.0);
-    ((exact / unit * 1.001).ceil() * unit) as f32
 }
 
 /// Takes out the particles that lie inside bodies or too near to one; how many. Ids count from 0 again.

@@ -2,7 +2,6 @@
 
 use toml::{Table, Value};
 
-use super::errors::SceneErrors;
 use super::types::Scene;
 
 /// Builds a [`Scene`] key by key. The keys, their ranges and their defaults are those of a scene file; `build` checks
@@ -114,14 +113,6 @@ impl SceneBuilder {
             }
         }
         self
-    }
-
-    /// Checks the scene. Files that it names are looked for where a simulation begins, from the current folder.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it; lines are those of [`to_toml`](Self::to_toml).
-    pub fn build(&self) -> Result<Scene, SceneErrors> {
-        Scene::parse(&self.to_toml(), "scene builder")
     }
 
     /// The scene as the text of a scene file.

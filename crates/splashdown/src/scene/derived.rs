@@ -1,11 +1,10 @@
 //! Numbers that follow from a scene: what `splashdown check` prints and the solvers start from.
 
+use glam::Vec3;
 use serde::Serialize;
 
 use super::things::Motion;
 use super::types::{KernelKind, Method, Scene, Shape, SurfaceTension};
-use crate::flow::outlet;
-use crate::sample::{self, Inventory, Reach};
 
 /// Speed of sound over the largest speed to expect: keeps the density within one per cent (Monaghan 1994).
 const SOUND_RATIO: f32 = 10.0;
@@ -55,43 +54,46 @@ pub struct Derived {
     pub steps_estimate: u64,
 }
 
+/// How high the fluid of a mesh or a file reaches, and how fast it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reach {
+    /// Lower corner in m.
+    pub low: Vec3,
+    /// Upper corner in m.
+    pub high: Vec3,
+    /// Largest speed in m/s.
+    pub speed: f32,
+}
+
 impl Derived {
-    /// From a checked scene. Values that a hand-made scene may break (zero spacing, no blocks) give numbers
-    /// that make no sense, but no panic.
-    pub fn new(scene: &Scene) -> Self {
-        Self::with_particles(scene, sample::count(scene))
-    }
-
-    /// From a checked scene whose particles have been counted, as [`sample::inventory`] does.
-    pub fn with_inventory(scene: &Scene, inventory: &Inventory) -> Self {
-        Self::with_particles(scene, inventory.particles)
-    }
-
-    fn with_particles(scene: &Scene, particles: u64) -> Self {
-        // An outlet that cannot be made is refused where the simulation starts.
-        let (emitted, present) = outlet::forecast(scene).unwrap_or_default();
-        let rest = Self::without_particles(scene);
+    /// With this number of particles at the start, and the number that emitters bring: in all, and on average over the
+    /// scene's time.
+    pub(crate) fn with_particles(
+        self,
+        scene: &Scene,
+        particles: u64,
+        (emitted, present): (u64, f64),
+    ) -> Self {
         let volume = f64::from(scene.fluid.particle_spacing).powi(3);
         Self {
             particles,
             emitted,
             mean_particles: particles as f64 + present,
             volume: (particles as f64 * volume) as f32,
-            ..rest
+            ..self
         }
     }
 
-    /// Everything but the numbers of particles, which are zero: those of meshes take time to count.
-    pub(crate) fn without_particles(scene: &Scene) -> Self {
+    /// Everything but the numbers of particles, which are zero. `reaches` are those of the meshes and files of the fluid.
+    pub(crate) fn of(scene: &Scene, reaches: &[Reach]) -> Self {
         let (fluid, solver) = (&scene.fluid, &scene.solver);
         let spacing = fluid.particle_spacing;
         let density = fluid.material.rest_density;
         let support_radius = solver.support_radius(spacing);
         let lattice_sum = lattice_sum(solver.method, solver.kernel, f64::from(solver.support_ratio));
         let volume = f64::from(spacing).powi(3);
-        let reaches = sample::reaches(fluid);
-        let head = head(scene, &reaches);
-        let reference_speed = reference_speed(scene, head, &reaches);
+        let head = head(scene, reaches);
+        let reference_speed = reference_speed(scene, head, reaches);
         // Both equations of state have the slope c^2 = dp/drho at rest.
         let per_square = match solver.method {
             Method::Wcsph => density / solver.exponent,
@@ -132,9 +134,9 @@ impl Derived {
 /// Height of the fluid's highest point above the domain's lowest corner, against gravity.
 fn head(scene: &Scene, reaches: &[Reach]) -> f32 {
     let Some(down) = scene.gravity.try_normalize() else { return 0.0 };
-    let corner = |low: glam::Vec3, high: glam::Vec3, lowest: bool| {
+    let corner = |low: Vec3, high: Vec3, lowest: bool| {
         let pick = |a: usize| if (down[a] > 0.0) == lowest { high[a] } else { low[a] };
-        down.dot(glam::Vec3::new(pick(0), pick(1), pick(2)))
+        down.dot(Vec3::new(pick(0), pick(1), pick(2)))
     };
     let floor = corner(scene.domain.min, scene.domain.max, true);
     let tops = scene.fluid.blocks.iter().map(|block| match block.shape {

@@ -1,9 +1,9 @@
 //! Does the fluid fit: into the domain, into memory, into the numbers of f32?
 
+use super::lattice::{self, MAX_PARTICLES, Sampler};
 use super::reader::{Read, Reported, Section};
 use super::spec::rounded;
 use super::types::{Block, Domain, Fluid, Material};
-use crate::sample::{self, MAX_PARTICLES, Sampler};
 
 /// Coordinates in f32 are exact to half a per cent of a spacing up to this many spacings from the origin.
 const MOST_SPACINGS: f32 = 100_000.0;
@@ -43,9 +43,9 @@ pub(crate) fn check(
         meshes: Vec::new(),
         files: Vec::new(),
     };
-    let count = sample::estimate(&fluid);
+    let count = lattice::estimate(&fluid);
     if count > MAX_PARTICLES {
-        let fitting = rounded(sample::fitting_spacing(spacing, count, MAX_PARTICLES));
+        let fitting = rounded(lattice::fitting_spacing(spacing, count, MAX_PARTICLES));
         let message = format!("fluid.particle_spacing = {spacing} m gives {} particles", grouped(count));
         let allowed = format!("at most {} particles", grouped(MAX_PARTICLES));
         let hint = format!("a spacing of {fitting} m or more fits, or make the blocks smaller");

@@ -31,27 +31,33 @@ mod builder;
 mod choice;
 mod derived;
 mod errors;
-mod files;
 mod formula;
 mod framing;
 mod geometry;
 mod keys;
-mod load;
+pub(crate) mod lattice;
 mod materials;
+pub(crate) mod outlet;
 mod parse;
 mod presets;
 mod reader;
 mod schema;
 mod script;
+mod slot;
 mod source;
 mod spec;
 mod suggest;
 mod things;
 mod types;
 mod values;
-mod warnings;
 
-pub(crate) use spec::place;
+pub(crate) use derived::Reach;
+pub(crate) use geometry::grouped;
+pub(crate) use parse::{outlet_outside, parse};
+pub(crate) use reader::{Reported, Section};
+pub(crate) use schema::keys_reference;
+pub(crate) use spec::{place, rounded};
+pub(crate) use suggest::closest;
 
 pub use builder::{SceneBuilder, SceneValue, SectionBuilder};
 pub use choice::Choice;
@@ -60,7 +66,7 @@ pub use errors::{SceneErrors, SceneProblem, SceneWarning};
 pub use formula::Formula;
 pub use materials::{KnownMaterial, MATERIALS};
 pub use presets::presets;
-pub use schema::{reference, schema};
+pub use schema::schema;
 pub use script::{Keyframe, Pose, Script};
 pub use things::{
     Body, BoundaryKind, Emitter, Hinge, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink,

@@ -46,7 +46,8 @@ impl<'a> Reader<'a> {
 
     pub fn report(&self, problem: SceneProblem) -> Reported {
         let mut problems = self.problems.borrow_mut();
-        if problems.len() < MAX_PROBLEMS {
+        // A section that is read again reports its unknown keys again.
+        if problems.len() < MAX_PROBLEMS && !problems.contains(&problem) {
             problems.push(problem);
         }
         Reported

@@ -10,6 +10,7 @@ use glam::{Quat, Vec3};
 
 use super::choice::choices;
 use super::errors::SceneWarning;
+use super::slot::BuiltSlot;
 use super::things::{Body, Emitter, MeshSource, Probe, Sink};
 
 /// A whole scene: what to simulate, how, and what to write.
@@ -52,6 +53,8 @@ pub struct Scene {
     pub source: Option<PathBuf>,
     /// What it was read from.
     pub text: Arc<str>,
+    /// What modules above have built from it.
+    pub(crate) built: BuiltSlot,
 }
 
 impl Scene {

@@ -5,8 +5,8 @@ use splashdown_gpu::{Buffer, Executor, GpuElement, block_on};
 use splashdown_io::{Archive, NpyElement};
 
 use super::Simulation;
+use crate::check::Built;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
-use crate::flow::LoadedFlow;
 use crate::state::StepCounters;
 use crate::{SimulationError, memory, schemes};
 
@@ -93,9 +93,10 @@ impl Simulation {
         // Before anything is made that is as large as the file says.
         checkpoint.check()?;
         let scene = checkpoint.scene()?;
+        let built = Built::of(&scene);
         let host = checkpoint.host()?;
         let loaded = Self::load_bodies(&scene, told)?;
-        let loaded_flow = LoadedFlow::new(&scene).map_err(SimulationError::Body)?;
+        let loaded_flow = built.flow(&scene)?;
         let spacing = scene.fluid.particle_spacing;
         memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), spacing)?;
         let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow)?;
@@ -124,7 +125,7 @@ impl Simulation {
             flow.set_told(&host.told);
         }
         if let Some(bodies) = &mut self.bodies {
-            bodies.check_keys(&host.bodies)?;
+            bodies.check_keys(&host.bodies).map_err(CheckpointError::from)?;
             let motion = checkpoint.numbers("bodies", bodies.keys().len() * bodies.motion_columns())?;
             bodies.restore(&mut self.executor, &motion, checkpoint.get("collisions.bin")?).await?;
         }

@@ -3,10 +3,13 @@
 mod checkpoint;
 mod foam;
 mod frame;
+mod inventory;
 mod live;
 mod phases;
 mod results;
 mod start;
+
+pub use inventory::inventory;
 
 use std::sync::Arc;
 

@@ -12,6 +12,7 @@ use super::phases::{HostAction, Phase, Schedule};
 use crate::bodies::{Bodies, LoadedBody};
 use crate::boundary::wall_table;
 use crate::cells::{Cells, Grid};
+use crate::check::Built;
 use crate::flow::{Flow, LoadedFlow};
 use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
@@ -61,7 +62,7 @@ impl Simulation {
         told: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene, told)?;
-        let mut particles = sample::particles(scene)?;
+        let mut particles = Built::of(scene).take_particles(scene)?;
         let removed = sample::remove_inside(scene, &mut particles, &bodies);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
@@ -92,7 +93,8 @@ impl Simulation {
     ) -> Result<Vec<LoadedBody>, SimulationError> {
         let kernels = Scheme::new(scene).walls();
         let params = schemes::params(scene, 0);
-        Ok(bodies::load(scene, &params, kernels, solid::default_cache_folder(), told)?)
+        let meshes = Built::of(scene).take_meshes(scene);
+        Ok(bodies::load(scene, meshes, &params, kernels, solid::default_cache_folder(), told)?)
     }
 
     pub(super) async fn with_bodies(
@@ -104,7 +106,7 @@ impl Simulation {
         let n = particles.positions.len();
         let largest = executor.largest_buffer();
         memory::check_particles(n as u64, largest, scene.fluid.particle_spacing)?;
-        let loaded_flow = LoadedFlow::new(scene)?;
+        let loaded_flow = Built::of(scene).flow(scene)?;
         // The unborn have places of their own.
         let initial = n as u32;
         let capacity = loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as u32;
@@ -155,6 +157,7 @@ impl Simulation {
         executor.write(fields.state, &[first])?;
 
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
+        Built::of(scene).release();
         let mut simulation = Self {
             begin: schemes::begin_frame(&cells, &fields),
             prime: scheme.initial_state(

@@ -168,7 +168,7 @@ fn a_scene_with_a_mesh_and_a_file_runs() {
          [[body]]\nname = \"post\"\nmesh = \"block\"\nposition = [0.3, 0.3, 0.3]\n",
     );
     let scene = load(folder.path(), &text).expect("legal");
-    let inventory = sample::inventory(&scene).expect("it can be counted");
+    let inventory = splashdown::inventory(&scene).expect("it can be counted");
     let mut simulation = Simulation::new(&scene, &Device::Cpu).expect("it starts");
     assert_eq!(u64::from(simulation.stats().particles), inventory.particles);
     assert_eq!(u64::from(simulation.removed()), inventory.removed);
@@ -192,7 +192,7 @@ fn what_emitters_will_bring_is_counted_ahead() {
     assert_eq!((derived.particles, derived.emitted), (0, 8 * 21));
     // They are there for half of the second on average.
     assert!((derived.mean_particles / 84.0 - 1.0).abs() < 0.1, "{}", derived.mean_particles);
-    let inventory = sample::inventory(&scene).expect("it can be counted");
+    let inventory = splashdown::inventory(&scene).expect("it can be counted");
     assert_eq!((inventory.particles, inventory.removed, inventory.emitted), (0, 0, 168));
     let mut capped = scene;
     capped.emitters[0].max_particles = Some(50);

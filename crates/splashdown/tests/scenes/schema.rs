@@ -3,7 +3,8 @@
 use std::fs;
 
 use serde_json::{Value, json};
-use splashdown::scene::{Solver, SurfaceSettings, presets, reference, schema};
+use splashdown::check::reference;
+use splashdown::scene::{Solver, SurfaceSettings, presets, schema};
 
 use crate::{CUBE, parse, presets::folder};
 

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::things::{self, named_once};
 use super::{Part, given, needed};
-use crate::flow::outlet;
 use crate::scene::choice::Choice;
 use crate::scene::keys::{OutletWord, SinkWord};
+use crate::scene::outlet;
 use crate::scene::reader::{Reported, Section};
 use crate::scene::things::{Emitter, Outlet, Sink, SinkRegion};
 use crate::scene::types::Domain;

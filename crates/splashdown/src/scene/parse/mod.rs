@@ -15,11 +15,12 @@ use toml::de::DeTable;
 pub(crate) use flow::outlet_outside;
 
 use super::errors::{SceneErrors, SceneProblem};
+use super::geometry;
 use super::keys::{ROOT, Side};
 use super::reader::{Read, Reader, Reported, Section};
+use super::slot::BuiltSlot;
 use super::source::Source;
 use super::types::{Domain, Fluid, Scene, Shake};
-use super::{files, geometry, warnings};
 
 /// Most frames of a run.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -27,8 +28,17 @@ const MAX_FRAMES: f64 = 100_000.0;
 /// A section's value, or a problem that is in the list.
 type Part<T> = Result<T, Reported>;
 
-/// `folder`: from where the scene names files, which are then looked at; `None`: they are not.
-pub(crate) fn parse(text: &str, file: &str, folder: Option<&Path>) -> Result<Scene, SceneErrors> {
+/// Compares a scene with its files, its meshes and the lattices of its particles, and reports what is wrong at its line.
+pub(crate) type Check = fn(&Scene, &Section<'_>) -> Result<(), Reported>;
+
+/// Reads a scene and checks it, by `check` where its values can be read. File names are relative to `folder`, in which the
+/// files must exist; without one, names stay as written.
+pub(crate) fn parse(
+    text: &str,
+    file: &str,
+    folder: Option<&Path>,
+    check: Check,
+) -> Result<Scene, SceneErrors> {
     if text.trim().is_empty() {
         let message = "the scene file is empty";
         return Err(SceneErrors::one(SceneProblem::of_file(
@@ -49,7 +59,7 @@ pub(crate) fn parse(text: &str, file: &str, folder: Option<&Path>) -> Result<Sce
     }
     // After a mistake of grammar the tree is a guess; complaints about it would mislead.
     let scene = if mistakes.is_empty() {
-        read(&Section::root(&reader, table.get_ref(), &ROOT))
+        read(&Section::root(&reader, table.get_ref(), &ROOT), check)
     } else {
         Err(Reported)
     };
@@ -60,7 +70,7 @@ pub(crate) fn parse(text: &str, file: &str, folder: Option<&Path>) -> Result<Sce
     }
 }
 
-fn read(root: &Section<'_>) -> Part<Scene> {
+fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
     let header = root.section("scene").and_then(|section| read_header(&section));
     let domain_section = root.section("domain");
     let fluid_section = root.section("fluid");
@@ -140,12 +150,9 @@ fn read(root: &Section<'_>) -> Part<Scene> {
         warnings: Vec::new(),
         source: None,
         text: "".into(),
+        built: BuiltSlot::default(),
     };
-    let (fluid_section, solver_section) = (fluid_section?, solver_section?);
-    warnings::check(&scene, root, &fluid_section, &solver_section);
-    if root.has_folder() {
-        files::check(&scene, root)?;
-    }
+    check(&scene, root)?;
     Ok(scene)
 }
 

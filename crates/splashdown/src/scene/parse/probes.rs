@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::{Part, needed};
-use crate::flow::outlet;
 use crate::scene::keys::QuantityWord;
+use crate::scene::outlet;
 use crate::scene::reader::{Reported, Section};
 use crate::scene::suggest;
 use crate::scene::things::{Body, Probe, Quantity};

@@ -4,11 +4,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::errors::{SceneErrors, SceneProblem};
-use super::parse;
-use super::presets::presets;
-use super::suggest;
-use super::types::Scene;
+use super::{files, warnings};
+use crate::sample::Sources;
+use crate::scene::{
+    Derived, Fluid, FluidMesh, MeshShape, Reported, Scene, SceneBuilder, SceneErrors, SceneProblem, Section,
+    closest, parse, presets,
+};
 
 /// Longest scene file in bytes; a larger file is surely not one.
 const MAX_BYTES: u64 = 4 << 20;
@@ -53,8 +54,8 @@ impl Scene {
         Ok(Self { source: Some(path.to_owned()), ..scene })
     }
 
-    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not looked
-    /// for: paths stay as written, and what is wrong with them is told when a simulation begins.
+    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not opened:
+    /// paths stay as written, and what is wrong with the files is reported when a simulation starts.
     ///
     /// # Errors
     /// As [`Scene::load`].
@@ -90,7 +91,7 @@ impl Scene {
             return Err(refuse("this is a binary file, not a scene".into()));
         }
         match std::str::from_utf8(bytes) {
-            Ok(text) => parse::parse(text.strip_prefix('\u{feff}').unwrap_or(text), file, folder),
+            Ok(text) => parse(text.strip_prefix('\u{feff}').unwrap_or(text), file, folder, check),
             Err(error) => {
                 let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
                 Err(refuse(format!("line {line} is not UTF-8 text")))
@@ -99,10 +100,36 @@ impl Scene {
     }
 }
 
+impl SceneBuilder {
+    /// Checks the scene. Files that it names are looked for where a simulation begins, from the current folder.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it; lines are those of [`to_toml`](Self::to_toml).
+    pub fn build(&self) -> Result<Scene, SceneErrors> {
+        Scene::parse(&self.to_toml(), "scene builder")
+    }
+}
+
+/// Checks a scene whose values could be read.
+fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
+    let is_model = |filled: &&FluidMesh| matches!(filled.mesh.shape, MeshShape::Model(_));
+    let fluid = &scene.fluid;
+    let opens_files = !fluid.files.is_empty() || !fluid.meshes.iter().all(|filled| is_model(&filled));
+    if root.has_folder() {
+        files::check(scene, root)?;
+    } else if opens_files {
+        // Without a folder no file is opened: only models count.
+        let meshes = fluid.meshes.iter().filter(is_model).cloned().collect();
+        let models = Fluid { meshes, files: Vec::new(), ..fluid.clone() };
+        return warnings::check(scene, root, &Derived::of(scene, &Sources::read(&models).reaches(&models)));
+    }
+    warnings::check(scene, root, &Derived::without_particles(scene))
+}
+
 /// What a missing file may have been meant to be.
 fn not_found_hint(path: &Path) -> String {
     let list = "`splashdown scenes` lists the scenes that come with the program";
     let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();
-    let meant = path.file_stem().and_then(|stem| suggest::closest(&stem.to_string_lossy(), &names));
+    let meant = path.file_stem().and_then(|stem| closest(&stem.to_string_lossy(), &names));
     meant.map_or_else(|| list.to_owned(), |name| format!("did you mean {name:?}? {list}"))
 }

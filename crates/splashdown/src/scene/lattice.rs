@@ -1,8 +1,11 @@
-//! The lattice of one block.
+//! The lattices of blocks: where their particles are, and how many there are.
 
 use glam::Vec3;
 
-use crate::scene::{Domain, Fluid, Shape};
+use super::types::{Domain, Fluid, Shape};
+
+/// Most particles of a scene: 2^26.
+pub const MAX_PARTICLES: u64 = 1 << 26;
 
 /// How near a block's face must be to a wall to touch it, in spacings: positions in f32 are not exact.
 const TOUCH: f64 = 0.02;
@@ -52,12 +55,35 @@ impl Solid {
 }
 
 /// Particles of a shape by its volume.
-pub(super) fn estimate(shape: &Shape, spacing: f64) -> f64 {
+fn estimate_of(shape: &Shape, spacing: f64) -> f64 {
     let cells = |length: f32| (f64::from(length) / spacing).max(0.0);
     match *shape {
         Shape::Box { size, .. } => size.to_array().map(|length| cells(length).round()).into_iter().product(),
         Shape::Sphere { radius, .. } => cells(radius).powi(3) * (4.0 / 3.0 * std::f64::consts::PI),
     }
+}
+
+/// Particles of the blocks of a fluid: exact up to [`MAX_PARTICLES`], above that an estimate.
+pub(crate) fn count(domain: &Domain, fluid: &Fluid) -> u64 {
+    let estimate = estimate(fluid);
+    if estimate > MAX_PARTICLES {
+        return estimate;
+    }
+    Sampler::all(domain, fluid).iter().map(|sampler| sampler.counts().0).sum()
+}
+
+/// Particles from the blocks' volumes, overlaps counted twice.
+pub(crate) fn estimate(fluid: &Fluid) -> u64 {
+    let spacing = f64::from(fluid.particle_spacing);
+    // `as` saturates, and makes a NaN 0.
+    fluid.blocks.iter().map(|block| estimate_of(&block.shape, spacing)).sum::<f64>() as u64
+}
+
+/// A spacing at which `count` particles become no more than `allowed`, rounded up to two digits.
+pub(crate) fn fitting_spacing(spacing: f32, count: u64, allowed: u64) -> f32 {
+    let exact = f64::from(spacing) * (count as f64 / allowed.max(1) as f64).cbrt();
+    let unit = 10f64.powf(exact.log10().floor() - 1.0);
+    ((exact / unit * 1.001).ceil() * unit) as f32
 }
 
 /// Makes the particles of one block.
@@ -165,12 +191,12 @@ fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) ->
 }
 
 /// [`along_box`] along all axes.
-pub(super) fn axes(domain: &Domain, spacing: f64, low: Vec3, high: Vec3) -> [(f64, u64); 3] {
+pub(crate) fn axes(domain: &Domain, spacing: f64, low: Vec3, high: Vec3) -> [(f64, u64); 3] {
     std::array::from_fn(|a| along_box(domain, spacing, a, f64::from(low[a]), f64::from(high[a])))
 }
 
 /// Corners in m of where particles may be: half a spacing inside the closed walls, without limit at open sides.
-pub(super) fn room(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
+pub(crate) fn room(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
     let low = |axis: usize| match domain.closed[axis][0] {
         true => f64::from(domain.min[axis]) + (0.5 - TOUCH) * spacing,
         false => f64::NEG_INFINITY,

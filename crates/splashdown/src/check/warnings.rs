@@ -2,19 +2,18 @@
 
 use std::f32::consts::PI;
 
-use super::derived::Derived;
-use super::reader::Section;
-use super::things::{Outlet, Quantity, SinkRegion};
-use super::types::{DensityMode, Method, Scene, Shape};
-use crate::flow::outlet;
+use crate::scene::{
+    DensityMode, Derived, Method, Outlet, Quantity, Reported, Scene, Section, Shape, SinkRegion, outlet,
+};
 
 /// More steps than this take days.
 const MANY_STEPS: u64 = 10_000_000;
 /// Below this many times the reference speed a weakly compressible fluid visibly loses volume (4 per cent).
 const SLOWEST_SOUND: f32 = 5.0;
 
-pub(crate) fn check(scene: &Scene, root: &Section<'_>, fluid: &Section<'_>, solver: &Section<'_>) {
-    let derived = Derived::without_particles(scene);
+/// Notes values of a whole scene that are legal but probably not meant.
+pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
+    let (fluid, solver) = (&root.section("fluid")?, &root.section("solver")?);
     check_flow(scene, root);
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
@@ -93,6 +92,7 @@ pub(crate) fn check(scene: &Scene, root: &Section<'_>, fluid: &Section<'_>, solv
             fluid.warn("particle_spacing", message, "sizes of whole spacings keep the volume exact");
         }
     }
+    Ok(())
 }
 
 /// What emitters, sinks and probes cannot do as they are.

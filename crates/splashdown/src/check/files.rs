@@ -1,17 +1,16 @@
 //! Compares a scene with the files it names: only where the scene itself has a place on disk.
 
 use glam::Vec3;
-use splashdown_io::Mesh;
+use splashdown_io::{Mesh, Particles};
 
-use super::geometry::grouped;
-use super::parse::outlet_outside;
-use super::reader::{Reported, Section};
-use super::spec::{place, rounded};
-use super::things::{Body, Emitter, MeshSource, Motion, SinkRegion};
-use super::types::{Domain, Scene};
-use crate::bodies::{check_scale, closed_solid, mesh_of, owner};
-use crate::flow::outlet;
-use crate::sample::{Filler, SampleError, Taken, file_title, mesh_title, typical_spacing};
+use super::Built;
+use crate::bodies::{check_scale, mesh_of, owner};
+use crate::flow::{LoadedFlow, outlet};
+use crate::sample::{self, Filler, SampleError, Sources, Taken, file_title, mesh_title, typical_spacing};
+use crate::scene::{
+    Body, Domain, Emitter, MeshSource, Motion, Reach, Reported, Scene, Section, grouped, outlet_outside,
+    place, rounded,
+};
 use crate::solid;
 
 /// A file's spacing may differ from the scene's by this part.
@@ -24,13 +23,16 @@ const MOST_POINTS: usize = 64;
 const POSES: u32 = 200;
 
 /// Reads every mesh and every file of particles that a whole scene names, and reports what is wrong with them,
-/// each at its line.
-pub(crate) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
-    let (bodies, placed) = check_bodies(scene, &root.sections_if_any("body")?);
-    let emitters = check_emitters(scene, &root.sections_if_any("emitter")?, &placed);
-    let sinks = check_sinks(scene, &root.sections_if_any("sink")?);
+/// each at its line. What was read and built stays with the scene.
+pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
+    let (bodies, meshes, placed) = check_bodies(scene, &root.sections_if_any("body")?);
+    let mut flow = LoadedFlow::default();
+    let emitters = check_emitters(scene, &mut flow, &root.sections_if_any("emitter")?, &placed);
+    let sinks = check_sinks(scene, &mut flow, &root.sections_if_any("sink")?);
     let fluid = check_fluid(scene, &root.section("fluid")?);
-    bodies.and(emitters).and(sinks).and(fluid)
+    bodies.and(emitters).and(sinks)?;
+    Built::of(scene).keep(meshes, flow, fluid?);
+    Ok(())
 }
 
 /// A body's mesh where it is at t = 0.
@@ -68,9 +70,12 @@ impl<'a> Placed<'a> {
     }
 }
 
-fn check_bodies<'a>(scene: &'a Scene, sections: &[Section<'_>]) -> (Result<(), Reported>, Vec<Placed<'a>>) {
+fn check_bodies<'a>(
+    scene: &'a Scene,
+    sections: &[Section<'_>],
+) -> (Result<(), Reported>, Vec<Mesh>, Vec<Placed<'a>>) {
     let mut sound = Ok(());
-    let mut placed = Vec::new();
+    let (mut meshes, mut placed) = (Vec::new(), Vec::new());
     for (body, section) in scene.bodies.iter().zip(sections) {
         match read_scaled(section, &owner("body", &body.name, &body.mesh), &body.mesh, &scene.domain) {
             Ok(mesh) => {
@@ -95,11 +100,12 @@ fn check_bodies<'a>(scene: &'a Scene, sections: &[Section<'_>]) -> (Result<(), R
                 let body = Placed::new(body, &mesh);
                 warn_outside(scene, &body, &mesh, section);
                 placed.push(body);
+                meshes.push(mesh);
             }
             Err(reported) => sound = Err(reported),
         }
     }
-    (sound, placed)
+    (sound, meshes, placed)
 }
 
 /// A mesh whose file can be read and whose size makes sense.
@@ -141,21 +147,28 @@ fn warn_outside(scene: &Scene, placed: &Placed<'_>, mesh: &Mesh, section: &Secti
     }
 }
 
-fn check_emitters(scene: &Scene, sections: &[Section<'_>], bodies: &[Placed<'_>]) -> Result<(), Reported> {
+fn check_emitters(
+    scene: &Scene,
+    flow: &mut LoadedFlow,
+    sections: &[Section<'_>],
+    bodies: &[Placed<'_>],
+) -> Result<(), Reported> {
     let mut sound = Ok(());
     for (emitter, section) in scene.emitters.iter().zip(sections) {
-        sound = sound.and(check_emitter(scene, emitter, section, bodies));
+        sound = sound.and(check_emitter(scene, flow, emitter, section, bodies));
     }
     sound
 }
 
 fn check_emitter(
     scene: &Scene,
+    flow: &mut LoadedFlow,
     emitter: &Emitter,
     section: &Section<'_>,
     bodies: &[Placed<'_>],
 ) -> Result<(), Reported> {
-    let (_, layer) = outlet::nozzle(emitter, scene)
+    let layer = flow
+        .add_emitter(emitter, scene)
         .map_err(|error| section.complain("mesh", error.to_string(), "", ""))?;
     let (across, up) = outlet::axes(emitter.direction);
     let every = layer.len().div_ceil(MOST_POINTS).max(1);
@@ -184,23 +197,21 @@ fn check_emitter(
     Ok(())
 }
 
-fn check_sinks(scene: &Scene, sections: &[Section<'_>]) -> Result<(), Reported> {
+fn check_sinks(scene: &Scene, flow: &mut LoadedFlow, sections: &[Section<'_>]) -> Result<(), Reported> {
     let mut sound = Ok(());
     for (sink, section) in scene.sinks.iter().zip(sections) {
-        let SinkRegion::Mesh(source) = &sink.region else { continue };
-        let owner = owner("sink", &sink.name, source);
-        if let Err(error) = closed_solid(&owner, source, &scene.domain, scene.fluid.particle_spacing) {
+        if let Err(error) = flow.add_sink(sink, scene) {
             sound = Err(section.complain("mesh", error.to_string(), "", ""));
         }
     }
     sound
 }
 
-/// Fills and reads as the simulation will, and tells what is left out.
-fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<(), Reported> {
+/// Fills meshes and reads files as the simulation will, and reports what is left out. `None` for blocks alone.
+fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<Option<(Particles, Vec<Reach>)>, Reported> {
     let fluid = &scene.fluid;
-    if fluid.meshes.is_empty() && fluid.files.is_empty() {
-        return Ok(());
+    if sample::has_blocks_only(fluid) {
+        return Ok(None);
     }
     let refuse = |section: &Section<'_>, key: &str, error: &SampleError| {
         section.complain(key, error.to_string(), "", "")
@@ -208,16 +219,20 @@ fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<(), Reported> {
     let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
     filler.blocks(fluid).map_err(|error| refuse(section, "block", &error))?;
     let mut sound = Ok(());
-    for (index, (mesh, section)) in fluid.meshes.iter().zip(section.sections_if_any("mesh")?).enumerate() {
+    let sources = Sources::read(fluid);
+    let reaches = sources.reaches(fluid);
+    let meshes = fluid.meshes.iter().zip(sources.meshes);
+    for (index, ((mesh, read), section)) in meshes.zip(section.sections_if_any("mesh")?).enumerate() {
         let title = mesh_title(index, mesh);
-        match filler.mesh(&title, mesh) {
+        match read.and_then(|read| filler.mesh(&title, mesh, &read)) {
             Ok(taken) => warn_overlap(&section, &title, taken),
             Err(error) => sound = Err(refuse(&section, "mesh", &error)),
         }
     }
-    for (index, (file, section)) in fluid.files.iter().zip(section.sections_if_any("file")?).enumerate() {
+    let files = fluid.files.iter().zip(sources.files);
+    for (index, ((file, read), section)) in files.zip(section.sections_if_any("file")?).enumerate() {
         let title = file_title(index, file);
-        match filler.file(&title, file) {
+        match read.and_then(|read| filler.file(&title, file, &read)) {
             Ok((taken, positions)) => {
                 warn_overlap(&section, &title, taken);
                 warn_stray(&section, &title, taken, scene);
@@ -226,7 +241,7 @@ fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<(), Reported> {
             Err(error) => sound = Err(refuse(&section, "file", &error)),
         }
     }
-    sound
+    sound.map(|()| Some((filler.finish(), reaches)))
 }
 
 fn warn_overlap(section: &Section<'_>, title: &str, taken: Taken) {

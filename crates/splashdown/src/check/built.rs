@@ -1,0 +1,229 @@
+//! What is read from a scene's files and built from a scene, once.
+//!
+//! *How it works.* A [`Built`] holds each part from when it is first needed, and a scene carries its `Built` in a slot that
+//! clones share. Scenes are plain values that anyone may change: a `Built` keeps the sections that it was built from, and
+//! [`Built::of`] replaces it if the scene differs in one of them. What takes much memory (the particles, the meshes of
+//! bodies) is handed over to the simulation instead of being kept.
+
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+use glam::Vec3;
+use splashdown_io::{Mesh, Particles};
+
+use crate::bodies::{BodyError, mesh_of, owner};
+use crate::flow::LoadedFlow;
+use crate::sample::{self, SampleError, Sources};
+use crate::scene::{Derived, Domain, Emitter, Fluid, MeshSource, Reach, Scene, Sink, lattice};
+use crate::solid;
+
+/// What was read and built from a scene. Each part is made where it is first asked for.
+#[derive(Default)]
+pub(crate) struct Built {
+    inputs: Option<Inputs>,
+    bodies: Mutex<BodyMeshes>,
+    flow: OnceLock<Result<Arc<LoadedFlow>, BodyError>>,
+    fluid: Mutex<FluidParts>,
+}
+
+/// The sections of a scene from which the parts are built.
+#[derive(PartialEq)]
+struct Inputs {
+    domain: Domain,
+    fluid: Fluid,
+    bodies: Vec<(String, MeshSource)>,
+    emitters: Vec<Emitter>,
+    sinks: Vec<Sink>,
+    gravity: Vec3,
+    times: [f32; 2],
+    support_ratio: f32,
+}
+
+/// The meshes of the bodies, in the order of the scene.
+#[derive(Default)]
+struct BodyMeshes {
+    /// Until a simulation takes them.
+    meshes: Option<Vec<Result<Mesh, BodyError>>>,
+    /// Lower and upper corners in m, in the meshes' own frames; `None` for a mesh that cannot be read.
+    extents: Option<Arc<[Option<(Vec3, Vec3)>]>>,
+}
+
+#[derive(Default)]
+struct FluidParts {
+    /// The meshes and files of the fluid, until they are filled.
+    sources: Option<Sources>,
+    reaches: Option<Arc<[Reach]>>,
+    /// Until a simulation takes them.
+    particles: Option<Particles>,
+    count: Option<u64>,
+}
+
+impl Built {
+    /// What was built from this scene; nothing yet, if it was built from other values.
+    pub fn of(scene: &Scene) -> Arc<Self> {
+        let inputs = Inputs::of(scene);
+        if let Some(built) = scene.built.get::<Self>()
+            && built.inputs.as_ref() == Some(&inputs)
+        {
+            return built;
+        }
+        let built = Arc::new(Self { inputs: Some(inputs), ..Self::default() });
+        scene.built.set(Arc::clone(&built));
+        built
+    }
+
+    /// Keeps what the check of a scene's files has read and filled; the particles only where there are meshes or files.
+    pub fn keep(&self, meshes: Vec<Mesh>, flow: LoadedFlow, fluid: Option<(Particles, Vec<Reach>)>) {
+        lock(&self.bodies).put(meshes.into_iter().map(Ok).collect());
+        // It is empty: the scene has only just been read.
+        let _ = self.flow.set(Ok(Arc::new(flow)));
+        if let Some((particles, reaches)) = fluid {
+            let mut parts = lock(&self.fluid);
+            parts.count = Some(particles.len() as u64);
+            parts.reaches = Some(reaches.into());
+            parts.particles = Some(particles);
+        }
+    }
+
+    /// The meshes of the bodies, which the caller takes; they are read if they have been taken before.
+    pub fn take_meshes(&self, scene: &Scene) -> Vec<Result<Mesh, BodyError>> {
+        let mut bodies = lock(&self.bodies);
+        let meshes = bodies.meshes.take();
+        meshes.unwrap_or_else(|| {
+            bodies.put(read_meshes(scene));
+            bodies.meshes.take().unwrap_or_default()
+        })
+    }
+
+    /// The corners of each body's mesh in its own frame in m; `None` for a mesh that cannot be read.
+    pub fn extents(&self, scene: &Scene) -> Arc<[Option<(Vec3, Vec3)>]> {
+        let mut bodies = lock(&self.bodies);
+        if bodies.extents.is_none() {
+            bodies.put(read_meshes(scene));
+        }
+        bodies.extents.clone().unwrap_or_default()
+    }
+
+    /// Emitters and sinks.
+    ///
+    /// # Errors
+    /// [`BodyError`] of the meshes of outlets and sinks.
+    pub fn flow(&self, scene: &Scene) -> Result<Arc<LoadedFlow>, BodyError> {
+        self.flow.get_or_init(|| LoadedFlow::new(scene).map(Arc::new)).clone()
+    }
+
+    /// What the emitters bring until the scene's end: the number of particles, and how many of them are there on average
+    /// over the scene's time.
+    ///
+    /// # Errors
+    /// As [`flow`](Self::flow).
+    pub fn emitted(&self, scene: &Scene) -> Result<(u64, f64), BodyError> {
+        Ok(self.flow(scene)?.forecast(scene.duration, scene.fluid.particle_spacing))
+    }
+
+    /// The extents and speeds of the meshes and files of the fluid; those that cannot be read are left out.
+    pub fn reaches(&self, scene: &Scene) -> Arc<[Reach]> {
+        let mut parts = lock(&self.fluid);
+        if let Some(reaches) = &parts.reaches {
+            return Arc::clone(reaches);
+        }
+        let sources = parts.sources.get_or_insert_with(|| Sources::read(&scene.fluid));
+        let reaches: Arc<[Reach]> = sources.reaches(&scene.fluid).into();
+        parts.reaches = Some(Arc::clone(&reaches));
+        reaches
+    }
+
+    /// The scene's particles at t = 0, which the caller takes; they are placed anew if they have been taken before.
+    ///
+    /// # Errors
+    /// As [`sample::particles`].
+    pub fn take_particles(&self, scene: &Scene) -> Result<Particles, SampleError> {
+        match lock(&self.fluid).take(scene)? {
+            particles if particles.is_empty() && scene.emitters.is_empty() => {
+                Err(SampleError::Empty { spacing: scene.fluid.particle_spacing })
+            }
+            particles => Ok(particles),
+        }
+    }
+
+    /// As [`sample::count`]; particles that have to be placed for it are kept for the simulation.
+    pub fn count(&self, scene: &Scene) -> u64 {
+        let fluid = &scene.fluid;
+        let mut parts = lock(&self.fluid);
+        if let Some(count) = parts.count {
+            return count;
+        }
+        let of_blocks = lattice::count(&scene.domain, fluid);
+        let count = if of_blocks > sample::MAX_PARTICLES || sample::has_blocks_only(fluid) {
+            of_blocks
+        } else {
+            match parts.take(scene) {
+                Ok(particles) => {
+                    let count = particles.len() as u64;
+                    parts.particles = Some(particles);
+                    count
+                }
+                Err(SampleError::TooMany { count, .. }) => count,
+                Err(_) => of_blocks,
+            }
+        };
+        parts.count = Some(count);
+        count
+    }
+
+    /// The numbers that follow from the scene with this number of particles at the start.
+    pub fn derived(&self, scene: &Scene, particles: u64) -> Derived {
+        // An outlet that cannot be made is refused where the simulation starts.
+        let emitted = self.emitted(scene).unwrap_or_default();
+        Derived::of(scene, &self.reaches(scene)).with_particles(scene, particles, emitted)
+    }
+
+    /// Frees what only the start of a simulation needs.
+    pub fn release(&self) {
+        lock(&self.bodies).meshes = None;
+        let mut parts = lock(&self.fluid);
+        (parts.sources, parts.particles) = (None, None);
+    }
+}
+
+impl Inputs {
+    fn of(scene: &Scene) -> Self {
+        Self {
+            domain: scene.domain.clone(),
+            fluid: scene.fluid.clone(),
+            bodies: scene.bodies.iter().map(|body| (body.name.clone(), body.mesh.clone())).collect(),
+            emitters: scene.emitters.clone(),
+            sinks: scene.sinks.clone(),
+            gravity: scene.gravity,
+            times: [scene.duration, scene.frame_rate],
+            support_ratio: scene.solver.support_ratio,
+        }
+    }
+}
+
+impl BodyMeshes {
+    fn put(&mut self, meshes: Vec<Result<Mesh, BodyError>>) {
+        self.extents = Some(meshes.iter().map(|mesh| Some(solid::bounds(mesh.as_ref().ok()?))).collect());
+        self.meshes = Some(meshes);
+    }
+}
+
+impl FluidParts {
+    fn take(&mut self, scene: &Scene) -> Result<Particles, SampleError> {
+        if let Some(particles) = self.particles.take() {
+            return Ok(particles);
+        }
+        let sources = self.sources.take().unwrap_or_else(|| Sources::read(&scene.fluid));
+        if self.reaches.is_none() {
+            self.reaches = Some(sources.reaches(&scene.fluid).into());
+        }
+        sample::fill(scene, sources)
+    }
+}
+
+fn read_meshes(scene: &Scene) -> Vec<Result<Mesh, BodyError>> {
+    scene.bodies.iter().map(|body| mesh_of(&owner("body", &body.name, &body.mesh), &body.mesh)).collect()
+}
+
+fn lock<T>(part: &Mutex<T>) -> MutexGuard<'_, T> {
+    part.lock().unwrap_or_else(PoisonError::into_inner)
+}

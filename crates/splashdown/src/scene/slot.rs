@@ -1,0 +1,35 @@
+//! What modules above build from a scene travels with the scene.
+
+use std::any::Any;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Holds what was built from a scene and from the files that it names, so that the next user of the scene need not build
+/// it again. The module that builds it knows its type. Clones of a scene share it; comparisons ignore it.
+#[derive(Clone, Default)]
+pub(crate) struct BuiltSlot(Arc<Mutex<Option<Arc<dyn Any + Send + Sync>>>>);
+
+impl BuiltSlot {
+    /// The value, if it is of this type.
+    pub fn get<T: Any + Send + Sync>(&self) -> Option<Arc<T>> {
+        let value = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        value.downcast().ok()
+    }
+
+    /// Replaces the value.
+    pub fn set<T: Any + Send + Sync>(&self, value: Arc<T>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
+    }
+}
+
+impl PartialEq for BuiltSlot {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for BuiltSlot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("BuiltSlot")
+    }
+}
