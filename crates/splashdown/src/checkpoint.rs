@@ -11,6 +11,7 @@
 //! scene; `about.json` for people.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use splashdown_io::{Archive, IoError};
@@ -151,9 +152,17 @@ impl HostState {
 /// assert_eq!(first.particles()?, second.particles()?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Checkpoint {
     pub(crate) archive: Archive,
+    /// The scene, once it has been read: with it the files that it names are read.
+    scene: OnceLock<Scene>,
+}
+
+impl PartialEq for Checkpoint {
+    fn eq(&self, other: &Self) -> bool {
+        self.archive == other.archive
+    }
 }
 
 impl Checkpoint {
@@ -161,7 +170,7 @@ impl Checkpoint {
     pub const ENDING: &'static str = "splashdown";
 
     pub(crate) fn new(archive: Archive, scene: &Scene, text: &str, device: String, host: &HostState) -> Self {
-        let mut checkpoint = Self { archive };
+        let mut checkpoint = Self { archive, scene: OnceLock::new() };
         let about = About {
             format: "Splashdown checkpoint".to_owned(),
             version: VERSION,
@@ -226,7 +235,7 @@ impl Checkpoint {
     }
 
     fn of(archive: Archive) -> Result<Self, CheckpointError> {
-        let checkpoint = Self { archive };
+        let checkpoint = Self { archive, scene: OnceLock::new() };
         let About { format, version, program, .. } = checkpoint.about()?;
         if format != "Splashdown checkpoint" {
             return Err(CheckpointError::Malformed(format!("it calls itself {format:?}")));
@@ -248,12 +257,16 @@ impl Checkpoint {
     /// # Errors
     /// [`CheckpointError::Scene`] where a file that it names is gone, say.
     pub fn scene(&self) -> Result<Scene, CheckpointError> {
+        if let Some(scene) = self.scene.get() {
+            return Ok(scene.clone());
+        }
         let text = self.archive.text("scene.toml").map_err(CheckpointError::Malformed)?;
         let About { scene, source, .. } = self.about()?;
-        Ok(match source {
+        let scene = match source {
             Some(path) => Scene::parse_beside(text, &path)?,
             None => Scene::parse(text, &scene)?,
-        })
+        };
+        Ok(self.scene.get_or_init(|| scene).clone())
     }
 
     /// Simulated time in seconds.

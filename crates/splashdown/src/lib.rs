@@ -103,6 +103,8 @@ pub mod solid;
 pub mod state;
 mod stats;
 pub mod surface;
+#[cfg(test)]
+mod work;
 
 pub use bodies::{BodyMesh, BodyState};
 pub use checkpoint::{Checkpoint, CheckpointError};

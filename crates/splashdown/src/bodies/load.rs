@@ -133,6 +133,8 @@ impl LoadedBody {
 /// # Errors
 /// [`BodyError`] of the file or the model's name.
 pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
+    #[cfg(test)]
+    crate::work::count("mesh read");
     let mut mesh = match &source.shape {
         MeshShape::Model(model) => models::build(model)
             .ok_or_else(|| BodyError::NoModel { owner: owner.into(), model: model.clone() })?,

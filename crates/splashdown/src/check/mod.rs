@@ -9,6 +9,8 @@ mod derived;
 mod files;
 mod load;
 mod reference;
+#[cfg(test)]
+mod tests;
 mod warnings;
 
 pub(crate) use built::Built;

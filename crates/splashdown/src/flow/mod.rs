@@ -75,6 +75,8 @@ impl LoadedFlow {
     pub(crate) fn add_emitter(&mut self, emitter: &Emitter, scene: &Scene) -> Result<Vec<Vec2>, BodyError> {
         let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
         let spacing = scene.fluid.particle_spacing;
+        #[cfg(test)]
+        crate::work::count("emitter built");
         let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
         nozzle.first_point = self.points.len() as u32;
         self.expected = self.expected.saturating_add(outlet::expected(&nozzle, duration, spacing));
@@ -90,6 +92,8 @@ impl LoadedFlow {
     /// # Errors
     /// [`BodyError`] of the sink's mesh.
     pub(crate) fn add_sink(&mut self, sink: &Sink, scene: &Scene) -> Result<(), BodyError> {
+        #[cfg(test)]
+        crate::work::count("sink built");
         let shape = self.drain(sink, scene)?;
         self.drains.push(shape);
         Ok(())

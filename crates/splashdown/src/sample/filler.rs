@@ -48,6 +48,8 @@ impl<'a> Filler<'a> {
     /// # Errors
     /// [`SampleError`] if there are too many particles, or some outside the domain.
     pub fn blocks(&mut self, fluid: &Fluid) -> Result<(), SampleError> {
+        #[cfg(test)]
+        crate::work::count("fluid sampled");
         let estimate = lattice::estimate(fluid);
         self.room_for(estimate)?;
         self.positions.reserve(estimate as usize);

@@ -47,6 +47,8 @@ impl Sources {
 }
 
 fn read_file(what: &str, file: &FluidFile) -> Result<Particles, SampleError> {
+    #[cfg(test)]
+    crate::work::count("particle file read");
     splashdown_io::read_particles(&file.path)
         .map_err(|source| SampleError::File { what: what.to_owned(), source: Box::new(source) })
 }

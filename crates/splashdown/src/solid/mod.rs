@@ -129,6 +129,8 @@ impl Solid {
         settings: &SolidSettings,
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Self, SolidError> {
+        #[cfg(test)]
+        crate::work::count("solid built");
         check(mesh)?;
         let path = settings.cache.as_deref().map(|folder| cache::file(folder, mesh, settings));
         let known = path.as_deref().and_then(cache::load);
