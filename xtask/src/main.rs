@@ -7,6 +7,7 @@ mod demo;
 mod guide;
 mod kill;
 mod layers;
+mod modules;
 mod page;
 mod peers;
 mod pictures;

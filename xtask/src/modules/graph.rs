@@ -131,13 +131,15 @@ fn exports(root: &str) -> BTreeMap<String, String> {
 /// A tree of a `use` declaration, whose paths begin in `first`.
 fn read_tree(tokens: &[Token], first: Option<&str>, found: &mut BTreeMap<String, String>) {
     let Some(open) = tokens.iter().position(|token| *token == Token::Sign('{')) else {
-        let words: Vec<&str> = tokens.iter().filter_map(Token::word).filter(|word| *word != "crate").collect();
+        let words: Vec<&str> =
+            tokens.iter().filter_map(Token::word).filter(|word| *word != "crate").collect();
         if let (Some(name), Some(home)) = (words.last(), first.or(words.first().copied())) {
             found.insert((*name).to_owned(), home.to_owned());
         }
         return;
     };
-    let prefix = tokens[..open].iter().filter_map(Token::word).find(|word| !matches!(*word, "crate" | "self"));
+    let prefix =
+        tokens[..open].iter().filter_map(Token::word).find(|word| !matches!(*word, "crate" | "self"));
     let first = first.or(prefix);
     let mut depth = 0;
     let mut start = open + 1;
@@ -165,7 +167,10 @@ mod tests {
     #[test]
     fn names_are_those_of_modules_root_items_and_other_crates() {
         let sources = [
-            ("lib.rs", "mod a; mod b; pub use a::{A, deep::{B as C}}; pub use {glam, other::D}; pub fn item() {}"),
+            (
+                "lib.rs",
+                "mod a; mod b; pub use a::{A, deep::{B as C}}; pub use {glam, other::D}; pub fn item() {}",
+            ),
             ("a.rs", "mod deep; #[cfg(test)] mod tests; #[macro_export] macro_rules! made { () => {} }"),
             ("a/deep.rs", "pub struct B;"),
             ("a/tests.rs", "use crate::b;"),

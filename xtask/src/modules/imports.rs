@@ -200,7 +200,8 @@ mod tests {
     use super::imports;
 
     fn names(source: &str, module: &str) -> Vec<String> {
-        let module: Vec<String> = module.split("::").filter(|name| !name.is_empty()).map(Into::into).collect();
+        let module: Vec<String> =
+            module.split("::").filter(|name| !name.is_empty()).map(Into::into).collect();
         imports(source, &module).names
     }
 
@@ -240,7 +241,8 @@ mod tests {
 
     #[test]
     fn exported_macros_are_found() {
-        let found = imports("#[macro_export]\n#[doc(hidden)]\nmacro_rules! deep { () => {} }", &["x".to_owned()]);
+        let found =
+            imports("#[macro_export]\n#[doc(hidden)]\nmacro_rules! deep { () => {} }", &["x".to_owned()]);
         assert_eq!(found.macros, ["deep"]);
     }
 }

@@ -33,7 +33,9 @@ pub fn problems(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
     }
     let Some(order) = order else { return problems };
     let mut heights = BTreeMap::new();
-    for (height, name) in order.iter().rev().enumerate().flat_map(|(h, names)| names.iter().map(move |n| (h, n))) {
+    for (height, name) in
+        order.iter().rev().enumerate().flat_map(|(h, names)| names.iter().map(move |n| (h, n)))
+    {
         if heights.insert(name.as_str(), height).is_some() {
             problems.push(format!("the declared order names `{name}` twice"));
         }
@@ -109,7 +111,8 @@ mod tests {
         graph(&sources)
     }
 
-    const LIB: (&str, &str) = ("lib.rs", "//! A crate.\n//!\n//! # Modules\n//!\n//! ```text\n//! c\n//! b a\n//! ```\n");
+    const LIB: (&str, &str) =
+        ("lib.rs", "//! A crate.\n//!\n//! # Modules\n//!\n//! ```text\n//! c\n//! b a\n//! ```\n");
 
     #[test]
     fn an_acyclic_crate_passes() {
@@ -133,7 +136,8 @@ mod tests {
 
     #[test]
     fn an_import_upward_or_sideways_fails() {
-        for (from, to) in [("a.rs", "use crate::c;"), ("b.rs", "use crate::a;"), ("a.rs", "use crate::item;")] {
+        for (from, to) in [("a.rs", "use crate::c;"), ("b.rs", "use crate::a;"), ("a.rs", "use crate::item;")]
+        {
             let mut files = vec![LIB, ("a.rs", ""), ("b.rs", ""), ("c.rs", "")];
             files.push((from, to));
             files.retain(|file| file.0 != from || file.1 == to);
@@ -144,7 +148,11 @@ mod tests {
 
     #[test]
     fn an_order_that_does_not_fit_the_crate_fails() {
-        let found = problems(&of(&[LIB, ("a.rs", ""), ("c.rs", ""), ("d.rs", "")]), declared(LIB.1).as_deref());
-        assert_eq!(found, ["the declared order names `b`, which is no module", "the declared order lacks `d`"]);
+        let found =
+            problems(&of(&[LIB, ("a.rs", ""), ("c.rs", ""), ("d.rs", "")]), declared(LIB.1).as_deref());
+        assert_eq!(
+            found,
+            ["the declared order names `b`, which is no module", "the declared order lacks `d`"]
+        );
     }
 }
