@@ -6,7 +6,6 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::exec::Mapping;
 use crate::{GpuError, block_on};
 
 /// How to install a driver.
@@ -244,18 +243,6 @@ impl Gpu {
     /// The largest size of a buffer in bytes.
     pub fn largest_buffer(&self) -> u64 {
         largest_buffer(&self.limits)
-    }
-
-    /// The content of a buffer with [`wgpu::BufferUsages::MAP_READ`] that a submission fills, once it is complete.
-    ///
-    /// # Errors
-    /// [`GpuError::DeviceLost`].
-    pub async fn read_back(
-        self: &Arc<Self>,
-        staging: wgpu::Buffer,
-        submission: wgpu::SubmissionIndex,
-    ) -> Result<Vec<u8>, GpuError> {
-        Mapping::new(self, staging, submission).take().await
     }
 
     /// Runs the callbacks of completed work, without waiting.

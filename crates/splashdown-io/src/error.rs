@@ -1,9 +1,11 @@
 //! What can go wrong with a file, in words that say what was given, what is allowed and what to do.
 
+mod film;
+
+pub use film::FilmError;
+
 use std::io;
 use std::path::{Path, PathBuf};
-
-use crate::film::FilmError;
 
 /// Everything this crate's functions can fail with.
 ///

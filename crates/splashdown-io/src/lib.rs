@@ -75,13 +75,13 @@ compile_error!(
 
 pub mod archive;
 pub mod atomic;
-mod attribute;
 pub mod bgeo;
-mod columns;
 pub mod csv;
+mod data;
 pub mod error;
 pub mod film;
 pub mod gltf;
+mod input;
 pub mod mesh;
 pub mod npy;
 pub mod npz;
@@ -101,12 +101,10 @@ pub mod xyz;
 
 pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;
-pub use attribute::Attribute;
 pub use csv::CsvLog;
+pub use data::{Attribute, Mesh, Particles};
 pub use error::{IoError, WriteCause};
 pub use film::{Film, FilmError, FilmOptions};
-pub use mesh::Mesh;
-pub use particles::Particles;
 pub use picture::Picture;
 pub use read::{MESH_FORMATS_READ, PARTICLE_FORMATS_READ, read_all, read_mesh, read_particles};
 pub use topology::Topology;

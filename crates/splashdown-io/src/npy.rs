@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::columns::{Number, triples};
+use crate::data::columns::{Number, triples};
 use crate::error::IoError;
 
 /// Reads a little-endian float32 or float64 array of shape (N, 3) in C order.

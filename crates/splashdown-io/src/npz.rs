@@ -11,11 +11,11 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
-use crate::columns::{Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
+use crate::input::{MOST, regular};
 use crate::npy::{self, Layout};
-use crate::particles::Particles;
-use crate::read::{MOST, regular};
 
 /// Names under which positions are found, the first one that is there; the last is numpy's own for an array
 /// without one.

@@ -7,9 +7,9 @@
 
 use std::path::Path;
 
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::particles::Particles;
-use crate::read::content;
+use crate::input::content;
 
 /// Reads positions, in m; other columns are passed over, as are empty lines and lines that begin with `#` or `//`.
 ///

@@ -1,7 +1,7 @@
 //! References to the GPU buffers that are drawn, for example those of a simulation.
 
+use crate::RenderError;
 use crate::chunks::Column;
-use crate::{RenderError, SurfaceStyle};
 use wgpu::{Buffer, BufferUsages, Device, IndexFormat, RenderPass};
 
 /// Particles on the GPU. All three buffers need [`BufferUsages::STORAGE`].
@@ -151,6 +151,22 @@ impl BodyBuffers<'_> {
     pub(crate) fn draw(&self, pass: &mut RenderPass<'_>) {
         self.draw.record(pass, self.vertices, self.indices);
     }
+}
+
+/// What is drawn of a surface.
+///
+/// The wireframe needs vertex and index buffers with [`wgpu::BufferUsages::STORAGE`], and draw
+/// arguments with a base vertex of 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SurfaceStyle {
+    /// The liquid.
+    #[default]
+    Liquid,
+    /// The liquid and its wireframe.
+    LiquidWithLines,
+    /// The wireframe alone; edges of back faces are fainter.
+    Lines,
 }
 
 impl SurfaceBuffers<'_> {

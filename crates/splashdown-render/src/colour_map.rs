@@ -89,7 +89,7 @@ impl ColourTextures {
     pub fn new(device: &Device, queue: &Queue) -> ColourTextures {
         ColourTextures(
             ColourMap::ALL.map(|map| {
-                crate::overlay::upload_texture(device, queue, "colour map", [256, 1], &map.texels())
+                crate::texture::upload_texture(device, queue, "colour map", [256, 1], &map.texels())
             }),
         )
     }

@@ -126,3 +126,15 @@ pub enum RenderError {
         reason: String,
     },
 }
+
+/// Refuses radii that are not positive and finite.
+pub(crate) fn check_radius(radius: f32) -> Result<(), RenderError> {
+    if radius > 0.0 && radius.is_finite() {
+        return Ok(());
+    }
+    Err(RenderError::Value {
+        what: "the particle radius",
+        given: format!("{radius} m"),
+        allowed: "a finite number above 0",
+    })
+}

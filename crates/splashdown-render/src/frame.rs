@@ -159,18 +159,6 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Refuses radii that are not positive and finite.
-pub(crate) fn check_radius(radius: f32) -> Result<(), RenderError> {
-    if radius > 0.0 && radius.is_finite() {
-        return Ok(());
-    }
-    Err(RenderError::Value {
-        what: "the particle radius",
-        given: format!("{radius} m"),
-        allowed: "a finite number above 0",
-    })
-}
-
 fn check_sun(sun: [f32; 3]) -> Result<Vec3, RenderError> {
     match Vec3::from(sun).try_normalize() {
         // The shadow of a lower sun would be too long for the shadow map.

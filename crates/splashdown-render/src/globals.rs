@@ -2,6 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// Texels on a side of the shadow map.
+pub(crate) const SHADOW_SIDE: u32 = 256;
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub(crate) struct EdgeGlobals {
@@ -63,7 +66,7 @@ pub(crate) struct Globals {
 impl Globals {
     /// Sets the path length that a particle of this radius adds to a texel of the shadow map.
     pub fn set_shadow_of_particles(&mut self, radius: f32) {
-        let texel_area = self.shadow_size[0] * self.shadow_size[1] / (crate::shadow::SIDE as f32).powi(2);
+        let texel_area = self.shadow_size[0] * self.shadow_size[1] / (SHADOW_SIDE as f32).powi(2);
         self.shadow_particle_path = (2.0 * radius).powi(3) / (texel_area * self.sun[1]);
     }
 }

@@ -71,13 +71,15 @@ mod shadow;
 mod slice;
 mod surface;
 mod targets;
+mod texture;
+mod ticket;
 mod uploads;
 
 /// The version of wgpu whose types appear in this crate's interface.
 pub use wgpu;
 
 pub use bodies::{PlacedBody, UploadedBodies};
-pub use buffers::{BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
+pub use buffers::{BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers, SurfaceStyle};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 pub use colouring::{Colouring, Quantity};
@@ -86,10 +88,11 @@ pub use error::RenderError;
 pub use foam::DrawnFoam;
 pub use frame::Frame;
 pub use liquid::Liquid;
-pub use offscreen::{Offscreen, Ticket};
+pub use offscreen::Offscreen;
 pub use particles::DrawnParticles;
 pub use renderer::{PassTime, Renderer};
 pub use screen_space::DrawnLiquidParticles;
 pub use slice::{Axis, DrawnSlice};
-pub use surface::{DrawnSurface, SurfaceStyle};
+pub use surface::DrawnSurface;
+pub use ticket::Ticket;
 pub use uploads::{UploadedFoam, UploadedParticles, UploadedSurface};

@@ -1,7 +1,7 @@
 //! Pictures without a window: drawn into a texture and read back asynchronously.
 
 use crate::renderer::check_size;
-use crate::{Frame, RenderError, Renderer};
+use crate::{Frame, RenderError, Renderer, Ticket};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use wgpu::{
@@ -23,14 +23,6 @@ pub struct Offscreen {
     submitted: u64,
     free: Vec<Buffer>,
     in_flight: Vec<InFlight>,
-}
-
-/// Identifies a submitted picture, to collect it.
-#[derive(Debug, PartialEq, Eq)]
-#[must_use = "a picture that is not collected continues to count as in flight"]
-pub struct Ticket {
-    target: u64,
-    number: u64,
 }
 
 #[derive(Debug)]

@@ -9,6 +9,8 @@
 //! snapshot. The window therefore stays responsive however slow the simulation is.
 
 mod app;
+#[cfg(target_arch = "wasm32")]
+mod browser;
 pub mod camera;
 mod edit;
 pub mod engine;
@@ -28,8 +30,10 @@ mod thumbnails;
 mod window;
 
 pub use app::Viewer;
+#[cfg(target_arch = "wasm32")]
+pub use browser::figures;
 pub use error::ViewerError;
 #[cfg(target_arch = "wasm32")]
-pub use page::{figures, start_on_page, try_passes};
+pub use page::{start_on_page, try_passes};
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::{ViewOptions, view};

@@ -1,68 +1,18 @@
 //! The web page: the program on a canvas.
 
 use std::cell::RefCell;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use splashdown::Checkpoint;
 use splashdown::scene::{Scene, presets};
 use splashdown_gpu::{DeviceRequest, Gpu, PassDesc, refused_passes};
 use wasm_bindgen::JsValue;
 
-use crate::Viewer;
+use crate::{Viewer, browser};
 
 thread_local! {
-    /// The result of [`figures`], updated with every picture.
-    static FIGURES: RefCell<String> = const { RefCell::new(String::new()) };
     /// The runner of the canvas.
     static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
-    /// The checkpoint saved when the device was lost.
-    static RESCUE: RefCell<Option<Checkpoint>> = const { RefCell::new(None) };
-    /// Dropped files that the browser has read.
-    static ARRIVED: RefCell<Vec<Arrived>> = const { RefCell::new(Vec::new()) };
-}
-
-/// A file's name, and its content or the reason why it cannot be read.
-type Arrived = (PathBuf, Result<Vec<u8>, String>);
-
-/// Adds a file that has been read.
-pub(crate) fn arrived(path: PathBuf, read: Result<Vec<u8>, String>) {
-    ARRIVED.with_borrow_mut(|files| files.push((path, read)));
-}
-
-/// The files that have been read since the last call.
-pub(crate) fn take_arrived() -> Vec<Arrived> {
-    ARRIVED.take()
-}
-
-/// Stores a checkpoint for the next start.
-pub(crate) fn set_rescue(checkpoint: Checkpoint) {
-    RESCUE.set(Some(checkpoint));
-}
-
-/// Sets the part of the address after the page's path without loading it; returns the whole address.
-pub(crate) fn set_address(rest: &str) -> String {
-    let Some(window) = web_sys::window() else { return String::new() };
-    let path = window.location().pathname().unwrap_or_default();
-    // In a frame without access to the history the address stays.
-    let _ = window.history().and_then(|history| {
-        history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("{path}{rest}")))
-    });
-    window.location().href().unwrap_or_default()
-}
-
-/// Puts a scene's text into the address, and the address into the clipboard.
-pub(crate) fn share(text: &str) -> String {
-    let address = set_address(&format!("#toml={}", String::from(js_sys::encode_uri_component(text))));
-    if let Some(window) = web_sys::window() {
-        // Without access to the clipboard the address bar still shows it.
-        let copied = window.navigator().clipboard().write_text(&address);
-        wasm_bindgen_futures::spawn_local(async move {
-            let _ = wasm_bindgen_futures::JsFuture::from(copied).await;
-        });
-    }
-    address
 }
 
 /// Starts or restarts the program on a canvas. After the device was lost it resumes from a checkpoint of some seconds
@@ -91,7 +41,7 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the page has no device")?;
         let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, None)?;
-        if let Some(checkpoint) = RESCUE.take() {
+        if let Some(checkpoint) = browser::take_rescue() {
             viewer.resume(checkpoint)?;
         }
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
@@ -100,7 +50,7 @@ pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> R
     if let Some(old) = RUNNER.take() {
         old.destroy();
     }
-    FIGURES.take();
+    browser::set_figures(String::new());
     let runner = eframe::WebRunner::new();
     RUNNER.set(Some(runner.clone()));
     runner.start(canvas, options, Box::new(create)).await
@@ -147,13 +97,3 @@ static BROKEN: PassDesc = PassDesc {
     bindings: &[],
     cpu: |_, _| {},
 };
-
-/// Numbers about the running program, as JSON; empty before the first picture.
-pub fn figures() -> String {
-    FIGURES.with_borrow(Clone::clone)
-}
-
-/// Sets the result of [`figures`].
-pub(crate) fn set_figures(figures: String) {
-    FIGURES.with_borrow_mut(|current| *current = figures);
-}

@@ -1,4 +1,5 @@
-//! The map of the code: a picture and a table of the crates, and a table of their modules.
+//! The map of the code: a picture and a table of the crates, a table of their modules, and the graph of modules in
+//! `ARCHITECTURE.md`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -8,16 +9,17 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 use super::PAGES;
+use crate::modules;
 use crate::process::root;
 
 /// A crate of the workspace.
-struct Package {
-    name: String,
+pub struct Package {
+    pub name: String,
     /// Folder relative to the repository.
-    folder: String,
+    pub folder: String,
     description: String,
     /// Crates of the workspace that it depends on, optional ones included.
-    uses: BTreeSet<String>,
+    pub uses: BTreeSet<String>,
 }
 
 /// The generated files with their contents.
@@ -31,10 +33,15 @@ pub fn files() -> Result<Vec<(PathBuf, String)>> {
         (folder.join("crates.svg"), picture(&packages)),
         (folder.join("crates.md"), crates_table(&packages)),
         (folder.join("modules.md"), modules_table(&packages)?),
+        architecture(&packages)?,
     ])
 }
 
-fn packages() -> Result<Vec<Package>> {
+/// The crates that the map shows: all but those that build the others.
+///
+/// # Errors
+/// If a manifest cannot be read.
+pub fn packages() -> Result<Vec<Package>> {
     let mut folders = vec!["web".to_owned()];
     for entry in fs::read_dir(root().join("crates"))? {
         folders.push(format!("crates/{}", entry?.file_name().to_string_lossy()));
@@ -165,31 +172,58 @@ fn crates_table(packages: &[Package]) -> String {
     text
 }
 
+/// `ARCHITECTURE.md` with the graph of modules between its marks.
+fn architecture(packages: &[Package]) -> Result<(PathBuf, String)> {
+    const MARKS: [&str; 2] = ["<!-- ANCHOR: modules -->\n", "<!-- ANCHOR_END: modules -->"];
+    let path = root().join("ARCHITECTURE.md");
+    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = text.replace("\r\n", "\n");
+    let parts =
+        text.split_once(MARKS[0]).and_then(|(before, rest)| Some((before, rest.split_once(MARKS[1])?.1)));
+    let (before, after) =
+        parts.with_context(|| format!("{} lacks the marks of its modules", path.display()))?;
+    let levels = levels(packages);
+    let mut sorted: Vec<_> = packages.iter().collect();
+    sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
+    let mut section = String::new();
+    for package in sorted {
+        let lines = modules::read(&root().join(&package.folder).join("src"))?.lines();
+        if !lines.is_empty() {
+            let _ = write!(section, "\n`{}`:\n\n```text\n{lines}```\n", package.name);
+        }
+    }
+    Ok((path, format!("{before}{}{section}\n{}{after}", MARKS[0], MARKS[1])))
+}
+
 fn modules_table(packages: &[Package]) -> Result<String> {
     let levels = levels(packages);
     let mut sorted: Vec<_> = packages.iter().collect();
     sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
     let mut text = String::new();
     for package in sorted {
-        let modules = modules(&root().join(&package.folder).join("src"))?;
-        if modules.is_empty() {
+        let source = root().join(&package.folder).join("src");
+        let (purposes, graph) = (purposes(&source)?, modules::read(&source)?);
+        if purposes.is_empty() {
             continue;
         }
         let _ = write!(
             text,
-            "{}### {}\n\n| module | purpose |\n|---|---|\n",
+            "{}### {}\n\n| module | purpose | imports |\n|---|---|---|\n",
             if text.is_empty() { "" } else { "\n" },
             package.name
         );
-        for (name, purpose) in modules {
-            let _ = writeln!(text, "| `{name}` | {} |", cell(&purpose));
+        for name in graph.sorted() {
+            let purpose = purposes.get(&name).map_or("", String::as_str);
+            let imports = graph.imports(&name).join("`, `");
+            let imports = if imports.is_empty() { imports } else { format!("`{imports}`") };
+            let _ = writeln!(text, "| `{name}` | {} | {imports} |", cell(purpose));
         }
     }
     Ok(text)
 }
 
 /// The modules in a source folder with the first sentence of their documentation.
-fn modules(source: &Path) -> Result<BTreeMap<String, String>> {
+fn purposes(source: &Path) -> Result<BTreeMap<String, String>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(source).with_context(|| format!("cannot read {}", source.display()))? {
         let path = entry?.path();

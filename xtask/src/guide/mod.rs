@@ -2,7 +2,7 @@
 
 mod book;
 mod links;
-mod map;
+pub mod map;
 mod markdown;
 
 use std::fs;

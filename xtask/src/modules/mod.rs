@@ -17,20 +17,6 @@ use anyhow::{Context, Result};
 
 use graph::Graph;
 
-/// The crates of the workspace from bottom to top. A crate may depend on those before it alone.
-pub const CRATES: [&str; 10] = [
-    "splashdown-gpu",
-    "splashdown-io",
-    "splashdown",
-    "splashdown-render",
-    "splashdown-run",
-    "splashdown-viewer",
-    "splashdown-cli",
-    "splashdown-web",
-    "splashdown-bindgen",
-    "xtask",
-];
-
 /// A crate's graph, and the order that its root declares.
 pub struct Modules {
     graph: Graph,
@@ -55,6 +41,12 @@ impl Modules {
         layers::problems(&self.graph, self.order.as_deref())
     }
 
+    /// The modules that a module imports, from top to bottom.
+    pub fn imports(&self, module: &str) -> Vec<String> {
+        let Some(edges) = self.graph.get(module) else { return Vec::new() };
+        self.sorted().into_iter().filter(|to| edges.contains_key(to)).collect()
+    }
+
     /// The modules from top to bottom.
     pub fn sorted(&self) -> Vec<String> {
         layers::sorted(&self.graph, self.order.as_deref())
@@ -66,14 +58,86 @@ impl Modules {
         let width = sorted.iter().map(String::len).max().unwrap_or(0);
         let mut text = String::new();
         for name in &sorted {
-            let imported: Vec<&str> = sorted
-                .iter()
-                .filter(|to| self.graph.get(name).is_some_and(|edges| edges.contains_key(*to)))
-                .map(String::as_str)
-                .collect();
-            let line = format!("{name:width$}  {}", imported.join(" "));
+            let line = format!("{name:width$}  {}", self.imports(name).join(" "));
             let _ = writeln!(text, "{}", line.trim_end());
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::Result;
+
+    use super::read;
+    use crate::guide::map;
+    use crate::process::root;
+
+    /// The crates of the workspace from bottom to top. A crate may depend on those before it alone.
+    const CRATES: [&str; 8] = [
+        "splashdown-gpu",
+        "splashdown-io",
+        "splashdown",
+        "splashdown-render",
+        "splashdown-run",
+        "splashdown-viewer",
+        "splashdown-cli",
+        "splashdown-web",
+    ];
+
+    /// The dependencies of each crate that do not point down.
+    fn upward(packages: &[map::Package]) -> Vec<String> {
+        let height = |name: &str| CRATES.iter().position(|known| *known == name);
+        let mut found = Vec::new();
+        for package in packages {
+            let Some(own) = height(&package.name) else {
+                found.push(format!("the order of crates lacks {}", package.name));
+                continue;
+            };
+            for used in package.uses.iter().filter(|used| height(used).is_none_or(|other| other >= own)) {
+                found.push(format!("{} depends on {used}", package.name));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn imports_between_modules_point_down() -> Result<()> {
+        let mut problems = Vec::new();
+        for folder in map::packages()?.into_iter().map(|package| package.folder).chain(["xtask".to_owned()]) {
+            let modules = read(&root().join(&folder).join("src"))?;
+            problems.extend(modules.problems().into_iter().map(|problem| format!("{folder}: {problem}")));
+        }
+        assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
+        // Control: the largest crate declares its order, and has the arrows that everyone knows of.
+        let modules = read(&root().join("crates/splashdown/src"))?;
+        assert!(modules.order.is_some());
+        assert!(modules.imports("cells").contains(&"state".to_owned()));
+        Ok(())
+    }
+
+    #[test]
+    fn dependencies_between_crates_point_down() -> Result<()> {
+        let mut packages = map::packages()?;
+        assert_eq!(packages.len(), CRATES.len());
+        assert_eq!(upward(&packages), [""; 0]);
+        // Control: an arrow upward is found.
+        let lowest = packages.iter_mut().find(|package| package.name == CRATES[0]);
+        lowest.into_iter().for_each(|package| package.uses.extend(["splashdown".to_owned()]));
+        assert_eq!(upward(&packages), ["splashdown-gpu depends on splashdown"]);
+        Ok(())
+    }
+
+    #[test]
+    fn the_graph_in_the_documents_is_up_to_date() -> Result<()> {
+        for (path, text) in map::files()? {
+            let name = path.file_name().unwrap_or_default();
+            if name != "ARCHITECTURE.md" && name != "modules.md" {
+                continue;
+            }
+            let committed = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
+            assert!(committed == text, "{} is out of date: run `cargo xtask guide`", path.display());
+        }
+        Ok(())
     }
 }

@@ -8,7 +8,6 @@ mod table;
 
 pub use cpu::CpuExecutor;
 pub use gpu::GpuExecutor;
-pub(crate) use readback::Mapping;
 pub use readback::Readback;
 
 use std::marker::PhantomData;

@@ -62,12 +62,26 @@ impl<T: GpuElement> Readback<T> {
     }
 }
 
+impl Gpu {
+    /// The content of a buffer with [`wgpu::BufferUsages::MAP_READ`] that a submission fills, once it is complete.
+    ///
+    /// # Errors
+    /// [`GpuError::DeviceLost`].
+    pub async fn read_back(
+        self: &Arc<Self>,
+        staging: wgpu::Buffer,
+        submission: wgpu::SubmissionIndex,
+    ) -> Result<Vec<u8>, GpuError> {
+        Mapping::new(self, staging, submission).take().await
+    }
+}
+
 const PENDING: u8 = 0;
 const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
 /// A staging buffer that is being mapped.
-pub(crate) struct Mapping {
+pub(super) struct Mapping {
     gpu: Arc<Gpu>,
     staging: wgpu::Buffer,
     #[cfg(not(target_arch = "wasm32"))]

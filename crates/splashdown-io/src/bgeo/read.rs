@@ -6,10 +6,10 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::columns::{Column, Number, Wanted};
+use crate::data::Particles;
+use crate::data::columns::{Column, Number, Wanted};
 use crate::error::IoError;
-use crate::particles::Particles;
-use crate::read::{MOST, regular};
+use crate::input::{MOST, regular};
 
 /// Most bytes of a row, and most attributes: far beyond any real file, so that the numbers of a broken one need no
 /// memory to speak of.

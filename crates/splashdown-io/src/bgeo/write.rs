@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::particles::Particles;
 
 /// Points gathered before each write.
 const ROWS: usize = 2048;

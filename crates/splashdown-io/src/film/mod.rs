@@ -7,8 +7,6 @@
 //! **Why not a library.** Bindings to libav need its headers on every machine that builds this; an encoder in Rust
 //! of this quality does not exist. Whoever has no `ffmpeg` keeps the pictures and is told the command for later.
 
-mod error;
-
 use std::ffi::OsString;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -19,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-pub use error::FilmError;
+pub use crate::error::FilmError;
 
 use crate::atomic::Temporary;
 use crate::picture::Picture;

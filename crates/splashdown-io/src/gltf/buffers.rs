@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::document::{Accessor, Document, shown};
 use crate::error::IoError;
-use crate::read::content;
+use crate::input::content;
 
 /// The types of an array's numbers, as the format counts them.
 const U8: u32 = 5121;

@@ -20,9 +20,9 @@ use std::path::Path;
 use self::buffers::Buffers;
 use self::document::{Document, Primitive};
 use self::transform::{Affine, mirrors, place, placed};
+use crate::data::Mesh;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::read::{MOST, Welder, content};
+use crate::input::{MOST, Welder, content};
 
 /// The kinds of primitives that are surfaces, by their numbers in the format.
 const TRIANGLES: u32 = 4;

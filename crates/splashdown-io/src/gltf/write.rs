@@ -6,8 +6,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::atomic;
+use crate::data::Mesh;
 use crate::error::IoError;
-use crate::mesh::Mesh;
 
 /// The format's numbers for what a part of the buffer is for, and for types of numbers.
 const ARRAY_BUFFER: u32 = 34962;

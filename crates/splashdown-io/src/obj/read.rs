@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use crate::data::Mesh;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::read::{content, push_fan};
+use crate::input::{content, push_fan};
 
 /// Reads the vertices and faces of an OBJ file, those of all its groups together. Polygons are cut into fans of
 /// triangles; corners may count from the end (negative numbers).

@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::data::Mesh;
 use crate::error::IoError;
-use crate::mesh::Mesh;
 
 /// Bytes gathered before each write.
 const CHUNK: usize = 1 << 16;

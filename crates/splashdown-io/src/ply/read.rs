@@ -10,12 +10,12 @@ use ply_rs_bw::ply::{
     ScalarType,
 };
 
-use crate::attribute::Attribute;
-use crate::columns::{Wanted, whole};
+use crate::data::Attribute;
+use crate::data::Mesh;
+use crate::data::Particles;
+use crate::data::columns::{Wanted, whole};
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
-use crate::read::not_particles;
+use crate::input::not_particles;
 
 /// Reads particles from the `vertex` element of a PLY file.
 ///

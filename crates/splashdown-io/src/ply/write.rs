@@ -4,10 +4,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
-use crate::attribute::Attribute;
+use crate::data::Attribute;
+use crate::data::Mesh;
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
 
 /// Rows gathered before each write; the buffer stays well inside the cache.
 const ROWS: usize = 2048;

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::data::Mesh;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::read::{Welder, content};
+use crate::input::{Welder, content};
 
 /// Bytes in front of the triangles of the binary form: 80 of free text and their count.
 const HEADER: usize = 84;

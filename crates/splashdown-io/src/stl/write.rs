@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::data::{Mesh, cross, dot, sub};
 use crate::error::IoError;
-use crate::mesh::{Mesh, cross, dot, sub};
 
 /// The free text of the header; it must not begin with `solid`, which would look like the text form.
 const TITLE: &[u8] = b"written by Splashdown; metres, y is up";

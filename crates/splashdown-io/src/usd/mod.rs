@@ -23,9 +23,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use self::spool::{Attribute, Spool};
 use crate::atomic;
+use crate::data::Mesh;
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
 
 /// Attributes of a mesh, in the order of [`MeshSeries::push`].
 const MESH: [Attribute; 6] = [

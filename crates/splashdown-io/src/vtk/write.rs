@@ -6,9 +6,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::data::Mesh;
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
 
 /// Numbers turned round and gathered before each write.
 const CHUNK: usize = 8192;

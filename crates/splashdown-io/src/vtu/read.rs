@@ -5,10 +5,10 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::decode::{Appended, Encoding, Layout};
-use crate::columns::{Number, Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Number, Wanted, triples};
 use crate::error::IoError;
-use crate::particles::Particles;
-use crate::read::{MOST, content, not_particles};
+use crate::input::{MOST, content, not_particles};
 
 /// Reads the points of a VTU or VTP file: positions, and of the point arrays `velocity` (`v`), `density`, `pressure`
 /// and `id`. Pieces follow one another; cells and other arrays are passed over.

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::atomic;
+use crate::data::Particles;
 use crate::error::IoError;
-use crate::particles::Particles;
 
 /// Numbers handed to the writer in one piece while connectivity is generated.
 const CHUNK: usize = 4096;

@@ -19,7 +19,7 @@
 //! Shadows of foam on the floor; reflections of spray in the water.
 
 use crate::chunks::{Chunk, bind_chunks};
-use crate::frame::check_radius;
+use crate::error::check_radius;
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout};
 use crate::shader::{ENVIRONMENT, GLOBALS, SPHERE, Shader};

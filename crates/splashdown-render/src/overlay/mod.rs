@@ -20,12 +20,13 @@ mod ticks;
 use crate::pipeline::{Bind, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::shader::Shader;
+use crate::texture::upload_texture;
 use crate::{Frame, RenderError};
 use bytemuck::{Pod, Zeroable};
 use canvas::Canvas;
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, BufferUsages, Device, PrimitiveTopology, Queue,
-    RenderPipeline, TextureFormat, TextureUsages, TextureView,
+    RenderPipeline, TextureFormat, TextureView,
 };
 
 pub(crate) const SHADER: Shader = Shader { label: "overlay", parts: &[include_str!("overlay.wgsl")] };
@@ -153,32 +154,4 @@ impl Overlay {
             pass.draw(0..4, 0..1);
         }
     }
-}
-
-/// Uploads sRGB bytes into a texture.
-pub(crate) fn upload_texture(
-    device: &Device,
-    queue: &Queue,
-    label: &str,
-    [width, height]: [u32; 2],
-    bytes: &[u8],
-) -> TextureView {
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Rgba8UnormSrgb,
-        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(4 * width),
-        rows_per_image: Some(height),
-    };
-    queue.write_texture(texture.as_image_copy(), bytes, layout, size);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

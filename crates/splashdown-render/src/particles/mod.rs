@@ -39,7 +39,7 @@
 
 use crate::chunks::{Chunk, bind_chunks};
 use crate::colour_map::ColourTextures;
-use crate::frame::check_radius;
+use crate::error::check_radius;
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, PipelineDesc, bind_group_layout};
 use crate::shader::{GLOBALS, QUANTITY, SPHERE, Shader};

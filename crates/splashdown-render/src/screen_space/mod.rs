@@ -42,7 +42,7 @@
 //! liquid.
 
 use crate::chunks::{Chunk, bind_chunks};
-use crate::frame::check_radius;
+use crate::error::check_radius;
 use crate::globals::Globals;
 use crate::pipeline::{
     ADD, Bind, DEPTH, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler,

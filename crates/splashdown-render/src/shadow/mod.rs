@@ -16,6 +16,7 @@
 //! Caustics: refract the ray of each vertex at the surface and divide by the area it illuminates.
 
 use crate::chunks::bind_chunks;
+use crate::globals::SHADOW_SIDE;
 use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::recorder::Recorder;
 use crate::shader::{FULLSCREEN, GLOBALS, Shader};
@@ -26,8 +27,6 @@ use wgpu::{
     TextureFormat, TextureUsages, TextureView,
 };
 
-/// Texels on a side of the map.
-pub(crate) const SIDE: u32 = 256;
 const FORMAT: TextureFormat = TextureFormat::R16Float;
 
 pub(crate) const FROM_SURFACE: Shader =
@@ -56,7 +55,7 @@ impl Shadow {
     pub fn new(device: &Device, globals: &BindGroupLayout) -> Shadow {
         let maps = ["shadow", "shadow between blurs"].map(|label| {
             let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-            texture(device, label, [SIDE; 2], FORMAT, 1, usage)
+            texture(device, label, [SHADOW_SIDE; 2], FORMAT, 1, usage)
         });
         let blur_layout = bind_group_layout(device, "shadow blur", &[Bind::Texture]);
         let blur_sources = [0, 1].map(|source: usize| {

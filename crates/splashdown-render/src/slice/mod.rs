@@ -20,7 +20,7 @@
 
 use crate::chunks::bind_chunks;
 use crate::colour_map::ColourTextures;
-use crate::frame::check_radius;
+use crate::error::check_radius;
 use crate::globals::Globals;
 use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;

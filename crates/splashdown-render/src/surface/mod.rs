@@ -37,7 +37,7 @@ use crate::globals::Globals;
 use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIQUID, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets};
-use crate::{Draw, Liquid, RenderError, SurfaceBuffers};
+use crate::{Draw, Liquid, RenderError, SurfaceBuffers, SurfaceStyle};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPass, RenderPipeline, Sampler,
     TextureFormat,
@@ -60,22 +60,6 @@ pub struct DrawnSurface<'a> {
     pub liquid: Liquid,
     /// Whether the liquid, the wireframe or both are drawn.
     pub style: SurfaceStyle,
-}
-
-/// What is drawn of a surface.
-///
-/// The wireframe needs vertex and index buffers with [`wgpu::BufferUsages::STORAGE`], and draw
-/// arguments with a base vertex of 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum SurfaceStyle {
-    /// The liquid.
-    #[default]
-    Liquid,
-    /// The liquid and its wireframe.
-    LiquidWithLines,
-    /// The wireframe alone; edges of back faces are fainter.
-    Lines,
 }
 
 impl<'a> DrawnSurface<'a> {

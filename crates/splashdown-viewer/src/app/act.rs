@@ -26,7 +26,7 @@ impl Viewer {
                     Ok(scene) => {
                         self.open(scene);
                         #[cfg(target_arch = "wasm32")]
-                        crate::page::set_address(&format!("?scene={name}"));
+                        crate::browser::set_address(&format!("?scene={name}"));
                     }
                     Err(error) => self.state.notify(error.to_string(), true, now),
                 }

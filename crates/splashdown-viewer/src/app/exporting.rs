@@ -72,7 +72,7 @@ impl Viewer {
         #[cfg(target_arch = "wasm32")]
         {
             let _ = now;
-            crate::page::set_rescue(*checkpoint);
+            crate::browser::set_rescue(*checkpoint);
         }
         #[cfg(not(target_arch = "wasm32"))]
         {
@@ -88,7 +88,7 @@ impl Viewer {
         #[cfg(target_arch = "wasm32")]
         match text {
             Ok(text) => {
-                let address = crate::page::share(&text);
+                let address = crate::browser::share(&text);
                 self.state.notify(
                     format!(
                         "the link is in the address bar and in the clipboard ({} characters)",

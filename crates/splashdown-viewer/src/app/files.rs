@@ -31,11 +31,11 @@ impl Viewer {
             let ctx = ctx.clone();
             wasm_bindgen_futures::spawn_local(async move {
                 let read = file.bytes_async().await;
-                crate::page::arrived(file.path().to_owned(), read);
+                crate::browser::arrived(file.path().to_owned(), read);
                 ctx.request_repaint();
             });
         }
-        for (path, read) in crate::page::take_arrived() {
+        for (path, read) in crate::browser::take_arrived() {
             match read {
                 Ok(bytes) => self.open_bytes(&path, &bytes, now),
                 Err(reason) => self.state.notify(format!("{}: {reason}", path.display()), true, now),

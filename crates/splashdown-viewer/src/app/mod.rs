@@ -134,7 +134,7 @@ impl Viewer {
         self.draw(size, render_state, &ctx);
         self.engine.picture_drawn();
         #[cfg(target_arch = "wasm32")]
-        crate::page::set_figures(self.state.figures.to_json());
+        crate::browser::set_figures(self.state.figures.to_json());
         let passed = ctx.input(|input| input.stable_dt).max(1e-4);
         self.seen.frames_per_second += 0.1 * (1.0 / passed - self.seen.frames_per_second);
         if self.state.playing {

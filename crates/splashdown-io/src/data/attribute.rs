@@ -17,13 +17,13 @@ impl Attribute {
     /// Whether it is the velocity, which particles and meshes also have in a field of its own.
     #[must_use]
     pub fn is_velocity(&self) -> bool {
-        crate::columns::Column::named(&self.name, self.components) == Some(crate::columns::Column::Velocity)
+        super::columns::Column::named(&self.name, self.components) == Some(super::columns::Column::Velocity)
     }
 
     /// Whether it is the number by which a particle is known.
     #[must_use]
     pub fn is_id(&self) -> bool {
-        crate::columns::Column::named(&self.name, self.components) == Some(crate::columns::Column::Id)
+        super::columns::Column::named(&self.name, self.components) == Some(super::columns::Column::Id)
     }
 
     /// Tells whether there are 1 or 3 numbers for each of `expected`.

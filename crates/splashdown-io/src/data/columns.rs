@@ -1,7 +1,6 @@
 //! What the readers of particle files share: the meaning of an array's name, and numbers of any type.
 
-use crate::attribute::Attribute;
-use crate::particles::Particles;
+use super::{Attribute, Particles};
 
 /// The arrays that mean something here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
