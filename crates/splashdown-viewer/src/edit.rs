@@ -51,7 +51,7 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     let center = scene.domain.center();
     // Particles are allocated in advance for the duration of the scene.
     scene.duration = scene.duration.max(TAP_TIME);
-    let most = (2 * splashdown::sample::count(scene)).clamp(20_000, 500_000) as u32;
+    let most = (2 * splashdown::check::count(scene)).clamp(20_000, 500_000) as u32;
     scene.emitters.push(Emitter {
         name: TAP.to_owned(),
         outlet: Outlet::Disc { radius },

@@ -242,7 +242,7 @@ pub struct State {
 impl State {
     /// The state of a scene that was just opened.
     pub fn new(scene: Scene) -> Self {
-        let counted = splashdown::sample::count(&scene);
+        let counted = splashdown::check::count(&scene);
         Self {
             look: Look { colour_by: scene.output.colour_by, ..Look::default() },
             orbit: Orbit::of_scene(&scene),

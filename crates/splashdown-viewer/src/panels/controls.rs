@@ -44,7 +44,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         let factor = (counted as f32 / state.particles_wanted).cbrt();
         state.scene.fluid.particle_spacing *= factor;
         state.scene.surface.cell_size *= factor;
-        state.counted = splashdown::sample::count(&state.scene);
+        state.counted = splashdown::check::count(&state.scene);
         actions.push(Action::Restart);
     }
     ui.weak(format!("{:.2} mm apart", 1000.0 * state.scene.fluid.particle_spacing));

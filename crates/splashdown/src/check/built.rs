@@ -220,6 +220,12 @@ impl FluidParts {
     }
 }
 
+/// The number of a scene's particles at the start, those inside bodies included. Meshes are filled and files read for it;
+/// a simulation of the scene does not do it again.
+pub fn count(scene: &Scene) -> u64 {
+    Built::of(scene).count(scene)
+}
+
 fn read_meshes(scene: &Scene) -> Vec<Result<Mesh, BodyError>> {
     scene.bodies.iter().map(|body| mesh_of(&owner("body", &body.name, &body.mesh), &body.mesh)).collect()
 }

@@ -14,4 +14,5 @@ mod tests;
 mod warnings;
 
 pub(crate) use built::Built;
+pub use built::count;
 pub use reference::reference;

@@ -59,7 +59,7 @@ const ONCE: [(&str, u32); 6] = [
 
 fn write(folder: &Path) -> std::path::PathBuf {
     stl::write_mesh(&folder.join("cube.stl"), &models::build("cube").unwrap()).unwrap();
-    let positions = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| 0.2 + 0.05 * c as f32)).collect();
+    let positions = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| 0.6 + 0.05 * c as f32)).collect();
     let drop = Particles { positions, ..Particles::default() };
     ply::write_particles(&folder.join("drop.ply"), &drop).unwrap();
     let path = folder.join("everything.toml");
