@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use super::PAGES;
 use crate::modules;
@@ -187,7 +187,10 @@ fn architecture(packages: &[Package]) -> Result<(PathBuf, String)> {
     sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
     let mut section = String::new();
     for package in sorted {
-        let lines = modules::read(&root().join(&package.folder).join("src"))?.lines();
+        let modules = modules::read(&root().join(&package.folder).join("src"))?;
+        let problems = modules.problems();
+        ensure!(problems.is_empty(), "imports of {}:\n  {}", package.name, problems.join("\n  "));
+        let lines = modules.lines();
         if !lines.is_empty() {
             let _ = write!(section, "\n`{}`:\n\n```text\n{lines}```\n", package.name);
         }

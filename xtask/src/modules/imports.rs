@@ -30,12 +30,14 @@ pub fn imports(source: &str, module: &[String]) -> Imports {
                 found.test_modules.extend(child);
                 i = end;
             } else {
+                i = after;
                 if attribute.first().is_some_and(|word| word.is("macro_export"))
                     && let Some(name) = macro_name(&tokens[after..])
                 {
                     found.macros.push(name);
+                    // Its paths are those of the modules that use it.
+                    i = after_item(&tokens, after).0;
                 }
-                i = after;
             }
             continue;
         }
@@ -241,8 +243,11 @@ mod tests {
 
     #[test]
     fn exported_macros_are_found() {
-        let found =
-            imports("#[macro_export]\n#[doc(hidden)]\nmacro_rules! deep { () => {} }", &["x".to_owned()]);
+        let found = imports(
+            "#[macro_export]\n#[doc(hidden)]\nmacro_rules! deep { () => { $crate::a } } use crate::b;",
+            &["x".to_owned()],
+        );
         assert_eq!(found.macros, ["deep"]);
+        assert_eq!(found.names, ["b"]);
     }
 }
