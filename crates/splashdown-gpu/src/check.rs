@@ -24,11 +24,24 @@ pub fn check(pass: &PassDesc) -> Result<(), String> {
     check_source(pass, &pass.source()?)
 }
 
+/// Compares a declaration with the limits of browsers.
+fn check_limits(pass: &PassDesc) -> Result<(), String> {
+    if pass.invocations() > MAX_INVOCATIONS {
+        return Err(format!("{} invocations; browsers grant {MAX_INVOCATIONS}", pass.invocations()));
+    }
+    let storage = pass.bindings.iter().filter(|b| b.access != Access::Uniform).count();
+    if storage > MAX_STORAGE_BUFFERS {
+        return Err(format!("{storage} storage buffers; browsers grant {MAX_STORAGE_BUFFERS}"));
+    }
+    Ok(())
+}
+
 /// Compares a pass with this WGSL, in which imports and bindings are expanded.
 ///
 /// # Errors
 /// A description of the first difference.
 pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
+    check_limits(pass)?;
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let info =
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
@@ -49,13 +62,6 @@ pub fn check_source(pass: &PassDesc, source: &str) -> Result<(), String> {
             entry.workgroup_size, pass.workgroup_size
         ));
     }
-    if pass.invocations() > MAX_INVOCATIONS {
-        return Err(format!("{} invocations; browsers grant {MAX_INVOCATIONS}", pass.invocations()));
-    }
-    let storage = pass.bindings.iter().filter(|b| b.access != Access::Uniform).count();
-    if storage > MAX_STORAGE_BUFFERS {
-        return Err(format!("{storage} storage buffers; browsers grant {MAX_STORAGE_BUFFERS}"));
-    }
     for (name, _) in pass.constants {
         if !module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name)) {
             return Err(format!("no `override {name}` in the WGSL"));
@@ -74,7 +80,7 @@ fn check_bindings(pass: &PassDesc, module: &Module, info: &FunctionInfo) -> Resu
     let mut layouter = Layouter::default();
     layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
     let mut found = 0;
-    for (handle, variable) in module.global_variables.iter() {
+    for (_, variable) in module.global_variables.iter() {
         let Some(place) = &variable.binding else { continue };
         let name = variable.name.as_deref().unwrap_or_default();
         if place.group != 0 {
@@ -100,6 +106,19 @@ fn check_bindings(pass: &PassDesc, module: &Module, info: &FunctionInfo) -> Resu
             _ => (variable.ty, layouter[variable.ty].size as usize),
         };
         check_element(declared, module, element, size, &layouter)?;
+        found += 1;
+    }
+    if found != pass.bindings.len() {
+        return Err(format!("{found} bindings in WGSL, {} in Rust", pass.bindings.len()));
+    }
+    check_usage(pass, module, info)
+}
+
+/// Every binding is used, and every writable one written.
+fn check_usage(pass: &PassDesc, module: &Module, info: &FunctionInfo) -> Result<(), String> {
+    for (handle, variable) in module.global_variables.iter() {
+        let Some(place) = &variable.binding else { continue };
+        let Binding { name, access, .. } = pass.bindings[place.binding as usize];
         let usage = info[handle];
         if usage.is_empty() {
             return Err(format!("`{name}` is bound and never used"));
@@ -107,10 +126,6 @@ fn check_bindings(pass: &PassDesc, module: &Module, info: &FunctionInfo) -> Resu
         if access == Access::ReadWrite && !usage.intersects(GlobalUse::WRITE | GlobalUse::ATOMIC) {
             return Err(format!("`{name}` is bound as writable and never written"));
         }
-        found += 1;
-    }
-    if found != pass.bindings.len() {
-        return Err(format!("{found} bindings in WGSL, {} in Rust", pass.bindings.len()));
     }
     Ok(())
 }

@@ -123,7 +123,8 @@ fn misplaced(file: &Path, text: &str, passes: &[&'static PassDesc]) -> Vec<Strin
 
 /// The passes that a Rust file declares as statics, before its tests, and that are not in the registry.
 fn unregistered(text: &str, passes: &[&'static PassDesc]) -> Vec<String> {
-    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let code = |line: &&str| !line.trim_start().starts_with("//");
+    let text: String = text.lines().take_while(|line| line.trim() != "#[cfg(test)]").filter(code).collect();
     let mut problems = Vec::new();
     for declaration in text.split("static ").skip(1) {
         let Some((name, body)) = declaration.split_once(": PassDesc =") else { continue };

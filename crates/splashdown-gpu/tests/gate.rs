@@ -303,7 +303,7 @@ mod changed {
 #[test]
 fn every_mutation_of_the_list_is_caught() {
     let mutations = [
-        ("written, declared as read", changed::Access::LIST, "Store"),
+        ("written, declared as read", changed::Access::LIST, "writing to this location is not permitted"),
         (
             "read, declared as writable",
             changed::NeverWritten::LIST,
