@@ -101,9 +101,11 @@ fn a_stopped_run_resumes_bit_identically() -> Outcome {
         assert!(fs::read(straight.join(&name))? == fs::read(out.join(&name))?, "{name}");
     }
 
-    // There is nothing left to resume.
-    let again = run(RunRequest::resume(&out, RunSettings::default())?, &mut (), &|| Stop::No);
-    assert!(matches!(again, Err(RunError::AlreadyFinished { .. })), "{again:?}");
+    // The checkpoint is after the last requested frame.
+    let mut settings = RunSettings::default();
+    settings.frames = Some(frames - 1);
+    let shorter = run(RunRequest::resume(&out, settings)?, &mut (), &|| Stop::No);
+    assert!(matches!(shorter, Err(RunError::AlreadyFinished { .. })), "{shorter:?}");
     Ok(())
 }
 

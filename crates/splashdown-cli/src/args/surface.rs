@@ -13,10 +13,10 @@ Examples:
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
   splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
 
-Input formats are PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; output formats are PLY, OBJ, STL, VTK
-and GLB. Velocities of particles are interpolated to the vertices (PLY, VTK, GLB). Other attributes
-(a number or a vector per particle) are interpolated with --attribute (PLY, VTK). Several input files
-give meshes with the same numbers, in place of the star or before the ending.
+Input formats are PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; output formats are PLY, OBJ, STL,
+VTK and GLB. Velocities of particles are interpolated to the vertices (PLY, VTK, GLB). Other
+attributes (a number or a vector per particle) are interpolated with --attribute (PLY, VTK).
+Several input files give meshes with the same numbers, in place of the star or before the ending.
 
 Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
 particle radius is half of the particle spacing.";
