@@ -1,7 +1,7 @@
-//! Times of the surface per pass, beside `splashsurf_lib` in the same run:
+//! Times of surface reconstruction per pass, with `splashsurf_lib` for comparison in the same run:
 //! `cargo run --release -p splashdown --example surface_times -- [POINTS.npy SPACING]`
 //!
-//! Without a file of positions it takes the water of the dam break at 0.2 s, which it simulates first.
+//! Without a file of positions it first simulates the dam break up to 0.2 s.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -31,7 +31,7 @@ fn timed<T>(mut work: impl FnMut() -> T) -> f64 {
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Positions in metres, and their spacing.
+/// Positions and particle spacing in metres.
 fn input() -> Result<(Vec<[f32; 3]>, f32), Failure> {
     let mut arguments = std::env::args().skip(1);
     if let Some(file) = arguments.next() {

@@ -83,6 +83,7 @@ mod memory;
 pub mod models;
 #[doc(hidden)]
 pub mod mouse_force;
+mod pairs;
 #[doc(hidden)]
 pub mod passes;
 #[doc(hidden)]

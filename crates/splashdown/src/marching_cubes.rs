@@ -1,34 +1,34 @@
-//! The table of marching cubes, made from its rules instead of being typed in.
+//! The marching-cubes table, generated from its rules.
 //!
-//! A cube's corner `c` lies at `(c & 1, c >> 1 & 1, c >> 2)`. Edge `e` runs along axis `e / 4`; its two low
-//! bits say where it lies on the two other axes, in their order. A case is the set of corners inside the
-//! fluid, one bit each.
+//! Corner `c` of a cube is at `(c & 1, c >> 1 & 1, c >> 2)`. Edge `e` is parallel to axis `e / 4`;
+//! its two low bits are its coordinates along the two other axes, in their order. A case is the set
+//! of corners inside the fluid, one bit each.
 //!
 //! # How it works
 //!
-//! The surface cuts every edge between an inside and an outside corner once. On each face the cuts are joined
-//! so that each run of inside corners along the face's border is cut off by itself: of two inside corners
-//! that are diagonal on a face, each gets its own corner cut. Every cut edge belongs to two faces, so the
-//! joins close to loops. A loop is split into triangles by the shortest diagonals, none of which may lie in a
-//! face of the cube.
+//! The surface cuts every edge between an inside and an outside corner once. On each face the cuts
+//! are joined by segments so that each run of inside corners along the border of the face is
+//! separated individually: two inside corners that are diagonal on a face are separated from each
+//! other. Every cut edge belongs to two faces, so the segments form closed loops. A loop is
+//! triangulated with the shortest diagonals, none of which may lie in a face of the cube.
 //!
-//! A face's joins depend on that face's four corners only, and both cubes at the face see the same four. So
-//! the triangles of neighbours meet along the same lines, in opposite directions: the mesh is closed and
-//! oriented whatever the corners are. A diagonal in a face could coincide with one of the neighbour's and
-//! give an edge with four triangles; hence the last rule. The joins are those of the table of Lorensen and
-//! Cline as corrected by Bourke ("Polygonising a scalar field", 1994); the tests check all of this for every
-//! case.
+//! The segments on a face depend only on its four corners, which both adjacent cubes share. The
+//! triangles of adjacent cubes therefore share the same segments, in opposite directions: the mesh
+//! is closed and oriented for all cases. A diagonal in a face could coincide with one of the
+//! adjacent cube and produce an edge with four triangles; hence the last rule. The segments are
+//! those of the table of Lorensen and Cline as corrected by Bourke ("Polygonising a scalar field",
+//! 1994). The tests verify all of this for every case.
 
 use std::sync::LazyLock;
 
 use glam::UVec2;
 
-/// Triangles by case, each as three edges, counter-clockwise seen from outside the fluid.
+/// Triangles by case, each as three edges, counter-clockwise as seen from outside the fluid.
 pub(crate) static TRIANGLES: LazyLock<Vec<Vec<[u8; 3]>>> =
     LazyLock::new(|| (0..=255).map(triangulate).collect());
 
-/// [`TRIANGLES`] for the device: per case 15 edges of 4 bits, from the lowest bit of `x` to `y`'s bit 27, and
-/// above them the number of triangles.
+/// [`TRIANGLES`] for the device: per case 15 edges of 4 bits, from the lowest bit of `x` to bit 27
+/// of `y`, and the number of triangles in the bits above.
 pub(crate) fn packed() -> Vec<UVec2> {
     let pack = |triangles: &Vec<[u8; 3]>| {
         let edges = triangles.iter().flatten().enumerate();
@@ -39,11 +39,11 @@ pub(crate) fn packed() -> Vec<UVec2> {
     TRIANGLES.iter().map(pack).collect()
 }
 
-/// Number of triangles of every case.
+/// Number of triangles by case.
 pub(crate) static COUNTS: LazyLock<[u8; 256]> =
     LazyLock::new(|| std::array::from_fn(|case| TRIANGLES[case].len() as u8));
 
-/// The corners at an edge's ends, the lower one first.
+/// The corners at the ends of an edge, the lower one first.
 fn ends(edge: u8) -> [u8; 2] {
     let (a, b) = (edge & 1, edge >> 1 & 1);
     match edge / 4 {
@@ -53,7 +53,7 @@ fn ends(edge: u8) -> [u8; 2] {
     }
 }
 
-/// The edge between two neighbouring corners.
+/// The edge between two adjacent corners.
 fn edge_between(a: u8, b: u8) -> u8 {
     let (low, high) = (a.min(b), a.max(b));
     match high - low {
@@ -63,12 +63,13 @@ fn edge_between(a: u8, b: u8) -> u8 {
     }
 }
 
-/// The faces' corners, counter-clockwise seen from outside the cube: low x, high x, low y, ...
+/// The corners of the faces, counter-clockwise as seen from outside the cube: low x, high x, low y,
+/// ...
 const FACES: [[u8; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
-/// The joins on one face: from the edge by which the border enters a run of inside corners to the edge by
-/// which it leaves.
+/// The segments on one face: from the edge at which the border enters a run of inside corners to
+/// the edge at which it leaves.
 fn joins(case: u8, face: [u8; 4]) -> impl Iterator<Item = (u8, u8)> {
     let inside = move |k: usize| case >> face[k % 4] & 1 == 1;
     (0..4).filter(move |&k| !inside(k) && inside(k + 1)).map(move |k| {
@@ -78,20 +79,21 @@ fn joins(case: u8, face: [u8; 4]) -> impl Iterator<Item = (u8, u8)> {
     })
 }
 
-/// True if two edges lie on a common face.
+/// True if two edges share a face.
 fn share_face(a: u8, b: u8) -> bool {
     FACES.iter().any(|face| [a, b].iter().all(|&edge| ends(edge).iter().all(|corner| face.contains(corner))))
 }
 
-/// Squared distance of two edges' midpoints, in quarters of a squared edge.
+/// Squared distance of the midpoints of two edges, in units of a quarter of the squared edge
+/// length.
 fn distance(a: u8, b: u8) -> u32 {
     let middle =
         |edge: u8, axis: u8| ends(edge).iter().map(|corner| i32::from(corner >> axis & 1)).sum::<i32>();
     (0..3).map(|axis| (middle(a, axis) - middle(b, axis)).pow(2) as u32).sum()
 }
 
-/// The best split of the polygon `edges` (its first and last are joined by a side already paid for), with its
-/// cost.
+/// The triangulation of the polygon `edges` with the lowest cost, and this cost. The side between
+/// the first and the last is already included in the cost.
 fn split(edges: &[u8]) -> (u32, Vec<[u8; 3]>) {
     let last = edges.len() - 1;
     if last < 2 {
@@ -139,7 +141,8 @@ mod tests {
 
     use super::*;
 
-    /// The lines on the border of a case's triangles: those whose reverse is not a side of another triangle.
+    /// The border of the triangles of a case: the sides whose reverse is not a side of another
+    /// triangle.
     fn border(case: usize) -> Vec<(u8, u8)> {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &TRIANGLES[case] {
@@ -165,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_end_where_the_faces_say_and_no_diagonal_lies_in_a_face() {
+    fn triangle_borders_are_face_segments_and_no_diagonal_lies_in_a_face() {
         for case in 0..256 {
             let mut expected: Vec<_> = FACES.iter().flat_map(|&face| joins(case as u8, face)).collect();
             expected.sort_unstable();
@@ -180,12 +183,14 @@ mod tests {
         }
     }
 
-    /// Every pattern of four corners on a face gives the same lines from both sides, in opposite directions.
+    /// Every pattern of four corners on a face gives the same segments from both sides, in opposite
+    /// directions.
     #[test]
-    fn neighbours_meet() {
+    fn adjacent_cubes_share_segments() {
         for axis in 0..3 {
             let (low, high) = (FACES[2 * axis], FACES[2 * axis + 1]);
-            // A corner, or an edge, of the high face as the neighbour's low face has it.
+            // A corner or an edge of the high face, as a corner or an edge of the low face of the
+            // adjacent cube.
             let shift_edge = |edge: u8| {
                 let [a, b] = ends(edge).map(|corner| corner & !(1 << axis));
                 edge_between(a, b)
@@ -214,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn packing_keeps_every_edge() {
+    fn packing_preserves_every_edge() {
         for (case, packed) in packed().into_iter().enumerate() {
             let bits = u64::from(packed.x) | u64::from(packed.y) << 32;
             assert_eq!(bits >> 60, u64::from(COUNTS[case]));

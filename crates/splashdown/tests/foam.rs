@@ -1,4 +1,4 @@
-//! Foam, spray and bubbles as wholes: what makes them, how they move, that they are the same every time.
+//! Foam, spray and bubbles: generation, motion and reproducibility.
 
 use splashdown::foam::Diffuse;
 use splashdown::scene::Scene;
@@ -12,7 +12,7 @@ const HEAD: &str = "
 name = \"foam\"
 duration = 1.0
 ";
-/// A column that falls against the other end, as coarse as still makes spray, foam and bubbles.
+/// A collapsing column at the lowest resolution that generates spray, foam and bubbles.
 const COLUMN: &str = "
 [domain]
 min = [0, 0, 0]
@@ -24,7 +24,7 @@ shape = \"box\"
 position = [0, 0, 0]
 size = [0.24, 0.4, 0.2]
 ";
-/// Water that fills a narrow tank to a half.
+/// Water at rest in a narrow tank.
 const CALM: &str = "
 [domain]
 min = [0, 0, 0]
@@ -41,7 +41,7 @@ fn scene(fluid: &str) -> Scene {
     Scene::parse(&format!("{HEAD}{fluid}"), "foam.toml").unwrap()
 }
 
-/// The column in three times as much foam.
+/// The column with three times the rates of generation.
 fn foaming_column() -> Scene {
     let mut scene = scene(COLUMN);
     (scene.foam.trapped_air, scene.foam.wave_crest) = (600.0, 3000.0);
@@ -58,7 +58,7 @@ fn cpu(scene: &Scene) -> (Simulation, Foam) {
     start(scene, CpuExecutor::new().into())
 }
 
-/// Frames of 1/50 s, looked at after every batch of steps.
+/// Advances frames of 1/50 s, with an update of the foam after every batch of steps.
 fn advance(simulation: &mut Simulation, foam: &Foam, frames: u32) {
     for _ in 0..frames {
         simulation.begin(0.02).unwrap();
@@ -74,7 +74,7 @@ fn state(simulation: &mut Simulation, foam: &Foam) -> FoamState {
     simulation.executor().read(buffer).unwrap()[0]
 }
 
-/// Puts one particle there, in place of all.
+/// Replaces all diffuse particles by one.
 fn put(simulation: &mut Simulation, foam: &Foam, x: [f32; 3], v: [f32; 3], kind: DiffuseKind) {
     let particle = Diffuse { position: x.into(), lifetime: 1.0, velocity: v.into(), tag: kind as u32 };
     let now = FoamState { count: 1, ..state(simulation, foam) };
@@ -84,7 +84,7 @@ fn put(simulation: &mut Simulation, foam: &Foam, x: [f32; 3], v: [f32; 3], kind:
 }
 
 #[test]
-fn a_falling_column_foams_and_calm_water_does_not() {
+fn a_collapsing_column_generates_foam_and_water_at_rest_does_not() {
     let calm = scene(CALM);
     let (mut simulation, mut foam) = cpu(&calm);
     advance(&mut simulation, &foam, 30);
@@ -97,7 +97,7 @@ fn a_falling_column_foams_and_calm_water_does_not() {
 
     let kinds = [DiffuseKind::Spray, DiffuseKind::Foam, DiffuseKind::Bubble].map(|kind| diffuse.count(kind));
     assert!(kinds.iter().all(|&n| n > 20), "{kinds:?}");
-    // Near the water, or thrown by it; all of it inside of the tank.
+    // All of them are inside the tank, close to the water or above it.
     for x in &diffuse.positions {
         assert!((0.0..=0.8).contains(&x[0]) && (0.0..=0.8).contains(&x[1]) && (0.0..=0.2).contains(&x[2]));
     }
@@ -109,15 +109,15 @@ fn a_falling_column_foams_and_calm_water_does_not() {
 }
 
 #[test]
-fn it_has_the_same_bits_every_time() {
-    // Coarse: a software driver takes milliseconds for each step.
+fn foam_is_reproducible() {
+    // Coarse, because a software driver takes milliseconds for each step.
     let mut scene = scene(COLUMN);
     scene.fluid.particle_spacing = 0.04;
     (scene.foam.trapped_air, scene.foam.wave_crest) = (2000.0, 10_000.0);
     let run = |executor: Executor, pause: bool| -> DiffuseParticles {
         let (mut simulation, mut foam) = start(&scene, executor);
         if pause {
-            // A control: another beginning, another chance.
+            // Negative control: another initial state.
             advance(&mut simulation, &foam, 1);
         }
         advance(&mut simulation, &foam, 14);
@@ -127,7 +127,7 @@ fn it_has_the_same_bits_every_time() {
     assert!(first.len() > 20, "{}", first.len());
     assert_eq!(run(CpuExecutor::new().into(), false), first);
     assert_ne!(run(CpuExecutor::new().into(), true), first);
-    if let Some(gpu) = testing::gpu_or_skip("it_has_the_same_bits_every_time") {
+    if let Some(gpu) = testing::gpu_or_skip("foam_is_reproducible") {
         let first = run(GpuExecutor::new(gpu.clone()).into(), false);
         assert!(first.len() > 20, "{}", first.len());
         assert_eq!(run(GpuExecutor::new(gpu).into(), false), first);
@@ -135,7 +135,7 @@ fn it_has_the_same_bits_every_time() {
 }
 
 #[test]
-fn the_water_does_not_feel_it() {
+fn foam_does_not_affect_the_fluid() {
     let scene = scene(COLUMN);
     let (mut simulation, foam) = cpu(&scene);
     advance(&mut simulation, &foam, 10);
@@ -147,7 +147,7 @@ fn the_water_does_not_feel_it() {
 }
 
 #[test]
-fn a_resumed_run_foams_on_with_the_same_bits() {
+fn foam_of_a_resumed_run_is_bit_identical() {
     let mut scene = foaming_column();
     scene.surface.enabled = false;
     scene.foam.enabled = true;
@@ -171,7 +171,7 @@ fn a_resumed_run_foams_on_with_the_same_bits() {
 }
 
 #[test]
-fn spray_flies_along_a_parabola() {
+fn spray_is_ballistic() {
     let scene = scene(CALM);
     let (mut simulation, mut foam) = cpu(&scene);
     put(&mut simulation, &foam, [0.02, 0.45, 0.06], [0.7, 1.0, 0.0], DiffuseKind::Spray);
@@ -183,10 +183,10 @@ fn spray_flies_along_a_parabola() {
         assert_eq!(diffuse.kinds, [DiffuseKind::Spray]);
         let [x, y, z] = diffuse.positions[0];
         let expected = [0.02 + 0.7 * t, 0.45 + t - 0.5 * 9.81 * t * t, 0.06];
-        // Rounding of the clock, 1e-7 s at some m/s.
+        // Rounding of the time, 1e-7 s at a few m/s.
         let off = (x - expected[0]).abs().max((y - expected[1]).abs()).max((z - expected[2]).abs());
         assert!(off < 1e-5, "{off} m at {t} s");
-        // A control: a step of Euler's way would be off by g dt t / 2.
+        // Negative control: the error of the explicit Euler method is g dt t / 2.
         assert!(off < 0.1 * 0.5 * 9.81 * 0.02 * t);
     }
 }
@@ -206,14 +206,14 @@ fn bubbles_rise_and_become_foam() {
             break;
         }
     }
-    // buoyancy g / drag = 0.245 m/s in water that nearly rests; by then it rises evenly.
+    // The terminal velocity in water at rest is buoyancy g / drag = 0.245 m/s.
     let speed = (heights[15] - heights[5]) / 0.2;
     assert!((speed - 0.245).abs() < 0.04, "{speed} m/s: {heights:?}");
     let diffuse = simulation.diffuse(&mut foam).unwrap();
     assert_eq!(diffuse.kinds, [DiffuseKind::Foam], "{heights:?}");
     let top = heights[heights.len() - 1];
     assert!((0.26..0.33).contains(&top), "the surface is at 0.3 m: {top}");
-    // It stays there, and dissolves after its second.
+    // It remains at the surface and dissolves after its lifetime of one second.
     let mut lived = 0;
     while !simulation.diffuse(&mut foam).unwrap().is_empty() {
         simulation.advance(0.1).unwrap();
@@ -225,7 +225,7 @@ fn bubbles_rise_and_become_foam() {
 }
 
 #[test]
-fn a_full_pool_thins_evenly_and_says_so() {
+fn a_full_pool_accepts_candidates_evenly_and_reports_it() {
     let mut scene = foaming_column();
     let (mut simulation, mut foam) = cpu(&scene);
     advance(&mut simulation, &foam, 30);
@@ -243,7 +243,7 @@ fn a_full_pool_thins_evenly_and_says_so() {
     assert!(told.len() == 1 && told[0].contains("room for 200"), "{told:?}");
     simulation.diffuse(&mut foam).unwrap();
     assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "it is told once");
-    // Foam that was kept, in a checkpoint say, has told it already.
+    // Saved foam, for example in a checkpoint, includes that the warning was reported.
     let kept = block_on(simulation.keep_foam_async(&foam)).unwrap();
     let mut again = simulation.foam(&scene.foam).unwrap();
     simulation.restore_foam(&mut again, &kept).unwrap();

@@ -1,4 +1,4 @@
-//! The surface's mesh: what must hold for any particles, and for some whose surface is known.
+//! Properties of the surface mesh for arbitrary particles, and for particles with a known surface.
 
 use std::path::Path;
 
@@ -27,8 +27,8 @@ fn ball(center: Vec3, radius: f32) -> Vec<[f32; 3]> {
     points.filter(|p| p.length() <= radius).map(|p| (center + p).to_array()).collect()
 }
 
-/// Closed, manifold and oriented outwards, every normal of unit length and on the outer side of its
-/// triangles.
+/// Asserts that a mesh is closed, manifold and oriented outwards, with unit normals that point to
+/// the outer side of the triangles.
 fn assert_sound(mesh: &Mesh, stats: &SurfaceStats) {
     mesh.check().unwrap();
     let topology = mesh.topology().unwrap();
@@ -44,15 +44,15 @@ fn assert_sound(mesh: &Mesh, stats: &SurfaceStats) {
 }
 
 #[test]
-fn passes_agree_with_their_wgsl() {
+fn declarations_agree_with_the_wgsl() {
     let sources = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/surface"));
     let wrong = testing::gate(sources, &surface::passes());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn a_ball_has_a_sphere_of_its_volume_around_it() {
-    for (name, mut executor) in testing::executors("a_ball_has_a_sphere_of_its_volume_around_it") {
+fn the_surface_of_a_ball_is_a_sphere_of_equal_volume() {
+    for (name, mut executor) in testing::executors("the_surface_of_a_ball_is_a_sphere_of_equal_volume") {
         for smoothing_iterations in [0, 20] {
             let points = ball(Vec3::new(0.3, -0.2, 7.0), 0.5);
             let params = {
@@ -65,9 +65,9 @@ fn a_ball_has_a_sphere_of_its_volume_around_it() {
             let topology = mesh.topology().unwrap();
             assert_eq!(topology.euler_characteristic, 2, "{name}: {topology}");
             assert_eq!(stats.not_finite, 0);
-            // The iso level 0.6 lies a little inside the particles' outer faces, and marching cubes and
-            // smoothing cut convex corners: a twentieth of a spacing all round, 3 * 0.05 / 10 of the volume,
-            // and the lattice's own roughness.
+            // The iso level 0.6 is slightly inside the outer faces of the particles, and marching
+            // cubes and smoothing cut convex corners: a twentieth of a spacing everywhere, which is
+            // 3 * 0.05 / 10 of the volume, plus the roughness of the lattice.
             let expected = points.len() as f64 * f64::from(SPACING).powi(3);
             let ratio = mesh.volume() / expected;
             assert!((0.93..1.03).contains(&ratio), "{name}, {smoothing_iterations}: {ratio}");
@@ -80,7 +80,7 @@ fn a_ball_has_a_sphere_of_its_volume_around_it() {
 }
 
 #[test]
-fn smoothing_removes_the_particles_bumps() {
+fn smoothing_removes_the_bumps_of_particles() {
     let mut executor = cpu();
     let center = Vec3::ZERO;
     let mut points = ball(center, 0.5);
@@ -94,7 +94,7 @@ fn smoothing_removes_the_particles_bumps() {
             params
         };
         let (mesh, _) = reconstruct(&points, &params, executor).unwrap();
-        // How far normals of neighbouring triangles turn, on average.
+        // The mean angle between the normals of adjacent triangles.
         let normal = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| Vec3::from(mesh.vertices[v as usize]));
             (b - a).cross(c - a).normalize_or_zero()
@@ -110,7 +110,7 @@ fn smoothing_removes_the_particles_bumps() {
 }
 
 #[test]
-fn two_drops_are_two_pieces() {
+fn two_drops_are_two_components() {
     let mut points = ball(Vec3::ZERO, 0.15);
     points.extend(ball(Vec3::new(0.6, 0.1, 0.0), 0.2));
     let (mesh, stats) = reconstruct(&points, &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
@@ -120,8 +120,10 @@ fn two_drops_are_two_pieces() {
 }
 
 #[test]
-fn nothing_gives_nothing_and_what_is_not_a_number_is_counted() {
-    for (_, mut executor) in testing::executors("nothing_gives_nothing_and_what_is_not_a_number_is_counted") {
+fn no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted() {
+    for (_, mut executor) in
+        testing::executors("no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted")
+    {
         let params = SurfaceParams::new(SPACING);
         let (mesh, stats) = reconstruct(&[], &params, &mut executor).unwrap();
         assert!(mesh.is_empty() && mesh.vertices.is_empty() && stats == SurfaceStats::default());
@@ -136,7 +138,7 @@ fn nothing_gives_nothing_and_what_is_not_a_number_is_counted() {
 }
 
 #[test]
-fn wrong_parameters_and_hopeless_regions_are_refused() {
+fn invalid_parameters_and_too_large_regions_are_refused() {
     let good = SurfaceParams::new(SPACING);
     let refused =
         |params: &SurfaceParams, points: &[[f32; 3]]| reconstruct(points, params, &mut cpu()).unwrap_err();
@@ -176,8 +178,8 @@ fn wrong_parameters_and_hopeless_regions_are_refused() {
     assert!(matches!(spread, SurfaceError::TooLarge { .. }), "{spread}");
 }
 
-/// Ways to place particles that have broken surface extractors: random, in one place, on the borders of cells
-/// and blocks.
+/// Particle distributions that are difficult for surface extraction: random, coincident, on the
+/// borders of cells and blocks.
 fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
     let random = prop::collection::vec(prop::array::uniform3(-0.5_f32..0.5), 1..120);
     let on_nodes = prop::collection::vec(prop::array::uniform3(-12_i32..12), 1..120)
@@ -186,7 +188,7 @@ fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
         .prop_map(|points| points.into_iter().map(|p| p.map(|c| 0.2 * c as f32)).collect());
     let in_one_place = (prop::array::uniform3(-5.0_f32..5.0), 1..40_usize).prop_map(|(p, n)| vec![p; n]);
     let base = prop_oneof![4 => random, 2 => on_nodes, 1 => on_blocks, 1 => in_one_place];
-    // Some of them twice.
+    // Some particles are duplicated.
     (base, 0..20_usize).prop_map(|(mut points, twice): (Vec<[f32; 3]>, usize)| {
         points.extend_from_within(..twice.min(points.len()));
         points
@@ -194,8 +196,8 @@ fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
 }
 
 fn parameters() -> impl Strategy<Value = SurfaceParams> {
-    // Cells from a quarter of a spacing to larger than the support; levels from the outermost shell to the
-    // cores.
+    // Cells from a quarter of a spacing to more than the support radius; iso levels over the whole
+    // range of the field.
     (0.25_f32..3.0, 1.2_f32..3.0, 0.02_f32..1.1, 0..4_u32).prop_map(
         |(cell, support, iso_level, smoothing_iterations)| {
             let mut params = SurfaceParams::new(SPACING);
@@ -214,7 +216,8 @@ proptest! {
     #[test]
     fn any_particles_give_a_closed_manifold_oriented_mesh(points in clouds(), params in parameters()) {
         let (mesh, stats) = match reconstruct(&points, &params, &mut cpu()) {
-            // Coarse cells miss a lone particle, and not every cloud is as dense as the highest levels.
+            // Coarse cells miss single particles, and not every distribution reaches the highest
+            // levels.
             Err(SurfaceError::NoSurface { given, highest }) => {
                 prop_assert!(given == params.iso_level && (0.0..given).contains(&highest), "{highest}");
                 return Ok(());
@@ -228,7 +231,7 @@ proptest! {
         prop_assert_eq!(topology.unused_vertices, 0);
         prop_assert_eq!(stats.triangles as usize, mesh.triangles.len());
         prop_assert!(mesh.vertices.iter().chain(&mesh.normals).flatten().all(|x| x.is_finite()));
-        // Smoothing may turn a piece of two or three cells inside out, marching cubes never.
+        // Smoothing can invert a component of two or three cells, marching cubes cannot.
         if params.smoothing_iterations == 0 {
             prop_assert!(mesh.volume() > 0.0);
         }
@@ -236,7 +239,7 @@ proptest! {
 }
 
 #[test]
-fn a_missing_and_a_flipped_triangle_are_noticed() {
+fn a_missing_and_a_flipped_triangle_are_detected() {
     let (mesh, _) = reconstruct(&ball(Vec3::ZERO, 0.2), &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
     assert!(mesh.topology().unwrap().is_watertight());
     let mut holed = mesh.clone();
@@ -250,7 +253,7 @@ fn a_missing_and_a_flipped_triangle_are_noticed() {
     assert!(!doubled.topology().unwrap().is_manifold());
 }
 
-/// One particle per cell of a row, as a simulation would hand them over.
+/// One particle per cell of a row, in the layout of a simulation.
 fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
     let grid = Grid::new(Vec3::ZERO, Vec3::new(1.0, 0.2, 0.2), 2.0 * SPACING).unwrap();
     let mut particles: Vec<_> = (0..10)
@@ -262,7 +265,7 @@ fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
         cell_start[grid.cell_of(p.truncate()) as usize + 1] += 1;
     }
     (1..cell_start.len()).for_each(|cell| cell_start[cell] += cell_start[cell - 1]);
-    // Room for the dead, which hold anything.
+    // Space for inactive particles with arbitrary contents.
     particles.resize(capacity as usize, glam::Vec4::NAN);
     SurfaceInput {
         positions: executor.create_from("positions", &particles).unwrap(),
@@ -274,8 +277,8 @@ fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
 }
 
 #[test]
-fn too_little_room_is_counted_and_made() {
-    for (name, mut executor) in testing::executors("too_little_room_is_counted_and_made") {
+fn an_exceeded_capacity_is_reported_and_enlarged() {
+    for (name, mut executor) in testing::executors("an_exceeded_capacity_is_reported_and_enlarged") {
         for smoothing_iterations in [0, 5] {
             let params = {
                 let mut params = SurfaceParams::new(SPACING);
@@ -299,17 +302,18 @@ fn too_little_room_is_counted_and_made() {
                 repeated.retries = 0;
                 assert_eq!(repeated, stats, "{name}");
                 assert_eq!(tight.mesh(&mut executor).unwrap(), mesh, "{name}");
-                // Once it has room it keeps it.
+                // The capacity does not shrink.
                 assert_eq!(tight.extract(&mut executor).unwrap().retries, 0);
             }
         }
     }
 }
 
-/// As a window does it: nobody waits; the status arrives later and makes room for the next frame.
+/// Without blocking, as in a window: the status arrives later and enlarges the buffers for the next
+/// frame.
 #[test]
-fn it_runs_without_waiting_and_writes_its_draw_arguments() {
-    for (name, mut executor) in testing::executors("it_runs_without_waiting_and_writes_its_draw_arguments") {
+fn extraction_without_blocking_writes_the_draw_arguments() {
+    for (name, mut executor) in testing::executors("extraction_without_blocking_writes_the_draw_arguments") {
         let input = simulation_input(&mut executor, 20);
         let params = SurfaceParams::new(SPACING);
         let mut surface = Surface::with_capacity(&mut executor, params, input, 4, 8, 8).unwrap();
@@ -344,7 +348,7 @@ fn a_grid_finer_than_the_kernel_is_refused() {
 }
 
 #[test]
-fn the_same_particles_give_the_same_bits_with_any_number_of_threads() {
+fn meshes_are_bit_identical_for_any_number_of_threads() {
     let mut points = ball(Vec3::ZERO, 0.4);
     for (i, p) in points.iter_mut().flatten().enumerate() {
         *p += 0.3 * SPACING * (testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5);
@@ -362,9 +366,7 @@ fn the_same_particles_give_the_same_bits_with_any_number_of_threads() {
         .into();
     assert_eq!(meshes[0], meshes[1]);
     assert_eq!(meshes[0], meshes[2]);
-    if let Some(gpu) =
-        testing::gpu_or_skip("the_same_particles_give_the_same_bits_with_any_number_of_threads")
-    {
+    if let Some(gpu) = testing::gpu_or_skip("meshes_are_bit_identical_for_any_number_of_threads") {
         let mut executor = Executor::from(splashdown_gpu::GpuExecutor::new(gpu));
         let first = reconstruct(&points, &params, &mut executor).unwrap().0;
         assert_eq!(reconstruct(&points, &params, &mut executor).unwrap().0, first);

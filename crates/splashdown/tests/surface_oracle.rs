@@ -1,4 +1,5 @@
-//! The surface against `splashsurf_lib`, which shares no code with it, with equal parameters.
+//! The surface compared with `splashsurf_lib`, an independent implementation, with equal
+//! parameters.
 
 use std::collections::HashMap;
 use std::io::Write;
@@ -25,7 +26,7 @@ fn oracle(points: &[[f32; 3]], params: &SurfaceParams) -> Mesh {
     }
 }
 
-/// Triangles sorted into the cubes that they touch, for the search of the nearest.
+/// Triangles in a grid of cubes, for the search of the nearest triangle.
 struct Cubes {
     size: f32,
     triangles: Vec<[Vec3; 3]>,
@@ -49,7 +50,7 @@ impl Cubes {
         Self { size, triangles, cubes }
     }
 
-    /// Distance to the nearest triangle; infinite if there is none in the cubes around.
+    /// Distance to the nearest triangle; infinite if there is none in the adjacent cubes.
     fn distance(&self, p: Vec3) -> f32 {
         let center = (p / self.size).floor().as_ivec3();
         let around = (0..27).map(|i| center + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
@@ -58,7 +59,7 @@ impl Cubes {
     }
 }
 
-/// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5, by regions).
+/// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
 fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let on_side = |from: Vec3, to: Vec3| {
         let side = to - from;
@@ -73,7 +74,7 @@ fn nearest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     sides.into_iter().min_by(|x, y| x.distance(p).total_cmp(&y.distance(p))).unwrap()
 }
 
-/// The largest distance of a vertex of one mesh from the other mesh, both ways.
+/// The largest distance of a vertex of one mesh from the other mesh, in both directions.
 fn hausdorff(a: &Mesh, b: &Mesh, reach: f32) -> f32 {
     let one_way = |from: &Mesh, to: &Mesh| {
         let cubes = Cubes::new(to, reach);
@@ -82,7 +83,7 @@ fn hausdorff(a: &Mesh, b: &Mesh, reach: f32) -> f32 {
     one_way(a, b).max(one_way(b, a))
 }
 
-/// Compares with equal parameters and, as a control, with another iso level.
+/// Compares with equal parameters and, as a negative control, with another iso level.
 fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
     let params = {
         let mut params = SurfaceParams::new(SPACING);
@@ -94,12 +95,12 @@ fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
     for (name, mut executor) in testing::executors(test_name) {
         let (ours, _) = reconstruct(points, &params, &mut executor).unwrap();
         assert!(ours.topology().unwrap().is_watertight());
-        // Both lie on the same field, but their lattices may be shifted by part of a cell.
+        // Both use the same field, but their lattices may be offset by a fraction of a cell.
         let distance = hausdorff(&ours, &theirs, cell) / cell;
         let volume = ours.volume() / theirs.volume();
         assert!(distance < 0.5, "{test_name}, {name}: {distance} cells");
         assert!((volume - 1.0).abs() < 0.01, "{test_name}, {name}: volume ratio {volume}");
-        // The smallest change worth noticing: the level of a layer one tenth of a spacing farther out.
+        // The smallest relevant change: the iso level at a tenth of a spacing farther outside.
         let other = {
             let mut params = params;
             params.iso_level = 0.5;
@@ -131,7 +132,7 @@ fn a_jittered_block_with_drops_agrees_with_splashsurf() {
         .enumerate()
         .map(|(i, p)| std::array::from_fn(|axis| SPACING * (p[axis] + 0.4 * unit(3 * i + axis))))
         .collect();
-    // Lone particles and pairs above it.
+    // Single particles and pairs above it.
     points.extend((0..40).map(|i| {
         let place = 50_000 + 3 * i;
         [1.0 * unit(place) + 0.35, 1.1 + 0.6 * unit(place + 1), 1.0 * unit(place + 2) + 0.35]

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 use splashdown::sample::typical_spacing;
-use splashdown::surface::{SurfaceError, SurfaceParams, drop_blobs, interpolate, reconstruct};
+use splashdown::surface::{SurfaceError, SurfaceParams, interpolate, reconstruct, remove_small_components};
 use splashdown_gpu::Executor;
 use splashdown_io::{
     IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_all, read_particles,
@@ -110,7 +110,7 @@ fn one(
         reconstruct(&particles.positions, params, executor).map_err(|error| of_input(error, input))?;
     let surface_seconds = read.elapsed().as_secs_f64();
     let dropped_blobs = if arguments.min_blob > 0.0 {
-        drop_blobs(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
+        remove_small_components(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
     } else {
         0
     };

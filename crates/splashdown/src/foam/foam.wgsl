@@ -27,7 +27,7 @@ struct FoamParams {
 struct FoamState {
     time: f32,
     dt: f32,
-    // 1 if there is something to do, 0 if not: then no pass touches the pool.
+    // 1 if an update is due. If 0, no pass accesses the pool.
     is_due: u32,
     has_begun: u32,
     step: u32,
@@ -44,7 +44,7 @@ struct Diffuse {
     position: vec3<f32>,
     lifetime: f32,
     velocity: vec3<f32>,
-    // The number, times four, and the kind.
+    // Four times the id, plus the kind.
     tag: u32,
 }
 
@@ -55,19 +55,20 @@ fn hash(i: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
-// In [0, 1), the same bits everywhere: 24 bits fit a float.
+// A pseudo-random number in [0, 1), bit-identical on all devices: 24 bits are exact in a float.
 fn unit(i: u32) -> f32 {
     return f32(hash(i) >> 8u) * (1.0 / 16777216.0);
 }
 
-// The random numbers of a particle of the fluid in a step of the foam begin here.
+// The seed of the random numbers of a fluid particle in an update.
 fn seed_of(id: u32, step: u32) -> u32 {
     return hash(id ^ hash(step));
 }
 
-// Where the m-th of those that want to be born goes if a `share` of them finds room: k f / 4096, rounded down,
-// without overflow, where f are the share's lower 16 bits, s the upper ones, and k is m / 2^s. Two that follow
-// one another are at most one apart; of several at one place the last is born.
+// The slot of candidate m if a fraction `share` of the candidates is accepted: floor(k f / 4096),
+// without overflow, where f are the lower 16 bits of the share, s the upper ones, and k = m / 2^s.
+// The slots of consecutive candidates differ by at most one; of several candidates with one slot,
+// the last is accepted.
 fn place_of(m: u32, share: u32) -> u32 {
     let k = m >> (share >> 16u);
     let part = share & 0xffffu;

@@ -1,38 +1,39 @@
-//! Foam, spray and bubbles: what a splash makes beside water (Ihmsen, Akinci, Akinci & Teschner 2012,
-//! "Unified spray, foam and air bubbles for particle-based fluids", The Visual Computer 28).
+//! Foam, spray and bubbles (Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air
+//! bubbles for particle-based fluids", The Visual Computer 28).
 //!
-//! *How it works.* Diffuse particles are made where the fluid traps air or breaks (`normals`, `potentials`,
-//! `count`, `emit`), go where air or water take them (`advect`), and dissolve. They feel the fluid and it
-//! does not feel them, so they are computed after it and not in its steps:
-//! [`Simulation::advance_foam`](crate::Simulation::advance_foam) brings them up to the simulation's time
-//! every few milliseconds or once per frame, at the cost of two visits of the neighbours. A simulation
-//! without them pays nothing.
+//! *How it works.* Diffuse particles are generated where the fluid traps air or breaks (`normals`,
+//! `potentials`, `count`, `emit`), are advected (`advect`), and dissolve. The coupling is one-way:
+//! the fluid affects them and they do not affect the fluid. They are therefore computed after the
+//! fluid and not in its steps: [`Simulation::advance_foam`](crate::Simulation::advance_foam)
+//! advances them to the simulated time every few milliseconds or once per frame, at the cost of two
+//! neighbour loops. A simulation without foam has no overhead.
 //!
-//! *The same bits every time.* Nothing depends on the order of invocations: the living are compacted in their
-//! order, the newborn are counted and placed by a scan behind them, and chance is a hash of a particle's id
-//! and the update's number.
+//! *Reproducibility.* Nothing depends on the order of invocations: living particles are compacted
+//! in order, new ones are counted and appended by a scan, and random numbers are a hash of a
+//! particle's id and the number of the update.
 //!
-//! *Scales.* The paper's potentials grow with the number of neighbours, and its limits are joules and sums of
-//! m/s of a scene of several metres. Here potentials do not depend on the resolution, and their limits are
-//! parts of the scene's [reference speed](crate::scene::Derived::reference_speed): a dam break in a glass and
-//! one in a valley that are alike foam alike.
+//! *Scaling.* The potentials of the paper grow with the number of neighbours, and its limits are in
+//! joules and sums of m/s for a scene of several metres. Here potentials do not depend on the
+//! resolution, and their limits are fractions of the [reference
+//! speed](crate::scene::Derived::reference_speed) of the scene: similar dam breaks of different
+//! size produce similar foam.
 //!
-//! *What it costs.* A dam break of 28,000 particles over 1.5 s, with up to 18,000 diffuse ones, on two cores:
-//! 2.9 % of the steps' time, half of that for the potentials.
+//! *Cost.* For a dam break of 28,000 particles over 1.5 s, with up to 18,000 diffuse particles, on
+//! two cores: 2.9 % of the time of the steps, half of it for the potentials.
 //!
-//! *Why not* in the step: 16 steps are one to the foam. *Why not* a ring of particles, the oldest
-//! overwritten: foam would vanish where it has always been, while spray of a moment ago stayed. When there is
-//! no room fewer are born, evenly everywhere, and it is told.
+//! *Why not* in the step: foam needs only one update per about 16 steps. *Why not* a ring buffer
+//! that overwrites the oldest particles: old foam would vanish while recent spray remained. If the
+//! pool is full, fewer particles are generated, evenly everywhere, and a warning is reported.
 
 mod advect;
+mod ambient;
 mod begin;
+mod compact;
 mod count;
 mod emit;
 mod normals;
 mod plan;
 mod potentials;
-mod settle;
-mod surroundings;
 mod types;
 
 pub use types::{Diffuse, DiffuseKind, FoamParams, FoamState};
@@ -51,23 +52,22 @@ use crate::state::{Fields, PARAMS, Params, STATE};
 
 /// The WGSL side of [`FoamParams`], [`FoamState`] and [`Diffuse`].
 pub(crate) const FOAM: WgslModule = WgslModule { name: "sph/foam", source: include_str!("foam.wgsl") };
-/// What is round a point.
-const SURROUNDINGS: WgslModule =
-    WgslModule { name: "sph/foam_surroundings", source: include_str!("surroundings.wgsl") };
-/// What a pass imports that looks round where a diffuse particle is.
-const LOOK_ROUND: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, SURROUNDINGS];
+/// The velocity and the number of neighbours of the fluid at a point.
+const AMBIENT: WgslModule = WgslModule { name: "sph/foam_ambient", source: include_str!("ambient.wgsl") };
+/// Imports of the passes that evaluate the fluid at diffuse particles.
+const AMBIENT_IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, FOAM, AMBIENT];
 
-/// Diffuse particles per particle of the fluid, unless the scene says how many.
+/// Default capacity: diffuse particles per particle of the fluid.
 const PER_PARTICLE: u64 = 4;
-/// Most diffuse particles, unless the scene says how many.
+/// Largest default capacity.
 const STANDARD_MOST: u64 = 1 << 22;
 /// Bytes of a diffuse particle in the largest buffer.
 const LARGEST_PER_DIFFUSE: u64 = size_of::<Diffuse>() as u64;
-/// Shortest time between two updates within a frame, in seconds: less than the eye sees, and many steps of
-/// the fluid.
+/// Shortest time between two updates within a frame, in seconds: too short to be visible, and many
+/// steps of the fluid.
 const INTERVAL: f32 = 0.004;
-/// Neighbours in the middle of the fluid in Ihmsen's setting, to which his limits of 6 and 20 belong: a ball
-/// of two spacings.
+/// Number of neighbours inside the fluid in the setup of Ihmsen et al., to which their limits of 6
+/// and 20 refer: a ball with a radius of two spacings.
 const IHMSEN_NEIGHBOURS: f32 = 33.5;
 
 /// The passes of this module.
@@ -79,20 +79,21 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &count::COUNT,
         &advect::ADVECT,
         &plan::PLAN,
-        &settle::SETTLE,
+        &compact::COMPACT,
         &emit::EMIT,
     ]
 }
 
 impl FoamParams {
-    /// From a scene's settings, for a fluid with these constants and reference speed (m/s).
+    /// The constants for the settings of a scene, the parameters of the fluid and a reference speed
+    /// (m/s).
     pub fn new(settings: &FoamSettings, params: &Params, reference_speed: f32, capacity: u32) -> Self {
         let range = |[least, most]: [f32; 2], unit: f32| (least * unit, 1.0 / ((most - least) * unit));
         let (trapped_air_least, trapped_air_scale) = range(settings.trapped_air_limits, reference_speed);
         let (wave_crest_least, wave_crest_scale) = range(settings.wave_crest_limits, 1.0);
         let [slow, fast] = settings.speed_limits.map(|part| part * part);
         let (energy_least, energy_scale) = range([slow, fast], 0.5 * reference_speed * reference_speed);
-        // In the middle of the fluid.
+        // Number of neighbours inside the fluid.
         let ratio = params.support_radius / params.particle_spacing;
         let full = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);
         Self {
@@ -124,7 +125,7 @@ pub(crate) struct TooMuchFoam {
     pub allowed: u64,
 }
 
-/// How many diffuse particles a scene gets room for.
+/// The capacity of a scene in diffuse particles.
 pub(crate) fn capacity(settings: &FoamSettings, particles: u64, largest: u64) -> Result<u32, TooMuchFoam> {
     let allowed = (largest / LARGEST_PER_DIFFUSE).min(1 << 30);
     match settings.max_particles {
@@ -134,11 +135,11 @@ pub(crate) fn capacity(settings: &FoamSettings, particles: u64, largest: u64) ->
     }
 }
 
-/// Bytes in the buffers of a scene's foam.
+/// Bytes in the foam buffers of a scene.
 pub(crate) fn forecast(settings: &FoamSettings, particles: u64) -> u64 {
     let most = capacity(settings, particles, u64::MAX).map_or(0, u64::from);
-    // Twice the foam, whether it lives, where it goes, the list of the living; normals, potentials, counts,
-    // starts.
+    // The pool and a copy, flags of living particles, their scan and list; normals, potentials,
+    // counts, starts.
     most * (2 * LARGEST_PER_DIFFUSE + 3 * 4) + particles.saturating_mul(2 * 16 + 2 * 4)
 }
 
@@ -151,11 +152,12 @@ pub struct Foam {
     pool: Buffer<Diffuse>,
     potentials: Buffer<Vec4>,
     recording: Recording,
-    has_told: bool,
+    has_warned: bool,
 }
 
 impl Foam {
-    /// Makes the buffers, and the list of passes. `particles`: most there can be in the fluid.
+    /// Creates the buffers and the list of passes. `particles`: largest number of particles of the
+    /// fluid.
     pub(crate) fn new(
         executor: &mut Executor,
         constants: &FoamParams,
@@ -208,17 +210,17 @@ impl Foam {
         r.dispatch(&advect::ADVECT, diffuse, &buffers);
         compact.record(&mut r, alive, indices, counted);
         r.dispatch(&plan::PLAN, one, &buffers);
-        r.dispatch(&settle::SETTLE, diffuse, &buffers);
+        r.dispatch(&compact::COMPACT, diffuse, &buffers);
         r.dispatch(&emit::EMIT, all, &buffers);
-        Ok(Self { params, capacity, state, pool, potentials, recording: r, has_told: false })
+        Ok(Self { params, capacity, state, pool, potentials, recording: r, has_warned: false })
     }
 
-    /// What brings the foam up to the simulation's time, where an update is due.
+    /// The passes of an update, which do nothing if no update is due.
     pub(crate) fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// Takes all of it out, and begins anew at the simulation's next time.
+    /// Removes all diffuse particles and restarts at the next simulated time.
     ///
     /// # Errors
     /// If the device was lost.
@@ -226,7 +228,7 @@ impl Foam {
         executor.write(self.state, &[FoamState::zeroed()])
     }
 
-    /// Most diffuse particles.
+    /// Largest number of diffuse particles.
     pub fn capacity(&self) -> u32 {
         self.capacity
     }
@@ -236,63 +238,63 @@ impl Foam {
         self.pool
     }
 
-    /// How many there are, and more.
+    /// The state, with the number of particles.
     pub fn state(&self) -> Buffer<FoamState> {
         self.state
     }
 
-    /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last update, in
-    /// the order of the sort.
+    /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last
+    /// update, in sorted order.
     pub fn potentials(&self) -> Buffer<Vec4> {
         self.potentials
     }
 
-    /// The constants; a uniform.
+    /// The constants, a uniform buffer.
     pub fn params(&self) -> Buffer<FoamParams> {
         self.params
     }
 
-    /// Whoever kept this has been told already of those that found no room.
+    /// Restores whether the overflow of the pool has already been reported.
     pub(crate) fn remember(&mut self, state: &FoamState) {
-        self.has_told |= state.refused > 0;
+        self.has_warned |= state.refused > 0;
     }
 
-    /// A sentence when some found no room for the first time.
+    /// A warning if the pool overflowed for the first time.
     pub(crate) fn tell(&mut self, state: &FoamState) -> Option<String> {
-        (state.refused > 0 && !std::mem::replace(&mut self.has_told, true)).then(|| {
+        (state.refused > 0 && !std::mem::replace(&mut self.has_warned, true)).then(|| {
             format!(
-                "there is room for {} particles of foam, spray and bubbles, and more were to be made; from now on fewer are made. \
-                 Raise foam.max_particles, or lower foam.trapped_air and foam.wave_crest",
+                "the pool of {} particles of foam, spray and bubbles is full; from now on fewer are generated. Raise \
+                 foam.max_particles, or lower foam.trapped_air and foam.wave_crest",
                 self.capacity
             )
         })
     }
 }
 
-/// Foam that was put aside: [`Simulation::keep_foam_async`](crate::Simulation::keep_foam_async).
+/// The saved state of foam: [`Simulation::keep_foam_async`](crate::Simulation::keep_foam_async).
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptFoam {
     pub(crate) state: FoamState,
     pub(crate) pool: Vec<Diffuse>,
 }
 
-/// What a simulation's foam is at one time, on the host; in order of age, the oldest first.
+/// The diffuse particles at one time, on the host; in order of age, the oldest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DiffuseParticles {
-    /// Numbers in order of birth.
+    /// Consecutive numbers in the order of generation.
     pub ids: Vec<u32>,
-    /// Places in m.
+    /// Positions in m.
     pub positions: Vec<[f32; 3]>,
     /// Velocities in m/s.
     pub velocities: Vec<[f32; 3]>,
-    /// What they are.
+    /// Kinds.
     pub kinds: Vec<DiffuseKind>,
-    /// How long they still live as foam, in s.
+    /// Remaining lifetimes as foam, in s.
     pub lifetimes: Vec<f32>,
 }
 
 impl DiffuseParticles {
-    /// From a pool's content.
+    /// From the contents of a pool.
     pub fn new(pool: &[Diffuse]) -> Self {
         Self {
             ids: pool.iter().map(Diffuse::id).collect(),
@@ -303,17 +305,17 @@ impl DiffuseParticles {
         }
     }
 
-    /// How many there are.
+    /// Number of particles.
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// True if there is none.
+    /// True if there are no particles.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Those of a kind, with ids, positions and velocities.
+    /// The particles of a kind, with ids, positions and velocities.
     pub fn of_kind(&self, kind: DiffuseKind) -> Particles {
         let of_kind = || (0..self.len()).filter(|&i| self.kinds[i] == kind);
         Particles {
@@ -324,7 +326,7 @@ impl DiffuseParticles {
         }
     }
 
-    /// How many there are of a kind.
+    /// Number of particles of a kind.
     pub fn count(&self, kind: DiffuseKind) -> usize {
         self.kinds.iter().filter(|&&other| other == kind).count()
     }

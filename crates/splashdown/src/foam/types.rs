@@ -1,75 +1,78 @@
-//! What the foam's passes share: constants, state, the particles themselves.
+//! Constants, state and particles, shared by the foam passes.
 
 use glam::Vec3;
 use splashdown_gpu::gpu_struct;
 
 gpu_struct! {
-    /// What does not change while foam is computed. SI units.
+    /// Constants of the foam. SI units.
     pub struct FoamParams {
-        /// Most diffuse particles.
+        /// Largest number of diffuse particles.
         capacity: u32,
         /// Shortest time between two updates within a frame, in seconds.
         interval: f32,
-        /// Diffuse particles per second from a particle of the fluid that traps air as well as it can.
+        /// Diffuse particles per second from a fluid particle with the full potential of trapped
+        /// air.
         trapped_air: f32,
-        /// The same from a wave's crest.
+        /// Diffuse particles per second from a fluid particle with the full potential of a wave
+        /// crest.
         wave_crest: f32,
-        /// Where trapped air begins to count, in m/s.
+        /// Lower limit of trapped air, in m/s.
         trapped_air_least: f32,
-        /// One over the range from there to where it counts fully, in s/m.
+        /// Reciprocal of the range to the upper limit, in s/m.
         trapped_air_scale: f32,
-        /// Where a crest's curvature begins to count; without unit.
+        /// Lower limit of the curvature of a wave crest, dimensionless.
         wave_crest_least: f32,
-        /// One over the range from there to where it counts fully.
+        /// Reciprocal of the range to the upper limit.
         wave_crest_scale: f32,
-        /// Where the kinetic energy begins to count, in J/kg.
+        /// Lower limit of the kinetic energy, in J/kg.
         energy_least: f32,
-        /// One over the range from there to where it counts fully, in kg/J.
+        /// Reciprocal of the range to the upper limit, in kg/J.
         energy_scale: f32,
         /// Shortest lifetime of foam in seconds.
         lifetime_least: f32,
-        /// The longest one is longer by this many seconds.
+        /// Difference between the longest and the shortest lifetime in seconds.
         lifetime_range: f32,
         /// Buoyancy of a bubble in multiples of gravity.
         buoyancy: f32,
-        /// How quickly a bubble takes the water's velocity, in 1/s.
+        /// Rate at which the velocity of a bubble relaxes to that of the fluid, in 1/s.
         drag: f32,
-        /// Spray has fewer neighbours in the fluid.
+        /// Particles with fewer neighbours in the fluid are spray.
         spray_below: f32,
-        /// A bubble has more.
+        /// Particles with more neighbours are bubbles.
         bubble_above: f32,
-        /// Foam has more where it becomes a bubble: less than this, or it would be both by turns.
+        /// Foam with more neighbours becomes a bubble. The higher limit prevents flickering between
+        /// the two.
         bubble_again_above: f32,
     }
 }
 
 gpu_struct! {
-    /// What changes from update to update; decided on the device.
+    /// State of the foam, updated on the device.
     pub struct FoamState {
         /// The simulated time of the last update in seconds.
         time: f32,
-        /// Its time step in seconds.
+        /// Time step of the update in seconds.
         dt: f32,
-        /// 1 if there is something to do, 0 if not: then no pass touches the particles.
+        /// 1 if an update is due. If 0, no pass accesses the particles.
         is_due: u32,
-        /// 1 once the simulation's time has been looked at.
+        /// 1 once `time` has been initialised.
         has_begun: u32,
-        /// Updates so far.
+        /// Number of updates.
         step: u32,
-        /// Diffuse particles there are.
+        /// Number of diffuse particles.
         count: u32,
-        /// How many of those before the last update are left.
+        /// Number of particles that remained in the last update.
         kept: u32,
-        /// How many were born in it.
+        /// Number of particles generated in it.
         born: u32,
-        /// The part of those that wanted to be born that found room, times 4096, in the lower 16 bits; in the
-        /// upper ones s, where 2^s share one such chance.
+        /// Fraction of the candidates that were accepted, times 4096, in the lower 16 bits. In the
+        /// upper bits s: 2^s candidates share one slot.
         share: u32,
-        /// How many have been born so far, which is the number of the next one.
+        /// Number of particles generated so far, which is the id of the next one.
         next_id: u32,
-        /// How many found no room so far.
+        /// Number of rejected candidates so far.
         refused: u32,
-        /// How many wanted to be born in the last update.
+        /// Number of candidates in the last update.
         wanted: u32,
     }
 }
@@ -77,37 +80,37 @@ gpu_struct! {
 gpu_struct! {
     /// A diffuse particle.
     pub struct Diffuse {
-        /// Its place in metres.
+        /// Position in metres.
         position: Vec3,
-        /// How long it still lives as foam, in seconds.
+        /// Remaining lifetime as foam, in seconds.
         lifetime: f32,
-        /// Its velocity in m/s.
+        /// Velocity in m/s.
         velocity: Vec3,
-        /// Its number in order of birth, times four, and its [kind](Self::kind).
+        /// Four times the [id](Self::id), plus the [kind](Self::kind).
         tag: u32,
     }
 }
 
-/// What a diffuse particle is, by how much fluid is round it.
+/// The kind of a diffuse particle, determined by the amount of fluid around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DiffuseKind {
-    /// A drop in the air: it flies as it was thrown.
+    /// A drop in the air on a ballistic trajectory.
     Spray = 0,
-    /// On the surface: it goes where the water goes, and dissolves.
+    /// On the surface: advected with the fluid, and dissolves.
     Foam = 1,
-    /// Under water: it goes with the water and rises.
+    /// Under water: advected with the fluid, and rises.
     Bubble = 2,
 }
 
 impl DiffuseKind {
-    /// All kinds, with what several of them are called.
+    /// All kinds, with their plural names.
     pub const ALL: [(Self, &'static str); 3] =
         [(Self::Spray, "spray"), (Self::Foam, "foam"), (Self::Bubble, "bubbles")];
 }
 
 impl Diffuse {
-    /// What it is.
+    /// The kind.
     pub fn kind(&self) -> DiffuseKind {
         match self.tag & 3 {
             0 => DiffuseKind::Spray,
@@ -116,17 +119,17 @@ impl Diffuse {
         }
     }
 
-    /// Its number in order of birth, modulo 2^30.
+    /// Consecutive number in the order of generation, modulo 2^30.
     pub fn id(&self) -> u32 {
         self.tag >> 2
     }
 }
 
-/// Most diffuse particles from one particle of the fluid in one update.
+/// Largest number of diffuse particles from one fluid particle in one update.
 const MOST_BORN: f32 = 64.0;
 
 impl FoamParams {
-    /// The kind of a particle with so many neighbours in the fluid.
+    /// The kind of a particle with a number of neighbours in the fluid.
     pub(super) fn kind_of(&self, neighbours: f32, was_foam: bool) -> DiffuseKind {
         let bubble_above = if was_foam { self.bubble_again_above } else { self.bubble_above };
         if neighbours < self.spray_below {
@@ -138,7 +141,7 @@ impl FoamParams {
         }
     }
 
-    /// How many diffuse particles are to be expected of a particle of the fluid with these potentials in `dt`
+    /// Expected number of diffuse particles from a fluid particle with these potentials in `dt`
     /// seconds.
     pub(super) fn expected(&self, potentials: glam::Vec4, dt: f32) -> f32 {
         let trapped = self.trapped_air * ramp(potentials.x, self.trapped_air_least, self.trapped_air_scale);
@@ -159,19 +162,20 @@ fn hash(i: u32) -> u32 {
     (word >> 22) ^ word
 }
 
-/// A number in [0, 1) that looks random: the same bits everywhere, for 24 bits fit a float.
+/// A pseudo-random number in [0, 1), bit-identical on all devices: 24 bits are exact in a float.
 pub(super) fn unit(i: u32) -> f32 {
     (hash(i) >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// Where the random numbers of a particle of the fluid in an update begin.
+/// The seed of the random numbers of a fluid particle in an update.
 pub(super) fn seed_of(id: u32, step: u32) -> u32 {
     hash(id ^ hash(step))
 }
 
-/// Where the m-th of those that want to be born goes if a [`FoamState::share`] of them finds room: k f / 4096,
-/// rounded down, without overflow, where f are the share's lower bits and k is m / 2^s. Two that follow one
-/// another are at most one apart; of several at one place the last is born.
+/// The slot of candidate m if a fraction [`FoamState::share`] of the candidates is accepted:
+/// floor(k f / 4096), without overflow, where f are the lower bits of the share and k = m / 2^s.
+/// The slots of consecutive candidates differ by at most one; of several candidates with one slot,
+/// the last is accepted.
 pub(super) fn place_of(m: u32, share: u32) -> u32 {
     let (k, part) = (m >> (share >> 16), share & 0xffff);
     (k >> 12) * part + (((k & 4095) * part) >> 12)

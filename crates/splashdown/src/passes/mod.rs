@@ -15,7 +15,6 @@ pub mod normals;
 pub mod state_equation;
 
 pub(crate) mod advance;
-pub(crate) mod pairs;
 
 pub use advance::WGSL as ADVANCE;
 

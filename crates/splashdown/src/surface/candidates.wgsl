@@ -1,4 +1,4 @@
-// The cells that a box touches. The pass binds `grid`.
+// The range of cells that intersect a box. The pass binds `grid`.
 struct CellRange {
     first: vec3<u32>,
     last: vec3<u32>, // one past the last
@@ -9,7 +9,7 @@ fn cell_range(low: vec3<f32>, high: vec3<f32>) -> CellRange {
     let inverse = 1.0 / grid.cell_size;
     let first = floor((low - grid.origin) * inverse);
     let last = floor((high - grid.origin) * inverse) + 1.0;
-    // Empty where the box lies outside.
+    // The range is empty if the box is outside the grid.
     let zero = vec3<f32>(0.0);
     return CellRange(vec3<u32>(clamp(first, zero, size)), vec3<u32>(clamp(last, zero, size)));
 }

@@ -18,10 +18,10 @@ struct Lattice {
     particle_capacity: u32,
 }
 
-// In block_slot: no surface can be there.
+// In block_slot: the block is not marked.
 const NONE: u32 = 0xffffffffu;
 
-// Place of a block, in units of blocks. The pass binds `lattice`.
+// Coordinates of a block, in blocks. The pass binds `lattice`.
 fn block_place(block: u32) -> vec3<i32> {
     let rest = block / lattice.blocks_x;
     return vec3<i32>(vec3<u32>(block % lattice.blocks_x, rest % lattice.blocks_y, rest / lattice.blocks_y));

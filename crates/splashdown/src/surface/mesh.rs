@@ -1,53 +1,53 @@
-//! The extraction as a whole: its buffers, its list of passes, its growth.
+//! Surface extraction: buffers, list of passes, growth of the buffers.
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording, block_on};
 use splashdown_io::Mesh;
 
-use super::params::{Lattice, NODES, ROWS, Status, SurfaceParams};
+use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
 use super::{SurfaceError, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
 use crate::marching_cubes;
 
-/// The particles whose surface is wanted, where the simulation keeps them.
+/// The particles of a surface, in the buffers of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInput {
-    /// Positions in m, sorted by cell; the fourth component is ignored.
+    /// Positions in m, sorted by cell; w is ignored.
     pub positions: Buffer<Vec4>,
-    /// First particle of every cell, and the number of living particles at the end.
+    /// First particle of every cell, followed by the number of living particles.
     pub cell_start: Buffer<u32>,
     /// The neighbour grid on the device.
     pub grid: Buffer<Grid>,
     /// The same grid on the host.
     pub grid_host: Grid,
-    /// Most particles there can be.
+    /// Largest number of particles.
     pub particle_capacity: u32,
 }
 
-/// How large a mesh is, and what it took.
+/// Size of a mesh, and statistics of its extraction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SurfaceStats {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: u32,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: u32,
-    /// Blocks of 8x8x8 nodes at which the field was computed.
+    /// Number of blocks of 8x8x8 nodes at which the field was evaluated.
     pub blocks: u32,
-    /// How often the extraction was repeated because the mesh or its blocks did not fit.
+    /// Number of repetitions of the extraction because the capacity was too small.
     pub retries: u32,
-    /// Particles left out because a coordinate was NaN or infinite; only host data can have such.
+    /// Number of particles that were skipped because a coordinate was NaN or infinite. Only host
+    /// data can contain these.
     pub not_finite: u32,
 }
 
-/// Extracts the surface of a simulation's particles, again and again, without leaving the device.
+/// Extracts the surface of the particles of a simulation repeatedly, on the device.
 ///
-/// With a host that may wait: [`extract`](Self::extract), then [`mesh`](Self::mesh) if the mesh is wanted
-/// there. Without: [`record`](Self::record) into the frame's recording, draw with
-/// [`draw_args`](Self::draw_args), request
-/// [`status`](Self::status) and, when it has arrived, hand it to [`grow`](Self::grow); record again if that
-/// made room.
+/// With blocking: call [`extract`](Self::extract), then [`mesh`](Self::mesh) to read the mesh back.
+/// Without blocking: [`record`](Self::record) into the recording of a frame, draw with
+/// [`draw_args`](Self::draw_args), request [`status`](Self::status) and pass it to
+/// [`grow`](Self::grow) when it arrives; if that enlarges the buffers, record again.
 #[derive(Debug)]
 pub struct Surface {
     params: SurfaceParams,
@@ -65,7 +65,7 @@ pub(super) struct Buffers {
     pub lattice: Buffer<Lattice>,
     pub cases: Buffer<UVec2>,
     pub samples: Buffer<Vec4>,
-    pub crowding: Buffer<f32>,
+    pub local_density: Buffer<f32>,
     pub marks: Buffer<u32>,
     pub mark_starts: Buffer<u32>,
     pub block_slot: Buffer<u32>,
@@ -86,20 +86,20 @@ pub(super) struct Buffers {
     pub normals: Buffer<Vec4>,
     pub indices: Buffer<u32>,
     pub valences: Buffer<u32>,
-    pub ring_starts: Buffer<u32>,
-    pub rings: Buffer<UVec2>,
+    pub one_ring_starts: Buffer<u32>,
+    pub one_rings: Buffer<UVec2>,
     pub relaxed: Buffer<Vec4>,
 }
 
 impl Buffers {
-    /// Empty ones, but for those of fixed length.
+    /// Creates the buffers, empty except for those of fixed length.
     fn new(executor: &mut Executor, lattice: &Lattice) -> Result<Self, SurfaceError> {
         let e = executor;
         Ok(Self {
             lattice: e.create_uniform("surface lattice", lattice)?,
             cases: e.create_from("surface cases", &marching_cubes::packed())?,
             samples: e.create("surface samples", 0)?,
-            crowding: e.create("surface crowding", 0)?,
+            local_density: e.create("surface local densities", 0)?,
             marks: e.create("surface marks", 0)?,
             mark_starts: e.create("surface mark starts", 0)?,
             block_slot: e.create("surface block slots", 0)?,
@@ -120,13 +120,13 @@ impl Buffers {
             normals: e.create("surface normals", 0)?,
             indices: e.create("surface indices", 0)?,
             valences: e.create("surface valences", 0)?,
-            ring_starts: e.create("surface ring starts", 0)?,
-            rings: e.create("surface rings", 0)?,
+            one_ring_starts: e.create("surface one-ring starts", 0)?,
+            one_rings: e.create("surface one-rings", 0)?,
             relaxed: e.create("surface relaxed vertices", 0)?,
         })
     }
 
-    /// Gives every buffer the length that the lattice's capacities ask for.
+    /// Resizes every buffer to the capacities of the lattice.
     fn resize(&mut self, e: &mut Executor, lattice: &Lattice, smoothed: bool) -> Result<(), SurfaceError> {
         macro_rules! resize {
             ($($buffer:ident: $len:expr),* $(,)?) => {
@@ -137,20 +137,20 @@ impl Buffers {
         let blocks = lattice.block_capacity as usize;
         let (vertices, triangles) = (lattice.vertex_capacity as usize, lattice.triangle_capacity as usize);
         resize! {
-            samples: particles, crowding: particles,
+            samples: particles, local_density: particles,
             marks: table, mark_starts: table + 1, block_slot: table,
             block_list: blocks, values: blocks * NODES, signs: blocks * ROWS, rows: blocks * ROWS,
             vertex_counts: blocks, triangle_counts: blocks, vertex_starts: blocks + 1, triangle_starts: blocks + 1,
             vertices: vertices, normals: vertices, indices: 3 * triangles,
         }
         let (vertices, triangles) = if smoothed { (vertices, triangles) } else { (0, 0) };
-        resize! { valences: vertices, ring_starts: vertices + 1, rings: 3 * triangles, relaxed: vertices }
+        resize! { valences: vertices, one_ring_starts: vertices + 1, one_rings: 3 * triangles, relaxed: vertices }
         e.write(self.lattice, std::slice::from_ref(lattice))?;
         Ok(())
     }
 }
 
-/// Bytes in the buffers of [`Surface::new`], before anything has grown.
+/// Bytes in the buffers of [`Surface::new`], before they grow.
 ///
 /// # Errors
 /// As [`Surface::new`].
@@ -158,31 +158,32 @@ pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> R
     let lattice = Lattice::new(params, grid, particles, u64::MAX)?;
     let (table, blocks) = (u64::from(lattice.block_count), u64::from(lattice.block_capacity));
     let (vertices, triangles) = (u64::from(lattice.vertex_capacity), u64::from(lattice.triangle_capacity));
-    // Samples and crowding; marks, their sums and slots; values, signs and rows of nodes; vertices and normals.
+    // Samples and local densities; marks, their sums and slots; values, signs and rows of nodes;
+    // vertices and normals.
     let whole = u64::from(particles) * 20
         + table * 12
         + blocks * (4 + 4 * NODES as u64 + 12 * ROWS as u64 + 4 * 4)
         + vertices * 32
         + triangles * 12;
-    // Valences, starts of rings, relaxed vertices; rings.
+    // Valences, one-ring starts, relaxed vertices; one-rings.
     let smoothing = vertices * (4 + 4 + 16) + triangles * 24;
     Ok(whole + if params.smoothing_iterations > 0 { smoothing } else { 0 })
 }
 
 impl Surface {
-    /// The highest value of the field at the nodes of the last extraction.
+    /// The largest value of the field at the nodes of the last extraction.
     pub(super) fn highest(&self, executor: &mut Executor, stats: &SurfaceStats) -> Result<f32, SurfaceError> {
         let nodes = stats.blocks as usize * NODES;
         let values = block_on(executor.fetch_first(self.b.values, nodes))?;
         Ok(values.into_iter().fold(0.0, f32::max))
     }
 
-    /// Prepares the extraction; the mesh's room is estimated from the number of particles and grows when
-    /// needed.
+    /// Prepares the extraction. The capacity is estimated from the number of particles and grows
+    /// when needed.
     ///
     /// # Errors
-    /// [`SurfaceError`] if a parameter makes no sense, the grid does not fit the kernel, or the device is too
-    /// small.
+    /// [`SurfaceError`] if a parameter is invalid, the cells of the grid are smaller than the
+    /// support radius, or the device is too small.
     pub fn new(
         executor: &mut Executor,
         params: SurfaceParams,
@@ -193,7 +194,7 @@ impl Surface {
         Self::with_lattice(executor, params, input, lattice)
     }
 
-    /// As [`new`](Self::new), with room for this many blocks, vertices and triangles to begin with.
+    /// As [`new`](Self::new), with an initial capacity in blocks, vertices and triangles.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -233,7 +234,7 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Makes the buffers fit the lattice, and the list of passes the buffers.
+    /// Resizes the buffers to the lattice, and rebuilds the list of passes.
     fn allocate(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let smoothed = self.params.smoothing_iterations > 0;
         self.b.resize(executor, &self.lattice, smoothed)?;
@@ -249,7 +250,8 @@ impl Surface {
         Ok(())
     }
 
-    /// Appends the extraction to a recording. Valid until [`grow`](Self::grow) has made room.
+    /// Appends the extraction to a recording. It is valid until [`grow`](Self::grow) enlarges the
+    /// buffers.
     pub fn record(&self, recording: &mut Recording) {
         self.record_field(recording);
         self.record_march(recording);
@@ -263,11 +265,11 @@ impl Surface {
         let (lattice, grid) = (b.lattice.id(), input.grid.id());
         let (cell_start, positions) = (input.cell_start.id(), input.positions.id());
         let particles = Work::Items(input.particle_capacity);
-        let (samples, crowding) = (b.samples.id(), b.crowding.id());
+        let (samples, local_density) = (b.samples.id(), b.local_density.id());
         recording.dispatch(
             &volume::VOLUME,
             particles,
-            &[lattice, grid, cell_start, positions, samples, crowding],
+            &[lattice, grid, cell_start, positions, samples, local_density],
         );
         recording.clear(b.marks);
         recording.dispatch(&blocks::MARK, particles, &[lattice, grid, cell_start, positions, b.marks.id()]);
@@ -296,7 +298,7 @@ impl Surface {
             (b.lattice.id(), b.status.id(), b.block_list.id(), b.block_slot.id());
         let (cases, rows) = (b.cases.id(), b.rows.id());
         let (vertex_starts, triangle_starts) = (b.vertex_starts.id(), b.triangle_starts.id());
-        // The scans go over all slots; those without a block have nothing.
+        // The scans include all slots; slots without a block have zero counts.
         recording.clear(b.vertex_counts);
         recording.clear(b.triangle_counts);
         let counts = [b.vertex_counts.id(), b.triangle_counts.id()];
@@ -329,11 +331,11 @@ impl Surface {
     fn record_smoothing(&self, recording: &mut Recording, scan: &Scan) {
         let (b, input) = (&self.b, &self.input);
         let (status, vertices) = (b.status.id(), b.vertices.id());
-        let (starts, rings, valences) = (b.ring_starts.id(), b.rings.id(), b.valences.id());
+        let (starts, one_rings, valences) = (b.one_ring_starts.id(), b.one_rings.id(), b.valences.id());
         let per_vertex = Work::Indirect { buffer: b.vertex_groups.id(), word: 0 };
         let per_triangle = Work::Indirect { buffer: b.triangle_groups.id(), word: 0 };
         recording.dispatch(
-            &smooth::WEIGH,
+            &smooth::SMOOTHING_WEIGHTS,
             self.per_block(),
             &[
                 b.lattice.id(),
@@ -343,32 +345,40 @@ impl Surface {
                 b.vertex_starts.id(),
                 input.cell_start.id(),
                 b.samples.id(),
-                b.crowding.id(),
+                b.local_density.id(),
                 vertices,
             ],
         );
         recording.clear(b.valences);
         recording.dispatch(&smooth::VALENCE, per_triangle, &[status, b.indices.id(), valences]);
-        scan.record(recording, b.valences, b.ring_starts);
-        recording.dispatch(&smooth::RING, per_triangle, &[status, b.indices.id(), starts, valences, rings]);
-        recording.dispatch(&smooth::ORDER, per_vertex, &[status, starts, rings]);
+        scan.record(recording, b.valences, b.one_ring_starts);
+        recording.dispatch(
+            &smooth::ONE_RING,
+            per_triangle,
+            &[status, b.indices.id(), starts, valences, one_rings],
+        );
+        recording.dispatch(&smooth::ONE_RING_ORDER, per_vertex, &[status, starts, one_rings]);
         let (mut from, mut to) = (b.vertices, b.relaxed);
         for _ in 0..self.params.smoothing_iterations {
-            recording.dispatch(&smooth::RELAX, per_vertex, &[status, starts, rings, from.id(), to.id()]);
+            recording.dispatch(&smooth::RELAX, per_vertex, &[status, starts, one_rings, from.id(), to.id()]);
             std::mem::swap(&mut from, &mut to);
         }
         if self.params.smoothing_iterations % 2 == 1 {
             recording.copy(b.relaxed, b.vertices);
         }
-        recording.dispatch(&smooth::SHADE, per_vertex, &[status, starts, rings, vertices, b.normals.id()]);
+        recording.dispatch(
+            &smooth::VERTEX_NORMALS,
+            per_vertex,
+            &[status, starts, one_rings, vertices, b.normals.id()],
+        );
     }
 
     fn per_block(&self) -> Work {
         Work::Indirect { buffer: self.b.block_groups.id(), word: 0 }
     }
 
-    /// Extracts the surface and waits until its size is known. Where the room was too small, makes more and
-    /// repeats.
+    /// Extracts the surface and waits until its size is known. If the capacity is too small,
+    /// enlarges it and repeats.
     ///
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device was lost or the mesh does not fit it.
@@ -393,16 +403,16 @@ impl Surface {
         }
     }
 
-    /// Makes room if the status says that there was too little, a quarter more than was missing. Returns true
-    /// if so: then earlier recordings are void and the mesh must be extracted again.
+    /// If the status reports an overflow, enlarges the buffers to the required size plus a quarter
+    /// and returns true: earlier recordings are then invalid, and the mesh must be extracted again.
     ///
     /// # Errors
-    /// [`SurfaceError::Gpu`] if the device has not that much room.
+    /// [`SurfaceError::Gpu`] if the device is out of memory.
     pub fn grow(&mut self, executor: &mut Executor, status: &Status) -> Result<bool, SurfaceError> {
         if !status.overflowed() {
             return Ok(false);
         }
-        // Blocks that found no room have vertices too: as many as the others.
+        // Assumes that the blocks beyond the capacity have as many vertices as the others.
         let missing = f64::from(status.blocks_needed) / f64::from(status.blocks.max(1));
         let enough = |needed: u32, scale: f64, capacity: u32, most: u32| {
             let wanted = f64::from(needed) * scale;
@@ -411,15 +421,14 @@ impl Surface {
         let lattice = &mut self.lattice;
         lattice.block_capacity =
             enough(status.blocks_needed, 1.0, lattice.block_capacity, lattice.block_count);
-        // Three indices per triangle are counted in 32 bits.
-        let most = u32::MAX / 3;
+        let most = MAX_TRIANGLES;
         lattice.vertex_capacity = enough(status.vertices_needed, missing, lattice.vertex_capacity, most);
         lattice.triangle_capacity = enough(status.triangles_needed, missing, lattice.triangle_capacity, most);
         self.allocate(executor)?;
         Ok(true)
     }
 
-    /// The mesh of the last extraction, on the host.
+    /// Reads back the mesh of the last extraction.
     ///
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device was lost.
@@ -445,43 +454,42 @@ impl Surface {
         Ok(executor.fetch(self.b.status).await?[0])
     }
 
-    /// Gives the memory of the field and of what smoothing needs back to the device: the mesh stays, and is the
-    /// last one.
+    /// Releases the memory of the field and of the smoothing. The mesh remains; no other can be
+    /// extracted.
     pub(crate) fn release_field(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let lattice = &mut self.lattice;
         (lattice.particle_capacity, lattice.block_count, lattice.block_capacity) = (0, 0, 0);
         self.b.resize(executor, &self.lattice, false)
     }
 
-    /// Gives the memory of all buffers back to the device.
+    /// Releases the memory of all buffers.
     pub(crate) fn release(mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         (self.lattice.vertex_capacity, self.lattice.triangle_capacity) = (0, 0);
         self.release_field(executor)
     }
 
-    /// Positions of the vertices in m; the fourth component is of no use outside. The first
-    /// [`Status::vertices`] are valid.
+    /// Positions of the vertices in m; w is internal. The first [`Status::vertices`] are valid.
     pub fn vertices(&self) -> Buffer<Vec4> {
         self.b.vertices
     }
 
-    /// Unit normals of the vertices, pointing out of the fluid; the fourth component is 0.
+    /// Unit normals of the vertices, pointing out of the fluid; w is 0.
     pub fn normals(&self) -> Buffer<Vec4> {
         self.b.normals
     }
 
-    /// Three vertex numbers per triangle, counter-clockwise seen from outside.
+    /// Three vertex indices per triangle, counter-clockwise as seen from outside.
     pub fn indices(&self) -> Buffer<u32> {
         self.b.indices
     }
 
-    /// The five words of an indexed indirect draw: indices, instances, first index, base vertex, first
-    /// instance.
+    /// The arguments of an indexed indirect draw: index count, instance count, first index, base
+    /// vertex, first instance.
     pub fn draw_args(&self) -> Buffer<u32> {
         self.b.draw_args
     }
 
-    /// How large the mesh is and whether it found room.
+    /// The size of the mesh, and whether it exceeded the capacity.
     pub fn status(&self) -> Buffer<Status> {
         self.b.status
     }

@@ -1,24 +1,26 @@
-//! The fluid's surface: from particles to a closed triangle mesh, on the device or on the CPU.
+//! Surface reconstruction: from particles to a closed triangle mesh, on the device or on the CPU.
 //!
 //! # How it works
 //!
-//! 1. `volume`: each particle's share of space and how crowded it is.
-//! 2. `blocks`: the blocks of 8x8x8 nodes that particles reach, marked, numbered by a scan, listed.
-//! 3. `field`: the colour field at the nodes of these blocks, and its signs.
-//! 4. `march`: cut edges counted, numbered by scans, turned into shared vertices with normals and into
-//!    triangles (marching cubes: Lorensen and Cline 1987). The arguments of the indirect draw are written on
-//!    the device.
-//! 5. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), where asked for.
+//! 1. `volume`: the volume and the local density of each particle.
+//! 2. `blocks`: the blocks of 8x8x8 nodes within reach of particles are marked, numbered by a scan,
+//!    and listed.
+//! 3. `field`: the colour field and its signs at the nodes of these blocks.
+//! 4. `march`: cut edges are counted, numbered by scans, and converted into shared vertices with
+//!    normals and into triangles (marching cubes: Lorensen and Cline 1987). The arguments of the
+//!    indirect draw are written on the device.
+//! 5. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), optional.
 //!
-//! The mesh is closed, manifold and oriented outwards for any set of particles: which vertices exist and how
-//! triangles join them follows from the nodes' signs alone (see [`marching_cubes`](crate::marching_cubes)), each node's sign is computed
-//! once, and the nodes at the rim of the marked blocks are outside. The same particles give the same bits on
-//! the same device, with any number of threads.
+//! The mesh is closed, manifold and oriented outwards for any set of particles: vertices and
+//! connectivity follow from the signs of the nodes alone (see
+//! [`marching_cubes`](crate::marching_cubes)), the sign of each node is computed once, and the
+//! nodes at the border of the marked blocks are outside. On the same device, the same particles
+//! give bit-identical meshes for any number of threads.
 //!
 //! # Measured
 //!
-//! 64,000 particles in mid-splash, 2 cores with AVX2, medians; `splashsurf_lib` 0.14.1 in the same run and
-//! with the same parameters finds the same number of vertices:
+//! 64,000 particles of a splash, 2 cores with AVX2, medians. `splashsurf_lib` 0.14.1, in the same
+//! run with the same parameters, produces the same number of vertices:
 //!
 //! | cells, in spacings | smoothing | vertices | CPU | software Vulkan | splashsurf, not smoothed |
 //! |---|---|---|---|---|---|
@@ -26,21 +28,20 @@
 //! | 0.5 | 25 rounds | 57,272 | 42 ms | 156 ms | 81 ms |
 //! | 0.25 | none | 231,858 | 92 ms | 533 ms | 245 ms |
 //!
-//! These are the passes alone; with [`reconstruct`]'s sorting and copying see `examples/surface_times.rs`,
-//! which prints both. Two thirds are the field's square roots.
+//! These are the times of the passes; `examples/surface_times.rs` also prints the times of
+//! [`reconstruct`] with sorting and copying. Two thirds of the time are square roots in the field.
 //!
 //! # Why not the other way
 //!
-//! A dense grid costs memory by the domain's volume instead of the fluid's. A hash table of edges, the usual
-//! way to share vertices, needs atomics and gives another order every time; numbers from scans need neither.
-//! Dual contouring places vertices at creases, which water does not have, and can give edges with four
-//! triangles.
+//! The memory of a dense grid is proportional to the volume of the domain instead of that of the
+//! fluid. A hash table of edges, the usual way to share vertices, needs atomics and is not
+//! reproducible; indices from scans avoid both. Dual contouring places vertices at creases, which
+//! water does not have, and can produce edges with four triangles.
 
-mod blobs;
 mod blocks;
+mod components;
 mod error;
 mod field;
-mod gather;
 mod interpolate;
 mod march;
 mod mesh;
@@ -49,12 +50,11 @@ mod params;
 mod parts;
 mod reconstruct;
 mod smooth;
-mod spline;
 #[cfg(test)]
 mod tests;
 mod volume;
 
-pub use blobs::drop_blobs;
+pub use components::remove_small_components;
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
 pub(crate) use mesh::forecast;
@@ -64,7 +64,7 @@ pub use reconstruct::reconstruct;
 
 use splashdown_gpu::PassDesc;
 
-/// Every pass of the surface, for the gate and the tests.
+/// All passes of surface reconstruction, for the gate and the tests.
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
         &volume::VOLUME,
@@ -76,11 +76,11 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &march::FINISH,
         &march::VERTICES,
         &march::TRIANGLES,
-        &smooth::WEIGH,
+        &smooth::SMOOTHING_WEIGHTS,
         &smooth::VALENCE,
-        &smooth::RING,
-        &smooth::ORDER,
+        &smooth::ONE_RING,
+        &smooth::ONE_RING_ORDER,
         &smooth::RELAX,
-        &smooth::SHADE,
+        &smooth::VERTEX_NORMALS,
     ]
 }

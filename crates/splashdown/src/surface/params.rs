@@ -1,4 +1,4 @@
-//! What the caller chooses, checked, and the lattice of nodes that follows from it.
+//! Parameters of surface reconstruction, and the lattice of nodes derived from them.
 
 use glam::{DVec3, UVec3, Vec3};
 use splashdown_gpu::gpu_struct;
@@ -7,38 +7,42 @@ use super::SurfaceError;
 use crate::cells::Grid;
 use crate::scene::SurfaceSettings;
 
-/// Nodes along a block's side.
+/// Nodes along the side of a block.
 pub(crate) const SIDE: u32 = 8;
 /// Rows of eight nodes along x in a block.
 pub(crate) const ROWS: usize = (SIDE * SIDE) as usize;
 /// Nodes in a block.
 pub(crate) const NODES: usize = ROWS * SIDE as usize;
-/// In the table of blocks: no surface can be there.
+/// In the table of blocks: the block is not marked.
 pub(crate) const NONE: u32 = u32::MAX;
-/// Most blocks in the dense table, whatever the device: 64 Mi, 256 MiB for each of its three arrays.
+/// Largest number of triangles: their three indices each are counted in 32 bits.
+pub(crate) const MAX_TRIANGLES: u32 = u32::MAX / 3;
+/// Largest number of blocks in the dense table on any device: 64 Mi, 256 MiB for each of its three
+/// arrays.
 const MAX_BLOCKS: u64 = 1 << 26;
 
-/// What a surface looks like and how finely it is resolved. Lengths in m.
+/// Shape and resolution of a surface. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceParams {
-    /// Distance of particles on the initial lattice; it sets the first guess of the mesh's size.
+    /// Distance of particles on the initial lattice; it determines the initial capacity of the
+    /// mesh.
     pub particle_spacing: f32,
-    /// Where the kernel becomes zero; usually 2 spacings.
+    /// Distance at which the kernel becomes zero; usually 2 spacings.
     pub support_radius: f32,
-    /// Edge of a marching-cubes cell; usually 0.5 spacings.
+    /// Edge length of a marching-cubes cell; usually 0.5 spacings.
     pub cell_size: f32,
-    /// Value of the colour field at the surface; the field is about 1 in the fluid's bulk and 0 outside.
-    /// Usually 0.6.
+    /// Value of the colour field at the surface. The field is about 1 inside the fluid and 0
+    /// outside. Usually 0.6.
     pub iso_level: f32,
-    /// Rounds of weighted Laplacian smoothing; 0 leaves marching cubes' vertices, 15 to 25 remove the
-    /// particles' bumps.
+    /// Iterations of weighted Laplacian smoothing. 0 keeps the vertices of marching cubes; 15 to 25
+    /// remove the bumps of the particles.
     pub smoothing_iterations: u32,
 }
 
 impl SurfaceParams {
-    /// The usual values for a particle spacing: support 2 spacings, cells of half a spacing, iso level 0.6,
-    /// no smoothing.
+    /// Default values for a particle spacing: a support radius of 2 spacings, cells of half a
+    /// spacing, an iso level of 0.6, no smoothing.
     pub fn new(particle_spacing: f32) -> Self {
         Self {
             particle_spacing,
@@ -49,7 +53,7 @@ impl SurfaceParams {
         }
     }
 
-    /// A scene's settings for its particle spacing.
+    /// The settings of a scene.
     pub fn of_scene(settings: &SurfaceSettings, particle_spacing: f32) -> Self {
         Self {
             particle_spacing,
@@ -60,10 +64,10 @@ impl SurfaceParams {
         }
     }
 
-    /// Tells whether the values make sense.
+    /// Validates the values.
     ///
     /// # Errors
-    /// [`SurfaceError::Parameter`] for the first that does not.
+    /// [`SurfaceError::Parameter`] for the first invalid value.
     pub fn check(&self) -> Result<(), SurfaceError> {
         let lengths = [
             ("particle_spacing", self.particle_spacing),
@@ -71,7 +75,7 @@ impl SurfaceParams {
             ("cell_size", self.cell_size),
         ];
         for (name, given) in lengths {
-            // The squares and reciprocals of lengths outside this range are not numbers any more.
+            // Squares and reciprocals of lengths outside this range overflow or underflow.
             if !(1e-12..=1e12).contains(&given) {
                 return Err(SurfaceError::Parameter {
                     name,
@@ -80,7 +84,7 @@ impl SurfaceParams {
                 });
             }
         }
-        // At 0 the surface would be infinitely far away.
+        // At 0 there is no surface.
         if !(1e-3..=1e3).contains(&self.iso_level) {
             let (name, given) = ("iso_level", self.iso_level);
             return Err(SurfaceError::Parameter { name, given, allowed: "between 0.001 and 1000" });
@@ -89,14 +93,14 @@ impl SurfaceParams {
     }
 }
 
-/// The largest coordinate at which an `f32` keeps three bits for the place inside a cell.
+/// The largest coordinate at which an `f32` has three bits for the position within a cell.
 pub(crate) fn farthest(cell_size: f32) -> f32 {
     cell_size * (1 << 21) as f32
 }
 
 gpu_struct! {
-    /// Mirrors `Lattice` in `lattice.wgsl`: the nodes at which the field is computed, in blocks of 8x8x8, and
-    /// the mesh's capacities.
+    /// The nodes at which the field is evaluated, in blocks of 8x8x8, and the capacities. Mirrors
+    /// `Lattice` in `lattice.wgsl`.
     pub(crate) struct Lattice {
         /// Position of node (0, 0, 0), a multiple of the cell size.
         origin: Vec3,
@@ -106,7 +110,7 @@ gpu_struct! {
         blocks_x: u32,
         blocks_y: u32,
         blocks_z: u32,
-        /// Their product: the length of the dense table of blocks.
+        /// Product of the three: the length of the dense table of blocks.
         block_count: u32,
         support_radius: f32,
         /// 1 / support_radius
@@ -114,7 +118,7 @@ gpu_struct! {
         /// 1 / cell_size
         inverse_cell: f32,
         iso_level: f32,
-        /// Blocks that the field has room for.
+        /// Capacity of the field in blocks.
         block_capacity: u32,
         vertex_capacity: u32,
         triangle_capacity: u32,
@@ -123,7 +127,8 @@ gpu_struct! {
 }
 
 impl Lattice {
-    /// The lattice over all that particles in `grid` can reach, with capacities estimated from their number.
+    /// The lattice over everything within reach of particles in `grid`, with capacities estimated
+    /// from their number.
     pub fn new(
         params: &SurfaceParams,
         grid: &Grid,
@@ -143,8 +148,8 @@ impl Lattice {
         if most > f64::from(allowed) {
             return Err(SurfaceError::TooFar { farthest: most as f32, cell_size, allowed });
         }
-        // The grid has a ghost cell, no narrower than the support, on every side. Two nodes more keep the
-        // cells round the outermost nodes, and what rounding may add, inside.
+        // The grid has a ghost cell, at least as wide as the support, on every side. Two more nodes
+        // are for the cells around the outermost nodes and for rounding.
         let first = (low / cell).floor() - 2.0;
         let nodes = ((low + extent) / cell).ceil() + 3.0 - first;
         let blocks: DVec3 = (nodes / f64::from(SIDE)).ceil();
@@ -174,10 +179,10 @@ impl Lattice {
         Ok(lattice)
     }
 
-    /// Guesses capacities. A splash of 64,000 particles has 0.9 vertices per particle at cells of half a
-    /// spacing, 3.6 at a quarter, and twice as many triangles; its blocks are 1,874 and 12,903, of which
-    /// 1,000 and 8,000 would hold the fluid's own volume. Spray and thin sheets have more of both: then the
-    /// extraction is repeated once.
+    /// Estimates the capacities. A splash of 64,000 particles has 0.9 vertices per particle with
+    /// cells of half a spacing and 3.6 with cells of a quarter, and twice as many triangles; it has
+    /// 1,874 and 12,903 blocks, while 1,000 and 8,000 blocks have the volume of the fluid. Spray
+    /// and thin sheets need more of both: the extraction is then repeated once.
     fn estimate(&mut self, params: &SurfaceParams) {
         let particles = f64::from(self.particle_capacity);
         let cells = f64::from(params.particle_spacing / params.cell_size);
@@ -186,53 +191,54 @@ impl Lattice {
         let skin = particles * (cells / f64::from(SIDE)).powi(2);
         self.block_capacity = (1.5 * bulk + 0.25 * skin + 512.0).min(f64::from(self.block_count)) as u32;
         self.vertex_capacity = vertices as u32;
-        self.triangle_capacity = 2 * self.vertex_capacity;
+        self.triangle_capacity = (2 * self.vertex_capacity).min(MAX_TRIANGLES);
     }
 
-    /// Place of a block in units of blocks.
+    /// Coordinates of a block, in blocks.
     pub fn block_place(&self, block: u32) -> [i32; 3] {
         let (x, rest) = (block % self.blocks_x, block / self.blocks_x);
         [x, rest % self.blocks_y, rest / self.blocks_y].map(|place| place as i32)
     }
 
-    /// The number in the dense table of the block at a place, if the lattice reaches there.
+    /// The index of a block in the dense table, if the coordinates are inside the lattice.
     pub fn block_at(&self, place: [i32; 3]) -> Option<usize> {
         let [x, y, z] = place.map(|p| p as u32);
-        // A negative place is a large number here.
+        // Negative coordinates wrap to large numbers.
         let within = x < self.blocks_x && y < self.blocks_y && z < self.blocks_z;
         within
             .then(|| (z as usize * self.blocks_y as usize + y as usize) * self.blocks_x as usize + x as usize)
     }
 
-    /// A node's coordinate along an axis.
+    /// The coordinate of a node along an axis.
     pub fn coordinate(&self, axis: usize, node: u32) -> f32 {
         self.origin[axis] + self.cell_size * node as f32
     }
 }
 
 gpu_struct! {
-    /// Mirrors `Status` in `lattice.wgsl`: how large the mesh is, written on the device; one element.
+    /// The size of the mesh, written on the device; one element. Mirrors `Status` in `status.wgsl`.
     ///
-    /// What is needed can exceed what there was room for; then the mesh has holes until
-    /// [`Surface::grow`](super::Surface::grow) has made room and the recording has run again.
+    /// The required numbers can exceed the capacities. The mesh then has holes until
+    /// [`Surface::grow`](super::Surface::grow) has enlarged the buffers and the recording has run
+    /// again.
     pub struct Status {
-        /// Blocks filled.
+        /// Number of blocks with data.
         blocks: u32,
-        /// Blocks that particles reach.
+        /// Number of blocks within reach of particles.
         blocks_needed: u32,
-        /// Vertices written.
+        /// Number of vertices written.
         vertices: u32,
-        /// Vertices of the blocks filled.
+        /// Number of vertices of the blocks with data.
         vertices_needed: u32,
-        /// Triangles written.
+        /// Number of triangles written.
         triangles: u32,
-        /// Triangles of the blocks filled.
+        /// Number of triangles of the blocks with data.
         triangles_needed: u32,
     }
 }
 
 impl Status {
-    /// True if there was not room for everything.
+    /// True if a capacity was exceeded.
     pub fn overflowed(&self) -> bool {
         self.blocks_needed > self.blocks
             || self.vertices_needed > self.vertices

@@ -1,4 +1,4 @@
-//! The surface of particles that lie in host memory.
+//! Surface reconstruction of particles in host memory.
 
 use glam::{Vec3, Vec4};
 use splashdown_gpu::Executor;
@@ -7,10 +7,10 @@ use splashdown_io::Mesh;
 use super::{Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats};
 use crate::cells::Grid;
 
-/// The surface of any set of points, in m, each the centre of a particle.
+/// Reconstructs the surface of particles in host memory from their positions in metres.
 ///
-/// Positions that are not finite are left out and counted in [`SurfaceStats::not_finite`]. No particles give
-/// an empty mesh.
+/// Positions that are not finite are skipped and counted in [`SurfaceStats::not_finite`]. Without
+/// particles the mesh is empty.
 ///
 /// ```
 /// use splashdown::surface::{SurfaceParams, reconstruct};
@@ -23,14 +23,16 @@ use crate::cells::Grid;
 /// ```
 ///
 /// # Errors
-/// [`SurfaceError`] if a parameter makes no sense, there is no surface at the level that is asked for, the points are
-/// too far apart for the cell size, or the device is too small.
+/// [`SurfaceError`] if a parameter is invalid, there is no surface at the iso level, there are more
+/// than 2^32 - 1 particles, the particles are too far apart for the cell size, or the device is too
+/// small.
 pub fn reconstruct(
     positions: &[[f32; 3]],
     params: &SurfaceParams,
     executor: &mut Executor,
 ) -> Result<(Mesh, SurfaceStats), SurfaceError> {
     params.check()?;
+    check_count(positions.len())?;
     let finite: Vec<Vec3> = positions.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite()).collect();
     let not_finite = (positions.len() - finite.len()) as u32;
     if finite.is_empty() {
@@ -40,7 +42,7 @@ pub fn reconstruct(
     let mut surface = Surface::new(executor, *params, input)?;
     let stats = surface.extract(executor)?;
     let highest = if stats.triangles == 0 { Some(surface.highest(executor, &stats)?) } else { None };
-    // Before the mesh is copied: the field is most of the memory.
+    // Before the mesh is copied, because the field takes most of the memory.
     surface.release_field(executor)?;
     executor.resize(&mut input.positions, 0)?;
     executor.resize(&mut input.cell_start, 0)?;
@@ -52,7 +54,7 @@ pub fn reconstruct(
     Ok((mesh, SurfaceStats { not_finite, ..stats }))
 }
 
-/// Sorts points by cell and hands them to the device.
+/// Sorts points by cell and uploads them.
 pub(super) fn upload(
     executor: &mut Executor,
     points: &[Vec3],
@@ -69,16 +71,29 @@ pub(super) fn upload(
     })
 }
 
-/// A grid over all particles. Where they are far apart its cells are wider than the support needs, so that
-/// there are not many more cells than particles.
+/// Particles have 32-bit indices.
+fn check_count(given: usize) -> Result<(), SurfaceError> {
+    match u32::try_from(given) {
+        Ok(_) => Ok(()),
+        Err(_) => Err(SurfaceError::TooManyParticles { given, allowed: u32::MAX }),
+    }
+}
+
+/// The largest number of cells of a grid over a number of particles.
+fn cell_limit(particles: usize) -> u64 {
+    64 * particles as u64 + 4096
+}
+
+/// A grid over all particles. If they are far apart, its cells are larger than the support radius,
+/// which limits the number of cells.
 pub(super) fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Grid, SurfaceError> {
     let low = positions.iter().fold(Vec3::MAX, |low, &p| low.min(p));
     let high = positions.iter().fold(Vec3::MIN, |high, &p| high.max(p));
-    let most = 64 * positions.len() as u32 + 4096;
+    let limit = cell_limit(positions.len());
     let mut cell_size = params.support_radius;
     loop {
         match Grid::new(low, high, cell_size) {
-            Some(grid) if grid.cell_count <= most => return Ok(grid),
+            Some(grid) if u64::from(grid.cell_count) <= limit => return Ok(grid),
             _ if cell_size.is_finite() && (high - low).is_finite() => cell_size *= 1.5,
             _ => {
                 let (farthest, cell_size) = (low.abs().max(high.abs()).max_element(), params.cell_size);
@@ -92,13 +107,13 @@ pub(super) fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Gr
     }
 }
 
-/// A counting sort; particles of one cell keep their order.
+/// A stable counting sort by cell.
 fn sort_by_cell(grid: &Grid, positions: &[Vec3]) -> (Vec<Vec4>, Vec<u32>) {
     let (order, start) = sort_order(grid, positions);
     (order.iter().map(|&particle| positions[particle as usize].extend(0.0)).collect(), start)
 }
 
-/// The particles' numbers in the order of their cells, and where each cell begins.
+/// The indices of the particles sorted by cell, and the first of each cell.
 pub(super) fn sort_order(grid: &Grid, positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
     let cells: Vec<u32> = positions.iter().map(|&p| grid.cell_of(p)).collect();
     let mut start = vec![0_u32; grid.cell_count as usize + 1];
@@ -116,4 +131,25 @@ pub(super) fn sort_order(grid: &Grid, positions: &[Vec3]) -> (Vec<u32>, Vec<u32>
         *place += 1;
     }
     (order, start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_number_of_cells_does_not_overflow_above_67_million_particles() {
+        // 64 * 2^26 is 2^32: the limit was 4096 cells with 32-bit arithmetic.
+        let particles = 1 << 26;
+        assert_eq!(cell_limit(particles), (1 << 32) + 4096);
+        assert_eq!(64_u32.wrapping_mul(particles as u32) + 4096, 4096, "negative control");
+        assert!(cell_limit(u32::MAX as usize) > 1 << 37);
+    }
+
+    #[test]
+    fn more_particles_than_32_bit_indices_are_refused() {
+        assert!(check_count(u32::MAX as usize).is_ok());
+        let error = check_count(u32::MAX as usize + 1).unwrap_err().to_string();
+        assert!(error.contains("4294967296 particles") && error.contains("4294967295"), "{error}");
+    }
 }

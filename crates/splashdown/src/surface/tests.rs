@@ -1,8 +1,8 @@
-//! Every pass on the GPU against its twin on the CPU, each from equal input.
+//! Every pass on the GPU compared with its CPU counterpart, from equal input.
 //!
-//! The two executors get the same buffers in the same order, so that one set of names serves both. Before
-//! each command all of the CPU's buffers are copied to the GPU; after it, all are compared: what the pass
-//! wrote, and that it wrote nothing else. New buffers are poisoned.
+//! The two executors create the same buffers in the same order, so that the handles are valid for
+//! both. Before each command all buffers are copied from the CPU to the GPU; afterwards all are
+//! compared, which also shows that the pass wrote nothing else. New buffers are poisoned.
 
 use glam::{UVec2, Vec3, Vec4};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuExecutor, Recording, testing};
@@ -13,7 +13,8 @@ use super::{Surface, reconstruct};
 
 const SPACING: f32 = 0.05;
 
-/// A jittered ball of particles, a thin sheet through its middle, a lone particle, two in one place.
+/// A jittered ball of particles, a thin sheet through its middle, a single particle, and two at the
+/// same position.
 fn cloud() -> Vec<Vec3> {
     let unit = |i: u32| testing::noise(i) as f32 / u32::MAX as f32 - 0.5;
     let mut points = Vec::new();
@@ -28,7 +29,8 @@ fn cloud() -> Vec<Vec3> {
     points
 }
 
-/// The first place where two columns differ by more than `tolerance` (equal bits never differ, NaN or not).
+/// The first index at which two columns differ by more than `tolerance`. Equal bits are equal, even
+/// for NaN.
 fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<String> {
     assert_eq!(cpu.len(), gpu.len());
     let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || (a - b).abs() <= tolerance * (1.0 + a.abs());
@@ -36,13 +38,13 @@ fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<St
     Some(format!("{what}[{place}]: CPU {}, GPU {}", cpu[place], gpu[place]))
 }
 
-/// Does something to every buffer of the extraction.
+/// Runs code for every buffer of the extraction.
 macro_rules! for_each_buffer {
     ($b:expr, $buffer:ident, $name:ident => $body:block) => {
         for_each_buffer!(@ $b, $buffer, $name, $body;
-            samples crowding marks mark_starts block_slot block_list values signs rows vertex_counts triangle_counts
+            samples local_density marks mark_starts block_slot block_list values signs rows vertex_counts triangle_counts
             vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertices normals
-            indices valences ring_starts rings relaxed)
+            indices valences one_ring_starts one_rings relaxed)
     };
     (@ $b:expr, $buffer:ident, $name:ident, $body:block; $($field:ident)*) => {
         $({ let $buffer = $b.$field; let $name = stringify!($field); $body })*
@@ -56,28 +58,28 @@ fn copy_all(b: &Buffers, from: &mut Executor, to: &mut Executor) {
     });
 }
 
-/// Rings have no order until they are sorted; this compares them as sets.
-fn sort_rings(starts: &[u32], rings: &mut [UVec2]) {
+/// One-rings have no order until they are sorted; sorting them compares them as sets.
+fn sort_one_rings(starts: &[u32], one_rings: &mut [UVec2]) {
     for range in starts.windows(2) {
-        // Before the first scan the starts are poison.
-        if let Some(ring) = rings.get_mut(range[0] as usize..range[1] as usize) {
+        // Before the first scan the starts are poisoned.
+        if let Some(ring) = one_rings.get_mut(range[0] as usize..range[1] as usize) {
             ring.sort_unstable_by_key(|pair| pair.x);
         }
     }
 }
 
-/// What differs between the executors after a command.
+/// The differences between the executors after a command.
 fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec<String> {
     let mut wrong = Vec::new();
     let values = cpu.read(b.values).unwrap();
     for_each_buffer!(b, buffer, name => {
         let (mut here, mut there) = (cpu.read(buffer).unwrap(), gpu.read(buffer).unwrap());
         match name {
-            // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8, and the
-            // hardware's square root.
-            "samples" | "crowding" | "values" | "vertices" | "relaxed" | "normals" => {
-                // A normal is a difference of such values divided by its length, which can be a hundredth of
-                // them.
+            // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8,
+            // and the hardware's square root.
+            "samples" | "local_density" | "values" | "vertices" | "relaxed" | "normals" => {
+                // A normal is a difference of such values divided by its length, which can be a
+                // hundred times smaller.
                 let tolerance = if name == "normals" { 5e-4 } else { 1e-5 };
                 let (here, there) = (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
                 wrong.extend(difference(name, here, there, tolerance));
@@ -94,10 +96,10 @@ fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec
                 }
             }
             _ => {
-                if name == "rings" {
-                    let starts = cpu.read(b.ring_starts).unwrap();
-                    sort_rings(&starts, bytemuck::cast_slice_mut(&mut here));
-                    sort_rings(&starts, bytemuck::cast_slice_mut(&mut there));
+                if name == "one_rings" {
+                    let starts = cpu.read(b.one_ring_starts).unwrap();
+                    sort_one_rings(&starts, bytemuck::cast_slice_mut(&mut here));
+                    sort_one_rings(&starts, bytemuck::cast_slice_mut(&mut there));
                 }
                 let (here, there): (&[u32], &[u32]) =
                     (bytemuck::cast_slice(&here), bytemuck::cast_slice(&there));
@@ -145,18 +147,21 @@ fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Optio
 }
 
 #[test]
-fn every_pass_agrees_with_its_twin() {
-    let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_twin") else { return };
+fn every_pass_agrees_with_its_cpu_counterpart() {
+    let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_cpu_counterpart") else { return };
     for smoothing_iterations in [0, 3] {
         let params = SurfaceParams { smoothing_iterations, ..SurfaceParams::new(SPACING) };
         command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, None);
     }
 }
 
-/// With room for less than there is, nothing is written outside on either side, and both leave out the same.
+/// With capacities that are too small, neither side writes out of range, and both omit the same
+/// elements.
 #[test]
-fn every_pass_agrees_with_its_twin_where_there_is_no_room() {
-    let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_twin_where_there_is_no_room") else {
+fn every_pass_agrees_with_its_cpu_counterpart_with_exceeded_capacities() {
+    let Some(gpu) =
+        testing::gpu_or_skip("every_pass_agrees_with_its_cpu_counterpart_with_exceeded_capacities")
+    else {
         return;
     };
     let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
@@ -165,9 +170,9 @@ fn every_pass_agrees_with_its_twin_where_there_is_no_room() {
     }
 }
 
-/// The control: the smallest wrong changes that a comparison must find.
+/// Negative control: the smallest changes that the comparison must detect.
 #[test]
-fn the_comparison_finds_a_wrong_bit_and_a_wrong_digit() {
+fn the_comparison_detects_a_wrong_bit_and_a_wrong_digit() {
     let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
     let (mut a, mut b) = (Executor::from(CpuExecutor::new()), Executor::from(CpuExecutor::new()));
     let surface = prepare(&mut a, params, None);
@@ -181,9 +186,9 @@ fn the_comparison_finds_a_wrong_bit_and_a_wrong_digit() {
     changed[values.iter().position(|&value| value > 0.1).unwrap()] *= 1.0001;
     b.write(surface.b.values, &changed).unwrap();
     b.write(surface.b.vertices, &[Vec4::splat(0.001)]).unwrap();
-    let mut rings = a.read(surface.b.rings).unwrap();
-    rings[0].y += 1;
-    b.write(surface.b.rings, &rings).unwrap();
+    let mut one_rings = a.read(surface.b.one_rings).unwrap();
+    one_rings[0].y += 1;
+    b.write(surface.b.one_rings, &one_rings).unwrap();
     let mut signs = a.read(surface.b.signs).unwrap();
     signs[0] ^= 1;
     b.write(surface.b.signs, &signs).unwrap();

@@ -4,7 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/foam
-#import sph/foam_surroundings
+#import sph/foam_ambient
 
 #bindings
 
@@ -17,29 +17,29 @@ fn advect(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     var p = foam_pool[i];
     let dt = foam_state.dt;
     let v = p.velocity;
-    let pull = body_acceleration(foam_state.time - 0.5 * dt);
+    let acceleration = body_acceleration(foam_state.time - 0.5 * dt);
     let was_spray = (p.tag & 3u) == SPRAY;
     var x = p.position + dt * v;
     if (was_spray) {
-        x += 0.5 * dt * dt * pull;
+        x += 0.5 * dt * dt * acceleration;
     }
-    let around = surroundings(x);
+    let near = ambient(x);
     let was_foam = (p.tag & 3u) == FOAM;
-    let kind = kind_of(around.neighbours, was_foam);
+    let kind = kind_of(near.neighbours, was_foam);
     var u = v;
     if (kind == SPRAY) {
-        u = v + dt * pull;
+        u = v + dt * acceleration;
         if (!was_spray) {
-            x += 0.5 * dt * dt * pull;
+            x += 0.5 * dt * dt * acceleration;
         }
     } else {
         if (was_spray) {
-            x -= 0.5 * dt * dt * pull;
+            x -= 0.5 * dt * dt * acceleration;
         }
-        u = around.velocity;
+        u = near.velocity;
         if (kind == BUBBLE) {
             let follow = 1.0 - exp(-foam.drag * dt);
-            let rise = around.velocity - foam.buoyancy / foam.drag * pull;
+            let rise = near.velocity - foam.buoyancy / foam.drag * acceleration;
             u = v + follow * (rise - v);
         }
         x += 0.5 * dt * (u - v);

@@ -1,8 +1,10 @@
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::AdvectBindings;
-use crate::foam::surroundings::Around;
-use crate::foam::{Diffuse, DiffuseKind, FoamParams, FoamState};
+use crate::foam::ambient::{Ambient, Fluid};
+use crate::foam::{Diffuse, DiffuseKind, FoamParams};
+use crate::state::Params;
 
 pub(super) fn advect(buffers: AdvectBindings<'_>) {
     let AdvectBindings {
@@ -21,43 +23,60 @@ pub(super) fn advect(buffers: AdvectBindings<'_>) {
     if now.is_due == 0 {
         return;
     }
-    let around = Around { params, grid, cell_start, positions, velocities };
+    let fluid = Fluid { params, grid, cell_start, positions, velocities };
     let n = now.count as usize;
-    let moved = moved[..n].par_iter_mut().with_min_len(256);
-    let alive = &mut alive[..n];
-    moved.zip(alive).zip(&pool[..n]).for_each(|((moved, alive), before)| {
+    let pool = &pool[..n];
+    let acceleration = params.body_acceleration(now.time - 0.5 * now.dt);
+    let points: Vec<Vec3> =
+        pool.par_iter().with_min_len(1024).map(|before| predicted(before, now.dt, acceleration)).collect();
+    let ambient = fluid.at(&points);
+    let outputs = moved[..n].par_iter_mut().zip(&mut alive[..n]);
+    let inputs = pool.par_iter().zip(points).zip(ambient);
+    outputs.zip(inputs).with_min_len(1024).for_each(|((moved, alive), ((before, x), near))| {
         let is_in;
-        (*moved, is_in) = advected(&around, foam, &now, before);
+        (*moved, is_in) = advected(params, foam, now.dt, acceleration, before, x, near);
         *alive = u32::from(is_in && moved.lifetime > 0.0);
     });
 }
 
-/// The particle after the step, and whether it is still in the domain.
-fn advected(around: &Around<'_>, foam: &FoamParams, now: &FoamState, before: &Diffuse) -> (Diffuse, bool) {
-    let (params, dt, v) = (around.params, now.dt, before.velocity);
-    let pull = params.body_acceleration(now.time - 0.5 * dt);
-    let was_spray = before.kind() == DiffuseKind::Spray;
-    let mut x = before.position + dt * v;
-    if was_spray {
-        x += 0.5 * dt * dt * pull;
+/// The position to which a particle's own velocity takes it.
+fn predicted(before: &Diffuse, dt: f32, acceleration: Vec3) -> Vec3 {
+    let mut x = before.position + dt * before.velocity;
+    if before.kind() == DiffuseKind::Spray {
+        x += 0.5 * dt * dt * acceleration;
     }
-    let near = around.at(x);
+    x
+}
+
+/// The particle after the step, from its predicted position and the fluid there; and whether it is
+/// in the domain.
+fn advected(
+    params: &Params,
+    foam: &FoamParams,
+    dt: f32,
+    acceleration: Vec3,
+    before: &Diffuse,
+    mut x: Vec3,
+    near: Ambient,
+) -> (Diffuse, bool) {
+    let v = before.velocity;
+    let was_spray = before.kind() == DiffuseKind::Spray;
     let was_foam = before.kind() == DiffuseKind::Foam;
     let kind = foam.kind_of(near.neighbours, was_foam);
     let mut u;
     if kind == DiffuseKind::Spray {
-        u = v + dt * pull;
+        u = v + dt * acceleration;
         if !was_spray {
-            x += 0.5 * dt * dt * pull;
+            x += 0.5 * dt * dt * acceleration;
         }
     } else {
         if was_spray {
-            x -= 0.5 * dt * dt * pull;
+            x -= 0.5 * dt * dt * acceleration;
         }
         u = near.velocity;
         if kind == DiffuseKind::Bubble {
             let follow = 1.0 - (-foam.drag * dt).exp();
-            let rise = near.velocity - foam.buoyancy / foam.drag * pull;
+            let rise = near.velocity - foam.buoyancy / foam.drag * acceleration;
             u = v + follow * (rise - v);
         }
         x += 0.5 * dt * (u - v);

@@ -1,26 +1,27 @@
-//! Moves the diffuse particles there are and says what they are (Ihmsen et al. 2012, section 3.2): by the
-//! number of their neighbours in the fluid, spray, foam or bubbles.
+//! Moves and classifies the diffuse particles (Ihmsen et al. 2012, section 3.2): the number of
+//! neighbours in the fluid determines whether a particle is spray, foam or a bubble.
 //!
-//! * Spray flies: x += dt v + dt^2 g / 2, v += dt g.
-//! * Foam has the velocity of the fluid round it, sum_j v_j W / sum_j W.
-//! * A bubble is drawn to that velocity at the rate `drag` and rises by `buoyancy` times gravity; its v is
-//!   exact over the time step.
+//! * Spray is ballistic: x += dt v + dt^2 g / 2, v += dt g.
+//! * Foam has the velocity of the surrounding fluid, sum_j v_j W / sum_j W.
+//! * The velocity of a bubble relaxes to that velocity at the rate `drag`, with an additional
+//!   acceleration of `buoyancy` times gravity upwards; it is integrated exactly over the time step.
 //!
-//! Foam and bubbles move by the mean of their velocities before and after. The fluid is that at the time
-//! step's end, and a particle first goes to where its own velocity takes it and then looks round, so that
-//! steps of several spacings do no harm. The paper's drag is a part per step; a rate does not depend on the
-//! step.
+//! Foam and bubbles move with the mean of their velocities before and after. The fluid is that at
+//! the end of the time step, and its velocity is evaluated at the position predicted with the
+//! particle's own velocity, so that displacements of several spacings are possible. In the paper
+//! the drag is a fraction per step; a rate does not depend on the time step.
 //!
-//! Near a closed side the support is cut off: neighbours are divided by the part of its ball that is inside,
-//! a product over the sides. What is or was foam, and spray that lies on a side, loses lifetime; closed sides
-//! hold particles, open ones let them out.
+//! Near a closed side the support is truncated: the number of neighbours is divided by the fraction
+//! of the support that is inside, a product over the sides. The lifetime of foam, of former foam,
+//! and of spray on a side decreases. Closed sides confine particles; particles leave through open
+//! sides.
 
 mod cpu;
 
 use glam::Vec4;
 use splashdown_gpu::{PassDesc, bindings};
 
-use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
+use super::{AMBIENT_IMPORTS, Diffuse, FoamParams, FoamState};
 use crate::cells::Grid;
 use crate::state::Params;
 
@@ -44,7 +45,7 @@ bindings! {
 pub static ADVECT: PassDesc = PassDesc {
     label: "foam.advect",
     wgsl: include_str!("advect.wgsl"),
-    imports: LOOK_ROUND,
+    imports: AMBIENT_IMPORTS,
     entry: "advect",
     workgroup_size: [64, 1, 1],
     constants: &[],

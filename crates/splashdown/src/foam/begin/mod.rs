@@ -1,9 +1,9 @@
-//! Decides whether an update is due, and its time step: the time that the simulation has passed since the
-//! last one.
+//! Determines whether an update is due, and its time step: the simulated time since the last
+//! update.
 //!
-//! The simulation's clock is on the device, so that nobody has to wait for it. Within a frame an update needs
-//! a sorted order that holds: a batch of steps that is longer than its frame leaves none, and then the update
-//! waits for the frame's end. There it is always due.
+//! The simulated time is on the device, so that the host does not wait for it. Within a frame an
+//! update needs a valid sorted order. A batch of steps that exceeds its frame leaves none; the
+//! update is then postponed to the end of the frame, where it is always due.
 
 mod cpu;
 

@@ -1,8 +1,10 @@
-//! How many diffuse particles each particle of the fluid makes (Ihmsen et al. 2012, equation 8): n = I_k
-//! (k_ta I_ta + k_wc I_wc) dt, where each I is a potential's way between its limits, in [0, 1].
+//! The number of diffuse particles that each particle of the fluid generates (Ihmsen et al. 2012,
+//! equation 8): n = I_k (k_ta I_ta + k_wc I_wc) dt, where each I is a potential, mapped linearly
+//! from its limits to [0, 1].
 //!
-//! What is left of n behind the whole number is the probability of one more, by a hash of the particle's id
-//! and the update's number: the same on every run, in whatever order the particles lie.
+//! The fractional part of n is the probability of one more particle, evaluated with a hash of the
+//! particle's id and the number of the update: it is reproducible and independent of the order of
+//! the particles.
 
 mod cpu;
 

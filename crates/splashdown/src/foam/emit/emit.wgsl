@@ -4,7 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/foam
-#import sph/foam_surroundings
+#import sph/foam_ambient
 
 #bindings
 
@@ -24,7 +24,7 @@ fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
     let v = sorted_velocities[i].xyz;
     let speed = length(v);
     let along = v / max(speed, 1e-20);
-    // Any direction across; the y axis is one if the motion is not along it.
+    // Any perpendicular direction; the y axis is suitable unless the motion is parallel to it.
     let e1 = normalize(cross(along, select(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), abs(along.y) > 0.9)));
     let e2 = cross(along, e1);
     let seed = seed_of(sorted_ids[i], foam_state.step);
@@ -40,7 +40,7 @@ fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
         var x = sorted_positions[i].xyz + params.particle_spacing * across + (unit(s + 3u) - 0.5) * foam_state.dt * v;
         x = clamp(x, params.domain_min, params.domain_max);
         let lifetime = foam.lifetime_least + foam.lifetime_range * unit(s + 4u);
-        let kind = kind_of(surroundings(x).neighbours, false);
+        let kind = kind_of(ambient(x).neighbours, false);
         let number = foam_state.next_id - foam_state.born + place;
         foam_pool[foam_state.kept + place] = Diffuse(x, lifetime, v + SPREAD * speed * across, (number << 2u) | kind);
     }

@@ -1,16 +1,17 @@
-//! Makes the diffuse particles that are born (Ihmsen et al. 2012, section 3.1): in the cylinder round the
-//! fluid's particle with a radius of one spacing and as long as its way in this time step, with its velocity
-//! and a little more away from the cylinder's axis.
+//! Generates the new diffuse particles (Ihmsen et al. 2012, section 3.1) in a cylinder around the
+//! fluid particle, with a radius of one spacing and a length equal to the displacement in this time
+//! step. They have the velocity of the fluid particle plus a small component away from the axis of
+//! the cylinder.
 //!
-//! The paper's cylinder is half as wide, which leaves clumps where a particle makes many, and lies before the
-//! particle; here its middle is the particle's place.
+//! The cylinder of the paper has half the radius, which causes clusters where a particle generates
+//! many, and lies in front of the particle; here it is centred at the particle.
 
 mod cpu;
 
 use glam::Vec4;
 use splashdown_gpu::{PassDesc, bindings};
 
-use super::{Diffuse, FoamParams, FoamState, LOOK_ROUND};
+use super::{AMBIENT_IMPORTS, Diffuse, FoamParams, FoamState};
 use crate::cells::Grid;
 use crate::state::Params;
 
@@ -34,7 +35,7 @@ bindings! {
 pub static EMIT: PassDesc = PassDesc {
     label: "foam.emit",
     wgsl: include_str!("emit.wgsl"),
-    imports: LOOK_ROUND,
+    imports: AMBIENT_IMPORTS,
     entry: "emit",
     workgroup_size: [64, 1, 1],
     constants: &[],

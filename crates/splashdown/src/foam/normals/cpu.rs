@@ -2,7 +2,7 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use super::NormalsBindings;
 use crate::kernel::{Kernel, WendlandC2};
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -23,7 +23,7 @@ pub(super) fn normals(buffers: NormalsBindings<'_>) {
     let scale = 1.0 / params.support_radius;
     let share = params.particle_spacing * scale;
     let pass = Normals { params, positions, scale, factor: -share * share * share * scale };
-    pairs::for_each(Sorted::new(params, grid, cell_start, positions), normals, &pass);
+    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), normals, &pass);
 }
 
 struct Normals<'a> {

@@ -1,9 +1,9 @@
-//! Which particles are on the surface, and its normal there: n = -H grad c, c = sum_j V W(x_i - x_j), V =
+//! Surface particles and their normals: n = -H grad c, c = sum_j V W(x_i - x_j), V =
 //! particle_spacing^3 (after Mueller, Charypar & Gross 2003).
 //!
-//! On a plane surface |n| is 1.5, a spacing below it 0.3; half and more is the surface. Fluid at a closed
-//! side has none there: what of n points out of the side counts as nothing. The fourth component is 1 on the
-//! surface, else all are 0.
+//! On a plane surface |n| is 1.5, one spacing below it 0.3; particles with at least 0.5 are on the
+//! surface. Fluid at a closed side has no surface there: components of n that point out of the side
+//! are set to zero. The w component is 1 on the surface; otherwise all components are 0.
 
 mod cpu;
 

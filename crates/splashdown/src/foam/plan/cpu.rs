@@ -15,13 +15,13 @@ pub(super) fn plan(buffers: PlanBindings<'_>) {
     let room = foam.capacity - kept;
     let mut share = 4096;
     if wanted > room {
-        // Rounded down, so that no more are born than there is room for.
+        // Rounded down, so that the capacity is not exceeded.
         let (mut some, mut all) = (room, wanted);
         while some >= 1 << 20 {
             some >>= 1;
             all = all.div_ceil(2);
         }
-        // Less than a 4096th: several share one chance.
+        // Below 1/4096: groups of candidates share one slot.
         let mut several = 0;
         while some > 0 && all >> 12 >= some {
             all = all.div_ceil(2);

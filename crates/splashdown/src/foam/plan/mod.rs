@@ -1,7 +1,8 @@
-//! How many are left, how many are born, and where these go: behind the others.
+//! The number of remaining and of new particles. New particles are appended to the remaining ones.
 //!
-//! Where more want to be born than find room, a share of them is, spread evenly over all: taking the first
-//! would fill one end of the domain. The rest are counted.
+//! If there are more candidates than free slots, an evenly distributed fraction of them is
+//! accepted; accepting the first ones would fill one end of the domain. The rejected candidates are
+//! counted.
 
 mod cpu;
 

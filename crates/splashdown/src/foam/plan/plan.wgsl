@@ -14,14 +14,14 @@ fn plan() {
     let room = foam.capacity - kept;
     var share = 4096u;
     if (wanted > room) {
-        // Rounded down, so that no more are born than there is room for.
+        // Rounded down, so that the capacity is not exceeded.
         var some = room;
         var all = wanted;
         while (some >= 1048576u) {
             some = some >> 1u;
             all = (all + 1u) >> 1u;
         }
-        // Less than a 4096th: several share one chance.
+        // Below 1/4096: groups of candidates share one slot.
         var several = 0u;
         while (some > 0u && (all >> 12u) >= some) {
             all = (all + 1u) >> 1u;

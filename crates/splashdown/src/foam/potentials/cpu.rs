@@ -2,7 +2,7 @@ use glam::{Vec4, Vec4Swizzles};
 
 use super::PotentialsBindings;
 use crate::kernel::{Kernel, WendlandC2};
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 
 const FORWARDS: f32 = 0.6;
@@ -32,7 +32,7 @@ pub(super) fn potentials(buffers: PotentialsBindings<'_>) {
         scale,
         volume: share * share * share,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start, positions), potentials, &pass);
+    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), potentials, &pass);
 }
 
 struct Potentials<'a> {

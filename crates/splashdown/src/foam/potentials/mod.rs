@@ -1,16 +1,17 @@
-//! How willing each particle of the fluid is to make foam (Ihmsen et al. 2012, section 3.1): its three
-//! potentials.
+//! The three potentials of each fluid particle to generate foam (Ihmsen et al. 2012, section 3.1).
 //!
-//! *Trapped air*, in m/s: sum_j V |v_ij| (1 - v_ij/|v_ij| . x_ij/|x_ij|) W(x_ij), V = particle_spacing^3.
-//! Particles that approach each other count twice, those that part not at all.
+//! *Trapped air*, in m/s: sum_j V |v_ij| (1 - v_ij/|v_ij| . x_ij/|x_ij|) W(x_ij), V =
+//! particle_spacing^3. Pairs on a direct approach count twice, separating pairs not at all.
 //!
-//! *Wave crest*, without unit: sum_j V (1 - n_i . n_j) W(x_ij) over the surface's particles j behind the
-//! surface of i (x_ji . n_i < 0), where it moves along its normal (v . n >= 0.6 |v|).
+//! *Wave crest*, dimensionless: sum_j V (1 - n_i . n_j) W(x_ij) over the surface particles j behind
+//! the surface of i (x_ji . n_i < 0), if i moves along its normal (v . n >= 0.6 |v|).
 //!
-//! *Energy*, in J/kg: v^2 / 2. The paper has joules; per mass the numbers hold at every resolution.
+//! *Energy*, in J/kg: v^2 / 2. The paper uses joules; per mass, the limits are independent of the
+//! resolution.
 //!
-//! The paper weighs by 1 - r/H without a norm, so that its sums grow with the number of neighbours; a kernel
-//! times a volume does not. What is too slow to make foam is passed over: its first two potentials are 0.
+//! The paper uses the weight 1 - r/H without normalisation, so that its sums grow with the number
+//! of neighbours; a kernel times a volume does not. Particles that are too slow to generate foam
+//! are skipped: their first two potentials are 0.
 
 mod cpu;
 

@@ -7,7 +7,7 @@
 
 #bindings
 
-// How much a crest must move along its normal: the cosine of the largest angle between them.
+// Cosine of the largest angle between the velocity and the normal of a wave crest.
 const FORWARDS: f32 = 0.6;
 
 @compute @workgroup_size(64)

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::AccelerationBindings;
 use crate::boundary::{NearWalls, WallKernel, part};
 use crate::kernel::{Kernel, SMALLEST_Q};
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::{Lanes, Register};
 use crate::state::{Params, StepState};
 
@@ -24,7 +24,7 @@ pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(buffers: A
         accelerations,
     } = buffers;
     let pass = Acceleration::<K, FORCES>::new(params, state, positions, velocities, densities, wall_table);
-    let sorted = Sorted::new(params, grid, cell_start, positions);
+    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
     let out = accelerations;
     // Columns and arithmetic that a scene does not ask for cost nothing.
     if FORCES & part::OTHER != 0 && params.surface_tension > 0.0 {

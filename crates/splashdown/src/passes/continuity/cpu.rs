@@ -5,7 +5,7 @@ use glam::{Vec2, Vec4, Vec4Swizzles};
 use super::ContinuityBindings;
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -34,7 +34,7 @@ pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>
         hydrostatic: (hydrostatic * params.body_acceleration(state.time)).extend(0.0),
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params, grid, cell_start, positions);
+    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
     pairs::for_each(sorted, densities, &pass);
 }
 

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec4, Vec4Swizzles};
 use super::DensityBindings;
 use crate::boundary::{NearWalls, WallKernel};
 use crate::kernel::Kernel;
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -21,7 +21,7 @@ pub(super) fn density<K: Kernel + WallKernel>(buffers: DensityBindings<'_>) {
         factor: params.particle_mass * scale * scale * scale,
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params, grid, cell_start, positions);
+    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
     pairs::for_each(sorted, densities, &pass);
 }
 

@@ -3,9 +3,9 @@ use glam::Vec4Swizzles;
 use super::ForceIntegrateBindings;
 use crate::boundary::{WallKernel, part};
 use crate::kernel::Kernel;
+use crate::pairs;
 use crate::passes::acceleration::cpu::Acceleration;
 use crate::passes::advance::{Before, Persistent, advance_all};
-use crate::passes::pairs;
 
 /// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 %
 /// of a step longer. The persistent velocities, which the second sweep writes, hold the accelerations in between.
@@ -32,7 +32,7 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBin
     let Before { positions, velocities, densities } = before;
     let forces =
         Acceleration::<K, { part::ALL }>::new(params, state, positions, velocities, densities, wall_table);
-    let places = pairs::Sorted::new(params, grid, cell_start, positions);
+    let places = pairs::Sorted::new(params.support_radius, grid, cell_start, positions);
     pairs::for_each(places, persistent.velocities, &forces);
     advance_all((params, grid, state), before, persistent, true, |_, a| a.xyz());
 }

@@ -3,7 +3,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::MuellerBindings;
 use crate::boundary::{KernelPair, NearWalls, part};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -29,7 +29,7 @@ pub(super) fn mueller(buffers: MuellerBindings<'_>) {
         walls: NearWalls::new(params.walls(KernelPair::Mueller), wall_table),
         scale: 1.0 / params.support_radius,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start, positions), accelerations, &pass);
+    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), accelerations, &pass);
 }
 
 struct Mueller<'a> {

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::SurfaceNormalsBindings;
 use crate::kernel::Kernel;
-use crate::passes::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
 
 pub(super) fn normals<K: Kernel>(buffers: SurfaceNormalsBindings<'_>) {
@@ -18,7 +18,7 @@ pub(super) fn normals<K: Kernel>(buffers: SurfaceNormalsBindings<'_>) {
         factor: params.particle_mass * (scale * scale) * (scale * scale),
         kernel: PhantomData,
     };
-    pairs::for_each(Sorted::new(params, grid, cell_start, positions), normals, &pass);
+    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), normals, &pass);
 }
 
 struct Normals<'a, K> {

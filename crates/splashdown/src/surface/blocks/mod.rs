@@ -1,10 +1,11 @@
-//! Which blocks of 8x8x8 nodes the fluid can reach.
+//! The blocks of 8x8x8 nodes within reach of the fluid.
 //!
-//! A particle marks every block in the box of nodes within its support, and one node below: that is where the
-//! cells lie that touch these nodes. So all nodes with a value other than zero, and the owners of all edges
-//! the surface may cut, lie in marked blocks. The marked blocks are numbered in the order of their place;
-//! `block_slot` gives the number of the block at a place or `NONE`, `block_list` the place of the block with
-//! a number.
+//! A particle marks every block that overlaps the box of nodes within its support, extended by one
+//! node towards lower coordinates, because the cells that touch these nodes begin there. All nodes
+//! with a non-zero value, and the owners of all edges that the surface can cut, are therefore in
+//! marked blocks. The marked blocks are numbered in the order of the dense table: `block_slot` maps
+//! a place in the table to the number of the block, or to `NONE`; `block_list` maps the number to
+//! the place.
 
 mod compact;
 mod mark;

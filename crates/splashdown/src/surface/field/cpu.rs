@@ -2,72 +2,108 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use splashdown_gpu::{CpuWork, Slot};
 
-use super::super::gather::{Columns, Gathered, dispatched};
-use super::super::params::{Lattice, NODES, ROWS, SIDE, Status};
-use super::super::spline::spline;
-use crate::cells::Grid;
+use crate::kernel::{CubicSpline, Kernel};
+use crate::pairs::{self, BoxPass, Sorted};
+use crate::simd::Register;
+use crate::surface::params::{Lattice, NODES, ROWS, SIDE, Status};
 
 const N: usize = SIDE as usize;
+/// Nodes of a layer of a block.
+const LAYER: usize = N * N;
+/// Factor on the square of the support radius against rounding: rows beyond it contribute exactly
+/// zero, so that the result does not depend on the number of rows per register.
+const MARGIN: f32 = 1.0001;
 
 pub(super) fn field(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, grid, status, list, cell_start, samples, values, signs] = slots else { unreachable!() };
-    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get::<Grid>());
+    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get());
     let blocks = status.get::<Status>().blocks as usize;
-    let (cell_start, samples) = (cell_start.read::<u32>(), samples.read::<Vec4>());
-    let outputs = values
-        .write::<f32>()
-        .par_chunks_exact_mut(NODES)
-        .zip(signs.write::<u32>().par_chunks_exact_mut(ROWS));
-    list.read::<u32>()[..blocks].par_iter().zip(outputs).for_each_init(
-        || (Gathered::default(), [[0.0; N]; ROWS]),
-        |(near, rows), (&block, (values, signs))| {
-            let first = lattice.block_place(block).map(|place| place as u32 * SIDE);
-            let axes: [[f32; N]; 3] = std::array::from_fn(|axis| {
-                std::array::from_fn(|i| lattice.coordinate(axis, first[axis] + i as u32))
-            });
-            let low = Vec3::from(axes.map(|axis| axis[0])) - lattice.support_radius;
-            let high = Vec3::from(axes.map(|axis| axis[N - 1])) + lattice.support_radius;
-            near.fill(&grid, cell_start, samples, &[], low, high);
-            add(near.columns(), &axes, lattice.support_radius, lattice.inverse_support, rows);
-            values.copy_from_slice(rows.as_flattened());
-            for (signs, row) in signs.iter_mut().zip(rows.iter()) {
-                *signs = (0..N).fold(0, |bits, i| bits | (u32::from(row[i] >= lattice.iso_level) << i));
-            }
-        },
-    );
+    let samples = samples.read();
+    let values = values.write::<f32>().as_chunks_mut::<NODES>().0;
+    let signs = signs.write::<u32>().as_chunks_mut::<ROWS>().0;
+    let outputs = values[..blocks].par_iter_mut().zip(&mut signs[..blocks]);
+    let sorted = Sorted::new(lattice.support_radius, &grid, cell_start.read(), samples);
+    pairs::for_each_box(sorted, outputs, &Field { lattice, blocks: list.read(), samples });
 }
 
-dispatched! {
-    /// The sum over all gathered particles at a block's nodes, whose coordinates `axes` gives per axis.
-    fn add(
-        near: Columns<'_>,
-        axes: &[[f32; N]; 3],
-        support: f32,
-        inverse_support: f32,
-        rows: &mut [[f32; N]; ROWS],
-    ) {
-        *rows = [[0.0; N]; ROWS];
-        let support2 = support * support;
-        for (((&x, &y), &z), &volume) in near.x.iter().zip(near.y).zip(near.z).zip(near.w) {
-            let square = |axis: &[f32; N], center: f32| -> [f32; N] {
-                std::array::from_fn(|i| (axis[i] - center) * (axis[i] - center))
-            };
-            let (dx2, dy2, dz2) = (square(&axes[0], x), square(&axes[1], y), square(&axes[2], z));
-            // Rows farther than this in y and z have no node in reach.
-            let outside = (axes[0][0] - x).max(x - axes[0][N - 1]).max(0.0);
-            let limit = support2 - outside * outside;
-            for (dz2, rows) in dz2.iter().zip(rows.as_chunks_mut::<N>().0) {
-                let mut near_rows = 0_u32;
-                for (i, dy2) in dy2.iter().enumerate() {
-                    near_rows |= u32::from(dy2 + dz2 < limit) << i;
+struct Field<'a> {
+    lattice: Lattice,
+    blocks: &'a [u32],
+    samples: &'a [Vec4],
+}
+
+impl Field<'_> {
+    /// The coordinates of the nodes of a block along each axis.
+    fn axes(&self, i: usize) -> [[f32; N]; 3] {
+        let first = self.lattice.block_place(self.blocks[i]).map(|place| place as u32 * SIDE);
+        std::array::from_fn(|axis| {
+            std::array::from_fn(|n| self.lattice.coordinate(axis, first[axis] + n as u32))
+        })
+    }
+}
+
+impl<'a> BoxPass<4> for Field<'a> {
+    type Output = (&'a mut [f32; NODES], &'a mut [u32; ROWS]);
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 4] {
+        self.samples[j].to_array()
+    }
+
+    fn corners(&self, i: usize) -> [Vec3; 2] {
+        let axes = self.axes(i);
+        [axes.map(|axis| axis[0]), axes.map(|axis| axis[N - 1])].map(Vec3::from)
+    }
+
+    #[inline(always)]
+    fn visit<V: Register>(&self, i: usize, near: [&[f32]; 4], (values, signs): &mut Self::Output) {
+        values.fill(0.0);
+        add::<V>(near, &self.axes(i), &self.lattice, values);
+        for (signs, row) in signs.iter_mut().zip(values.as_chunks::<N>().0) {
+            *signs = (0..N).fold(0, |bits, n| bits | (u32::from(row[n] >= self.lattice.iso_level) << n));
+        }
+    }
+}
+
+/// Adds every particle to the nodes of a block, whose coordinates `axes` gives per axis.
+#[inline(always)]
+fn add<V: Register>(
+    [x, y, z, volume]: [&[f32]; 4],
+    axes: &[[f32; N]; 3],
+    lattice: &Lattice,
+    values: &mut [f32; NODES],
+) {
+    let support2 = MARGIN * lattice.support_radius * lattice.support_radius;
+    // A register holds a part of a row of eight nodes, one row, or two rows.
+    let rows = V::WIDTH.div_ceil(N);
+    for (((&x, &y), &z), &volume) in x.iter().zip(y).zip(z).zip(volume) {
+        let square = |axis: &[f32; N], centre: f32| axis.map(|a| (a - centre) * (a - centre));
+        let (dx2, dy2, dz2) = (square(&axes[0], x), square(&axes[1], y), square(&axes[2], z));
+        let outside = (axes[0][0] - x).max(x - axes[0][N - 1]).max(0.0);
+        // A row at a squared distance of at least this in y and z has no node within reach.
+        let limit = support2 - outside * outside;
+        let nearest_dy2 = dy2.iter().copied().fold(f32::MAX, f32::min);
+        let mut layer = [0.0; LAYER];
+        for (row, dy2) in layer.as_chunks_mut::<N>().0.iter_mut().zip(dy2) {
+            *row = dx2.map(|dx2| dx2 + dy2);
+        }
+        let volume = V::splat(volume);
+        for (dz2, values) in dz2.into_iter().zip(values.as_chunks_mut::<LAYER>().0) {
+            if nearest_dy2 + dz2 >= limit {
+                continue;
+            }
+            for row in (0..N).step_by(rows) {
+                if dy2[row..row + rows].iter().all(|dy2| dy2 + dz2 >= limit) {
+                    continue;
                 }
-                while near_rows != 0 {
-                    let y = near_rows.trailing_zeros() as usize;
-                    near_rows &= near_rows - 1;
-                    let d2 = dy2[y & 7] + dz2;
-                    let row = &mut rows[y & 7];
-                    for i in 0..N {
-                        row[i] += volume * spline((dx2[i] + d2).sqrt() * inverse_support);
+                for node in (N * row..N * (row + rows)).step_by(V::WIDTH) {
+                    // SAFETY: `node + WIDTH` is at most the number of nodes of a layer.
+                    let r2 = unsafe { V::load(layer.as_ptr().add(node)) } + dz2;
+                    let w = CubicSpline::w(r2.sqrt() * lattice.inverse_support);
+                    // SAFETY: as above.
+                    unsafe {
+                        let at = values.as_mut_ptr().add(node);
+                        (V::load(at) + volume * w).store(at);
                     }
                 }
             }

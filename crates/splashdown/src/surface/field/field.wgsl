@@ -1,7 +1,7 @@
 #import gpu/index
 #import sph/grid
 #import surface/lattice
-#import surface/spline
+#import sph/kernel
 #import surface/candidates
 
 @group(0) @binding(0) var<uniform> lattice: Lattice;
@@ -12,6 +12,10 @@
 @group(0) @binding(5) var<storage, read> samples: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read_write> values: array<f32>;
 @group(0) @binding(7) var<storage, read_write> signs: array<u32>;
+
+fn kernel_w4(q: vec4<f32>) -> vec4<f32> {
+    return vec4<f32>(kernel_w(q.x), kernel_w(q.y), kernel_w(q.z), kernel_w(q.w));
+}
 
 @compute @workgroup_size(64)
 fn field(
@@ -40,13 +44,13 @@ fn field(
                 let sample = samples[i];
                 let d = start.yz - sample.yz;
                 let d2 = dot(d, d);
-                // How far the particle lies before or behind the row.
+                // Distance of the particle from the ends of the row along x.
                 let outside = max(max(low_x.x - sample.x, sample.x - high_x.w), 0.0);
                 if d2 + outside * outside < support2 {
                     let a = low_x - sample.x;
                     let b = high_x - sample.x;
-                    low += sample.w * spline4(sqrt(a * a + d2) * lattice.inverse_support);
-                    high += sample.w * spline4(sqrt(b * b + d2) * lattice.inverse_support);
+                    low += sample.w * kernel_w4(sqrt(a * a + d2) * lattice.inverse_support);
+                    high += sample.w * kernel_w4(sqrt(b * b + d2) * lattice.inverse_support);
                 }
             }
         }

@@ -1,9 +1,9 @@
-//! What a block sees of its neighbours, on the CPU.
+//! The nodes of adjacent blocks, on the CPU.
 
 use crate::surface::params::{Lattice, NONE};
 
-/// The slots of a block (first) and of the seven blocks towards higher coordinates; block `(dx, dy, dz)` is
-/// number `dx + 2 dy + 4 dz`.
+/// The slots of a block (first) and of the seven adjacent blocks towards higher coordinates. Block
+/// `(dx, dy, dz)` has the index `dx + 2 dy + 4 dz`.
 pub(super) fn upper_slots(lattice: &Lattice, slot_of: &[u32], place: [i32; 3]) -> [u32; 8] {
     std::array::from_fn(|i| {
         let i = i as i32;
@@ -12,8 +12,8 @@ pub(super) fn upper_slots(lattice: &Lattice, slot_of: &[u32], place: [i32; 3]) -
     })
 }
 
-/// Which nodes of the block, and of one layer more on the upper sides, are inside: one bit per x, by z and y.
-/// `sign_bits` gives the eight bits of a row.
+/// The signs of the nodes of the block and of one more layer on the upper sides: one bit per x, by
+/// z and y. `sign_bits` returns the eight bits of a row.
 pub(super) fn signs(slots: &[u32; 8], sign_bits: impl Fn(usize) -> u32) -> [[u32; 9]; 9] {
     let bits = |slot: u32, row: usize| if slot == NONE { 0 } else { sign_bits(slot as usize * 64 + row) };
     std::array::from_fn(|z| {
@@ -25,7 +25,7 @@ pub(super) fn signs(slots: &[u32; 8], sign_bits: impl Fn(usize) -> u32) -> [[u32
     })
 }
 
-/// The case of the cell at (x, y, z).
+/// The marching-cubes case of the cell at (x, y, z).
 pub(super) fn cell_case(signs: &[[u32; 9]; 9], x: usize, y: usize, z: usize) -> usize {
     let pair = |y: usize, z: usize| (signs[z][y] >> x & 3) as usize;
     pair(y, z) | pair(y + 1, z) << 2 | pair(y, z + 1) << 4 | pair(y + 1, z + 1) << 6

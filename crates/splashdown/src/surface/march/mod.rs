@@ -1,10 +1,11 @@
 //! Marching cubes over the marked blocks, with shared vertices.
 //!
-//! Every node owns the three edges that leave it towards higher coordinates. Where an edge's ends lie on
-//! different sides of the iso level it carries one vertex. A row of nodes keeps its vertices as 24 bits
-//! (x-edges, y-edges, z-edges), so that a vertex's number is the row's first number plus a count of bits: no
-//! table from edges to vertices is needed, and all cells at an edge find the same vertex. The numbers come
-//! from two scans over blocks. A node at the iso level exactly counts as inside, everywhere.
+//! Every node owns the three edges that leave it towards higher coordinates. An edge whose ends are
+//! on different sides of the iso level has one vertex. A row of nodes stores its vertices as 24
+//! bits (x-edges, y-edges, z-edges), so that the index of a vertex is the first index of the row
+//! plus a bit count. No table from edges to vertices is needed, and all cells at an edge find the
+//! same vertex. The first indices come from two scans over blocks. A node exactly at the iso level
+//! is inside.
 
 mod count;
 mod finish;

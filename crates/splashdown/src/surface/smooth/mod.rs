@@ -1,34 +1,35 @@
-//! Weighted Laplacian smoothing of the mesh (Löschner et al., "Weighted Laplacian smoothing for surface
-//! reconstruction of particle-based fluids", VMV 2023).
+//! Weighted Laplacian smoothing of the mesh (Löschner et al., "Weighted Laplacian smoothing for
+//! surface reconstruction of particle-based fluids", VMV 2023).
 //!
-//! Each round moves a vertex towards the mean of its neighbours: `v <- (1 - w) v + w mean`. The weight w is
-//! near 1 where the fluid is dense, so the bumps of particles vanish, and near 0 at lone particles and thin
-//! sheets, which would shrink to nothing: with n the crowding interpolated to the vertex and `s = min(n / 13,
-//! 1)`, `w = 6 s^5 - 15 s^4 + 10 s^3`.
+//! Each iteration moves a vertex towards the mean of its neighbours: `v <- (1 - w) v + w mean`. The
+//! smoothing weight w is near 1 where the fluid is dense, which removes the bumps of particles, and
+//! near 0 at single particles and thin sheets, which would vanish otherwise: with the local density
+//! n interpolated to the vertex and `s = min(n / 13, 1)`, `w = 6 s^5 - 15 s^4 + 10 s^3`.
 //!
-//! splashsurf 0.14 mixes the mean with the vertex's place of one round before (`v''` in `v <- (1 - w) v'' + w
-//! mean`), and so smooths more slowly where w is below 1: of the splash of 64,000 particles 20 rounds at cells
-//! of half a spacing take 0.9 % of the volume here and 0.7 % there, and the meshes are 0.33 cells apart at
-//! most.
+//! splashsurf 0.14 blends the mean with the position of one iteration before (`v''` in `v <- (1 -
+//! w) v'' + w mean`) and therefore smooths more slowly where w is below 1. For a splash of 64,000
+//! particles and cells of half a spacing, 20 iterations reduce the volume by 0.9 % here and by 0.7
+//! % there; the distance between the meshes is at most 0.33 cells.
 //!
 //! # How it works
 //!
-//! On a closed mesh the triangles round a vertex form one ring, and each neighbour comes after the vertex in
-//! exactly one of them. So the ring of a vertex is stored as one pair per triangle: the vertex that comes
-//! next and the one after it. Triangles are counted per vertex, the counts scanned, the pairs put into place
-//! in any order and then sorted, so that sums run in a fixed order. The mean is over the first of each pair;
-//! both together give the area-weighted normals of the smoothed mesh at the end.
+//! On a closed mesh the triangles at a vertex form a ring, and each neighbour follows the vertex in
+//! exactly one of them. The one-ring of a vertex is therefore stored as one pair per triangle: the
+//! next vertex and the one after it. Triangles are counted per vertex, the counts are scanned, and
+//! the pairs are written in any order and then sorted, so that sums have a fixed order. The mean is
+//! over the first vertex of each pair; both vertices give the area-weighted normals of the smoothed
+//! mesh.
 
-mod order;
+mod one_ring;
+mod one_ring_order;
 mod relax;
-mod ring;
-mod shade;
+mod smoothing_weights;
 mod valence;
-mod weigh;
+mod vertex_normals;
 
-pub(crate) use order::ORDER;
+pub(crate) use one_ring::ONE_RING;
+pub(crate) use one_ring_order::ONE_RING_ORDER;
 pub(crate) use relax::RELAX;
-pub(crate) use ring::RING;
-pub(crate) use shade::SHADE;
+pub(crate) use smoothing_weights::SMOOTHING_WEIGHTS;
 pub(crate) use valence::VALENCE;
-pub(crate) use weigh::WEIGH;
+pub(crate) use vertex_normals::VERTEX_NORMALS;

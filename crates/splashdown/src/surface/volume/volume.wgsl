@@ -1,7 +1,7 @@
 #import gpu/index
 #import sph/grid
 #import surface/lattice
-#import surface/spline
+#import sph/kernel
 #import surface/candidates
 
 @group(0) @binding(0) var<uniform> lattice: Lattice;
@@ -9,7 +9,7 @@
 @group(0) @binding(2) var<storage, read> cell_start: array<u32>;
 @group(0) @binding(3) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> samples: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> crowding: array<f32>;
+@group(0) @binding(5) var<storage, read_write> local_density: array<f32>;
 
 @compute @workgroup_size(64)
 fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -31,13 +31,13 @@ fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
                 let d = positions[j].xyz - p;
                 let r2 = dot(d, d);
                 if r2 < support2 {
-                    sum += spline(sqrt(r2) * lattice.inverse_support);
+                    sum += kernel_w(sqrt(r2) * lattice.inverse_support);
                     neighbours += 1.0 - r2 * lattice.inverse_support * lattice.inverse_support;
                 }
             }
         }
     }
     samples[i] = vec4<f32>(p, 1.0 / sum);
-    // The particle itself is not its neighbour.
-    crowding[i] = neighbours - 1.0;
+    // Without the particle itself.
+    local_density[i] = neighbours - 1.0;
 }

@@ -1,4 +1,4 @@
-//! When foam is due, how much of it is born, and where.
+//! Updates that are due, and the number and positions of new particles.
 
 use std::f64::consts::TAU;
 
@@ -57,22 +57,22 @@ pub(super) fn begin(
     }
 }
 
-/// The number of those born before the m-th of those that want to be.
+/// The number of accepted candidates before candidate m.
 fn place_of(m: u32, share: u32) -> u32 {
     (u64::from(m >> (share >> 16)) * u64::from(share & 0xffff) / 4096) as u32
 }
 
-/// 500 are kept; `wanted` want to be born.
+/// 500 particles remain; there are `wanted` candidates.
 pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
     let kept = 500;
     let room = capacity - kept;
     let mut share = 4096;
     if wanted > room {
-        // In halves while there are more than 2^20, as the shader has no longer numbers.
+        // Halved while there are more than 2^20, because the shader has 32-bit arithmetic.
         let halvings = room.max(1).ilog2().saturating_sub(19);
         let all = (0..halvings).fold(wanted, |all, _| all.div_ceil(2));
         share = (u64::from(room >> halvings) * 4096 / u64::from(all)) as u32;
-        // Where that is none, twice as many share a chance, until it is one.
+        // While the fraction is zero, twice as many candidates share a slot.
         let halved = |times: u32| (0..times).fold(all, |all, _| all.div_ceil(2));
         if share == 0 && room > 0 {
             let several = (0..32).find(|&times| halved(times) < 4096 * room).unwrap_or(0);
@@ -100,7 +100,7 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
         input: vec![
             Data::Params(Params { particle_count: 3, ..params(2.0) }),
             Data::Foam(FoamParams { capacity, ..foam() }),
-            // What lies behind the last is of no account.
+            // Elements after the last are ignored.
             Data::U32(vec![0, 10, 20, wanted, 7, 7, 7]),
             Data::U32(vec![8, 1, 1, kept]),
             Data::FoamState(before),
@@ -117,7 +117,7 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
 pub(super) fn emit(name: &'static str, share: u32) -> Case {
     let world = World::new(params(2.0), 1500);
     let living = world.living();
-    // One of the fluid goes straight up, where the usual direction across it is none.
+    // One fluid particle moves vertically, where the default perpendicular direction is degenerate.
     let mut world = world;
     world.velocities[7] = Vec4::new(0.0, 1.5, 0.0, 1000.0);
     let counts: Vec<u32> = (0..living).map(|i| if i % 4 == 0 { 3 } else { u32::from(i % 7 == 0) }).collect();

@@ -1,4 +1,4 @@
-//! What the fluid's particles know: normals, potentials, how many each makes.
+//! Quantities of the fluid particles: normals, potentials, number of new particles.
 
 use std::f64::consts::PI;
 
@@ -65,7 +65,7 @@ pub(super) fn normals() -> Case {
     }
 }
 
-/// Normals of which a third are none.
+/// Normals, a third of which are zero.
 fn some_normals(world: &World) -> Vec<Vec4> {
     let unit = |i: usize| world.normals[i].xyz().normalize_or(Vec3::Y).extend(1.0);
     (0..world.len()).map(|i| if i % 3 == 0 { Vec4::ZERO } else { unit(i) }).collect()

@@ -35,7 +35,7 @@ pub fn cases() -> Vec<Case> {
         births::plan("with room for one in a million", 503, 3_000_000),
         births::plan("without any room", 500, 300),
         births::plan("beyond what counts in 20 bits", 3_000_000, 3_999_999),
-        moving::settle(),
+        moving::compact(),
         births::emit("all of them", 4096),
         births::emit("a part of them", 1700),
         births::emit("a part of them, four by four", 1700 + (2 << 16)),
@@ -79,16 +79,16 @@ fn seed(id: u32, step: u32) -> u32 {
     testing::noise(id ^ testing::noise(step))
 }
 
-/// The same pass in an update that is not due: nothing changes.
+/// The same pass without an update that is due: nothing changes.
 fn when_not_due(case: &Case) -> Option<Case> {
     let due = |data: &Data| matches!(data, Data::FoamState(state) if state.is_due == 1);
-    // The one that decides it is no case of this.
+    // The pass that determines whether an update is due is excluded.
     let at = case.input.iter().position(due).filter(|_| case.pass.label != "foam.begin")?;
     let plans = case.pass.label == "foam.plan";
     let mut input = case.input.clone();
     let Data::FoamState(state) = &mut input[at] else { unreachable!() };
     state.is_due = 0;
-    // A plan says that nobody was born.
+    // The plan has no new particles.
     state.born = if plans { 0 } else { state.born };
     let written = |k: &usize| case.pass.bindings[*k].access == splashdown_gpu::Access::ReadWrite;
     let before: Vec<Data> = (0..input.len()).filter(written).map(|k| input[k].clone()).collect();
@@ -124,7 +124,8 @@ fn volume() -> f64 {
     f64::from(SPACING).powi(3)
 }
 
-/// All living particles within the support of `x` but those in the very place: what is further is the distance.
+/// All living particles within the support of `x`, except those at the same position, with their
+/// distances.
 fn near(world: &World, x: DVec3, mut visit: impl FnMut(usize, DVec3, f64)) {
     let support = f64::from(world.params.support_radius);
     for j in 0..world.living() {
@@ -135,7 +136,7 @@ fn near(world: &World, x: DVec3, mut visit: impl FnMut(usize, DVec3, f64)) {
     }
 }
 
-/// Floats where they say the same, except where what they depend on is on an edge.
+/// Compares floats, except those that depend on a value close to a threshold.
 fn masked(what: &str, a: &[f32], b: &[f64], tolerance: &[f64], edge: &[bool]) -> Result<(), String> {
     let per = a.len() / edge.len();
     let keep: Vec<usize> = (0..a.len()).filter(|k| !edge[k / per]).collect();

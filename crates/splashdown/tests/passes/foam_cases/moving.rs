@@ -1,4 +1,4 @@
-//! Diffuse particles that move and are put together.
+//! Advection and compaction of diffuse particles.
 
 use glam::DVec3;
 use splashdown::foam::FoamState;
@@ -98,7 +98,7 @@ pub(super) fn advect() -> Case {
     }
 }
 
-pub(super) fn settle() -> Case {
+pub(super) fn compact() -> Case {
     let world = World::new(params(2.0), 500);
     let (moved, pool) = (diffuse(&world, 300), diffuse(&world, 700)[400..].to_vec());
     let indices: Vec<u32> = (0..300).filter(|i| i % 7 != 3).collect();
@@ -110,7 +110,7 @@ pub(super) fn settle() -> Case {
     let mut list = indices;
     list.resize(300, 299);
     Case {
-        pass: pass("foam.settle"),
+        pass: pass("foam.compact"),
         name: "a seventh has dissolved".into(),
         size: DispatchSize::Items(300),
         input: vec![

@@ -2,7 +2,7 @@ use splashdown_gpu::{CpuWork, Slot};
 
 use crate::surface::params::{Lattice, NONE};
 
-/// One pass over the table: cheaper than starting threads, up to millions of blocks.
+/// Serial: cheaper than starting threads up to millions of blocks.
 pub(super) fn compact(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, marks, starts, list, slot_of] = slots else { unreachable!() };
     let lattice = lattice.get::<Lattice>();

@@ -1,4 +1,4 @@
-//! Lists the marked blocks, in the order of their place.
+//! Lists the marked blocks in the order of the dense table.
 
 mod cpu;
 

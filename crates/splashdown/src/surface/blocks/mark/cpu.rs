@@ -24,7 +24,8 @@ pub(super) fn mark(_: CpuWork, slots: &mut [Slot<'_>]) {
             for y in first.y..=last.y {
                 let row = (z as usize * blocks.y as usize + y as usize) * blocks.x as usize;
                 for mark in &marks[row + first.x as usize..=row + last.x as usize] {
-                    // Most blocks are marked already, and a read leaves the other cores' caches alone.
+                    // Most blocks are already marked, and a load does not invalidate the cache
+                    // lines of other cores.
                     if mark.load(Ordering::Relaxed) == 0 {
                         mark.store(1, Ordering::Relaxed);
                     }

@@ -1,4 +1,4 @@
-//! Marks the blocks that particles reach.
+//! Marks the blocks within reach of particles.
 
 mod cpu;
 

@@ -1,7 +1,6 @@
-use splashdown_gpu::{CpuWork, Slot};
+use splashdown_gpu::{CpuWork, Slot, dispatch_groups};
 
 use crate::surface::params::{Lattice, Status};
-use crate::surface::parts::spread;
 
 pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
     let [lattice, starts, status, groups] = slots else { unreachable!() };
@@ -11,5 +10,5 @@ pub(super) fn plan(_: CpuWork, slots: &mut [Slot<'_>]) {
     let status = &mut status.write::<Status>()[0];
     status.blocks = blocks;
     status.blocks_needed = needed;
-    groups.write::<u32>()[..3].copy_from_slice(&spread(blocks));
+    groups.write::<u32>()[..3].copy_from_slice(&dispatch_groups(blocks));
 }

@@ -1,16 +1,16 @@
-//! How many workgroups the passes over blocks get, decided on the device.
+//! Computes the number of workgroups of the passes over blocks, on the device.
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use crate::surface::modules::{LATTICE, SPREAD, STATUS};
+use crate::surface::modules::{LATTICE, STATUS};
 use crate::surface::params::{Lattice, Status};
 
 pub(crate) static PLAN: PassDesc = PassDesc {
     label: "surface.plan",
     wgsl: include_str!("plan.wgsl"),
-    imports: &[STATUS, LATTICE, SPREAD],
+    imports: &[wgsl::INDEX, STATUS, LATTICE],
     entry: "plan",
     workgroup_size: [1, 1, 1],
     constants: &[],

@@ -1,5 +1,5 @@
+#import gpu/index
 #import surface/lattice
-#import surface/spread
 
 @group(0) @binding(0) var<uniform> lattice: Lattice;
 @group(0) @binding(1) var<storage, read> mark_starts: array<u32>;
@@ -12,7 +12,7 @@ fn plan() {
     let blocks = min(needed, lattice.block_capacity);
     status.blocks = blocks;
     status.blocks_needed = needed;
-    let groups = spread(blocks);
+    let groups = dispatch_groups(blocks);
     block_groups[0] = groups.x;
     block_groups[1] = groups.y;
     block_groups[2] = groups.z;

@@ -13,7 +13,8 @@
 @group(0) @binding(7) var<storage, read_write> vertex_counts: array<u32>;
 @group(0) @binding(8) var<storage, read_write> triangle_counts: array<u32>;
 
-// Per row: vertices in the low half, triangles in the high half. A block has at most 1,536 and 2,560.
+// Per row: vertices in the low half, triangles in the high half. A block has at most 1,536 vertices
+// and 2,560 triangles.
 var<workgroup> tallies: array<u32, 64>;
 
 fn sign_bits(row: u32) -> u32 {

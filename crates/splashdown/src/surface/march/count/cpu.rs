@@ -32,7 +32,7 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
             let edges = x_edges | y_edges << 8 | z_edges << 16;
             *out = UVec2::new(edges | here << 24, *vertex_count | *triangle_count << 16);
             *vertex_count += edges.count_ones();
-            // A row whose four lines of nodes agree has no triangles.
+            // A row of cells whose four lines of nodes have equal signs has no triangles.
             let others = [signs[z][y + 1], signs[z + 1][y], signs[z + 1][y + 1]];
             if (here != 0 && here != 0x1ff) || others.iter().any(|&other| other != here) {
                 *triangle_count += (0..8).map(|x| u32::from(COUNTS[cell_case(&signs, x, y, z)])).sum::<u32>();

@@ -1,8 +1,8 @@
-//! Finds the cut edges of every row and counts each block's vertices and triangles.
+//! Finds the cut edges of every row and counts the vertices and triangles of each block.
 //!
-//! `rows` holds two words per row: bits 0-23 of the first are the cut x-, y- and z-edges, bits 24-31 the
-//! signs; the second is the number of vertices (low half) and triangles (high half) of the block's rows
-//! before this one.
+//! `rows` has two words per row. Bits 0-23 of the first are the cut x-, y- and z-edges, bits 24-31
+//! the signs. The second is the number of vertices (low half) and triangles (high half) of the
+//! preceding rows of the block.
 
 mod cpu;
 

@@ -1,17 +1,17 @@
-//! The mesh's size, the arguments of its drawing, and the workgroups of the passes over it; all decided on
-//! the device.
+//! Computes the size of the mesh, the arguments of its indirect draw, and the workgroups of the
+//! passes over it, all on the device.
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, write};
+use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
 
-use crate::surface::modules::{LATTICE, SPREAD, STATUS};
+use crate::surface::modules::{LATTICE, STATUS};
 use crate::surface::params::{Lattice, Status};
 
 pub(crate) static FINISH: PassDesc = PassDesc {
     label: "surface.finish",
     wgsl: include_str!("finish.wgsl"),
-    imports: &[STATUS, LATTICE, SPREAD],
+    imports: &[wgsl::INDEX, STATUS, LATTICE],
     entry: "finish",
     workgroup_size: [1, 1, 1],
     constants: &[],

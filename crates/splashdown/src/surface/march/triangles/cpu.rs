@@ -28,7 +28,8 @@ pub(super) fn triangles(_: CpuWork, slots: &mut [Slot<'_>]) {
             let (x, y, z) = (cell & 7, cell >> 3 & 7, cell >> 6);
             for edges in &marching_cubes::TRIANGLES[cell_case(&signs, x, y, z)] {
                 let corners = edges.map(|edge| vertices.number([x, y, z], edge));
-                // Room for fewer triangles than there are: the rest is cut off, and reported by the status.
+                // The capacity is too small: the remaining triangles are omitted, which the status
+                // reports.
                 let Some(triangle) = triangles.next() else { return };
                 let has_room = corners.iter().all(|&corner| corner < lattice.vertex_capacity);
                 *triangle = if has_room { corners } else { [0; 3] };
@@ -44,7 +45,7 @@ struct Vertices<'a> {
 }
 
 impl Vertices<'_> {
-    /// The number of the vertex on an edge of a cell.
+    /// The index of the vertex on an edge of a cell.
     fn number(&self, cell: [usize; 3], edge: u8) -> u32 {
         let axis = usize::from(edge / 4);
         let (a, b) = (usize::from(edge & 1), usize::from(edge >> 1 & 1));

@@ -1,7 +1,7 @@
-//! The triangles of every cell, as numbers of vertices.
+//! The triangles of every cell, as vertex indices.
 //!
-//! A triangle one of whose vertices did not find room gets three equal numbers: nothing is drawn, nothing
-//! read outside.
+//! A triangle with a vertex beyond the capacity gets three equal indices: it is not drawn, and no
+//! access is out of range.
 
 mod cpu;
 

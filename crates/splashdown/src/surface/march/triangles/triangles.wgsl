@@ -17,7 +17,8 @@ fn sign_bits(row: u32) -> u32 {
     return rows[row].x >> 24u;
 }
 
-// The number of the vertex on an edge (numbered as in marching_cubes.rs) of the cell at a node of the whole lattice.
+// The index of the vertex on an edge (numbered as in marching_cubes.rs) of the cell at a node of the
+// lattice.
 fn vertex_on(cell: vec3<i32>, edge: u32) -> u32 {
     let axis = edge >> 2u;
     let a = i32(edge & 1u);

@@ -6,7 +6,8 @@ use crate::surface::params::{Lattice, NODES, NONE, SIDE, Status};
 use crate::surface::parts::by_starts;
 
 const N: usize = SIDE as usize;
-/// A block's nodes with one layer below and two above: the neighbours of the ends of all its edges.
+/// The nodes of a block with one layer below and two above: the neighbours of the ends of all its
+/// edges.
 const WIDE: usize = N + 3;
 
 pub(super) fn vertices(_: CpuWork, slots: &mut [Slot<'_>]) {
@@ -41,7 +42,7 @@ pub(super) fn vertices(_: CpuWork, slots: &mut [Slot<'_>]) {
     );
 }
 
-/// Copies a block's values and those round it; zero where there is no block.
+/// Copies the values of a block and around it; zero in blocks that are not marked.
 fn widen(lattice: &Lattice, slot_of: &[u32], values: &[f32], place: [i32; 3], wide: &mut [f32]) {
     wide.fill(0.0);
     for neighbour in 0..27_i32 {
@@ -52,8 +53,8 @@ fn widen(lattice: &Lattice, slot_of: &[u32], values: &[f32], place: [i32; 3], wi
             continue;
         }
         let block = &values[slot as usize * NODES..][..NODES];
-        // In the wide array the block itself begins at 1; of the neighbours below the last layer is wanted,
-        // of those above the first two.
+        // In the extended array the block begins at 1. Of the neighbours below, the last layer is
+        // needed; of those above, the first two.
         let range = |axis: usize| match offset[axis] {
             -1 => (N - 1..N, 0),
             0 => (0..N, 1),
@@ -82,7 +83,7 @@ fn vertex(lattice: &Lattice, wide: &[f32], place: [i32; 3], local: [usize; 3], a
     let outwards = if length2 > 1e-20 {
         outwards / length2.sqrt()
     } else if a > b {
-        // No gradient in sight: from the inside end to the outside end.
+        // The gradient is zero: use the direction from the inside end to the outside end.
         along
     } else {
         -along

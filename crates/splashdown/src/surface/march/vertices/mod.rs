@@ -1,8 +1,9 @@
-//! One vertex per cut edge, with the field's gradient as its normal.
+//! One vertex per cut edge, with a normal from the gradient of the field.
 //!
-//! The place on the edge is `t = (iso - a) / (b - a)` between the values a and b at its ends, kept within
-//! [0.001, 0.999]: at an end the vertices of several edges would coincide and their triangles have no area.
-//! The normal is the negative gradient by central differences at both ends, mixed by t.
+//! The position on the edge is `t = (iso - a) / (b - a)` for the values a and b at its ends,
+//! clamped to [0.001, 0.999]: at an end, the vertices of several edges would coincide and form
+//! triangles without area. The normal is the negative gradient by central differences at both ends,
+//! interpolated by t.
 
 mod cpu;
 

@@ -12,7 +12,7 @@
 @group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> normals: array<vec4<f32>>;
 
-// The value at a node of the whole lattice; zero in blocks that no particle reaches.
+// The value at a node of the lattice; zero in blocks that are not marked.
 fn value(node: vec3<i32>) -> f32 {
     let slot = slot_at(node >> vec3<u32>(3u));
     if slot == NONE {
@@ -22,7 +22,7 @@ fn value(node: vec3<i32>) -> f32 {
     return values[(slot * 64u + local.z * 8u + local.y) * 8u + local.x];
 }
 
-// One loop and not six terms: browsers that paste every call in full took minutes to compile those.
+// A loop instead of six terms: browsers that inline every call took minutes to compile the latter.
 fn gradient(node: vec3<i32>) -> vec3<f32> {
     var sum = vec3<f32>();
     for (var axis = 0u; axis < 3u; axis++) {
@@ -61,7 +61,7 @@ fn vertices(
         if length2 > 1e-20 {
             outwards *= inverseSqrt(length2);
         } else {
-            // No gradient in sight: from the inside end to the outside end.
+            // The gradient is zero: use the direction from the inside end to the outside end.
             outwards = select(-along, along, a > b);
         }
         positions[number] = vec4<f32>(node_position(node) + along * (t * lattice.cell_size), 0.0);

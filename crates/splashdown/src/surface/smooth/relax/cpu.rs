@@ -5,16 +5,16 @@ use splashdown_gpu::{CpuWork, Slot};
 use crate::surface::params::Status;
 
 pub(super) fn relax(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [status, starts, rings, before, after] = slots else { unreachable!() };
+    let [status, starts, one_rings, before, after] = slots else { unreachable!() };
     let vertices = status.get::<Status>().vertices as usize;
-    let (starts, rings) = (&starts.read::<u32>()[..=vertices], rings.read::<UVec2>());
+    let (starts, one_rings) = (&starts.read::<u32>()[..=vertices], one_rings.read::<UVec2>());
     let before = before.read::<Vec4>();
     let after = &mut after.write::<Vec4>()[..vertices];
     after.par_iter_mut().zip(starts.par_windows(2)).with_min_len(2048).enumerate().for_each(
         |(vertex, (after, range))| {
             let own = before[vertex];
-            let ring = &rings[range[0] as usize..range[1] as usize];
-            // Relative to the vertex, so that a mesh far from the origin loses no digits.
+            let ring = &one_rings[range[0] as usize..range[1] as usize];
+            // Relative to the vertex, which avoids cancellation far from the origin.
             let sum = ring.iter().fold(Vec4::ZERO, |sum, pair| sum + (before[pair.x as usize] - own));
             let step: Vec3 = sum.truncate() * (own.w / ring.len().max(1) as f32);
             *after = (own.truncate() + step).extend(own.w);

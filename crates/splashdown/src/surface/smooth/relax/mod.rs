@@ -1,4 +1,4 @@
-//! One round: every vertex moves towards the mean of its neighbours by its weight.
+//! One iteration of smoothing: every vertex moves towards the mean of its neighbours by its weight.
 
 mod cpu;
 
@@ -17,8 +17,8 @@ pub(crate) static RELAX: PassDesc = PassDesc {
     constants: &[],
     bindings: &[
         read::<Status>("status"),
-        read::<u32>("ring_starts"),
-        read::<UVec2>("rings"),
+        read::<u32>("one_ring_starts"),
+        read::<UVec2>("one_rings"),
         read::<Vec4>("before"),
         write::<Vec4>("after"),
     ],

@@ -2,8 +2,8 @@
 #import surface/status
 
 @group(0) @binding(0) var<storage, read> status: Status;
-@group(0) @binding(1) var<storage, read> ring_starts: array<u32>;
-@group(0) @binding(2) var<storage, read> rings: array<vec2<u32>>;
+@group(0) @binding(1) var<storage, read> one_ring_starts: array<u32>;
+@group(0) @binding(2) var<storage, read> one_rings: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> before: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> after: array<vec4<f32>>;
 
@@ -13,13 +13,13 @@ fn relax(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
     if vertex >= status.vertices {
         return;
     }
-    let start = ring_starts[vertex];
-    let end = ring_starts[vertex + 1u];
+    let start = one_ring_starts[vertex];
+    let end = one_ring_starts[vertex + 1u];
     let own = before[vertex];
     var sum = vec3<f32>(0.0);
     for (var i = start; i < end; i++) {
-        // Relative to the vertex, so that a mesh far from the origin loses no digits.
-        sum += before[rings[i].x].xyz - own.xyz;
+        // Relative to the vertex, which avoids cancellation far from the origin.
+        sum += before[one_rings[i].x].xyz - own.xyz;
     }
     let count = f32(max(end - start, 1u));
     after[vertex] = vec4<f32>(own.xyz + sum * (own.w / count), own.w);

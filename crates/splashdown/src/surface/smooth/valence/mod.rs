@@ -1,4 +1,4 @@
-//! Counts the triangles at every vertex.
+//! Counts the triangles of every vertex.
 
 mod cpu;
 

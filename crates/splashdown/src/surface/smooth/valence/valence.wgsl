@@ -13,7 +13,7 @@ fn valence(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     }
     let a = indices[3u * triangle];
     let b = indices[3u * triangle + 1u];
-    // A triangle without room for its vertices has equal numbers.
+    // A triangle with vertices beyond the capacity has equal indices.
     if a == b {
         return;
     }

@@ -1,0 +1,70 @@
+//! Visits of the particles near boxes.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::Sorted;
+use super::candidates::{Candidates, Region};
+use super::columns::Columns;
+use crate::simd::{Leaf, Register, Simd, run_with};
+
+/// A pass that visits the particles within the support radius of boxes, in `F` columns. The first
+/// three columns are the position.
+///
+/// Functions with registers as arguments must be `#[inline(always)]`.
+pub(crate) trait BoxPass<const F: usize>: Sync {
+    /// The result of a box.
+    type Output: Send;
+
+    /// The values of particle `j` in the columns.
+    fn load(&self, j: usize) -> [f32; F];
+
+    /// The lower and upper corner of box `i`, in metres.
+    fn corners(&self, i: usize) -> [Vec3; 2];
+
+    /// Computes the result of box `i`. The columns in `near` have equal lengths, a multiple of
+    /// [`BLOCK`](crate::simd::BLOCK). The padding at the end is far away, with zeros after the
+    /// position.
+    fn visit<V: Register>(&self, i: usize, near: [&[f32]; F], out: &mut Self::Output);
+}
+
+/// Runs a pass over boxes: box `i` writes item `i` of `outputs`.
+pub(crate) fn for_each_box<const F: usize, P: BoxPass<F>>(
+    sorted: Sorted<'_>,
+    outputs: impl IndexedParallelIterator<Item = P::Output>,
+    pass: &P,
+) {
+    for_each_box_with(Simd::in_use(), sorted, outputs, pass);
+}
+
+pub(super) fn for_each_box_with<const F: usize, P: BoxPass<F>>(
+    simd: Simd,
+    sorted: Sorted<'_>,
+    outputs: impl IndexedParallelIterator<Item = P::Output>,
+    pass: &P,
+) {
+    let columns = &Columns::new(sorted.living(), |j| pass.load(j));
+    outputs.enumerate().for_each_init(Candidates::new, |candidates, (i, mut out)| {
+        run_with(simd, OneBox { sorted, columns, candidates, i, out: &mut out, pass })
+    });
+}
+
+struct OneBox<'a, const F: usize, P: BoxPass<F>> {
+    sorted: Sorted<'a>,
+    columns: &'a Columns<F>,
+    candidates: &'a mut Candidates<F>,
+    i: usize,
+    out: &'a mut P::Output,
+    pass: &'a P,
+}
+
+impl<const F: usize, P: BoxPass<F>> Leaf for OneBox<'_, F, P> {
+    #[inline(always)]
+    fn run<V: Register>(self) {
+        let Self { sorted, columns, candidates, i, out, pass } = self;
+        let corners = pass.corners(i);
+        let region = Region::around(corners, sorted.support_radius);
+        candidates.pack_range::<V>(columns, &sorted, corners, &region);
+        pass.visit::<V>(i, candidates.columns(), out);
+    }
+}

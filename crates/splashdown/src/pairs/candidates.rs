@@ -1,0 +1,185 @@
+//! The particles that may be neighbours of a group of targets, packed into columns.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::Sorted;
+use super::columns::Columns;
+use crate::simd::{BLOCK, Register, sum};
+
+/// Coordinate of the padding: beyond every support radius, with a finite square.
+const FAR: f32 = 1e15;
+/// Factor on the support radius against rounding.
+const MARGIN: f32 = 1.0001;
+
+/// All points within reach of a bounding box.
+pub(super) struct Region {
+    low: [f32; 3],
+    high: [f32; 3],
+    /// Square of the largest distance from the box.
+    reach2: f32,
+}
+
+impl Region {
+    /// The points within the support radius of the bounding box of some points.
+    #[inline(always)]
+    pub fn around(points: impl IntoIterator<Item = Vec3>, support_radius: f32) -> Self {
+        let (mut low, mut high) = ([FAR; 3], [-FAR; 3]);
+        for point in points {
+            for (axis, x) in point.to_array().into_iter().enumerate() {
+                low[axis] = low[axis].min(x);
+                high[axis] = high[axis].max(x);
+            }
+        }
+        let reach = MARGIN * support_radius;
+        Self { low, high, reach2: reach * reach }
+    }
+}
+
+/// Columns of candidates, in whole blocks.
+pub(super) struct Candidates<const F: usize> {
+    columns: [Vec<f32>; F],
+    /// Number of candidates, including the padding of the last block.
+    count: usize,
+}
+
+impl<const F: usize> Candidates<F> {
+    pub fn new() -> Self {
+        Self { columns: [const { Vec::new() }; F], count: 0 }
+    }
+
+    /// Packs the particles of `runs` that are in the region.
+    #[inline(always)]
+    pub fn pack<V: Register>(&mut self, all: &Columns<F>, runs: &[Range<usize>], region: &Region) {
+        self.reserve(runs.iter().map(|run| run.len()).sum());
+        let mut count = 0;
+        for run in runs {
+            count = self.append::<V>(all, run.clone(), region, count);
+        }
+        self.pad(count);
+    }
+
+    /// Packs the particles in the region, from all cells within the support radius of a box.
+    #[inline(always)]
+    pub fn pack_range<V: Register>(
+        &mut self,
+        all: &Columns<F>,
+        sorted: &Sorted<'_>,
+        [low, high]: [Vec3; 2],
+        region: &Region,
+    ) {
+        let grid = sorted.grid;
+        let size = [grid.size_x, grid.size_y, grid.size_z];
+        let reach = MARGIN * sorted.support_radius;
+        let inverse = 1.0 / grid.cell_size;
+        // Casts to integers saturate, so that cells outside the grid become its border cells.
+        let cell = |x: Vec3| ((x - grid.origin) * inverse).to_array().map(|x| x.floor() as u32);
+        let (first, last) = (cell(low - reach), cell(high + reach));
+        let [x, y, z] = std::array::from_fn(|axis| {
+            let end = last[axis].min(size[axis] - 1) as usize + 1;
+            (first[axis] as usize).min(end)..end
+        });
+        let runs = z.flat_map(|z| y.clone().map(move |y| z * size[1] as usize + y)).map(|row| {
+            let first = row * size[0] as usize + x.start;
+            sorted.run(first, x.len())
+        });
+        self.reserve(runs.clone().map(|run| run.len()).sum());
+        let mut count = 0;
+        for run in runs {
+            count = self.append::<V>(all, run, region, count);
+        }
+        self.pad(count);
+    }
+
+    /// Makes room for a number of particles and the padding.
+    #[inline(always)]
+    fn reserve(&mut self, particles: usize) {
+        // A whole register is written at the end, and then the padding.
+        let room = particles + 2 * BLOCK;
+        if self.columns[0].len() < room {
+            self.columns.iter_mut().for_each(|column| column.resize(room, 0.0));
+        }
+    }
+
+    /// Appends the particles of a run that are in the region to the first `count`; returns the new
+    /// count.
+    #[inline(always)]
+    fn append<V: Register>(
+        &mut self,
+        all: &Columns<F>,
+        run: Range<usize>,
+        region: &Region,
+        mut count: usize,
+    ) -> usize {
+        let from: [&[f32]; F] = std::array::from_fn(|f| all.column(f));
+        let room = self.columns[0].len();
+        let to = self.columns.each_mut().map(|column| column.as_mut_ptr());
+        let (low, high) = (region.low.map(V::splat), region.high.map(V::splat));
+        let (zero, reach2) = (V::splat(0.0), V::splat(region.reach2));
+        assert!(run.end + BLOCK <= from[0].len(), "a run of particles ends at {}", run.end);
+        assert!(count + run.len() + BLOCK <= room, "no room for {} candidates", run.len());
+        for j in run.clone().step_by(V::WIDTH) {
+            // SAFETY: `j` is below the end of the run, and the columns extend a block beyond it.
+            let load = |f: usize| unsafe { V::load(from[f].as_ptr().add(j)) };
+            let mut distance2 = zero;
+            for axis in 0..3 {
+                let x = load(axis);
+                let outside = (low[axis] - x).max(x - high[axis]).max(zero);
+                distance2 = distance2 + outside * outside;
+            }
+            let of_run = u32::MAX >> (32 - V::WIDTH.min(run.end - j));
+            let near = distance2.less_bits(reach2) & of_run;
+            if near == 0 {
+                continue;
+            }
+            for (f, to) in to.iter().enumerate() {
+                // SAFETY: at most the particles of the run were appended, and there is a block
+                // after them.
+                unsafe { load(f).compress(near).store(to.add(count)) };
+            }
+            count += near.count_ones() as usize;
+        }
+        count
+    }
+
+    /// Fills the last block of `count` candidates with padding.
+    #[inline(always)]
+    fn pad(&mut self, count: usize) {
+        for (f, column) in self.columns.iter_mut().enumerate() {
+            column[count..count + BLOCK].fill(if f < 3 { FAR } else { 0.0 });
+        }
+        self.count = count.next_multiple_of(BLOCK);
+    }
+
+    /// The columns, with the padding.
+    #[inline(always)]
+    pub fn columns(&self) -> [&[f32]; F] {
+        self.columns.each_ref().map(|column| &column[..self.count])
+    }
+
+    /// The sums of one target.
+    #[inline(always)]
+    pub fn sum<V: Register, const S: usize>(&self, pair: impl Fn([V; F]) -> [V; S]) -> [f32; S] {
+        let columns = self.columns();
+        let mut lanes = [[0.0; BLOCK]; S];
+        // Narrow registers process one part of every block after the other, which keeps few sums
+        // alive.
+        for part in (0..BLOCK).step_by(V::WIDTH) {
+            let mut sums = [V::splat(0.0); S];
+            for k in (part..self.count).step_by(BLOCK) {
+                // SAFETY: the count is a multiple of the block, and the width divides the block.
+                let values = columns.map(|column| unsafe { V::load(column.as_ptr().add(k)) });
+                let contributions = pair(values);
+                for s in 0..S {
+                    sums[s] = sums[s] + contributions[s];
+                }
+            }
+            for (lanes, sums) in lanes.iter_mut().zip(sums) {
+                // SAFETY: the width divides the block.
+                unsafe { sums.store(lanes.as_mut_ptr().add(part)) };
+            }
+        }
+        lanes.map(sum)
+    }
+}

@@ -1,0 +1,81 @@
+//! Neighbour sums on the CPU, for solver, surface and foam.
+//!
+//! A pass supplies the formula of one pair. The engine visits the neighbours:
+//!
+//! * [`for_each`]: sums at every particle ([`PairSum`]);
+//! * [`sums_at`]: sums at arbitrary points ([`PointSum`]);
+//! * [`for_each_box`]: the particles near a box, for passes with their own inner loop
+//!   ([`BoxPass`]).
+//!
+//! # How it works
+//! The particles' quantities are stored in columns, one array per quantity ([`Columns`]). The
+//! neighbours of a cell lie in nine contiguous runs of particles. Those within reach of the
+//! bounding box of the targets in the cell are packed into small columns once ([`Candidates`]): on
+//! average 112 of 183 particles, at a support radius of two spacings. Every target then processes
+//! the candidates in whole registers without a branch: particles beyond the support contribute
+//! zero, and the end is padded with particles far away.
+//!
+//! Sums are accumulated in a fixed number of lanes, and the candidates of a target depend only on
+//! the targets in its cell. Results are therefore bit-identical for any number of threads and any
+//! width of the registers.
+//!
+//! # Why not the other way
+//! * A list of neighbours per particle: gathering its quantities by index costs more than the
+//!   arithmetic it saves (measured, `docs/performance.md`).
+//! * Visiting each pair once: the sums would depend on the order of the threads.
+
+mod boxes;
+mod candidates;
+mod columns;
+mod particles;
+mod points;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+use std::ops::Range;
+
+use glam::Vec4;
+
+use crate::cells::Grid;
+pub(crate) use boxes::{BoxPass, for_each_box};
+pub(crate) use particles::{PairSum, for_each};
+pub(crate) use points::{PointSum, sums_at};
+pub(crate) use vector::{difference, dot, scaled, splat};
+
+/// Particles sorted by cell.
+#[derive(Clone, Copy)]
+pub(crate) struct Sorted<'a> {
+    pub grid: &'a Grid,
+    /// First particle of each cell, followed by the number of living particles: see
+    /// [`Cells::cell_start`](crate::cells::Cells::cell_start).
+    pub cell_start: &'a [u32],
+    /// Positions in metres, sorted by cell; w is ignored.
+    pub positions: &'a [Vec4],
+    /// Radius within which particles are neighbours, in metres; at most the cell size.
+    pub support_radius: f32,
+}
+
+impl<'a> Sorted<'a> {
+    pub fn new(support_radius: f32, grid: &'a Grid, cell_start: &'a [u32], positions: &'a [Vec4]) -> Self {
+        Self { grid, cell_start, positions, support_radius }
+    }
+
+    /// Number of living particles.
+    pub fn living(&self) -> usize {
+        self.cell_start[self.grid.cell_count as usize] as usize
+    }
+
+    /// The particles of a number of consecutive cells along x.
+    #[inline(always)]
+    fn run(&self, first_cell: usize, cells: usize) -> Range<usize> {
+        self.cell_start[first_cell] as usize..self.cell_start[first_cell + cells] as usize
+    }
+
+    /// The particles of a cell and its 26 neighbours: nine rows of three cells each.
+    #[inline(always)]
+    pub fn runs_around(&self, cell: usize) -> [Range<usize>; 9] {
+        let (width, plane) = (self.grid.size_x as usize, (self.grid.size_x * self.grid.size_y) as usize);
+        std::array::from_fn(|k| self.run(cell + k / 3 * plane + k % 3 * width - plane - width - 1, 3))
+    }
+}

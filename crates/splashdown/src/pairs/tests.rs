@@ -1,0 +1,256 @@
+use glam::{Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+
+use super::boxes::for_each_box_with;
+use super::particles::for_each_with;
+use super::points::sums_at_with;
+use super::*;
+use crate::simd::{Register, Simd};
+
+const SUPPORT: f32 = 0.1;
+
+/// Sums the number of neighbours and a value.
+struct Count<'a> {
+    positions: &'a [Vec4],
+    values: &'a [f32],
+    bound: f32,
+}
+
+impl PairSum<4, 2> for Count<'_> {
+    type Output = [f32; 2];
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 4] {
+        let p = self.positions[j];
+        [p.x, p.y, p.z, self.values[j]]
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 4]) -> [V; 2] {
+        let x = splat::<V>(self.positions[i]);
+        let (one, zero, bound) = (V::splat(1.0), V::splat(0.0), V::splat(self.bound));
+        #[inline(always)]
+        move |[x_j, y_j, z_j, value]| {
+            let d = difference(x, [x_j, y_j, z_j]);
+            let inside = dot(d, d).if_less(bound, one, zero);
+            [inside, inside * value]
+        }
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: usize, sums: [f32; 2], out: &mut [f32; 2]) {
+        *out = sums;
+    }
+}
+
+/// Particles in a box of 6 x 5 x 4 support radii, sorted: a random cloud, a dense cell with 200,
+/// and empty cells.
+fn cloud() -> (Grid, Vec<u32>, Vec<Vec4>) {
+    let inner = SUPPORT * Vec3::new(6.0, 5.0, 4.0);
+    let grid = Grid::new(Vec3::ZERO, inner, SUPPORT).expect("a small grid");
+    let mut state = 1_u32;
+    let mut random = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    };
+    let mut positions: Vec<Vec4> =
+        (0..700).map(|_| (Vec3::new(random(), random(), random()) * inner).extend(0.0)).collect();
+    positions.extend(
+        (0..200).map(|_| {
+            (SUPPORT * (Vec3::splat(2.0) + 0.9 * Vec3::new(random(), random(), random()))).extend(0.0)
+        }),
+    );
+    positions.retain(|p| p.x < 0.3 || p.y > 0.2);
+    positions.sort_by_key(|p| grid.cell_of(p.xyz()));
+    let mut cell_start = vec![0; grid.cell_count as usize + 2];
+    for p in &positions {
+        cell_start[grid.cell_of(p.xyz()) as usize + 1] += 1;
+    }
+    for cell in 0..cell_start.len() - 1 {
+        cell_start[cell + 1] += cell_start[cell];
+    }
+    (grid, cell_start, positions)
+}
+
+impl PointSum<4, 2> for Count<'_> {
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 4] {
+        PairSum::load(self, j)
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, x: [V; 3]) -> impl Fn([V; 4]) -> [V; 2] {
+        let (one, zero, bound) = (V::splat(1.0), V::splat(0.0), V::splat(self.bound));
+        #[inline(always)]
+        move |[x_j, y_j, z_j, value]| {
+            let d = difference(x, [x_j, y_j, z_j]);
+            let inside = dot(d, d).if_less(bound, one, zero);
+            [inside, inside * value]
+        }
+    }
+}
+
+/// The number of neighbours, and the sum of a value over them.
+type Counts = Vec<[f32; 2]>;
+
+/// The particles, their values, and the square of the bound in `factor` support radii.
+struct Case {
+    grid: Grid,
+    cell_start: Vec<u32>,
+    positions: Vec<Vec4>,
+    values: Vec<f32>,
+    bound: f32,
+}
+
+impl Case {
+    fn new(factor: f32) -> Self {
+        let (grid, cell_start, positions) = cloud();
+        let values = (0..positions.len()).map(|j| 0.1 + (j % 17) as f32 * 0.37).collect();
+        let bound = (factor * SUPPORT) * (factor * SUPPORT);
+        Self { grid, cell_start, positions, values, bound }
+    }
+
+    fn sorted(&self) -> Sorted<'_> {
+        Sorted::new(SUPPORT, &self.grid, &self.cell_start, &self.positions)
+    }
+
+    fn pass(&self) -> Count<'_> {
+        Count { positions: &self.positions, values: &self.values, bound: self.bound }
+    }
+
+    /// The counts at a point by brute force.
+    fn expected(&self, x: Vec3) -> [f32; 2] {
+        let near = self.positions.iter().zip(&self.values).filter(|(other, _)| {
+            let d = x - other.xyz();
+            d.x * d.x + d.y * d.y + d.z * d.z < self.bound
+        });
+        near.fold([0.0; 2], |[n, sum], (_, value)| [n + 1.0, sum + value])
+    }
+
+    fn expected_at_particles(&self) -> Counts {
+        self.positions.iter().map(|p| self.expected(p.xyz())).collect()
+    }
+
+    /// The counts at the particles for every available kind of register.
+    fn found(&self) -> Vec<(Simd, Counts)> {
+        let run = |simd| {
+            let mut out = vec![[0.0; 2]; self.positions.len()];
+            for_each_with(simd, self.sorted(), &mut out, &self.pass());
+            (simd, out)
+        };
+        kinds().map(run).collect()
+    }
+}
+
+fn kinds() -> impl Iterator<Item = Simd> {
+    Simd::ALL.into_iter().filter(|simd| simd.is_available())
+}
+
+/// Compares counts with those of the brute force, and the bits between the kinds of registers.
+fn compare(expected: &Counts, found: &[(Simd, Counts)]) {
+    for (simd, out) in found {
+        for (i, (out, expected)) in out.iter().zip(expected).enumerate() {
+            assert_eq!(out[0], expected[0], "target {i} with {} registers", simd.name());
+            assert!((out[1] - expected[1]).abs() <= 1e-4 * expected[1], "target {i}: {out:?}");
+        }
+        assert!(*out == found[0].1, "{} registers give other bits", simd.name());
+    }
+}
+
+#[test]
+fn every_neighbour_is_visited_once_and_every_register_gives_the_same_bits() {
+    let case = Case::new(1.0);
+    let expected = case.expected_at_particles();
+    let most = expected.iter().map(|[n, _]| *n).fold(0.0, f32::max);
+    assert!(most > 200.0, "particles in the dense cell have {most} neighbours");
+    compare(&expected, &case.found());
+}
+
+/// Negative control: with a support radius that is too small, the engine misses neighbours.
+#[test]
+fn particles_beyond_the_support_are_not_all_visited() {
+    let case = Case::new(1.5);
+    let missed = |(expected, out): (&[f32; 2], &[f32; 2])| out[0] < expected[0];
+    assert!(case.expected_at_particles().iter().zip(&case.found()[0].1).any(missed));
+}
+
+/// Points in the box, in the ghost cells and outside of the grid, several in a cell, and none at
+/// all.
+#[test]
+fn sums_at_points_equal_those_of_the_brute_force() {
+    let case = Case::new(1.0);
+    let spread =
+        |i: usize| Vec3::new(i as f32 * 0.0137, (i * 7 % 80) as f32 * 0.0081, (i * 13 % 60) as f32 * 0.009);
+    let mut points: Vec<Vec3> = (0..60).map(|i| spread(i) - 0.1).collect();
+    points.extend((0..40).map(|i| case.positions[17 * i % case.positions.len()].xyz() + 0.01));
+    points.extend([Vec3::splat(-0.05), Vec3::new(0.65, 0.3, 0.2), Vec3::splat(40.0), Vec3::NAN]);
+    let expected = points.iter().map(|&x| case.expected(x)).collect();
+    let found = |points: &[Vec3]| -> Vec<(Simd, Counts)> {
+        kinds().map(|simd| (simd, sums_at_with(simd, case.sorted(), points, &case.pass()))).collect()
+    };
+    compare(&expected, &found(&points));
+    assert!(expected.iter().any(|[n, _]| *n > 20.0), "some points are among particles");
+    // Sums do not depend on the order of the points.
+    points.reverse();
+    let reversed = found(&points);
+    points.reverse();
+    assert!(reversed[0].1.iter().rev().eq(&found(&points)[0].1));
+    assert!(found(&[])[0].1.is_empty());
+    assert_eq!(
+        sums_at(case.sorted(), &points, &case.pass()),
+        reversed[0].1.iter().rev().copied().collect::<Counts>()
+    );
+}
+
+/// Counts the particles near a box.
+struct InBox<'a> {
+    positions: &'a [Vec4],
+    boxes: &'a [[Vec3; 2]],
+}
+
+fn distance2(x: Vec3, [low, high]: [Vec3; 2]) -> f32 {
+    (x - x.clamp(low, high)).length_squared()
+}
+
+impl<'a> BoxPass<3> for InBox<'a> {
+    type Output = &'a mut u32;
+
+    fn load(&self, j: usize) -> [f32; 3] {
+        self.positions[j].xyz().to_array()
+    }
+
+    fn corners(&self, i: usize) -> [Vec3; 2] {
+        self.boxes[i]
+    }
+
+    #[inline(always)]
+    fn visit<V: Register>(&self, i: usize, [x, y, z]: [&[f32]; 3], out: &mut Self::Output) {
+        assert!(x.len() % crate::simd::BLOCK == 0 && x.len() == y.len() && x.len() == z.len());
+        let near = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| Vec3::new(x, y, z));
+        **out = near.filter(|&x| distance2(x, self.boxes[i]) < SUPPORT * SUPPORT).count() as u32;
+    }
+}
+
+#[test]
+fn boxes_receive_all_particles_within_the_support() {
+    let case = Case::new(1.0);
+    let boxes = [
+        [Vec3::new(0.21, 0.22, 0.2), Vec3::new(0.3, 0.25, 0.27)],
+        [Vec3::splat(-0.3), Vec3::splat(0.05)],
+        [Vec3::splat(0.3), Vec3::splat(7.0)],
+        [Vec3::splat(8.0), Vec3::splat(9.0)],
+        [Vec3::splat(-9.0), Vec3::splat(-8.0)],
+        [Vec3::splat(-1.0), Vec3::splat(1.0)],
+    ];
+    let expected = boxes.map(|corners| {
+        let is_near = |x: &&Vec4| distance2(x.xyz(), corners) < SUPPORT * SUPPORT;
+        case.positions.iter().filter(is_near).count() as u32
+    });
+    assert!(expected[0] > 50 && expected[5] as usize == case.positions.len() && expected[3] == 0);
+    for simd in kinds() {
+        let pass = InBox { positions: &case.positions, boxes: &boxes };
+        let mut counts = [0; 6];
+        for_each_box_with(simd, case.sorted(), counts.par_iter_mut(), &pass);
+        assert_eq!(counts, expected, "{} registers", simd.name());
+    }
+}

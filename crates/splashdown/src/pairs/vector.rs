@@ -1,0 +1,29 @@
+//! Vectors of three registers.
+
+use glam::Vec4;
+
+use crate::simd::Lanes;
+
+/// The first three components, in every lane.
+#[inline(always)]
+pub(crate) fn splat<V: Lanes>(v: Vec4) -> [V; 3] {
+    [V::splat(v.x), V::splat(v.y), V::splat(v.z)]
+}
+
+/// a - b.
+#[inline(always)]
+pub(crate) fn difference<V: Lanes>(a: [V; 3], b: [V; 3]) -> [V; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a . b.
+#[inline(always)]
+pub(crate) fn dot<V: Lanes>(a: [V; 3], b: [V; 3]) -> V {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// factor a.
+#[inline(always)]
+pub(crate) fn scaled<V: Lanes>(factor: V, a: [V; 3]) -> [V; 3] {
+    [factor * a[0], factor * a[1], factor * a[2]]
+}
