@@ -6,8 +6,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::data::columns::{Number, triples};
+use crate::columns::triples;
 use crate::error::IoError;
+use crate::number::Number;
 
 /// Reads a little-endian float32 or float64 array of shape (N, 3) in C order.
 ///

@@ -161,7 +161,7 @@ fn a_ply_of_points_is_no_mesh() {
     splashdown_io::particles::write(&path, &common::particles(7)).unwrap();
     let message = read_mesh(&path).unwrap_err().to_string();
     assert!(
-        message.contains("no element `face`") && message.contains("(7 points): points are no mesh"),
+        message.contains("no element `face`") && message.contains("(7 points): a mesh needs faces too"),
         "{message}"
     );
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n\

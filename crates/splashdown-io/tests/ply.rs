@@ -223,6 +223,155 @@ fn broken_files_say_what_is_wrong() {
     assert_eq!(ply::read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
 }
 
+/// A header of the given lines behind `ply` and the format.
+fn header(format: &str, lines: &[&str]) -> String {
+    format!("ply\nformat {format} 1.0\n{}\nend_header\n", lines.join("\n"))
+}
+
+const XYZ: &str = "property float x\nproperty float y\nproperty float z";
+
+#[test]
+fn malformed_header_lines_are_named() {
+    for (line, reason) in [
+        ("element vertex 2", "line 7 (`element vertex 2`): the element `vertex` is declared twice"),
+        ("element face many", "`many` is not a count"),
+        ("element face -1", "`-1` is not a count"),
+        ("element face", "it is not one of `format`, `element`"),
+        ("property float x", "the property `x` is declared twice"),
+        ("property half w", "the type `half` is not known; allowed are char,"),
+        ("property list float int w", "the count of a list must be an integer"),
+        ("property list int w", "allowed are `property TYPE NAME` and `property list TYPE TYPE NAME`"),
+        ("property w", "allowed are `property TYPE NAME`"),
+        ("format ascii 2.0", "`binary_big_endian` of version 1.0 are read"),
+        ("format morse 1.0", "the formats `ascii`, `binary_little_endian`"),
+        ("\u{7f}\u{1}", "line 7"),
+    ] {
+        let (_keep, path) = file(header("ascii", &["element vertex 1", XYZ, line]).as_bytes());
+        let message = ply::read_particles(&path).unwrap_err().to_string();
+        assert!(message.contains(reason) && !message.contains('\n'), "wanted `{reason}`, got: {message}");
+    }
+    let (_keep, path) = file(b"ply\nproperty float x\nend_header\n");
+    assert!(ply::read_particles(&path).unwrap_err().to_string().contains("must follow its `element`"));
+    let (_keep, path) = file(b"ply\nelement vertex 0\nend_header\n");
+    assert!(ply::read_particles(&path).unwrap_err().to_string().contains("no line `format`"));
+    let (_keep, path) = file(&[b"ply\ncomment ".as_slice(), &[b'x'; 2_000_000]].concat());
+    assert!(ply::read_particles(&path).unwrap_err().to_string().contains("line 2 has more than"));
+}
+
+#[test]
+fn text_is_read_however_numbers_are_spelled() {
+    let lines = ["comment", "element vertex 4", XYZ, "property int id", "property uchar p", "comment last"];
+    let text = header("ascii", &lines)
+        + "1 .5 2. 7 0\n\n  -1e3\t+4 1E-2 2.0 255 behind the last property\r\nnan inf -inf 3 1\n0 0 0 4 2";
+    let (_keep, path) = file(text.as_bytes());
+    let particles = ply::read_particles(&path).unwrap();
+    assert_eq!(particles.positions[..2], [[1.0, 0.5, 2.0], [-1000.0, 4.0, 0.01]]);
+    assert!(
+        particles.positions[2][0].is_nan()
+            && particles.positions[2][1..] == [f32::INFINITY, f32::NEG_INFINITY]
+    );
+    assert_eq!(particles.ids, [7, 2, 3, 4]);
+    assert_eq!(particles.pressures, [0.0, 255.0, 1.0, 2.0]);
+    for (wrong, reason) in [
+        ("1 .5 2. 7 0", "file ends after 3"),
+        ("0 0 0 4 256", "line 16: `256` is not a number of the type of property `p`"),
+        ("0 0 0 0.5 2", "`0.5` is not a number of the type of property `id`"),
+        ("0 0 0 -4 2", "property `id`: -4 is not an integer from 0 to 4294967295"),
+        ("0 0 0 4", "line 16: it ends before property `p`"),
+    ] {
+        let changed = if reason.contains("ends after") {
+            text.replace(&format!("{wrong}\n"), "")
+        } else {
+            text.replace("0 0 0 4 2", wrong)
+        };
+        let (_keep, path) = file(changed.as_bytes());
+        let message = ply::read_particles(&path).unwrap_err().to_string();
+        assert!(message.contains(reason), "wanted `{reason}`, got: {message}");
+    }
+}
+
+/// More rows than a block has, faces before the vertices, lists that are not read, and numbers of several types.
+#[test]
+fn a_large_file_with_elements_in_another_order_is_read() {
+    const VERTICES: u32 = 40_000;
+    for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        let lines = [
+            "element edge 3\nproperty list uchar double weights",
+            "element face 20000\nproperty uchar flags\nproperty list ushort uint vertex_indices\nproperty list int short u",
+            &format!("element vertex {VERTICES}"),
+            "property ushort y\nproperty double x\nproperty list uchar uchar name\nproperty float z",
+        ];
+        let mut bytes = header(format, &lines).into_bytes();
+        let mut row = |values: &[(usize, f64)]| {
+            for &(kind, value) in values {
+                let little = match kind {
+                    1 => vec![value as u8],
+                    2 => (value as i64 as u16).to_le_bytes().to_vec(),
+                    3 => (value as i64 as u32).to_le_bytes().to_vec(),
+                    4 => (value as f32).to_le_bytes().to_vec(),
+                    _ => value.to_le_bytes().to_vec(),
+                };
+                match format {
+                    "ascii" => bytes.extend(format!("{value} ").bytes()),
+                    "binary_big_endian" => bytes.extend(little.iter().rev()),
+                    _ => bytes.extend(little),
+                }
+            }
+            if format == "ascii" {
+                bytes.push(b'\n');
+            }
+        };
+        for _ in 0..3 {
+            row(&[(1, 2.0), (8, 0.5), (8, -0.5)]);
+        }
+        for face in 0..20_000 {
+            let corners =
+                [f64::from(face), f64::from(face + 1), f64::from(face + 2), f64::from(VERTICES - 1 - face)];
+            let corners = &corners[..if face % 2 == 0 { 4 } else { 3 }];
+            let mut values = vec![(1, 9.0), (2, corners.len() as f64)];
+            values.extend(corners.iter().map(|&corner| (3, corner)));
+            values.extend([(3, 2.0), (2, -1.0), (2, 300.0)]);
+            row(&values);
+        }
+        for vertex in 0..VERTICES {
+            let value = f64::from(vertex);
+            row(&[(2, value), (8, -value), (1, 1.0), (1, 65.0), (4, value + 0.5)]);
+        }
+        let (_keep, path) = file(&bytes);
+        let mesh = ply::read_mesh(&path).unwrap();
+        assert_eq!(mesh.vertices.len(), VERTICES as usize, "{format}");
+        for (vertex, position) in mesh.vertices.iter().enumerate() {
+            let value = vertex as f32;
+            assert_eq!(*position, [-value, value, value + 0.5], "{format}");
+        }
+        assert_eq!(mesh.triangles.len(), 30_000, "{format}");
+        assert_eq!(mesh.triangles[..3], [[0, 1, 2], [0, 2, VERTICES - 1], [1, 2, 3]], "{format}");
+        assert_eq!(mesh.triangles[29_999], [19_999, 20_000, 20_001], "{format}");
+        // Cut inside the last row.
+        let (_keep, path) = file(&bytes[..bytes.len() - 3 - usize::from(format == "ascii") * 12]);
+        let message = ply::read_mesh(&path).unwrap_err().to_string();
+        assert!(message.contains("in element `vertex`: "), "{message}");
+    }
+}
+
+#[test]
+fn hostile_lists_take_no_memory() {
+    for (count, item) in [("uint", "double"), ("int", "uchar"), ("uint", "uint")] {
+        for name in ["vertex_indices", "other"] {
+            let property = format!("property list {count} {item} {name}");
+            let corners = "property list uchar uchar vertex_index";
+            let lines = ["element face 1", &property, corners, "element vertex 0", XYZ];
+            let bytes = [header("binary_little_endian", &lines).as_bytes(), &[0xff; 20]].concat();
+            let (_keep, path) = file(&bytes);
+            let message = ply::read_mesh(&path).unwrap_err().to_string();
+            assert!(message.contains("in element `face`: row 0: "), "{message}");
+            let reason =
+                if count == "int" { "-1 is not an integer from 0" } else { "bytes are needed, 16 are left" };
+            assert!(message.contains(reason) || name == "other", "{message}");
+        }
+    }
+}
+
 #[test]
 fn a_missing_file_is_named() {
     let path = folder().path().join("absent.ply");

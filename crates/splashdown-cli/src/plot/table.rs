@@ -1,4 +1,4 @@
-//! Tables of numbers as probes write them: a line of names with units, then rows.
+//! Tables of numbers in the format of the probes: a line of column names with units, then rows.
 
 use std::path::Path;
 
@@ -7,20 +7,20 @@ use crate::exit::{Exit, Failure};
 /// A column against the first one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What it is called in the legend.
+    /// Its name in the legend.
     pub name: String,
-    /// What is measured, with its unit: `height (m)`.
+    /// The quantity with its unit: `height (m)`.
     pub quantity: String,
-    /// What the first column is, with its unit: `time (s)`.
+    /// The first column's quantity with its unit: `time (s)`.
     pub against: String,
-    /// Points; a number that is missing is NaN.
+    /// Points; a missing number is NaN.
     pub points: Vec<(f64, f64)>,
 }
 
-/// The curves of a file. Their names are the file's, with the column's where there are several.
+/// Reads the curves of a file. A curve has the file's name, with the column's if there are several.
 ///
 /// # Errors
-/// If the file cannot be read, or is no table of numbers below names; the line is told.
+/// If the file cannot be read, or is not a table of numbers below names; the message names the line.
 pub fn read(path: &Path) -> Result<Vec<Curve>, Failure> {
     let wrong = |reason: String| Failure::new(Exit::Scene, format!("`{}`: {reason}", path.display()));
     if path.is_dir() {
@@ -34,45 +34,45 @@ pub fn read(path: &Path) -> Result<Vec<Curve>, Failure> {
 }
 
 fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
-    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
-    let names = fields(lines.next().ok_or("it is empty")?.1);
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
+    let mut records = reader.records();
+    let names = records.next().ok_or("it is empty")?.map_err(|error| error.to_string())?;
     if names.len() < 2 || names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err(
             "its first line does not name two columns or more, such as `time (s),height (m)`".to_owned()
         );
     }
     let mut rows = Vec::new();
-    for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let fields = fields(line);
-        if fields.len() != names.len() {
-            let (given, wanted) = (fields.len(), names.len());
-            return Err(format!("line {} has {given} fields, its first line names {wanted}", number + 1));
+    for record in records {
+        let record = record.map_err(|error| error.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() == 1 && record[0].trim().is_empty() {
+            continue;
         }
-        let numbers: Result<Vec<f64>, String> = fields
-            .iter()
-            .map(|field| match field.trim() {
-                "" => Ok(f64::NAN),
-                word => {
-                    word.parse().map_err(|_| format!("line {}: `{word:.24}` is not a number", number + 1))
-                }
-            })
-            .collect();
-        rows.push(numbers?);
+        if record.len() != names.len() {
+            let (given, wanted) = (record.len(), names.len());
+            return Err(format!("line {line} has {given} fields, but its first line names {wanted} columns"));
+        }
+        let number = |field: &str| match field.trim() {
+            "" => Ok(f64::NAN),
+            word => word.parse().map_err(|_| format!("line {line}: `{word:.24}` is not a number")),
+        };
+        rows.push(record.iter().map(number).collect::<Result<Vec<f64>, String>>()?);
     }
     if rows.is_empty() {
         return Err("it has no rows yet".to_owned());
     }
     let columns = names.len() - 1;
-    let curve = |(column, quantity): (usize, &String)| Curve {
+    let curve = |(column, quantity): (usize, &str)| Curve {
         name: if columns == 1 { stem.to_owned() } else { format!("{stem}: {}", without_unit(quantity)) },
-        quantity: quantity.clone(),
-        against: names[0].clone(),
+        quantity: quantity.to_owned(),
+        against: names[0].to_owned(),
         points: rows.iter().map(|row| (row[0], row[column])).collect(),
     };
     Ok(names.iter().enumerate().skip(1).map(curve).collect())
 }
 
-/// The unit of a quantity with its brackets: what curves of one panel have in common.
+/// The unit of a quantity with its brackets. Curves with the same unit share a panel.
 pub fn unit(quantity: &str) -> &str {
     quantity.rfind('(').filter(|_| quantity.ends_with(')')).map_or(quantity, |at| &quantity[at..])
 }
@@ -84,31 +84,6 @@ pub fn without_unit(quantity: &str) -> &str {
         .map(str::trim_end)
         .filter(|name| !name.is_empty())
         .unwrap_or(quantity)
-}
-
-/// The fields of a line, quoted ones without their quotes.
-fn fields(line: &str) -> Vec<String> {
-    let mut fields = vec![String::new()];
-    let (mut quoted, mut chars) = (false, line.trim_end_matches('\r').chars().peekable());
-    while let Some(c) = chars.next() {
-        match c {
-            // Two in a row are one of the text.
-            '"' if quoted && chars.peek() == Some(&'"') => {
-                chars.next();
-                push(&mut fields, '"');
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => fields.push(String::new()),
-            _ => push(&mut fields, c),
-        }
-    }
-    fields
-}
-
-fn push(fields: &mut [String], c: char) {
-    if let Some(field) = fields.last_mut() {
-        field.push(c);
-    }
 }
 
 #[cfg(test)]
@@ -130,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_is_told() {
+    fn malformed_tables_are_refused() {
         for (text, reason) in [
             ("", "empty"),
             ("1,2\n3,4\n", "first line"),
@@ -138,6 +113,8 @@ mod tests {
             ("t,h\n", "no rows"),
             ("t,h\n1,2\n1,2,3\n", "line 3 has 3 fields"),
             ("t,h\n1,two\n", "line 2: `two`"),
+            ("t,h\n\n \n1,2\n\n3,two\n", "line 6: `two`"),
+            ("t,h\r\n\r\n1,2\r\n\r\n3,two", "line 5: `two`"),
         ] {
             let message = parse(text, "a").unwrap_err();
             assert!(message.contains(reason), "{message}");

@@ -6,10 +6,11 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::data::Particles;
-use crate::data::columns::{Column, Number, Wanted};
+use crate::columns::{Column, Wanted, triples};
 use crate::error::IoError;
-use crate::input::{MOST, regular};
+use crate::number::{Cells, Number};
+use crate::particles::Particles;
+use crate::read::{MOST, regular};
 
 /// Most bytes of a row, and most attributes: far beyond any real file, so that the numbers of a broken one need no
 /// memory to speak of.
@@ -150,14 +151,14 @@ fn rows(
                 &format!("its header promises {points} points, the data ends after {first} or a few more"),
             )
         })?;
-        for bytes in bytes.chunks_exact(row) {
-            let [x, y, z] = [0, 4, 8]
-                .map(|at| f32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
-            particles.positions.push([x, y, z]);
-            for Place { name, at, components, number } in places {
-                let values = number.decode(&bytes[*at..at + 4 * components], true);
-                wanted.append(&mut particles, name, *components, &values)?;
-            }
+        let numbers = |number: Number, at, components| {
+            let mut values = Vec::<f64>::new();
+            number.decode_cells(bytes, Cells { at, components, stride: row, big_endian: true }, &mut values);
+            values
+        };
+        particles.positions.extend(triples(&numbers(Number::F32, 0, 3)));
+        for &Place { ref name, at, components, number } in places {
+            wanted.append(&mut particles, name, components, &numbers(number, at, components))?;
         }
     }
     Ok(particles)

@@ -1,6 +1,8 @@
 //! What the readers of particle files share: the meaning of an array's name, and numbers of any type.
 
-use super::{Attribute, Particles};
+use crate::attribute::Attribute;
+use crate::number::whole;
+use crate::particles::Particles;
 
 /// The arrays that mean something here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,63 +87,4 @@ impl Wanted {
 /// Rows of three.
 pub(crate) fn triples(values: &[f64]) -> impl Iterator<Item = [f32; 3]> + '_ {
     values.chunks_exact(3).map(|row| [row[0] as f32, row[1] as f32, row[2] as f32])
-}
-
-/// A float that is a whole number in range, as some programs write ids.
-pub(crate) fn whole(value: f64) -> Option<u32> {
-    (value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0).then_some(value as u32)
-}
-
-/// The types of numbers in a binary array.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Number {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Number {
-    /// Bytes of one.
-    pub(crate) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
-
-    /// All whole numbers in `bytes`. An f64 holds each of the types exactly but integers beyond 2^53, and ids end
-    /// at 2^32.
-    pub(crate) fn decode(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
-        let size = self.size();
-        let number = |row: &[u8]| {
-            let mut word = [0; 8];
-            word[..size].copy_from_slice(row);
-            if big_endian {
-                word[..size].reverse();
-            }
-            let [a, b, c, d, ..] = word;
-            match self {
-                Self::I8 => f64::from(a as i8),
-                Self::U8 => f64::from(a),
-                Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-                Self::U16 => f64::from(u16::from_le_bytes([a, b])),
-                Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-                Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-                Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
-                Self::I64 => i64::from_le_bytes(word) as f64,
-                Self::U64 => u64::from_le_bytes(word) as f64,
-                Self::F64 => f64::from_le_bytes(word),
-            }
-        };
-        bytes.chunks_exact(size).map(number).collect()
-    }
 }

@@ -1,17 +1,21 @@
 //! PLY, the Stanford polygon format: binary little-endian writers for particles and meshes, readers for any PLY.
 //!
-//! *Why own writers:* a header and rows of bytes; the crates that write PLY go through one dynamically typed value
-//! per number: 64,000 bare positions take 11 ms that way and 0.13 ms this way. *Why not own readers:* foreign files
-//! come as text or binary of either byte order, with properties of any type in any order, and broken; `ply-rs-bw`
-//! handles these and is kept up (last release July 2026; its text form wants digits on both sides of a point and
-//! knows no `nan`). What stays here is the meaning of the properties and the refusal of headers that promise more
-//! than the file holds.
+//! The readers accept text and binary files of either byte order, with properties of any type in any order. A property
+//! is decoded into an array of its own, a block of rows at a time. Memory is allocated only after the header's counts
+//! have been compared with the size of the file.
 //!
-//! Columns written: `x y z vx vy vz density pressure` (float), `id` (uint) for particles, those that are
-//! present; `x y z nx ny nz vx vy vz` (float) and `vertex_indices` (list uchar int) for meshes. Blender,
-//! MeshLab, ParaView and Houdini open these.
+//! *Why own code:* the crates handle one dynamically typed value per number. On one core, 65,536 particles with seven
+//! attributes take 6.9 ms to read through `ply-rs-bw` 4.0 and 0.9 ms this way; a mesh of 300,000 triangles takes 44 ms
+//! and 14 ms. Text takes half the time. Writing 64,000 bare positions takes 11 ms and 0.13 ms.
+//!
+//! Properties written: `x y z vx vy vz density pressure` (float) and `id` (uint) for particles, where present;
+//! `x y z nx ny nz vx vy vz` (float) and `vertex_indices` (list uchar int) for meshes. Blender, MeshLab, ParaView and
+//! Houdini open these files.
 
+mod header;
 mod read;
+mod rows;
+mod source;
 mod write;
 
 pub(crate) use read::read;

@@ -1,265 +1,263 @@
-//! The readers: any encoding, any numeric type, properties in any order; unknown ones are skipped.
+//! The readers: which properties are read and what they mean.
 
-use std::fs::File;
-use std::io::{BufReader, Read};
 use std::path::Path;
 
-use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyDef, PropertyType,
-    ScalarType,
-};
-
-use crate::data::Attribute;
-use crate::data::Mesh;
-use crate::data::Particles;
-use crate::data::columns::{Wanted, whole};
+use super::header::{Element, Header, Kind, Property};
+use super::rows::{self, Column};
+use super::source::Source;
+use crate::attribute::Attribute;
+use crate::columns::Wanted;
 use crate::error::IoError;
 use crate::input::not_particles;
 
 /// Reads particles from the `vertex` element of a PLY file.
 ///
-/// `x y z` must be there; `vx vy vz` (or `velocity_x ..`, `u v w`), `density` (`rho`), `pressure` (`p`) and `id` are
-/// taken where they are present. Other elements are ignored, but for faces: the vertices of a mesh are not particles.
+/// The properties `x y z` are required; `vx vy vz` (or `velocity_x ..`, `u v w`), `density` (`rho`), `pressure` (`p`)
+/// and `id` are read where present. Other elements are ignored, except that a file with faces is refused: the vertices
+/// of a mesh are not particles.
 ///
 /// # Errors
-/// [`IoError::Read`] or [`IoError::Malformed`], which says what is missing or where the file ends too early.
+/// [`IoError::Read`]; [`IoError::Malformed`], which says what is missing or where the file is wrong.
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     read(path, Wanted::Known)
 }
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
-    let file = PlyFile::open(path)?;
-    let element = file.element("vertex")?;
-    let has = Present::of(element);
-    let names: Vec<String> = Everything::names(element).map(str::to_owned).collect();
-    if let Some(faces) = file.header.elements.get("face").filter(|face| face.count > 0) {
-        return Err(malformed(path, not_particles(faces.count)));
-    }
-    if wanted == Wanted::Known {
-        return Ok(known(&file.read::<Vertex>(false)?.0, &has));
-    }
-    let (vertices, _) = file.read::<Everything>(false)?;
-    let columns = names.iter().enumerate().map(|(column, name)| {
-        let values = vertices.iter().map(|vertex| vertex.others[column]).collect();
-        Attribute { name: name.clone(), components: 1, values }
-    });
-    let attributes = vectors(columns.collect());
-    let vertices: Vec<Vertex> = vertices.into_iter().map(|vertex| vertex.known).collect();
-    Ok(Particles { attributes, ..known(&vertices, &has) })
-}
-
-fn known(vertices: &[Vertex], has: &Present) -> Particles {
-    let every = |present: bool| vertices.iter().take(if present { usize::MAX } else { 0 });
-    Particles {
-        ids: every(has.id).map(|v| v.id).collect(),
-        positions: vertices.iter().map(|v| v.position).collect(),
-        velocities: every(has.velocity == [true; 3]).map(|v| v.velocity).collect(),
-        densities: every(has.density).map(|v| v.density).collect(),
-        pressures: every(has.pressure).map(|v| v.pressure).collect(),
-        attributes: Vec::new(),
-    }
-}
-
-/// Puts three numbers that follow one another and are called `a_x a_y a_z`, or `vx vy vz`, together.
-fn vectors(mut columns: Vec<Attribute>) -> Vec<Attribute> {
-    let mut found = Vec::new();
-    while !columns.is_empty() {
-        let stem = |column: usize, axis: char| columns.get(column)?.name.strip_suffix(axis);
-        let stems = [stem(0, 'x'), stem(1, 'y'), stem(2, 'z')];
-        let name = match stems {
-            [Some("v"), Some("v"), Some("v")] => Some("velocity".to_owned()),
-            [Some(a), Some(b), Some(c)] if a == b && b == c => a.strip_suffix('_').map(str::to_owned),
-            _ => None,
-        };
-        match name {
-            Some(name) => {
-                let three: Vec<Attribute> = columns.drain(..3).collect();
-                let rows = 0..three[0].values.len();
-                let values = rows.flat_map(|row| three.iter().map(move |column| column.values[row]));
-                found.push(Attribute { name, components: 3, values: values.collect() });
-            }
-            None => found.push(columns.remove(0)),
-        }
-    }
-    found
+    let source = Source::open(path)?;
+    particles(source, wanted).map_err(|reason| IoError::malformed(path, "PLY", reason))
 }
 
 /// Reads a mesh from the `vertex` and `face` elements of a PLY file.
 ///
-/// Normals are taken where `nx ny nz` are present, velocities where `vx vy vz` are. Polygons are cut into fans
-/// of triangles.
+/// Normals are read where `nx ny nz` are present, velocities where `vx vy vz` are. A polygon becomes a fan of
+/// triangles.
 ///
 /// # Errors
-/// [`IoError::Read`] or [`IoError::Malformed`]; also a face with fewer than three corners or one that names a vertex
-/// that does not exist.
+/// [`IoError::Read`] or [`IoError::Malformed`]; also for a face with fewer than three corners, or with a vertex number
+/// that is out of range.
 pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
-    let file = PlyFile::open(path)?;
-    file.element("face")?;
-    let has = Present::of(file.element("vertex")?);
-    let (vertices, faces) = file.read::<Vertex>(true)?;
-    let mut mesh = Mesh { vertices: vertices.iter().map(|v| v.position).collect(), ..Mesh::default() };
-    if has.normal == [true; 3] {
-        mesh.normals = vertices.iter().map(|v| v.normal).collect();
+    let source = Source::open(path)?;
+    mesh(source).map_err(|reason| IoError::malformed(path, "PLY", reason))
+}
+
+fn particles(mut source: Source, wanted: Wanted) -> Result<Particles, String> {
+    let header = header(&mut source)?;
+    let mut vertices = Vertices::of(&header, |field| match field {
+        Some(Field::Normal(_)) | None => wanted == Wanted::All,
+        Some(_) => true,
+    })?;
+    if let Some(faces) = header.element("face").filter(|face| face.count > 0) {
+        return Err(not_particles(faces.count));
     }
-    if has.velocity == [true; 3] {
-        mesh.velocities = vertices.iter().map(|v| v.velocity).collect();
-    }
-    for (number, face) in faces.iter().enumerate() {
-        let [first, rest @ ..] = face.corners.as_slice() else {
-            return Err(malformed(path, format!("face {number} has no corners (property `vertex_indices`)")));
-        };
-        if rest.len() < 2 {
-            return Err(malformed(
-                path,
-                format!("face {number} has {} corners, at least 3 are needed", rest.len() + 1),
-            ));
+    for element in &header.elements {
+        let is_vertex = element.name == "vertex";
+        let columns = if is_vertex { &mut vertices.columns } else { &mut skipped(element) };
+        read_rows(&mut source, &header, element, columns)?;
+        if is_vertex {
+            break;
         }
-        mesh.triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
     }
-    mesh.check().map_err(|error| malformed(path, error.to_string()))?;
+    let attributes = if wanted == Wanted::All { vertices.attributes() } else { Vec::new() };
+    Ok(Particles {
+        ids: vertices.ids(),
+        positions: vertices.vectors(Field::Position),
+        velocities: vertices.vectors(Field::Velocity),
+        densities: vertices.scalars(Field::Density),
+        pressures: vertices.scalars(Field::Pressure),
+        attributes,
+    })
+}
+
+fn mesh(mut source: Source) -> Result<Mesh, String> {
+    let header = header(&mut source)?;
+    let mut faces = faces(&header)?;
+    let wanted = |field| matches!(field, Some(Field::Position(_) | Field::Normal(_) | Field::Velocity(_)));
+    let mut vertices = Vertices::of(&header, wanted)?;
+    let mut to_read = 2;
+    for element in &header.elements {
+        let columns = match element.name.as_str() {
+            "vertex" => &mut vertices.columns,
+            "face" => &mut faces,
+            _ => &mut skipped(element),
+        };
+        read_rows(&mut source, &header, element, columns)?;
+        to_read -= usize::from(matches!(element.name.as_str(), "vertex" | "face"));
+        if to_read == 0 {
+            break;
+        }
+    }
+    let triangles = faces.into_iter().find_map(|column| match column {
+        Column::Fans(triangles) => Some(triangles),
+        _ => None,
+    });
+    let mesh = Mesh {
+        vertices: vertices.vectors(Field::Position),
+        normals: vertices.vectors(Field::Normal),
+        velocities: vertices.vectors(Field::Velocity),
+        triangles: triangles.unwrap_or_default(),
+        attributes: Vec::new(),
+    };
+    mesh.check().map_err(|error| error.to_string())?;
     Ok(mesh)
 }
 
-fn malformed(path: &Path, reason: impl Into<String>) -> IoError {
-    IoError::malformed(path, "PLY", reason)
-}
-
-/// A PLY file whose header has been read and found possible.
-struct PlyFile<'a> {
-    path: &'a Path,
-    reader: Reader<BufReader<File>>,
-    header: Header,
-}
-
-impl<'a> PlyFile<'a> {
-    fn open(path: &'a Path) -> Result<Self, IoError> {
-        let failed = |error| IoError::read(path, &error);
-        let mut file = File::open(path).map_err(failed)?;
-        let size = file.metadata().map_err(failed)?.len();
-        let mut magic = [0; 3];
-        let start = file.read(&mut magic).map_err(failed)?;
-        if magic[..start] != *b"ply" {
-            return Err(malformed(path, "it does not begin with the line `ply`"));
-        }
-        // The first line goes to the parser again, which wants the whole file.
-        std::io::Seek::rewind(&mut file).map_err(failed)?;
-        let mut reader = Reader::new(BufReader::new(file));
-        let header =
-            Parser::<Vertex>::new().read_header(&mut reader).map_err(|e| malformed(path, one_line(&e)))?;
-        for (_, element) in &header.elements {
-            fits(element, header.encoding, size).map_err(|reason| malformed(path, reason))?;
-        }
-        Ok(Self { path, reader, header })
+/// Reads the header and checks that all its elements fit into the file.
+fn header(source: &mut Source) -> Result<Header, String> {
+    let size = source.left();
+    let header = Header::read(source)?;
+    for element in &header.elements {
+        element.check_size(header.encoding, size)?;
     }
-
-    fn element(&self, name: &str) -> Result<&ElementDef, IoError> {
-        let known = || self.header.elements.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-        let found = self.header.elements.get(name);
-        // The points of a scan or of a particle file are what is mistaken for a mesh most often.
-        let points = match self.header.elements.get("vertex") {
-            Some(vertex) if name == "face" => format!(" ({} points): points are no mesh", vertex.count),
-            _ => String::new(),
-        };
-        let element = found.ok_or_else(|| {
-            malformed(self.path, format!("it has no element `{name}`, only: {}{points}", known()))
-        })?;
-        for axis in if name == "vertex" { ["x", "y", "z"].as_slice() } else { &[] } {
-            if !element.properties.contains_key(*axis) {
-                return Err(malformed(self.path, format!("its vertices have no property `{axis}`")));
-            }
-        }
-        Ok(element)
-    }
-
-    /// Reads the vertices and, if wanted, the faces. Elements stand in the file in the header's order.
-    fn read<V: PropertyAccess>(mut self, want_faces: bool) -> Result<(Vec<V>, Vec<Face>), IoError> {
-        let (mut vertices, mut faces) = (None, None);
-        for (name, element) in &self.header.elements {
-            let done = vertices.is_some() && (faces.is_some() || !want_faces);
-            if done {
-                break;
-            }
-            let (reader, header) = (&mut self.reader, &self.header);
-            let read = match name.as_str() {
-                "vertex" => Parser::new()
-                    .read_payload_for_element(reader, element, header)
-                    .map(|v| vertices = Some(v)),
-                "face" => {
-                    Parser::new().read_payload_for_element(reader, element, header).map(|f| faces = Some(f))
-                }
-                _ => Parser::<Skipped>::new().read_payload_for_element(reader, element, header).map(drop),
-            };
-            read.map_err(|e| malformed(self.path, format!("in element `{name}`: {}", one_line(&e))))?;
-        }
-        Ok((vertices.unwrap_or_default(), faces.unwrap_or_default()))
-    }
+    Ok(header)
 }
 
-/// The parser's messages hold line breaks and tabs; an error here is one line.
-fn one_line(error: &dyn std::error::Error) -> String {
-    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+fn read_rows(
+    source: &mut Source,
+    header: &Header,
+    element: &Element,
+    columns: &mut [Column],
+) -> Result<(), String> {
+    rows::read(source, element, header.encoding, columns)
+        .map_err(|reason| format!("in element `{:.24}`: {reason}", element.name))
 }
 
-/// Refuses an element that cannot fit into the file even if all its lists are empty, before memory is asked for it.
-fn fits(element: &ElementDef, encoding: Encoding, file_size: u64) -> Result<(), String> {
-    let smallest = |kind: &ScalarType| match (encoding, kind) {
-        (Encoding::Ascii, _) => 2, // a digit and a space
-        (_, ScalarType::Char | ScalarType::UChar) => 1,
-        (_, ScalarType::Short | ScalarType::UShort) => 2,
-        (_, ScalarType::Int | ScalarType::UInt | ScalarType::Float) => 4,
-        (_, ScalarType::Double) => 8,
+fn skipped(element: &Element) -> Vec<Column> {
+    vec![Column::Skipped; element.properties.len()]
+}
+
+/// The columns of the faces.
+fn faces(header: &Header) -> Result<Vec<Column>, String> {
+    let Some(element) = header.element("face") else {
+        // Files of points are often taken for meshes.
+        let points = header
+            .element("vertex")
+            .map(|vertex| format!(" ({} points): a mesh needs faces too", vertex.count));
+        return Err(no_element(header, "face") + &points.unwrap_or_default());
     };
-    let row: u64 = element
+    let is_corners = |property: &Property| {
+        matches!(property.name.as_str(), "vertex_indices" | "vertex_index")
+            && matches!(property.kind, Kind::List { .. })
+    };
+    let columns: Vec<Column> = element
         .properties
-        .values()
-        .map(|property| match &property.data_type {
-            PropertyType::Scalar(kind) | PropertyType::List(kind, _) => smallest(kind),
-        })
-        .sum();
-    let (name, count) = (&element.name, element.count as u64);
-    if count > 0 && row == 0 {
-        return Err(format!("its header promises {count} `{name}` without any property"));
+        .iter()
+        .map(|property| if is_corners(property) { Column::Fans(Vec::new()) } else { Column::Skipped })
+        .collect();
+    if element.count > 0 && !element.properties.iter().any(is_corners) {
+        return Err(format!("its faces have no list `vertex_indices`, only: {}", names(&element.properties)));
     }
-    // The last line of a text file may lack its line break.
-    if count.saturating_mul(row) > file_size + 1 {
-        return Err(format!(
-            "its header promises {count} `{name}`, which need at least {} bytes, but the file has {file_size}: it was cut short",
-            count.saturating_mul(row)
-        ));
-    }
-    Ok(())
+    Ok(columns)
 }
 
-/// Which attributes the `vertex` element has. A vector is used only with all its components.
-struct Present {
-    normal: [bool; 3],
-    velocity: [bool; 3],
-    density: bool,
-    pressure: bool,
-    id: bool,
+fn no_element(header: &Header, name: &str) -> String {
+    let known: Vec<&str> = header.elements.iter().map(|element| element.name.as_str()).collect();
+    format!("it has no element `{name}`, only: {:.200}", known.join(", "))
 }
 
-impl Present {
-    fn of(element: &ElementDef) -> Self {
-        let mut present =
-            Self { normal: [false; 3], velocity: [false; 3], density: false, pressure: false, id: false };
-        for field in element.properties.keys().filter_map(|name| Field::named(name)) {
-            match field {
-                Field::Position(_) => {}
-                Field::Normal(axis) => present.normal[axis] = true,
-                Field::Velocity(axis) => present.velocity[axis] = true,
-                Field::Density => present.density = true,
-                Field::Pressure => present.pressure = true,
-                Field::Id => present.id = true,
+fn names(properties: &[Property]) -> String {
+    let names: Vec<&str> = properties.iter().map(|property| property.name.as_str()).collect();
+    format!("{:.200}", names.join(", "))
+}
+
+/// The columns of the `vertex` element.
+struct Vertices<'a> {
+    properties: &'a [Property],
+    columns: Vec<Column>,
+}
+
+impl<'a> Vertices<'a> {
+    /// Prepares a column for each scalar property whose field is `wanted`.
+    fn of(header: &'a Header, wanted: impl Fn(Option<Field>) -> bool) -> Result<Self, String> {
+        let element = header.element("vertex").ok_or_else(|| no_element(header, "vertex"))?;
+        let column = |property: &Property| match (property.kind, Field::named(&property.name)) {
+            (Kind::List { .. }, _) => Column::Skipped,
+            (_, field) if !wanted(field) => Column::Skipped,
+            (_, Some(Field::Id)) => Column::Integers(Vec::new()),
+            _ => Column::Floats(Vec::new()),
+        };
+        let columns = element.properties.iter().map(column).collect();
+        let vertices = Self { properties: &element.properties, columns };
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            if vertices.index(Field::Position(axis)).is_none() {
+                let known = names(&element.properties);
+                return Err(format!("its vertices have no property `{name}`, only: {known}"));
             }
         }
-        present
+        Ok(vertices)
+    }
+
+    /// The column of a field; the last one if several names mean the same.
+    fn index(&self, field: Field) -> Option<usize> {
+        let is_field = |(property, column): (&Property, &Column)| {
+            *column != Column::Skipped && Field::named(&property.name) == Some(field)
+        };
+        self.properties.iter().zip(&self.columns).rposition(is_field)
+    }
+
+    /// Takes the values of a field; none if it is absent.
+    fn scalars(&mut self, field: Field) -> Vec<f32> {
+        match self.index(field).map(|index| &mut self.columns[index]) {
+            Some(Column::Floats(values)) => std::mem::take(values),
+            _ => Vec::new(),
+        }
+    }
+
+    fn ids(&mut self) -> Vec<u32> {
+        match self.index(Field::Id).map(|index| &mut self.columns[index]) {
+            Some(Column::Integers(values)) => std::mem::take(values),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Takes the values of three fields; none unless all three are present.
+    fn vectors(&mut self, field: fn(usize) -> Field) -> Vec<[f32; 3]> {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.scalars(field(axis)));
+        x.into_iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).collect()
+    }
+
+    /// All scalar properties but the position.
+    fn attributes(&self) -> Vec<Attribute> {
+        let columns = self.properties.iter().zip(&self.columns).filter_map(|(property, column)| {
+            let values = match column {
+                _ if matches!(Field::named(&property.name), Some(Field::Position(_))) => return None,
+                Column::Floats(values) => values.clone(),
+                Column::Integers(values) => values.iter().map(|&value| value as f32).collect(),
+                Column::Skipped | Column::Fans(_) => return None,
+            };
+            Some(Attribute { name: property.name.clone(), components: 1, values })
+        });
+        joined(columns.collect())
     }
 }
 
-/// The properties that mean something here.
-#[derive(Clone, Copy)]
+/// Joins three consecutive scalars named `a_x a_y a_z`, or `vx vy vz`, into a vector.
+fn joined(columns: Vec<Attribute>) -> Vec<Attribute> {
+    let mut attributes = Vec::new();
+    let mut rest = columns.as_slice();
+    while let [first, others @ ..] = rest {
+        let vector = rest.split_first_chunk().and_then(|([x, y, z], others)| {
+            let name = vector_name([&x.name, &y.name, &z.name])?;
+            let rows = x.values.iter().zip(&y.values).zip(&z.values);
+            let values = rows.flat_map(|((&x, &y), &z)| [x, y, z]).collect();
+            Some((Attribute { name, components: 3, values }, others))
+        });
+        let (attribute, others) = vector.unwrap_or_else(|| (first.clone(), others));
+        attributes.push(attribute);
+        rest = others;
+    }
+    attributes
+}
+
+fn vector_name([x, y, z]: [&str; 3]) -> Option<String> {
+    match [x.strip_suffix('x')?, y.strip_suffix('y')?, z.strip_suffix('z')?] {
+        ["v", "v", "v"] => Some("velocity".to_owned()),
+        [a, b, c] if a == b && b == c => a.strip_suffix('_').map(str::to_owned),
+        _ => None,
+    }
+}
+
+/// The properties of a vertex that have a meaning here, with the axis of a component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Field {
     Position(usize),
     Normal(usize),
@@ -286,131 +284,5 @@ impl Field {
             "id" => Self::Id,
             _ => return None,
         })
-    }
-}
-
-/// One row of the `vertex` element.
-#[derive(Default)]
-struct Vertex {
-    position: [f32; 3],
-    normal: [f32; 3],
-    velocity: [f32; 3],
-    density: f32,
-    pressure: f32,
-    id: u32,
-}
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self::default()
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let Some(field) = Field::named(name) else { return PropertyAccessResult::Ignored };
-        let target = match field {
-            Field::Position(axis) => &mut self.position[axis],
-            Field::Normal(axis) => &mut self.normal[axis],
-            Field::Velocity(axis) => &mut self.velocity[axis],
-            Field::Density => &mut self.density,
-            Field::Pressure => &mut self.pressure,
-            Field::Id => return self.set_id(&property),
-        };
-        match property.to_f32_lossy() {
-            Some(value) => *target = value,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-/// One row of the `vertex` element with all its numbers.
-struct Everything {
-    known: Vertex,
-    others: Vec<f32>,
-}
-
-impl Everything {
-    /// The numbers in the order of the file, but for the position.
-    fn names(element: &ElementDef) -> impl Iterator<Item = &str> {
-        let is_number = |property: &PropertyDef| matches!(property.data_type, PropertyType::Scalar(_));
-        let numbers = element.properties.iter().filter(move |(_, property)| is_number(property));
-        numbers.map(|(name, _)| name.as_str()).filter(|name| !Self::is_position(name))
-    }
-
-    fn is_position(name: &str) -> bool {
-        matches!(Field::named(name), Some(Field::Position(_)))
-    }
-}
-
-impl PropertyAccess for Everything {
-    fn new() -> Self {
-        Self { known: Vertex::default(), others: Vec::new() }
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let value = property.to_f32_lossy();
-        let known = self.known.set_property(name, property);
-        match value {
-            Some(value) if !Self::is_position(name) => self.others.push(value),
-            _ => return known,
-        }
-        match known {
-            PropertyAccessResult::Ignored => PropertyAccessResult::Set,
-            known => known,
-        }
-    }
-}
-
-impl Vertex {
-    /// Ids go through integers, because f32 is exact only up to 2^24.
-    fn set_id(&mut self, property: &Property) -> PropertyAccessResult {
-        let id = match *property {
-            Property::Char(v) => u32::try_from(v).ok(),
-            Property::UChar(v) => Some(v.into()),
-            Property::Short(v) => u32::try_from(v).ok(),
-            Property::UShort(v) => Some(v.into()),
-            Property::Int(v) => u32::try_from(v).ok(),
-            Property::UInt(v) => Some(v),
-            Property::Float(v) => whole(v.into()),
-            Property::Double(v) => whole(v),
-            _ => None,
-        };
-        match id {
-            Some(id) => self.id = id,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-/// One row of the `face` element.
-#[derive(Default)]
-struct Face {
-    corners: Vec<u32>,
-}
-
-impl PropertyAccess for Face {
-    fn new() -> Self {
-        Self::default()
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return PropertyAccessResult::Ignored;
-        }
-        match property.to_u32_list() {
-            Some(corners) => self.corners = corners,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-/// A row of an element that is of no use here.
-struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
     }
 }

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use crate::data::Particles;
-use crate::data::columns::{Number, Wanted, triples};
+use crate::columns::{Wanted, triples};
 use crate::error::IoError;
-use crate::input::{content, not_particles};
+use crate::number::Number;
+use crate::particles::Particles;
+use crate::read::{content, not_particles};
 
 /// Reads the points of a legacy VTK file of the kinds `POLYDATA` and `UNSTRUCTURED_GRID`: positions, and of the point
 /// arrays `velocity` (`v`), `density`, `pressure` and `id`. Cells and other arrays are passed over.

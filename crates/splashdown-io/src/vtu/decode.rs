@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
 
-use crate::data::columns::Number;
+use crate::number::Number;
 
 /// How a file's binary arrays are laid out.
 #[derive(Clone, Copy)]

@@ -5,10 +5,11 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::decode::{Appended, Encoding, Layout};
-use crate::data::Particles;
-use crate::data::columns::{Number, Wanted, triples};
+use crate::columns::{Wanted, triples};
 use crate::error::IoError;
-use crate::input::{MOST, content, not_particles};
+use crate::number::Number;
+use crate::particles::Particles;
+use crate::read::{MOST, content, not_particles};
 
 /// Reads the points of a VTU or VTP file: positions, and of the point arrays `velocity` (`v`), `density`, `pressure`
 /// and `id`. Pieces follow one another; cells and other arrays are passed over.

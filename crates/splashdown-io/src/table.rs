@@ -1,0 +1,111 @@
+//! CSV: a table of numbers that grows while a simulation runs, one line of column names, then one line per row.
+//!
+//! Unlike the other writers this one does not wait until the file is complete: a row is completely in the file when
+//! [`CsvLog::row`] returns, so that a plot or `tail -f` can follow the run. Names are quoted where RFC 4180 requires it
+//! (by the crate `csv`). Numbers have the fewest digits that give the same f64 back. NaN, which a probe reports where
+//! it finds no water, is an empty field, as spreadsheets and `pandas` read it.
+
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+use crate::error::IoError;
+
+/// A CSV file that rows are appended to.
+#[derive(Debug)]
+pub struct CsvLog {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+    /// Bytes of the header and all complete rows.
+    length: u64,
+}
+
+impl CsvLog {
+    /// Creates a file with a name for each column, e.g. `time (s)`. An existing file is replaced.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn create(path: &Path, columns: &[&str]) -> Result<Self, IoError> {
+        let file = File::create(path).map_err(|error| IoError::write(path, &error))?;
+        let mut log = Self { path: path.to_owned(), file, columns: columns.len(), length: 0 };
+        log.append(columns)?;
+        Ok(log)
+    }
+
+    /// Continues a file that had `bytes` bytes at the moment from which a run is resumed: what was written later is
+    /// removed. A file that is missing or shorter is created anew.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn resume(path: &Path, columns: &[&str], bytes: u64) -> Result<Self, IoError> {
+        let usable = std::fs::metadata(path).is_ok_and(|data| data.len() >= bytes && bytes > 0);
+        if !usable {
+            return Self::create(path, columns);
+        }
+        let open = || {
+            let mut file = File::options().write(true).open(path)?;
+            file.set_len(bytes)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(|error| IoError::write(path, &error))?;
+        Ok(Self { path: path.to_owned(), file, columns: columns.len(), length: bytes })
+    }
+
+    /// Bytes of the header and all complete rows.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.length
+    }
+
+    /// Appends one row, a number for each column. If it cannot be written completely, none of it remains in the file,
+    /// and a later row may be tried.
+    ///
+    /// # Errors
+    /// [`IoError::Columns`] if the count of numbers is not that of the columns; [`IoError::Write`], for example when
+    /// the disk is full.
+    pub fn row(&mut self, values: &[f64]) -> Result<(), IoError> {
+        if values.len() != self.columns {
+            let (given, expected) = (values.len(), self.columns);
+            return Err(IoError::Columns { path: self.path.clone(), given, expected });
+        }
+        self.append(values.iter().map(|&value| field(value)))
+    }
+
+    /// The file's path as it was given.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a line with a single call to the system.
+    fn append(&mut self, fields: impl IntoIterator<Item: AsRef<[u8]>>) -> Result<(), IoError> {
+        let result = line(fields).and_then(|line| self.file.write_all(&line).map(|()| line.len() as u64));
+        match result {
+            Ok(size) => self.length += size,
+            Err(error) => {
+                // Half a row would be read as a wrong number. An error here changes nothing about the report.
+                let _ = self.file.set_len(self.length);
+                let _ = self.file.seek(SeekFrom::Start(self.length));
+                return Err(IoError::write(&self.path, &error));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn line(fields: impl IntoIterator<Item: AsRef<[u8]>>) -> io::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(fields)?;
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)
+}
+
+fn field(value: f64) -> String {
+    match value {
+        _ if value.is_nan() => String::new(),
+        f64::INFINITY => "inf".to_owned(),
+        f64::NEG_INFINITY => "-inf".to_owned(),
+        _ => zmij::Buffer::new().format_finite(value).to_owned(),
+    }
+}
