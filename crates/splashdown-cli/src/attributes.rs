@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use splashdown::surface::{SurfaceError, SurfaceParams, interpolate};
-use splashdown_io::{Attribute, Mesh, Particles, mesh};
+use splashdown_io::{Attribute, Format, Mesh, Particles};
 
 use crate::exit::{Exit, Failure};
 
@@ -14,14 +14,14 @@ const ALL: &str = "all";
 ///
 /// # Errors
 /// [`Exit::Usage`] names the formats that do.
-pub fn check_format(wanted: &[String], out: &Path, ending: &str) -> Result<(), Failure> {
-    if wanted.is_empty() || mesh::WITH_ATTRIBUTES.contains(&ending) {
+pub fn check_format(wanted: &[String], out: &Path) -> Result<(), Failure> {
+    if wanted.is_empty() || Format::of(out).is_some_and(Format::has_attributes) {
         return Ok(());
     }
     let message = format!(
         "--attribute: the format of `{}` has no attributes; use {}",
         out.display(),
-        mesh::WITH_ATTRIBUTES.join(" and ")
+        Format::endings(Format::has_attributes).join(" and ")
     );
     Err(Failure::new(Exit::Usage, message))
 }

@@ -8,7 +8,7 @@ use std::io::{Write, stdout};
 use std::path::PathBuf;
 use std::time::Instant;
 
-use splashdown_io::{Mesh, Particles, Picture, mesh, particles, picture, prepare_folder};
+use splashdown_io::{Mesh, Particles, Picture, picture, prepare_folder, write_mesh, write_particles};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os()
@@ -17,10 +17,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     prepare_folder(&folder)?;
     let (particles, mesh, picture) = (particles_of(1 << 16), torus(500, 300), picture_of(1280, 720));
     for name in ["particles.ply", "particles.vtu"] {
-        measure(name, || Ok(particles::write(&folder.join(name), &particles)?))?;
+        measure(name, || Ok(write_particles(&folder.join(name), &particles)?))?;
     }
     for name in ["mesh.ply", "mesh.obj"] {
-        measure(name, || Ok(mesh::write(&folder.join(name), &mesh)?))?;
+        measure(name, || Ok(write_mesh(&folder.join(name), &mesh)?))?;
     }
     measure("picture.png", || Ok(picture::write_png(&folder.join("picture.png"), &picture)?))?;
     measure("(topology)", || Ok(mesh.topology()?.edges as u64 * 8))?;
@@ -48,14 +48,11 @@ fn value(n: usize, salt: usize) -> f32 {
 
 fn particles_of(count: usize) -> Particles {
     let vectors = |salt| (0..count).map(|n| std::array::from_fn(|axis| value(n, salt + axis))).collect();
-    Particles {
-        ids: (0..count as u32).collect(),
-        positions: vectors(0),
-        velocities: vectors(3),
-        densities: (0..count).map(|n| 1000.0 + value(n, 6)).collect(),
-        pressures: (0..count).map(|n| 1e4 * value(n, 7)).collect(),
-        ..Particles::default()
-    }
+    Particles::from_positions(vectors(0))
+        .with_ids((0..count as u32).collect())
+        .with_velocities(vectors(3))
+        .with_densities((0..count).map(|n| 1000.0 + value(n, 6)).collect())
+        .with_pressures((0..count).map(|n| 1e4 * value(n, 7)).collect())
 }
 
 fn torus(rings: u32, sides: u32) -> Mesh {

@@ -1,8 +1,7 @@
 //! Named texts, bytes and arrays in one file: a ZIP archive whose arrays are NPY files, so that `numpy.load` opens it.
 //!
-//! *Why a ZIP:* every entry carries a checksum, the list of entries comes last, so a file that was cut short is
-//! known as such, and anyone can look inside. Entries are stored, not packed: positions hardly shrink, and
-//! packing them takes longer than writing them.
+//! *Why ZIP:* every entry has a checksum; the list of entries comes last, so that a file cut short is recognised; common
+//! tools open it. Entries are not compressed: positions hardly shrink, and compression takes longer than writing.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,9 +15,9 @@ use crate::atomic;
 use crate::error::IoError;
 use crate::npy::{self, Layout};
 
-/// What an array may be made of.
+/// The number types of arrays in an [`Archive`].
 pub trait NpyElement: bytemuck::AnyBitPattern + bytemuck::NoUninit {
-    /// Numpy's name of the type.
+    /// The name of the type in numpy.
     const DESCR: &'static str;
 }
 
@@ -30,7 +29,7 @@ impl NpyElement for u32 {
     const DESCR: &'static str = "<u4";
 }
 
-/// The content of an archive, by name.
+/// The entries of an archive by name.
 ///
 /// ```
 /// # fn main() -> Result<(), String> {
@@ -49,17 +48,17 @@ impl NpyElement for u32 {
 pub struct Archive(BTreeMap<String, Vec<u8>>);
 
 impl Archive {
-    /// Puts a text in.
+    /// Adds or replaces a text.
     pub fn set_text(&mut self, name: &str, text: &str) {
         self.set_bytes(name, text.as_bytes().to_vec());
     }
 
-    /// Puts bytes in.
+    /// Adds or replaces bytes.
     pub fn set_bytes(&mut self, name: &str, bytes: Vec<u8>) {
         self.0.insert(name.to_owned(), bytes);
     }
 
-    /// Puts an array of rows of `columns` numbers in, as `name.npy`.
+    /// Adds or replaces an array with rows of `columns` numbers, as `name.npy`.
     pub fn set_array<T: NpyElement>(&mut self, name: &str, data: &[T], columns: usize) {
         let mut bytes = npy::header(T::DESCR, [data.len() / columns.max(1), columns]);
         bytes.extend_from_slice(bytemuck::cast_slice(data));
@@ -69,7 +68,7 @@ impl Archive {
     /// The bytes of an entry.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name.
+    /// A message if there is no entry of that name.
     pub fn bytes(&self, name: &str) -> Result<&[u8], String> {
         self.0.get(name).map(Vec::as_slice).ok_or_else(|| format!("it has no entry `{name}`"))
     }
@@ -77,7 +76,7 @@ impl Archive {
     /// The text of an entry.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name or it is not text.
+    /// A message if there is no entry of that name or it is not text.
     pub fn text(&self, name: &str) -> Result<&str, String> {
         std::str::from_utf8(self.bytes(name)?)
             .map_err(|error| format!("its entry `{name}` is not text: {error}"))
@@ -86,16 +85,16 @@ impl Archive {
     /// All numbers of an array, row by row.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name, or one of another type.
+    /// A message if there is no array of that name, or one of another type.
     pub fn array<T: NpyElement>(&self, name: &str) -> Result<Vec<T>, String> {
         let name = format!("{name}.npy");
         numbers(self.bytes(&name)?).map_err(|reason| format!("its entry `{name}`: {reason}"))
     }
 
-    /// The whole file.
+    /// The bytes of the file.
     ///
     /// # Errors
-    /// A sentence, where it is larger than the format allows.
+    /// A message if it is larger than the format allows.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         let mut bytes = Cursor::new(Vec::new());
         self.fill(&mut bytes).map_err(|error| error.to_string())?;
@@ -124,32 +123,32 @@ impl Archive {
         atomic::write(path, |out| out.write_all(&bytes))
     }
 
-    /// Reads a file that [`write`](Self::write) made.
+    /// Reads a file written by [`write`](Self::write).
     ///
     /// # Errors
-    /// [`IoError::Read`]; [`IoError::Malformed`] where it is another format, damaged or cut short.
+    /// [`IoError::Read`]; [`IoError::Malformed`] if it is of another format, damaged or cut short.
     pub fn read(path: &Path) -> Result<Self, IoError> {
         let bytes = fs::read(path).map_err(|error| IoError::read(path, &error))?;
         Self::from_bytes(&bytes).map_err(|reason| IoError::malformed(path, "ZIP", reason))
     }
 
-    /// From a whole file.
+    /// Reads the bytes of a file.
     ///
     /// # Errors
-    /// A sentence, if it is not an archive, is damaged or was cut short.
+    /// A message if it is not an archive, damaged or cut short.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         if !bytes.starts_with(b"PK\x03\x04") {
-            return Err("it does not begin as an archive does".to_owned());
+            return Err("it does not begin with the signature of a ZIP archive".to_owned());
         }
         let mut zip = ZipArchive::new(Cursor::new(bytes))
             .map_err(|error| format!("it was cut short or damaged ({error})"))?;
         let mut entries = BTreeMap::new();
-        let too_large = || "its entries are packed, or larger than the file".to_owned();
+        let too_large = || "its entries are compressed, or larger than the file".to_owned();
         let mut total = 0_u64;
         for index in 0..zip.len() {
             let mut entry = zip.by_index(index).map_err(|error| format!("an entry is damaged ({error})"))?;
             let name = entry.name().map_err(|error| format!("an entry has no name ({error})"))?.into_owned();
-            // Packed entries, and entries that overlap, could be far larger than the file.
+            // Compressed entries, and entries that overlap, could be far larger than the file.
             total = entry
                 .size()
                 .checked_add(total)
@@ -168,7 +167,7 @@ impl Archive {
     }
 }
 
-/// All numbers of such an array, whatever its shape.
+/// All numbers of an NPY file of any shape.
 fn numbers<T: NpyElement>(bytes: &[u8]) -> Result<Vec<T>, String> {
     let (header, data) = npy::split(bytes)?;
     let layout = Layout::of(&header)?;
@@ -194,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_in_comes_out_bit_by_bit() -> Result<(), String> {
+    fn entries_round_trip_bit_by_bit() -> Result<(), String> {
         let read = Archive::from_bytes(&sample().to_bytes()?)?;
         assert_eq!(read, sample());
         let bits: Vec<u32> = read.array::<f32>("positions")?.iter().map(|x| x.to_bits()).collect();
@@ -207,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_cut_short_or_changed_is_refused_wherever_that_is() -> Result<(), String> {
+    fn a_damaged_or_truncated_file_is_refused() -> Result<(), String> {
         let bytes = sample().to_bytes()?;
         for length in 0..bytes.len() {
             assert!(Archive::from_bytes(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
@@ -217,7 +216,7 @@ mod tests {
         let mut changed = bytes.clone();
         changed[data] ^= 1;
         assert!(Archive::from_bytes(&changed).is_err_and(|reason| reason.contains("positions")));
-        // A packed entry unpacks to more than there is.
+        // A compressed entry is larger than the file.
         let mut packed = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
         let write = |zip: &mut zip::ZipWriter<_>| {
@@ -226,7 +225,7 @@ mod tests {
         };
         write(&mut packed).map_err(|error| error.to_string())?;
         let packed = packed.finish().map_err(|error| error.to_string())?.into_inner();
-        assert!(Archive::from_bytes(&packed).is_err_and(|reason| reason.contains("packed")));
+        assert!(Archive::from_bytes(&packed).is_err_and(|reason| reason.contains("compressed")));
         assert!(Archive::from_bytes(b"ply\n").is_err_and(|reason| reason.contains("begin")));
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! What can go wrong with a file, in words that say what was given, what is allowed and what to do.
+//! Errors. A message says what was given, what is allowed and what to do.
 
 mod film;
 
@@ -7,45 +7,48 @@ pub use film::FilmError;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Everything this crate's functions can fail with.
+use crate::film::FilmError;
+use crate::format::Format;
+
+/// The errors of this crate's functions.
 ///
-/// The system's own error is kept as text and not as a `source()`: one message carries the whole story, and the
-/// value can be cloned, so that [`crate::FrameWriter`] can report the same failure to every later call.
+/// The error of the operating system is stored as text and not as a `source()`, so that one message says everything and
+/// the value can be cloned: [`crate::FrameWriter`] reports the same failure to every later call.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IoError {
-    /// A file or folder could not be written. Nothing is left under its final name that was not there before.
+    /// A file or folder could not be written. A file that existed under its name is unchanged.
     #[error("cannot write `{}`: {cause} ({detail}); {}", path.display(), cause.advice())]
     Write {
-        /// The file or folder that was asked for (not its temporary name).
+        /// The requested file or folder, not its temporary name.
         path: PathBuf,
-        /// The reason in one of the kinds a caller can act on.
+        /// The kind of the cause.
         cause: WriteCause,
-        /// The system's own words.
+        /// The message of the operating system.
         detail: String,
     },
 
     /// A file could not be opened or read.
     #[error("cannot read `{}`: {detail}", path.display())]
     Read {
-        /// The file that was asked for.
+        /// The requested file.
         path: PathBuf,
-        /// The system's own words.
+        /// The message of the operating system.
         detail: String,
     },
 
-    /// A file was read, but it is broken, cut short, or another format.
+    /// A file was read, but it is damaged, cut short, or of another format.
     #[error("`{}` is not a usable {format} file: {reason}", path.display())]
     Malformed {
         /// The file that was given.
         path: PathBuf,
         /// The format it was read as, e.g. `PLY`.
         format: &'static str,
-        /// What is wrong and, where known, what would be right.
+        /// What is wrong and, where known, what is allowed.
         reason: String,
     },
 
-    /// The ending of a file's name does not name a format that can hold this data.
+    /// The ending of a file's name is not that of a format for this data.
     #[error(
         "cannot tell the format of `{}`: its name must end in one of {}",
         path.display(),
@@ -54,11 +57,11 @@ pub enum IoError {
     UnknownFormat {
         /// The path that was given.
         path: PathBuf,
-        /// The endings that are allowed, with their dots.
-        allowed: &'static [&'static str],
+        /// The allowed endings, with their dots.
+        allowed: Vec<&'static str>,
     },
 
-    /// An attribute's array is as long as neither the positions nor zero.
+    /// An attribute's array is neither empty nor as long as the positions.
     #[error(
         "`{attribute}` has {given} entries for {expected} {owner}: give one for each, or an empty array to leave \
          the attribute out"
@@ -74,31 +77,31 @@ pub enum IoError {
         owner: &'static str,
     },
 
-    /// A triangle names a vertex that does not exist.
+    /// A triangle uses a vertex that does not exist.
     #[error(
         "triangle {triangle} uses vertex {index}, but the mesh has {vertices} vertices (numbered from 0)"
     )]
     IndexOutOfRange {
         /// Number of the triangle, from 0.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex number.
         index: u32,
-        /// The number of vertices there are.
+        /// The number of vertices of the mesh.
         vertices: usize,
     },
 
-    /// More particles, vertices or triangles than the 32-bit numbers of the formats can count.
-    #[error("{given} {what} are too many: at most {limit} can be counted; split them")]
+    /// More particles, vertices or triangles than the 32-bit integers of the formats can count.
+    #[error("{given} {what} are too many: at most {limit} are possible; split them into several files")]
     TooMany {
         /// `particles`, `vertices` or `triangles`.
         what: &'static str,
-        /// How many were given.
+        /// Their number.
         given: usize,
-        /// The most that are allowed.
+        /// The largest allowed number.
         limit: usize,
     },
 
-    /// A picture's bytes do not fit its size.
+    /// The number of a picture's bytes does not match its size.
     #[error("a picture of {width} x {height} pixels needs {expected} bytes (RGBA, 8 bits each), got {given}")]
     PictureSize {
         /// Width in pixels.
@@ -111,8 +114,8 @@ pub enum IoError {
         given: u64,
     },
 
-    /// A row of a table has more or fewer numbers than the table has columns.
-    #[error("a row of `{}` has {given} numbers for {expected} columns: give one for each, NaN for none", path.display())]
+    /// The number of values in a row of a table is not that of its columns.
+    #[error("a row of `{}` has {given} numbers for {expected} columns: give one for each, NaN if it is missing", path.display())]
     Columns {
         /// The table's file.
         path: PathBuf,
@@ -122,50 +125,50 @@ pub enum IoError {
         expected: usize,
     },
 
-    /// The background writer ended before its work was done (it panicked, or could not be started).
+    /// The background writer ended early (it panicked, or could not be started).
     #[error("the background writer stopped: {reason}; the files written before are complete")]
     WriterStopped {
-        /// What is known about it.
+        /// The reason.
         reason: String,
     },
 
-    /// The film could not be made; the pictures are still there.
+    /// The film could not be made; the pictures exist.
     #[error(transparent)]
     Film(#[from] FilmError),
 }
 
-/// Why a file could not be written, in the kinds a caller or user can act on.
+/// Why a file could not be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteCause {
     /// No space left, or the user's quota is used up.
     #[error("the disk is full")]
     DiskFull,
-    /// The user may not write there.
+    /// The user has no permission to write there.
     #[error("permission denied")]
     Permission,
-    /// The whole file system is mounted read-only.
+    /// The file system is mounted read-only.
     #[error("the file system is read-only")]
     ReadOnly,
-    /// The folder does not exist (any more).
+    /// The folder does not exist or was removed.
     #[error("its folder does not exist")]
     MissingFolder,
-    /// A part of the path that must be a folder is a file.
+    /// A part of the path is a file instead of a folder.
     #[error("a part of the path is a file, not a folder")]
     NotAFolder,
-    /// The path itself is a folder where a file should be written.
-    #[error("a folder of this name is in the way")]
+    /// The path is an existing folder, but a file is to be written.
+    #[error("a folder with this name exists")]
     IsAFolder,
-    /// The file is larger than the file system allows.
+    /// The file would exceed the size limit of the file system.
     #[error("the file is too large for this file system")]
     TooLarge,
-    /// Anything else; the detail in brackets says what.
+    /// Any other cause; the message of the system says more.
     #[error("the system reports an error")]
     Other,
 }
 
 impl WriteCause {
-    /// Sorts a system error into a cause.
+    /// The cause of an error of the operating system.
     #[must_use]
     pub fn of(error: &io::Error) -> Self {
         match error.kind() {
@@ -173,7 +176,7 @@ impl WriteCause {
             io::ErrorKind::PermissionDenied => Self::Permission,
             io::ErrorKind::ReadOnlyFilesystem => Self::ReadOnly,
             io::ErrorKind::NotFound => Self::MissingFolder,
-            // `AlreadyExists` is what `create_dir_all` reports where a file has the folder's name.
+            // `create_dir_all` reports `AlreadyExists` if a file has the folder's name.
             io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => Self::NotAFolder,
             io::ErrorKind::IsADirectory => Self::IsAFolder,
             io::ErrorKind::FileTooLarge => Self::TooLarge,
@@ -181,18 +184,16 @@ impl WriteCause {
         }
     }
 
-    /// What the user can do about it, as the end of a sentence.
+    /// What the user can do, as the end of a sentence.
     #[must_use]
     pub fn advice(self) -> &'static str {
         match self {
             Self::DiskFull => "free some space or choose another output folder",
-            Self::Permission => "choose an output folder you may write to, or change its permissions",
+            Self::Permission => "choose a writable output folder, or change its permissions",
             Self::ReadOnly => "choose an output folder on another file system",
-            Self::MissingFolder => {
-                "create the folder, or check whether it was removed or unplugged meanwhile"
-            }
-            Self::NotAFolder => "choose another output folder, or move the file out of the way",
-            Self::IsAFolder => "move the folder out of the way, or choose another name",
+            Self::MissingFolder => "create the folder, or check whether it was removed or its disk unplugged",
+            Self::NotAFolder => "choose another output folder, or rename the file",
+            Self::IsAFolder => "rename the folder, or choose another name",
             Self::TooLarge => "choose an output folder on another file system, or write fewer particles",
             Self::Other => "check the path and the disk",
         }
@@ -210,8 +211,20 @@ impl IoError {
         Self::Read { path: path.to_owned(), detail: error.to_string() }
     }
 
-    /// `path` was read as `format` and is not one.
+    /// `path` was read as `format`, but is not valid.
     pub(crate) fn malformed(path: &Path, format: &'static str, reason: impl Into<String>) -> Self {
         Self::Malformed { path: path.to_owned(), format, reason: reason.into() }
+    }
+
+    /// `path` has an ending of none of the formats that meet a condition.
+    pub(crate) fn unknown_format(path: &Path, condition: fn(&Format) -> bool) -> Self {
+        Self::UnknownFormat { path: path.to_owned(), allowed: Format::endings(condition) }
+    }
+}
+
+impl From<IoError> for io::Error {
+    /// An error of kind `InvalidInput`.
+    fn from(error: IoError) -> Self {
+        Self::new(io::ErrorKind::InvalidInput, error)
     }
 }

@@ -1,32 +1,31 @@
-//! Splashdown's files: particles and meshes in, frames out.
+//! Reads and writes the files of Splashdown: particles, meshes, pictures, films and tables.
 //!
-//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y
-//! up; the modules write and read them:
+//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y up.
+//! [`Format::ALL`] is the table of their file formats:
 //!
-//! | data | formats | opens in |
-//! |---|---|---|
-//! | [`Particles`] | PLY ([`ply`]), VTK ([`vtk`]), VTU ([`vtu`]) with an index of the series ([`pvd`]), BGEO ([`bgeo`]), NPZ ([`npz`]); all also read by [`read_particles`], and NPY ([`npy`]) and XYZ ([`xyz`]) | ParaView, Blender, Houdini, MeshLab, numpy |
-//! | [`Mesh`] | PLY ([`ply`]), OBJ ([`obj`]), STL ([`stl`]), glTF ([`gltf`]), all also read by [`read_mesh`]; VTK ([`vtk`]) | every 3-D program |
-//! | a whole run of either | USD ([`usd`]) | Blender, Houdini, Maya |
-//! | [`Picture`] | PNG ([`picture`]), film ([`film`], by the user's `ffmpeg`) | everything |
-//! | named arrays and texts | ZIP of NPY ([`Archive`]) | `numpy.load` |
-//! | a growing table | CSV ([`CsvLog`]) | every spreadsheet, `pandas` |
+//! | data | read and written by | formats | opens in |
+//! |---|---|---|---|
+//! | [`Particles`] | [`read_particles`], [`write_particles`] | PLY, VTK, VTU, BGEO, NPZ; read only: VTP, NPY, XYZ | ParaView, Blender, Houdini, MeshLab, numpy |
+//! | [`Mesh`] | [`read_mesh`], [`write_mesh`] | PLY, OBJ, STL, glTF; written only: VTK | every 3-D program |
+//! | all frames of a run | [`usd::PointSeries`], [`usd::MeshSeries`] | USD | Blender, Houdini, Maya |
+//! | index of the VTU files of a run | [`pvd::write_index`] | PVD | ParaView |
+//! | [`Picture`] | `picture::read_png`, `picture::write_png` (feature `png`) | PNG | every program |
+//! | film | [`Film`] | MP4, encoded by the `ffmpeg` that the user has installed | every player |
+//! | named arrays and texts | [`Archive`] | ZIP of NPY | `numpy.load` |
+//! | growing table | [`CsvLog`] | CSV | every spreadsheet, `pandas` |
 //!
 //! ```
 //! # fn main() -> Result<(), splashdown_io::IoError> {
-//! use splashdown_io::{Mesh, mesh};
+//! use splashdown_io::{Mesh, read_mesh, write_mesh};
 //!
-//! let tetrahedron = Mesh {
-//!     vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-//!     triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
-//!     ..Mesh::default()
-//! };
+//! let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let tetrahedron = Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
 //! assert!(tetrahedron.topology()?.is_watertight());
 //! assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-12);
 //!
 //! let path = std::env::temp_dir().join(format!("tetrahedron-{}.ply", std::process::id()));
-//! mesh::write(&path, &tetrahedron)?;
-//! assert_eq!(splashdown_io::ply::read_mesh(&path)?, tetrahedron);
+//! write_mesh(&path, &tetrahedron)?;
+//! assert_eq!(read_mesh(&path)?, tetrahedron);
 //! # std::fs::remove_file(&path).ok();
 //! # Ok(())
 //! # }
@@ -34,9 +33,8 @@
 //!
 //! # A series of frames
 //!
-//! [`prepare_folder`] finds out before the first step whether the output folder can be written.
-//! [`FrameWriter`] then writes frames on a thread of its own, beside the simulation, and [`film::Film`] makes
-//! the film:
+//! [`prepare_folder`] finds out before the first step whether the output folder is writable. [`FrameWriter`] writes
+//! frames on a thread of its own while the simulation continues.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -47,7 +45,7 @@
 //! prepare_folder(&folder)?;
 //! let writer = FrameWriter::start()?;
 //! for frame in 0..3 {
-//!     let particles = Arc::new(Particles { positions: vec![[0.0; 3]; 10], ..Particles::default() });
+//!     let particles = Arc::new(Particles::from_positions(vec![[0.0; 3]; 10]));
 //!     writer.submit(vec![
 //!         Job::Particles(folder.join(format!("particles_{frame:04}.ply")), Arc::clone(&particles)),
 //!         Job::Particles(folder.join(format!("particles_{frame:04}.vtu")), particles),
@@ -60,53 +58,53 @@
 //! # }
 //! ```
 //!
-//! # What is promised
+//! # Guarantees
 //!
-//! * A file is complete or absent ([`atomic`]): it gets its name when everything is in it. Whatever goes
-//!   wrong later, files written before stay valid.
-//! * An error names the file, the cause and what to do ([`IoError`]). Nothing panics on what a file or user
-//!   contains.
-//! * Readers refuse a file that promises more than it holds before they ask for memory.
+//! * A file is complete or absent ([`atomic`]): it gets its name after its last byte is written. A later failure leaves
+//!   earlier files intact. ([`CsvLog`] is the exception: its rows are complete or absent.)
+//! * An error names the file, the cause and the remedy ([`IoError`]). No file content causes a panic.
+//! * Readers refuse a file that promises more data than it has before they allocate memory for it.
 
 #[cfg(target_endian = "big")]
-compile_error!(
-    "the binary writers hand memory to the file as it is, which is right on little-endian machines only"
-);
+compile_error!("the binary writers copy memory to the file, which requires a little-endian machine");
 
-pub mod archive;
+mod archive;
 pub mod atomic;
 pub mod bgeo;
 mod columns;
-pub mod error;
-pub mod film;
+mod error;
+mod film;
+mod format;
 pub mod gltf;
-mod input;
-pub mod mesh;
+mod mesh;
 pub mod npy;
-pub mod npz;
+mod npz;
 mod number;
 pub mod obj;
-pub mod particles;
+mod particles;
 pub mod picture;
 pub mod ply;
 pub mod pvd;
-pub mod read;
+mod read;
 pub mod stl;
 mod table;
-pub mod topology;
+mod topology;
 pub mod usd;
 pub mod vtk;
 pub mod vtu;
-pub mod writer;
-pub mod xyz;
+mod writer;
+mod xyz;
 
 pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;
 pub use attribute::Attribute;
 pub use error::{IoError, WriteCause};
 pub use film::{Film, FilmError, FilmOptions};
+pub use format::Format;
+pub use mesh::{Mesh, write_mesh};
+pub use particles::{Particles, write_particles};
 pub use picture::Picture;
-pub use read::{MESH_FORMATS_READ, PARTICLE_FORMATS_READ, read_all, read_mesh, read_particles};
+pub use read::{read_mesh, read_particles, read_particles_with_attributes};
 pub use table::CsvLog;
 pub use topology::Topology;
 pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

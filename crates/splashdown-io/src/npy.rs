@@ -1,22 +1,27 @@
-//! NPY, numpy's array file: a reader and a writer, and what NPZ needs of both.
+//! NPY, numpy's array file: a reader of positions, and the parts shared with NPZ.
 //!
-//! *Why own code:* the crates read every type and shape through traits and `ndarray`; numbers in rows are a
+//! *Why own code:* the crates read every type and shape through traits and `ndarray`, but rows of numbers need only a
 //! header and a cast. Format: numpy.lib.format, versions 1 to 3.
 
 use std::fs;
 use std::path::Path;
 
-use crate::columns::triples;
+use crate::columns::{Wanted, triples};
 use crate::error::IoError;
 use crate::number::Number;
+use crate::particles::Particles;
 
-/// Reads a little-endian float32 or float64 array of shape (N, 3) in C order.
+/// Reads positions from a little-endian float32 or float64 array of shape (N, 3) in C order.
 ///
 /// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`] where the file is another type or shape, or cut short.
+/// [`IoError::Read`]; [`IoError::Malformed`] if the array has another type or shape, or the file is cut short.
 pub fn read_positions(path: &Path) -> Result<Vec<[f32; 3]>, IoError> {
     let bytes = fs::read(path).map_err(|error| IoError::read(path, &error))?;
     parse(&bytes).map_err(|reason| IoError::malformed(path, "NPY", reason))
+}
+
+pub(crate) fn read(path: &Path, _: Wanted) -> Result<Particles, IoError> {
+    Ok(Particles::from_positions(read_positions(path)?))
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
@@ -36,13 +41,13 @@ fn parse(bytes: &[u8]) -> Result<Vec<[f32; 3]>, String> {
     }
 }
 
-/// What an array is.
+/// Type and shape of an array.
 #[derive(Debug)]
 pub(crate) struct Layout {
     pub(crate) number: Number,
-    /// The type's letter and size, as numpy writes them.
+    /// Letter and size of the type, as in numpy.
     kind: String,
-    /// Sizes along the axes, the outermost first.
+    /// Sizes of the axes, the outermost first.
     pub(crate) shape: Vec<usize>,
 }
 
@@ -51,7 +56,7 @@ impl Layout {
     pub(crate) fn of(header: &str) -> Result<Self, String> {
         let given = first_word(value(header, "descr")?).trim();
         let kind = given.trim_matches('\'');
-        // A single byte has no order.
+        // A single byte has no byte order.
         let kind = kind.strip_prefix('<').or_else(|| kind.strip_prefix('|')).unwrap_or(kind);
         let number = match kind {
             "i1" => Number::I8,
@@ -66,7 +71,7 @@ impl Layout {
             "f8" => Number::F64,
             _ => {
                 return Err(format!(
-                    "its type is {given:.24}, only little-endian floats and integers of the system's sizes are read"
+                    "its type is {given:.24}, only little-endian integers of 1 to 8 bytes and floats of 4 or 8 bytes are read"
                 ));
             }
         };
@@ -77,17 +82,17 @@ impl Layout {
         let shape = shape.split_once(')').map_or(shape, |(inside, _)| inside).trim_start_matches('(');
         let sizes = shape.split(',').map(str::trim).filter(|size| !size.is_empty());
         let sizes: Result<Vec<usize>, _> = sizes.map(str::parse).collect();
-        let shape = sizes.map_err(|_| format!("its shape is ({shape:.60}), which is too large or none"))?;
+        let shape = sizes.map_err(|_| format!("its shape ({shape:.60}) is too large or not a shape"))?;
         Ok(Self { number, kind: kind.to_owned(), shape })
     }
 
-    /// Bytes of all numbers.
+    /// Size of all numbers, in bytes.
     pub(crate) fn bytes(&self) -> Result<usize, String> {
         let product = self.shape.iter().try_fold(self.number.size(), |size, &axis| size.checked_mul(axis));
         product.ok_or_else(|| format!("its shape {} is too large", self.shape_in_words()))
     }
 
-    /// The bytes of the numbers, of which there may be more behind.
+    /// The bytes of the numbers. Further bytes may follow them in `data`.
     pub(crate) fn data<'a>(&self, data: &'a [u8]) -> Result<&'a [u8], String> {
         let wanted = self.bytes()?;
         data.get(..wanted).ok_or_else(|| {
@@ -96,7 +101,7 @@ impl Layout {
         })
     }
 
-    /// The type as numpy writes it, `<f4` say.
+    /// The type as in numpy, e.g. `<f4`.
     pub(crate) fn kind(&self) -> String {
         format!("<{}", self.kind)
     }
@@ -110,15 +115,16 @@ impl Layout {
     }
 }
 
-/// The header of a file and what follows it.
+/// Splits a file into its header and its data.
 pub(crate) fn split(bytes: &[u8]) -> Result<(String, &[u8]), String> {
     let cut = || "it was cut short inside its header".to_owned();
-    let rest = bytes.strip_prefix(b"\x93NUMPY").ok_or("it does not begin with numpy's mark")?;
+    let rest =
+        bytes.strip_prefix(b"\x93NUMPY").ok_or("it does not begin with the signature of an NPY file")?;
     let (&[major, _minor], rest) = rest.split_first_chunk().ok_or_else(cut)?;
     let (length, rest) = match major {
         1 => rest.split_first_chunk().map(|(size, rest)| (u64::from(u16::from_le_bytes(*size)), rest)),
         2 | 3 => rest.split_first_chunk().map(|(size, rest)| (u64::from(u32::from_le_bytes(*size)), rest)),
-        _ => return Err(format!("its format version is {major}, versions 1 to 3 are known")),
+        _ => return Err(format!("its format version is {major}, only versions 1 to 3 are read")),
     }
     .ok_or_else(cut)?;
     let length = usize::try_from(length).map_err(|_| cut())?;
@@ -126,17 +132,17 @@ pub(crate) fn split(bytes: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((String::from_utf8_lossy(header).into_owned(), data))
 }
 
-/// What stands before `rows` x `columns` numbers of a type (`<f4`, `<u4`); one column is an array of one axis.
+/// The header of `rows` x `columns` numbers of a type (`<f4`, `<u4`). An array of one column has one axis.
 pub(crate) fn header(kind: &str, [rows, columns]: [usize; 2]) -> Vec<u8> {
     let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
-    // Mark, version and length take ten bytes; the data begin at a multiple of 64, and a line's end stands before them.
+    // Signature, version and length have ten bytes; a line feed ends the header; the data begins at a multiple of 64.
     let padded = (10 + header.len() + 1).next_multiple_of(64) - 10;
     header.extend(std::iter::repeat_n(' ', padded - header.len() - 1));
     [b"\x93NUMPY\x01\x00", &(padded as u16).to_le_bytes()[..], header.as_bytes(), b"\n"].concat()
 }
 
-/// What follows `'key':` in the header.
+/// The text after `'key':` in the header.
 fn value<'a>(header: &'a str, key: &str) -> Result<&'a str, String> {
     let after = header.split_once(&format!("'{key}'")).map(|(_, after)| after.trim_start());
     let value = after.and_then(|after| after.strip_prefix(':'));
@@ -162,7 +168,7 @@ mod tests {
     const GOOD: &str = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n";
 
     #[test]
-    fn positions_come_back() {
+    fn positions_are_read() {
         let data = [1.0, 2.0, 3.0, -4.0, 5.5, 6.0];
         assert_eq!(parse(&file(GOOD, &data)).unwrap(), [[1.0, 2.0, 3.0], [-4.0, 5.5, 6.0]]);
         let mut doubles = file(&GOOD.replace("<f4", "<f8"), &[]);
@@ -171,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_aligned_and_comes_back() {
+    fn the_written_header_is_aligned_and_is_read() {
         let data = [1.0_f32, 2.0, 3.0, -4.0, 5.5, 6.0];
         let mut bytes = header("<f4", [2, 3]);
         bytes.extend_from_slice(bytemuck::cast_slice(&data));
@@ -180,10 +186,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_floats_in_rows_of_three_is_refused_with_the_reason() {
+    fn other_types_and_shapes_are_refused() {
         let six = [0.0; 6];
         for (bytes, reason) in [
-            (b"PK\x03\x04".to_vec(), "mark"),
+            (b"PK\x03\x04".to_vec(), "signature"),
             (file(GOOD, &six[..5]), "cut short"),
             (file(&GOOD.replace("<f4", "<f8"), &six), "cut short"),
             (file(&GOOD.replace("<f4", "<i4"), &six), "'<i4'"),

@@ -1,7 +1,10 @@
 //! NPZ, numpy's archive of named arrays: a reader and a writer for particles.
 //!
-//! A zip archive of NPY files. The archive is the crate `zip`'s; arrays are stored unpacked, so that `numpy.load` is as
-//! fast as the disk, and packed ones (`numpy.savez_compressed`) are read too.
+//! The file is a ZIP archive of NPY files. Arrays are written without compression, so that `numpy.load` is as fast as
+//! the disk; compressed arrays (`numpy.savez_compressed`) are read.
+//!
+//! Arrays written: `positions` and `velocities` (float32, N x 3), `densities` and `pressures` (float32, N), `ids`
+//! (uint32, N), where present. Arrays of any number type are read; others are skipped.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -17,18 +20,10 @@ use crate::error::IoError;
 use crate::input::{MOST, regular};
 use crate::npy::{self, Layout};
 
-/// Names under which positions are found, the first one that is there; the last is numpy's own for an array
-/// without one.
+/// Names of the array of positions, in order of preference; the last is numpy's name for an unnamed array.
 const POSITIONS: [&str; 7] = ["positions", "position", "points", "particles", "pos", "x", "arr_0"];
 
-/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// The arrays are `positions` (float32, N x 3) and, where they are present, `velocities` (float32, N x 3), `densities`,
-/// `pressures` (float32, N) and `ids` (uint32, N).
-///
-/// # Errors
-/// Those of [`Particles::check`]; [`IoError::Write`].
-pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
+pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
     particles.check()?;
     let count = particles.len();
     let arrays: [(&str, &str, usize, &[u8]); 5] = [
@@ -55,16 +50,6 @@ pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoErro
     })
 }
 
-/// Reads particles: the first array that is named `positions`, `position`, `points`, `particles`, `pos`, `x` or
-/// `arr_0`, and where they are there `velocities` (`velocity`, `v`), `densities`, `pressures` and `ids`, of any
-/// type of numbers. Other arrays are passed over.
-///
-/// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`], which names the array; [`IoError::TooMany`].
-pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
-    read(path, Wanted::Known)
-}
-
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     regular(path)?;
     let file = File::open(path).map_err(|error| IoError::read(path, &error))?;
@@ -85,7 +70,9 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let positions = array(&mut archive, first).map_err(malformed)?;
     if positions.columns != 3 {
         let columns = positions.columns;
-        return Err(malformed(format!("array `{first}` has {columns} numbers in a row, positions have 3")));
+        return Err(malformed(format!(
+            "array `{first}` has {columns} numbers per row, but positions have 3"
+        )));
     }
     let count = positions.values.len() / 3;
     if count > MOST {
@@ -99,7 +86,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
         }
         let Array { columns, values } = match array(&mut archive, name) {
             Ok(array) => array,
-            // Of an array that means nothing here no more is asked than that it can be used.
+            // An array without a field of its own is optional.
             Err(_) if ![1, 3].iter().any(|&n| Wanted::Known.has(own, n)) => continue,
             Err(reason) => return Err(malformed(reason)),
         };
@@ -113,7 +100,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     Ok(particles)
 }
 
-/// Numbers in rows.
+/// An array of rows.
 struct Array {
     columns: usize,
     values: Vec<f64>,
@@ -122,7 +109,7 @@ struct Array {
 fn array<R: Read + io::Seek>(archive: &mut ZipArchive<R>, name: &str) -> Result<Array, String> {
     let mut read = || -> Result<Array, String> {
         let entry = archive.by_name(name).map_err(|error| error.to_string())?;
-        // What the archive says of an array's size is not to be trusted; what it holds is.
+        // The size in the archive's directory is not reliable, so the data is limited while it is read.
         let most = 24 * MOST as u64 + (1 << 16);
         let mut bytes = Vec::new();
         entry.take(most).read_to_end(&mut bytes).map_err(|error| error.to_string())?;

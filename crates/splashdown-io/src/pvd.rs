@@ -1,7 +1,7 @@
-//! PVD, ParaView's index of a series: which file belongs to which time.
+//! PVD, ParaView's index of a series: the time of each file.
 //!
-//! Opening the one `.pvd` file shows the whole series with the right seconds on the time slider. The format is a few
-//! lines of XML that ParaView's own wiki describes; there is no crate for it.
+//! Opening the `.pvd` file shows the series with its times in seconds. The format is a few lines of XML described in
+//! ParaView's wiki; there is no crate for it.
 
 use std::path::Path;
 
@@ -10,9 +10,8 @@ use crate::error::IoError;
 
 /// Writes the index of a series to `path`; returns the file's size in bytes.
 ///
-/// Each entry is the time in s and the file's name as seen from the index's own folder, with `/` between folders.
-/// The whole index is written anew each time, so it may be written after every frame: the series can then be looked
-/// at while it grows.
+/// Each entry is the time in s and the file's path relative to the index, with `/` between folders. The index can be
+/// written after every frame, so that an unfinished series can be opened.
 ///
 /// # Errors
 /// [`IoError::Write`].
@@ -29,7 +28,7 @@ pub fn write_index(path: &Path, frames: &[(f64, String)]) -> Result<u64, IoError
     })
 }
 
-/// The characters that XML attributes cannot hold as they are.
+/// Escapes the characters that are not allowed in an XML attribute.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

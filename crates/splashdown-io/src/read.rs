@@ -1,43 +1,33 @@
-//! Reading any mesh or particle file by the ending of its name.
+//! Reads a mesh or particle file by the ending of its name; also helpers of the readers.
 
+use std::collections::HashMap;
+use std::fs;
 use std::path::Path;
 
 use crate::data::columns::Wanted;
 use crate::data::{Mesh, Particles};
 use crate::error::IoError;
-use crate::input::{MOST, extension, regular};
-use crate::{bgeo, gltf, npy, npz, obj, ply, stl, vtk, vtu, xyz};
+use crate::format::Format;
+use crate::mesh::Mesh;
+use crate::particles::Particles;
 
-/// File name endings that [`read_mesh`] understands.
-pub const MESH_FORMATS_READ: &[&str] = &[".obj", ".stl", ".ply", ".gltf", ".glb"];
+/// The largest number of particles, or of triangles or vertices of a mesh, that is read: some gigabytes. A small glTF
+/// file can refer to a large mesh many times, and must not use all memory.
+pub(crate) const MOST: usize = 1 << 27;
 
-/// File name endings that [`read_particles`] understands.
-pub const PARTICLE_FORMATS_READ: &[&str] = &[".ply", ".npy", ".npz", ".vtk", ".vtu", ".vtp", ".bgeo", ".xyz"];
-
-/// The readers of one format.
-type MeshReader = fn(&Path) -> Result<Mesh, IoError>;
-type ParticleReader = fn(&Path, Wanted) -> Result<Particles, IoError>;
-
-/// Reads a triangle mesh in the format that the name's ending tells ([`MESH_FORMATS_READ`]).
+/// Reads a triangle mesh in the format of the file name's ending ([`Format`]).
 ///
-/// Coordinates come back as they stand in the file, without any unit or up-axis applied. Polygons are cut into fans
-/// of triangles and normals are dropped: what a solid is made of are its triangles. Corners at the same place become
-/// one vertex in formats that keep none in common (STL) or cut them apart for their textures (glTF). A mesh that is
-/// returned has at least one triangle, its vertices are finite and its indices in range; whether it is closed is told
-/// by [`Mesh::topology`].
+/// Coordinates are those of the file, without any unit or up-axis applied. A polygon becomes a fan of triangles. Normals
+/// are dropped, because a solid is defined by its triangles. Vertices at the same position are merged in formats that
+/// do not share vertices (STL) or split them at texture seams (glTF). The returned mesh has at least one triangle, its
+/// vertices are finite and its vertex numbers in range; [`Mesh::topology`] checks whether it is closed.
 ///
 /// # Errors
-/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] where the file cannot be read;
-/// [`IoError::Malformed`] where it is broken, cut short, without triangles or with coordinates that are not finite;
-/// [`IoError::TooMany`].
+/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] if the file cannot be read; [`IoError::Malformed`] if
+/// it is damaged, cut short, without triangles or with coordinates that are not finite; [`IoError::TooMany`].
 pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
-    let (format, read): (_, MeshReader) = match extension(path).as_deref() {
-        Some("obj") => ("OBJ", obj::read_mesh),
-        Some("stl") => ("STL", stl::read_mesh),
-        Some("ply") => ("PLY", ply::read_mesh),
-        Some("gltf" | "glb") => ("glTF", gltf::read_mesh),
-        _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: MESH_FORMATS_READ }),
-    };
+    let format = Format::of(path).and_then(|format| Some((format.name, format.read_mesh?)));
+    let (format, read) = format.ok_or_else(|| IoError::unknown_format(path, Format::reads_meshes))?;
     regular(path)?;
     let mut mesh = read(path)?;
     (mesh.normals, mesh.velocities) = (Vec::new(), Vec::new());
@@ -51,47 +41,33 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     Ok(mesh)
 }
 
-/// Reads particles in the format that the name's ending tells ([`PARTICLE_FORMATS_READ`]; `.bgeo.gz` too).
+/// Reads particles in the format of the file name's ending ([`Format`]).
 ///
-/// There is at least one particle, and positions and velocities are finite; velocities, densities, pressures and ids
-/// are there if the file has them (NPY and XYZ files have positions only).
+/// There is at least one particle, and positions and velocities are finite. Velocities, densities, pressures and ids are
+/// read if the file has them. Their names, in any case, are `velocity` (`velocities`, `vel`, `v`, `u`), `density`
+/// (`densities`, `rho`), `pressure` (`pressures`, `p`) and `id` (`ids`, `particle_id`); in a PLY file `vx vy vz`
+/// (`velocity_x ..`, `u v w`), `density` (`rho`), `pressure` (`p`) and `id`. NPY and XYZ files have positions only.
 ///
 /// # Errors
-/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] where the file cannot be read;
-/// [`IoError::Malformed`] where it is broken, cut short, empty, or holds numbers that are not finite;
-/// [`IoError::TooMany`].
+/// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] if the file cannot be read; [`IoError::Malformed`] if
+/// it is damaged, cut short, empty, or contains numbers that are not finite; [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     read(path, Wanted::Known)
 }
 
-/// As [`read_particles`], with everything that the file has for each particle in [`Particles::attributes`],
-/// velocities and densities too, by their names in the file: one number or three of whatever type. Properties
-/// `a_x a_y a_z` of a PLY file are one vector `a`, and `vx vy vz` is `velocity`.
+/// Like [`read_particles`], but also reads everything that the file has per particle into [`Particles::attributes`],
+/// velocities and densities included, under their names in the file: scalars and vectors of any number type. Properties
+/// `a_x a_y a_z` of a PLY file are the vector `a`, and `vx vy vz` are `velocity`.
 ///
 /// # Errors
-/// As [`read_particles`].
-pub fn read_all(path: &Path) -> Result<Particles, IoError> {
+/// Those of [`read_particles`].
+pub fn read_particles_with_attributes(path: &Path) -> Result<Particles, IoError> {
     read(path, Wanted::All)
 }
 
 fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
-    let ending = match extension(path).as_deref() {
-        // Of two endings the first tells what is inside.
-        Some("gz") => extension(&path.with_extension("")).filter(|inner| inner == "bgeo"),
-        _ => extension(path),
-    };
-    let (format, read): (_, ParticleReader) = match ending.as_deref() {
-        Some("ply") => ("PLY", ply::read),
-        Some("npy") => {
-            ("NPY", |path, _| Ok(Particles { positions: npy::read_positions(path)?, ..Particles::default() }))
-        }
-        Some("vtk") => ("VTK", vtk::read),
-        Some("vtu" | "vtp") => ("VTU", vtu::read),
-        Some("bgeo") => ("BGEO", bgeo::read),
-        Some("npz") => ("NPZ", npz::read),
-        Some("xyz") => ("XYZ", |path, _| xyz::read_particles(path)),
-        _ => return Err(IoError::UnknownFormat { path: path.to_owned(), allowed: PARTICLE_FORMATS_READ }),
-    };
+    let format = Format::of(path).and_then(|format| Some((format.name, format.read_particles?)));
+    let (format, read) = format.ok_or_else(|| IoError::unknown_format(path, Format::reads_particles))?;
     regular(path)?;
     let mut particles = read(path, wanted)?;
     let count = particles.len();
@@ -106,16 +82,18 @@ fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     Ok(particles)
 }
 
-/// Whether there is a triangle and every vertex is a place.
+/// Checks that there is a triangle and that every vertex is finite.
 fn usable(mesh: &Mesh) -> Result<(), String> {
     let vertices = mesh.vertices.len();
     if mesh.is_empty() {
-        return Err(format!("it has no triangles ({vertices} vertices, no faces): a mesh needs some"));
+        return Err(format!(
+            "it has no triangles ({vertices} vertices, no faces): a mesh needs at least one"
+        ));
     }
     finite("vertices", &mesh.vertices)
 }
 
-/// Whether every vector has finite components.
+/// Checks that all components are finite.
 fn finite(what: &str, vectors: &[[f32; 3]]) -> Result<(), String> {
     let is_bad = |vector: &[f32; 3]| !vector.iter().all(|component| component.is_finite());
     let Some(first) = vectors.iter().position(is_bad) else { return Ok(()) };
@@ -124,4 +102,84 @@ fn finite(what: &str, vectors: &[[f32; 3]]) -> Result<(), String> {
     Err(format!(
         "{bad} of its {all} {what} are not finite, the first is number {first} (from 0): ({x}, {y}, {z})"
     ))
+}
+
+/// The reason why a mesh is not read as particles.
+pub(crate) fn not_particles(faces: usize) -> String {
+    let plural = if faces == 1 { "" } else { "s" };
+    format!(
+        "it is a mesh of {faces} face{plural}, and the vertices of a mesh are not particles: give a file of particles"
+    )
+}
+
+/// Refuses a folder, and a pipe or device, whose data may never end.
+pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
+    let metadata = fs::metadata(path).map_err(|error| IoError::read(path, &error))?;
+    if metadata.is_file() {
+        return Ok(());
+    }
+    let what = if metadata.is_dir() { "it is a folder, not a file" } else { "it is not a regular file" };
+    Err(IoError::Read { path: path.to_owned(), detail: what.to_owned() })
+}
+
+/// All bytes of a regular file.
+pub(crate) fn content(path: &Path) -> Result<Vec<u8>, IoError> {
+    regular(path)?;
+    fs::read(path).map_err(|error| IoError::read(path, &error))
+}
+
+/// Splits a polygon into triangles that share its first vertex.
+pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result<(), String> {
+    match corners {
+        [first, rest @ ..] if rest.len() >= 2 => {
+            triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+            Ok(())
+        }
+        _ => Err(format!("a face with {} corners, at least 3 are needed", corners.len())),
+    }
+}
+
+/// Collects separate triangles into a mesh in which vertices at the same position are merged.
+#[derive(Default)]
+pub(crate) struct Welder {
+    mesh: Mesh,
+    known: HashMap<[u32; 3], u32>,
+}
+
+impl Welder {
+    /// The number of the vertex at this position. Positions are compared bit by bit, with both zeros equal.
+    pub(crate) fn vertex(&mut self, position: [f32; 3]) -> u32 {
+        let position = position.map(|component| component + 0.0);
+        // Files have fewer than 2^32 corners: their counts were compared with their size or `MOST`.
+        let next = self.mesh.vertices.len() as u32;
+        let index = *self.known.entry(position.map(f32::to_bits)).or_insert(next);
+        if index == next {
+            self.mesh.vertices.push(position);
+        }
+        index
+    }
+
+    pub(crate) fn triangle(&mut self, corners: [[f32; 3]; 3]) {
+        let triangle = corners.map(|corner| self.vertex(corner));
+        self.mesh.triangles.push(triangle);
+    }
+
+    /// Adds a triangle of vertex numbers returned by [`Self::vertex`].
+    pub(crate) fn push(&mut self, triangle: [u32; 3]) {
+        self.mesh.triangles.push(triangle);
+    }
+
+    /// Number of vertices so far.
+    pub(crate) fn vertices(&self) -> usize {
+        self.mesh.vertices.len()
+    }
+
+    /// Number of triangles so far.
+    pub(crate) fn triangles(&self) -> usize {
+        self.mesh.len()
+    }
+
+    pub(crate) fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
 }

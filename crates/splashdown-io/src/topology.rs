@@ -1,72 +1,72 @@
-//! How a mesh's triangles hang together, counted edge by edge and vertex by vertex.
+//! Counts how a mesh's triangles are connected, edge by edge and vertex by vertex.
 //!
 //! **How it works.** Every triangle has three half-edges. They are sorted into one bucket per smaller vertex number
-//! (a counting sort) and, inside the few entries of a bucket, as one `u64` of larger vertex, direction and half-edge
-//! number. Equal edges then lie side by side: a run of two with opposite directions is an inner edge of an oriented
-//! manifold, anything else is a fault that is counted by kind. A union of triangle corners across inner edges finds
-//! vertices at which two fans of triangles touch (each edge may be right and the surface still pinched there).
+//! (a counting sort) and, within a bucket, as one `u64` of larger vertex, direction and half-edge number. Equal edges
+//! are then adjacent: a run of two with opposite directions is an inner edge of an oriented manifold; anything else is a
+//! defect that is counted by kind. A union-find of triangle corners across inner edges finds vertices at which two fans
+//! of triangles touch (all edges may be manifold and the surface still pinched there).
 //!
-//! **Why not a hash map of edges.** It is the usual way, but its table does not fit the cache: for a million triangles
-//! the map of edges alone takes 147 ms on one core, one big sort of all edges 43 ms, and this whole report 33 ms (63 ms
-//! with vertices in random order).
+//! **Why not a hash map of edges.** Its table does not fit the cache: for a million triangles the map of edges alone
+//! takes 147 ms on one core, one sort of all edges 43 ms, and this complete report 33 ms (63 ms with vertices in random
+//! order).
 
 use std::fmt;
 
-/// What [`crate::Mesh::topology`] counts. `Display` gives the one-line statement.
+/// The counts of [`crate::Mesh::topology`]. `Display` prints them on one line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Topology {
     /// Vertices used by at least one triangle.
     pub vertices: usize,
-    /// Vertices that no triangle uses.
+    /// Vertices used by no triangle.
     pub unused_vertices: usize,
     /// Distinct edges.
     pub edges: usize,
     /// Triangles, degenerate ones included.
     pub triangles: usize,
-    /// Triangles that name a vertex twice. They have no area, and their edges are left out of all counts.
+    /// Triangles that use a vertex twice. They have no area, and their edges are not counted.
     pub degenerate_triangles: usize,
-    /// Edges used by one triangle only: the rim of a hole.
+    /// Edges used by one triangle: the rim of a hole.
     pub boundary_edges: usize,
     /// Edges used by more than two triangles.
     pub non_manifold_edges: usize,
-    /// Edges used by two triangles in the same direction: one of the two is turned over.
+    /// Edges used by two triangles in the same direction: one of the two is flipped.
     pub flipped_edges: usize,
-    /// Vertices at which two or more fans of triangles touch, the ends of non-manifold edges among them.
+    /// Vertices at which two or more fans of triangles touch, including the ends of non-manifold edges.
     pub non_manifold_vertices: usize,
-    /// Connected pieces (connected through vertices).
+    /// Components connected through vertices.
     pub components: usize,
-    /// V - E + F: 2 for each closed sphere-like piece, 0 for a torus.
+    /// V - E + F: 2 for each component like a sphere, 0 for one like a torus.
     pub euler_characteristic: i64,
 }
 
 impl Topology {
-    /// No holes: no edge is used by one triangle only.
+    /// Whether there are no holes: no edge is used by only one triangle.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.boundary_edges == 0
     }
 
-    /// Everywhere a surface: no edge with more than two triangles, no pinched vertex, no degenerate triangle.
+    /// Whether no edge has more than two triangles, no vertex is pinched and no triangle is degenerate.
     #[must_use]
     pub fn is_manifold(&self) -> bool {
         self.non_manifold_edges == 0 && self.non_manifold_vertices == 0 && self.degenerate_triangles == 0
     }
 
-    /// Neighbouring triangles agree on which side is out.
+    /// Whether neighbouring triangles agree on which side is outside.
     #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.flipped_edges == 0
     }
 
-    /// Closed, manifold and oriented: every edge is used exactly twice, in opposite directions.
+    /// Whether the mesh is closed, manifold and oriented: every edge is used exactly twice, in opposite directions.
     #[must_use]
     pub fn is_watertight(&self) -> bool {
         self.is_closed() && self.is_manifold() && self.is_oriented()
     }
 
-    /// Counts for `triangles` over `vertex_count` vertices. The caller has seen to it that indices are in range, that
-    /// there are fewer than 2^31 vertices and at most [`MAX_TRIANGLES`].
+    /// Counts for `triangles` over `vertex_count` vertices. The caller ensures that vertex numbers are in range and that
+    /// there are fewer than 2^31 vertices and at most [`MAX_TRIANGLES`] triangles.
     pub(crate) fn of(vertex_count: usize, triangles: &[[u32; 3]]) -> Self {
         let mut report = Self { triangles: triangles.len(), ..Self::default() };
         let edges = sorted_edges(vertex_count, triangles);
@@ -83,7 +83,7 @@ impl Topology {
         report
     }
 
-    /// Sorts one edge (all its half-edges) into its kind and joins the corners of triangles that meet properly.
+    /// Classifies one edge, given all its half-edges, and joins the corners of the triangles at a manifold edge.
     fn count_edge(&mut self, edge: &[u64], corners: &mut DisjointSets) {
         self.edges += 1;
         match *edge {
@@ -91,7 +91,7 @@ impl Topology {
             [first, second] => {
                 let flipped = (first ^ second) & DIRECTION == 0;
                 let (first, second) = (first as u32, second as u32);
-                // As a rule the half-edges run against each other, so the end of one is at the start of the other.
+                // Unless flipped, the half-edges have opposite directions: the end of one is the start of the other.
                 let (start, end) = if flipped { (second, next(second)) } else { (next(second), second) };
                 corners.join(first, start);
                 corners.join(next(first), end);
@@ -101,7 +101,7 @@ impl Topology {
         }
     }
 
-    /// Counts vertices, components and the vertices whose corners fall into more than one fan.
+    /// Counts vertices, components and the vertices whose corners belong to more than one fan.
     fn count_vertices(&mut self, vertex_count: usize, triangles: &[[u32; 3]], corners: &mut DisjointSets) {
         let mut pieces = DisjointSets::new(vertex_count);
         let mut fans = vec![0_u8; vertex_count];
@@ -162,13 +162,13 @@ impl fmt::Display for Topology {
     }
 }
 
-/// Half-edges are numbered with 32 bits.
+/// Half-edge numbers have 32 bits.
 pub(crate) const MAX_TRIANGLES: usize = (u32::MAX / 3) as usize;
 
-/// Bit 32 of a packed half-edge: set where it runs from the larger vertex to the smaller.
+/// Bit 32 of a packed half-edge: set if it goes from the larger vertex to the smaller.
 const DIRECTION: u64 = 1 << 32;
 
-/// Half-edges by smaller vertex (`offsets`), each packed as larger vertex (31 bits), direction (1), number (32).
+/// Half-edges by smaller vertex (`offsets`), packed as larger vertex (31 bits), direction (1 bit), number (32 bits).
 struct SortedEdges {
     offsets: Vec<u32>,
     half_edges: Vec<u64>,
@@ -189,7 +189,7 @@ fn sorted_edges(vertex_count: usize, triangles: &[[u32; 3]]) -> SortedEdges {
     for i in 2..offsets.len() {
         offsets[i] += offsets[i - 1];
     }
-    // offsets[v + 1] is now the start of bucket v; filling moves it to its end, which is the start of bucket v + 1.
+    // offsets[v + 1] is now the start of bucket v; filling moves it to the end, which is the start of bucket v + 1.
     let mut sorted = vec![0_u64; offsets[vertex_count + 1] as usize];
     for (from, to, number) in half_edges() {
         let slot = &mut offsets[from.min(to) as usize + 1];
@@ -208,12 +208,12 @@ fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// The corner after this one in the same triangle; half-edge `n` runs from corner `n` to corner `next(n)`.
+/// The next corner of the same triangle; half-edge `n` goes from corner `n` to corner `next(n)`.
 fn next(corner: u32) -> u32 {
     if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
-/// Union-find; the smallest member is the root, and paths are halved on the way.
+/// Union-find with path halving; the smallest member is the root.
 struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {

@@ -1,9 +1,8 @@
-//! Writing beside the simulation: a thread that takes whole frames from a short queue.
+//! A thread that writes frames while the simulation continues.
 //!
-//! A frame is a list of jobs and takes one place in the queue. While there is room, handing one over costs nothing;
-//! when the disk is slower than the simulation the queue fills and [`FrameWriter::submit`] waits, so memory stays
-//! bounded. After the first failure nothing more is written: every later call returns that failure, and the files
-//! written before stay as they are.
+//! A frame is a list of jobs and takes one place in a short queue. If the disk is slower than the simulation, the queue
+//! fills and [`FrameWriter::submit`] waits, so that memory stays bounded. After the first failure nothing more is
+//! written: every later call returns that failure, and the files written before remain.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -13,50 +12,50 @@ use std::thread::{self, JoinHandle};
 use crate::atomic;
 use crate::error::IoError;
 use crate::film::Film;
-use crate::mesh::{self, Mesh};
-use crate::particles::{self, Particles};
+use crate::mesh::{Mesh, write_mesh};
+use crate::particles::{Particles, write_particles};
 use crate::picture::Picture;
 use crate::usd::{MeshSeries, PointSeries};
 
-/// One file to write, or one frame to add to a film or series. Data is shared, so several formats cost no copy.
+/// One file to write, or one frame of a film or series. Data is shared, so that several formats need no copy.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Job {
-    /// Particles, in the format that the path's ending names ([`particles::FORMATS`]).
+    /// Particles, for [`write_particles`].
     Particles(PathBuf, Arc<Particles>),
-    /// A mesh, in the format that the path's ending names ([`mesh::FORMATS`]).
+    /// A mesh, for [`write_mesh`].
     Mesh(PathBuf, Arc<Mesh>),
     /// A picture as PNG.
     #[cfg(feature = "png")]
     Png(PathBuf, Arc<Picture>),
-    /// Bytes as they are (an index, a report).
+    /// Bytes, such as an index or a report.
     Bytes(PathBuf, Vec<u8>),
-    /// The next picture of a film. A film that fails does not stop the writer: it keeps its failure for
-    /// [`Film::finish`], because the pictures are what matters and the film can be made from them later.
+    /// The next picture of a film. A failure of the film does not stop the writer, because the film can be made from the
+    /// pictures later; [`Film::finish`] reports it.
     Film(Arc<Film>, Arc<Picture>),
-    /// A frame's number and mesh for an animated surface, which [`MeshSeries::finish`] makes a file of.
+    /// Number and mesh of a frame of an animated surface; [`MeshSeries::finish`] writes the file.
     UsdMesh(Arc<MeshSeries>, u32, Arc<Mesh>),
-    /// A frame's number and particles for animated particles, which [`PointSeries::finish`] makes a file of.
+    /// Number and particles of a frame of animated particles; [`PointSeries::finish`] writes the file.
     UsdPoints(Arc<PointSeries>, u32, Arc<Particles>),
 }
 
 impl Job {
-    /// Whether the job leaves a file of its own.
+    /// Whether the job writes a file of its own.
     fn is_file(&self) -> bool {
         !matches!(self, Self::Film(..) | Self::UsdMesh(..) | Self::UsdPoints(..))
     }
 }
 
-/// A file that is complete on disk.
+/// A complete file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WrittenFile {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     /// Its size in bytes.
     pub bytes: u64,
 }
 
-/// The failure of a writer, with what was written before it.
+/// The failure of a writer, with the files written before it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{error} ({} files are complete, {lost} were not written)", written.len())]
 pub struct WriteFailure {
@@ -64,21 +63,21 @@ pub struct WriteFailure {
     pub error: IoError,
     /// The files that are complete.
     pub written: Vec<WrittenFile>,
-    /// How many files were handed over and are not there.
+    /// Number of submitted files that were not written.
     pub lost: usize,
 }
 
-/// What the thread and its owner share.
+/// State shared by the thread and its owner.
 #[derive(Debug, Default)]
 struct Progress {
-    /// Files handed over, whether they were taken or refused.
-    handed: usize,
+    /// Number of submitted files, accepted or refused.
+    submitted: usize,
     written: Vec<WrittenFile>,
     error: Option<IoError>,
 }
 
-/// A background thread that writes frames. Dropping it waits for the frames handed over; only
-/// [`FrameWriter::finish`] tells whether they arrived.
+/// A background thread that writes frames. Dropping it waits for the submitted frames; only [`FrameWriter::finish`]
+/// reports whether they were written.
 #[derive(Debug)]
 pub struct FrameWriter {
     queue: Option<SyncSender<Vec<Job>>>,
@@ -87,13 +86,13 @@ pub struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Frames that wait while one is being written.
+    /// Number of frames that can wait while one is written.
     pub const QUEUE: usize = 3;
 
     /// Starts the thread (`splashdown-writer`).
     ///
     /// # Errors
-    /// [`IoError::WriterStopped`] if the system gives no thread.
+    /// [`IoError::WriterStopped`] if the system cannot start a thread.
     pub fn start() -> Result<Self, IoError> {
         let (queue, frames) = sync_channel(Self::QUEUE);
         let progress = Arc::new(Mutex::new(Progress::default()));
@@ -105,14 +104,14 @@ impl FrameWriter {
         Ok(Self { queue: Some(queue), thread: Some(thread), progress })
     }
 
-    /// Hands over one frame's files, to be written in this order. Waits while [`FrameWriter::QUEUE`] frames wait.
+    /// Submits the files of a frame, to be written in this order. Blocks while [`FrameWriter::QUEUE`] frames wait.
     ///
     /// # Errors
-    /// The first failure of an earlier frame, if there was one; this frame is then not written.
+    /// The first failure of an earlier frame; this frame is then not written.
     pub fn submit(&self, frame: Vec<Job>) -> Result<(), IoError> {
         let error = {
             let mut progress = lock(&self.progress);
-            progress.handed += frame.iter().filter(|job| job.is_file()).count();
+            progress.submitted += frame.iter().filter(|job| job.is_file()).count();
             progress.error.clone()
         };
         match (error, &self.queue) {
@@ -128,16 +127,16 @@ impl FrameWriter {
         lock(&self.progress).written.clone()
     }
 
-    /// Waits until everything handed over is written; returns all files in order.
+    /// Waits until all submitted frames are written; returns all files in order.
     ///
     /// # Errors
     /// The first failure, with the files that are complete.
     pub fn finish(mut self) -> Result<Vec<WrittenFile>, Box<WriteFailure>> {
         let joined = self.join();
-        let Progress { handed, written, error } = std::mem::take(&mut *lock(&self.progress));
+        let Progress { submitted, written, error } = std::mem::take(&mut *lock(&self.progress));
         match error.or(joined.err()) {
             None => Ok(written),
-            Some(error) => Err(Box::new(WriteFailure { error, lost: handed - written.len(), written })),
+            Some(error) => Err(Box::new(WriteFailure { error, lost: submitted - written.len(), written })),
         }
     }
 
@@ -150,21 +149,21 @@ impl FrameWriter {
 
 impl Drop for FrameWriter {
     fn drop(&mut self) {
-        // A failure has no way out of here; `finish` is the way to learn of it.
+        // A failure cannot be returned here; `finish` reports it.
         let _ = self.join();
     }
 }
 
 fn stopped() -> IoError {
-    IoError::WriterStopped { reason: "its thread ended by a panic".to_owned() }
+    IoError::WriterStopped { reason: "its thread panicked".to_owned() }
 }
 
-/// A panic while the lock was held leaves plain counters behind; they are still worth reporting.
+/// A panic while the lock was held leaves valid counters, which are still reported.
 fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
     progress.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The thread: writes until the queue is closed. After a failure it only empties the queue, so that nobody waits.
+/// The thread: writes until the queue is closed. After a failure it only empties the queue, so that no caller blocks.
 fn write_frames(frames: &Receiver<Vec<Job>>, progress: &Mutex<Progress>) {
     for frame in frames {
         for job in frame {
@@ -180,12 +179,12 @@ fn write_frames(frames: &Receiver<Vec<Job>>, progress: &Mutex<Progress>) {
     }
 }
 
-/// Writes one file; a frame of a film or series yields none.
+/// Writes one file; a frame of a film or series returns none.
 fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
     let file = |path: &Path, bytes| Some(WrittenFile { path: path.to_owned(), bytes });
     Ok(match job {
-        Job::Particles(path, particles) => file(path, particles::write(path, particles)?),
-        Job::Mesh(path, mesh) => file(path, mesh::write(path, mesh)?),
+        Job::Particles(path, particles) => file(path, write_particles(path, particles)?),
+        Job::Mesh(path, mesh) => file(path, write_mesh(path, mesh)?),
         #[cfg(feature = "png")]
         Job::Png(path, picture) => file(path, crate::picture::write_png(path, picture)?),
         Job::Bytes(path, bytes) => file(path, atomic::write(path, |out| out.write_all(bytes))?),

@@ -1,21 +1,17 @@
-//! XYZ, the plainest list of points: a reader.
+//! XYZ, a plain list of points: a reader.
 //!
-//! Three things go by that ending: text with a point per line (and perhaps other columns behind it), the
-//! chemists' text, which has a count, a line of words, and an element's name before every point, and raw
-//! little-endian float32, three for each point, which `splashsurf` reads. A file that holds a byte no text has
-//! is of the last kind.
+//! Three formats have this ending: text with a point per line and optional further columns; the text format of
+//! chemistry, with a count, a title and the name of an element before every point; and raw little-endian float32, three
+//! per point, which `splashsurf` reads. A file with a byte that is not text is of the third format. Empty lines and
+//! lines that begin with `#` or `//` are skipped.
 
 use std::path::Path;
 
-use crate::data::Particles;
+use crate::columns::Wanted;
 use crate::error::IoError;
 use crate::input::content;
 
-/// Reads positions, in m; other columns are passed over, as are empty lines and lines that begin with `#` or `//`.
-///
-/// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`], which names the line.
-pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
+pub(crate) fn read(path: &Path, _: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
     let is_text = |&byte: &u8| byte >= b' ' || matches!(byte, b'\t' | b'\n' | b'\r');
     let positions = if bytes.iter().all(is_text) && std::str::from_utf8(&bytes).is_ok() {
@@ -24,19 +20,19 @@ pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
         Ok(bytes.chunks_exact(12).map(bytemuck::pod_read_unaligned).collect())
     } else {
         Err(format!(
-            "it is not text, and its {} bytes are no whole number of points of three float32 (12 bytes each)",
+            "it is not text, and its {} bytes are not a multiple of 12, the size of a point of three float32",
             bytes.len()
         ))
     };
     let positions = positions.map_err(|reason| IoError::malformed(path, "XYZ", reason))?;
-    Ok(Particles { positions, ..Particles::default() })
+    Ok(Particles::from_positions(positions))
 }
 
 fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().peekable();
     let mut positions = Vec::new();
     let mut count = None;
-    // A first line of one whole number is the chemists' count, and any words may follow it.
+    // A first line with a single integer is the count of the chemistry format; the next line is a title.
     if let Some(given) = lines.peek().and_then(|(_, line)| line.trim().parse::<usize>().ok()) {
         count = Some(given);
         lines.next();
@@ -56,20 +52,19 @@ fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
         match [next(), next(), next()] {
             [Some(x), Some(y), Some(z)] => positions.push([x, y, z]),
             _ => {
-                let shown: String = line.chars().take(40).collect();
-                return Err(format!("line {} holds no three numbers: `{shown}`", number + 1));
+                return Err(format!("line {} has no three numbers: `{line:.40}`", number + 1));
             }
         }
     }
     match count {
         Some(count) if count != positions.len() => {
-            Err(format!("its first line promises {count} points, {} follow", positions.len()))
+            Err(format!("its first line promises {count} points, but it has {}", positions.len()))
         }
         _ => Ok(positions),
     }
 }
 
-/// True where the first word is a number that begins with a letter (`nan`, `inf`).
+/// Whether the first word is a number, also `nan` or `inf`.
 fn is_number(line: &str) -> bool {
     line.split([' ', '\t', ',', ';']).next().is_some_and(|word| word.parse::<f32>().is_ok())
 }
@@ -79,7 +74,7 @@ mod tests {
     use super::text;
 
     #[test]
-    fn lists_and_the_chemists_form_are_read() {
+    fn lists_and_the_chemistry_format_are_read() {
         let points = [[1.0, -2.5, 3e-3], [4.0, 5.0, 6.0]];
         for given in [
             "1 -2.5 3e-3\n4 5 6\n",
@@ -92,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_point_is_told_with_its_line() {
+    fn a_malformed_point_is_reported_with_its_line() {
         assert!(text("1 2 3\n4 five 6").unwrap_err().contains("line 2"));
         assert!(text("1 2").unwrap_err().contains("line 1"));
         assert!(text("3\nwater\nH 1 2 3").unwrap_err().contains("promises 3"));

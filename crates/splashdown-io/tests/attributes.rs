@@ -4,7 +4,9 @@ mod common;
 
 use std::fs;
 
-use splashdown_io::{Attribute, Mesh, Particles, mesh, particles, read_all, read_particles};
+use splashdown_io::{
+    Attribute, Mesh, Particles, read_particles, read_particles_with_attributes, write_mesh, write_particles,
+};
 
 fn attribute<'a>(particles: &'a Particles, name: &str) -> &'a Attribute {
     let names: Vec<_> = particles.attributes.iter().map(|attribute| &attribute.name).collect();
@@ -24,15 +26,15 @@ fn every_format_gives_all_that_was_written() {
         ("npz", ["velocities", "densities", "pressures"]),
     ] {
         let path = folder.path().join(format!("all.{ending}"));
-        particles::write(&path, &given).unwrap();
-        let read = read_all(&path).unwrap();
+        write_particles(&path, &given).unwrap();
+        let read = read_particles_with_attributes(&path).unwrap();
         assert_eq!(attribute(&read, velocity).values, given.velocities.as_flattened(), "{ending}");
         assert!(attribute(&read, velocity).is_velocity());
         assert_eq!(attribute(&read, density).values, given.densities, "{ending}");
         assert_eq!(attribute(&read, pressure).values, given.pressures, "{ending}");
         assert_eq!(read.attributes.iter().filter(|attribute| attribute.is_id()).count(), 1, "{ending}");
         // All else is as without them.
-        let (bare, read) = (read_particles(&path).unwrap(), Particles { attributes: Vec::new(), ..read });
+        let (bare, read) = (read_particles(&path).unwrap(), read.with_attributes(Vec::new()));
         assert!(bare == read && bare == given, "{ending}");
     }
 }
@@ -43,7 +45,7 @@ fn attributes_of_any_name_and_type_are_read() {
     let write = |name: &str, text: &str| {
         let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
-        read_all(&path).unwrap_or_else(|error| panic!("{error}"))
+        read_particles_with_attributes(&path).unwrap_or_else(|error| panic!("{error}"))
     };
     let head =
         "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\nPOINT_DATA 2\n";
@@ -99,7 +101,7 @@ fn meshes_hold_attributes_and_are_no_particles() {
     let path = |name: &str| folder.path().join(name);
 
     // In PLY the attributes are the last columns of a row.
-    mesh::write(&path("mesh.ply"), &torus).unwrap();
+    write_mesh(&path("mesh.ply"), &torus).unwrap();
     let bytes = fs::read(path("mesh.ply")).unwrap();
     let end = b"end_header\n";
     let start = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
@@ -112,7 +114,7 @@ fn meshes_hold_attributes_and_are_no_particles() {
         assert_eq!(numbers[vertex * row + 7..vertex * row + 10], torus.vertices[vertex]);
     }
     // In VTK they follow their names, the highest byte first.
-    mesh::write(&path("mesh.vtk"), &torus).unwrap();
+    write_mesh(&path("mesh.vtk"), &torus).unwrap();
     let bytes = fs::read(path("mesh.vtk")).unwrap();
     let after = |words: &str| {
         let at = bytes.windows(words.len()).position(|window| window == words.as_bytes());
@@ -133,8 +135,8 @@ fn meshes_hold_attributes_and_are_no_particles() {
 
     // Of the wrong length, or neither numbers nor vectors.
     for (components, values) in [(1, vec![0.0; 5]), (2, vec![0.0; 2 * torus.vertices.len()])] {
-        let wrong = Mesh { attributes: vec![attribute("odd", components, values)], ..torus.clone() };
-        let message = mesh::write(&path("wrong.ply"), &wrong).unwrap_err().to_string();
+        let wrong = torus.clone().with_attributes(vec![attribute("odd", components, values)]);
+        let message = write_mesh(&path("wrong.ply"), &wrong).unwrap_err().to_string();
         assert!(message.contains("`odd`"), "{message}");
     }
 }

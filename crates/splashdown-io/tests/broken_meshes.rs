@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use common::gltf_files::{CUBE_AT_ORIGIN, Cube, glb, glb_of, gltf_inside};
 use proptest::prelude::*;
-use splashdown_io::{IoError, MESH_FORMATS_READ, mesh, read_mesh};
+use splashdown_io::{Format, IoError, read_mesh, write_mesh, write_particles};
 use tempfile::TempDir;
 
 /// Writes `contents` and returns its place with the folder that keeps it alive.
@@ -43,7 +43,7 @@ fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
         .map(|name| {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join(name);
-            mesh::write(&path, &torus).unwrap();
+            write_mesh(&path, &torus).unwrap();
             (name, fs::read(path).unwrap())
         })
         .collect();
@@ -66,7 +66,8 @@ fn what_is_no_mesh_file_at_all_is_told() {
         "{missing}"
     );
     let unknown = read_mesh(&folder.path().join("boat.fbx")).unwrap_err().to_string();
-    assert!(MESH_FORMATS_READ.iter().all(|ending| unknown.contains(ending)), "{unknown}");
+    let endings = Format::endings(Format::reads_meshes);
+    assert!(endings.len() == 5 && endings.iter().all(|ending| unknown.contains(ending)), "{unknown}");
     assert!(matches!(read_mesh(&folder.path().join("boat")), Err(IoError::UnknownFormat { .. })));
     for name in ["folder.obj", "folder.stl", "folder.ply", "folder.glb"] {
         let path = folder.path().join(name);
@@ -158,7 +159,7 @@ fn broken_stl_files_name_the_line_or_the_missing_bytes() {
 fn a_ply_of_points_is_no_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.ply");
-    splashdown_io::particles::write(&path, &common::particles(7)).unwrap();
+    write_particles(&path, &common::particles(7)).unwrap();
     let message = read_mesh(&path).unwrap_err().to_string();
     assert!(
         message.contains("no element `face`") && message.contains("(7 points): a mesh needs faces too"),

@@ -6,7 +6,9 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use common::names;
-use splashdown_io::{IoError, WriteCause, atomic, mesh, obj, particles, ply, prepare_folder, vtu};
+use splashdown_io::{
+    IoError, WriteCause, atomic, obj, ply, prepare_folder, vtu, write_mesh, write_particles,
+};
 
 fn cause(error: &IoError) -> Option<WriteCause> {
     if let IoError::Write { cause, .. } = error { Some(*cause) } else { None }
@@ -74,7 +76,7 @@ fn a_path_below_a_file_is_refused_early_and_late() {
         assert_eq!(cause(&error), Some(WriteCause::NotAFolder), "{error}");
         assert!(error.to_string().contains("notes.txt"), "{error}");
     }
-    let error = particles::write(&file.join("frame.ply"), &common::particles(3)).unwrap_err();
+    let error = write_particles(&file.join("frame.ply"), &common::particles(3)).unwrap_err();
     assert!(matches!(cause(&error), Some(WriteCause::NotAFolder | WriteCause::MissingFolder)), "{error}");
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
 }
@@ -92,13 +94,13 @@ fn a_folder_is_made_with_its_parents_and_left_clean() {
 fn a_missing_folder_or_one_in_the_way_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let cube = common::cube([0.0; 3], 1.0);
-    let error = mesh::write(&folder.path().join("gone/mesh.obj"), &cube).unwrap_err();
+    let error = write_mesh(&folder.path().join("gone/mesh.obj"), &cube).unwrap_err();
     assert_eq!(cause(&error), Some(WriteCause::MissingFolder));
     assert!(error.to_string().contains("create the folder"), "{error}");
 
     let taken = folder.path().join("mesh.ply");
     fs::create_dir(&taken).unwrap();
-    let error = mesh::write(&taken, &cube).unwrap_err();
+    let error = write_mesh(&taken, &cube).unwrap_err();
     assert!(error.to_string().contains("mesh.ply"), "{error}");
     assert_eq!(names(folder.path()), ["mesh.ply"]);
 }
@@ -131,7 +133,7 @@ fn data_that_does_not_fit_together_is_written_nowhere() {
     let mut bad = common::particles(10);
     bad.pressures.pop();
     for name in ["a.ply", "a.vtu"] {
-        assert!(matches!(particles::write(&folder.path().join(name), &bad), Err(IoError::Length { .. })));
+        assert!(matches!(write_particles(&folder.path().join(name), &bad), Err(IoError::Length { .. })));
     }
     assert_eq!(
         vtu::write_particles_to(&mut Vec::new(), &bad).unwrap_err().kind(),
@@ -140,7 +142,7 @@ fn data_that_does_not_fit_together_is_written_nowhere() {
     let mut bad = common::cube([0.0; 3], 1.0);
     bad.triangles[3][0] = 99;
     for name in ["a.ply", "a.obj"] {
-        assert!(matches!(mesh::write(&folder.path().join(name), &bad), Err(IoError::IndexOutOfRange { .. })));
+        assert!(matches!(write_mesh(&folder.path().join(name), &bad), Err(IoError::IndexOutOfRange { .. })));
     }
     assert!(names(folder.path()).is_empty());
 }

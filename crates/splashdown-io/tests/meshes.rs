@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use common::gltf_files::{CUBE_AT_ORIGIN, glb, gltf_beside, gltf_inside};
-use splashdown_io::{Mesh, mesh, read_mesh};
+use splashdown_io::{Mesh, read_mesh, write_mesh};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
@@ -39,7 +39,7 @@ fn a_mesh_comes_back_the_same_from_every_format_it_is_written_in() {
     assert_ne!(places(&turned), places(&torus), "the comparison sees one turned triangle");
     for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL"] {
         let path = folder.path().join(name);
-        let bytes = mesh::write(&path, &torus).unwrap();
+        let bytes = write_mesh(&path, &torus).unwrap();
         assert_eq!(bytes, fs::metadata(&path).unwrap().len());
         let read = read_mesh(&path).unwrap();
         assert_eq!(places(&read), places(&torus), "{name}");
@@ -52,11 +52,10 @@ fn a_mesh_comes_back_the_same_from_every_format_it_is_written_in() {
 /// What `stl_io` makes of a file.
 fn by_stl_io(path: &Path) -> Mesh {
     let read = stl_io::read_stl(&mut fs::File::open(path).unwrap()).unwrap();
-    Mesh {
-        vertices: read.vertices.iter().map(|v| v.0).collect(),
-        triangles: read.faces.iter().map(|f| f.vertices.map(|index| index as u32)).collect(),
-        ..Mesh::default()
-    }
+    Mesh::new(
+        read.vertices.iter().map(|v| v.0).collect(),
+        read.faces.iter().map(|f| f.vertices.map(|index| index as u32)).collect(),
+    )
 }
 
 fn ascii_stl(mesh: &Mesh) -> String {
@@ -81,7 +80,7 @@ fn stl_is_read_and_written_as_the_independent_crate_does() {
     let torus = common::torus(0.5, 0.2, 12, 10);
     let (text, binary) = (folder.path().join("text.stl"), folder.path().join("binary.stl"));
     fs::write(&text, ascii_stl(&torus)).unwrap();
-    mesh::write(&binary, &torus).unwrap();
+    write_mesh(&binary, &torus).unwrap();
     for path in [text, binary] {
         assert_eq!(places(&read_mesh(&path).unwrap()), places(&by_stl_io(&path)));
         assert_eq!(places(&read_mesh(&path).unwrap()), places(&torus));
@@ -92,7 +91,7 @@ fn stl_is_read_and_written_as_the_independent_crate_does() {
 fn the_normals_of_a_written_stl_point_outwards() {
     let folder = folder();
     let path = folder.path().join("cube.stl");
-    mesh::write(&path, &common::cube([-1.0; 3], 2.0)).unwrap();
+    write_mesh(&path, &common::cube([-1.0; 3], 2.0)).unwrap();
     for triangle in
         stl_io::create_stl_reader(&mut fs::File::open(&path).unwrap()).unwrap().map(Result::unwrap)
     {
@@ -108,7 +107,7 @@ fn stl_files_that_trip_other_readers_are_read() {
     let path = folder.path().join("odd.stl");
     let cube = common::cube([0.0; 3], 1.0);
     // A binary file whose free text begins like the text form.
-    mesh::write(&path, &cube).unwrap();
+    write_mesh(&path, &cube).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     bytes[..12].copy_from_slice(b"solid part 1");
     fs::write(&path, bytes).unwrap();
@@ -130,11 +129,10 @@ fn obj_is_read_as_the_independent_crate_does() {
         let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
         let (models, _) = tobj::load_obj(&path, &options).unwrap();
         let by_tobj = models.iter().fold(Mesh::default(), |all, model| {
-            let one = Mesh {
-                vertices: model.mesh.positions.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
-                triangles: model.mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-                ..Mesh::default()
-            };
+            let one = Mesh::new(
+                model.mesh.positions.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect(),
+                model.mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            );
             common::joined(all, &one)
         });
         let read = read_mesh(&path).unwrap();

@@ -3,7 +3,7 @@
 mod common;
 
 use proptest::prelude::*;
-use splashdown_io::{Mesh, mesh, obj};
+use splashdown_io::{Mesh, obj, write_mesh};
 
 /// Positions and normals of every corner of every triangle, as an OBJ reader sees them.
 fn corners(text: &[u8]) -> Vec<([f32; 3], Option<[f32; 3]>)> {
@@ -49,12 +49,7 @@ proptest! {
         normals in any::<bool>(),
     ) {
         let triangles = picks.iter().map(|pick| pick.map(|corner| corner.index(vertices.len()) as u32)).collect();
-        let mesh = Mesh {
-            vertices: vertices.iter().map(|v| v.0).collect(),
-            normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
-            triangles,
-            ..Mesh::default()
-        };
+        let mesh = Mesh::new(vertices.iter().map(|v| v.0).collect(), triangles).with_normals(vertices.iter().filter(|_| normals).map(|v| v.1).collect());
         prop_assert_eq!(corners(&written(&mesh)), expected(&mesh));
     }
 }
@@ -85,8 +80,8 @@ fn the_ending_of_the_name_picks_the_format() {
     let folder = tempfile::tempdir().unwrap();
     let cube = common::cube([0.0; 3], 0.5);
     let path = folder.path().join("cube.OBJ");
-    mesh::write(&path, &cube).unwrap();
+    write_mesh(&path, &cube).unwrap();
     assert_eq!(corners(&std::fs::read(&path).unwrap()), expected(&cube));
-    let message = mesh::write(&folder.path().join("cube.xyz"), &cube).unwrap_err().to_string();
+    let message = write_mesh(&folder.path().join("cube.xyz"), &cube).unwrap_err().to_string();
     assert!(message.contains("cube.xyz") && message.contains(".ply, .obj, .stl"), "{message}");
 }

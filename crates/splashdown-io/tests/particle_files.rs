@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use proptest::prelude::*;
-use splashdown_io::{IoError, PARTICLE_FORMATS_READ, Particles, particles, read_particles};
+use splashdown_io::{Format, IoError, Particles, read_particles, write_particles};
 use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
@@ -38,14 +38,11 @@ fn refused(name: &str, contents: &[u8], reason: &str) {
 /// Particles with all attributes that are exactly what a text file says of them.
 fn plain(count: usize) -> Particles {
     let value = |n: usize| n as f32 * 0.25 - 3.0;
-    Particles {
-        ids: (0..count as u32).map(|n| n + 4_000_000_000).collect(),
-        positions: (0..count).map(|n| [value(n), value(2 * n), -0.5]).collect(),
-        velocities: (0..count).map(|n| [value(3 * n), 0.0, value(n + 1)]).collect(),
-        densities: (0..count).map(|n| 1000.0 + value(n)).collect(),
-        pressures: (0..count).map(|n| value(n) * 100.0).collect(),
-        ..Particles::default()
-    }
+    Particles::from_positions((0..count).map(|n| [value(n), value(2 * n), -0.5]).collect())
+        .with_ids((0..count as u32).map(|n| n + 4_000_000_000).collect())
+        .with_velocities((0..count).map(|n| [value(3 * n), 0.0, value(n + 1)]).collect())
+        .with_densities((0..count).map(|n| 1000.0 + value(n)).collect())
+        .with_pressures((0..count).map(|n| value(n) * 100.0).collect())
 }
 
 fn list<T: std::fmt::Display>(values: impl IntoIterator<Item = T>) -> String {
@@ -92,7 +89,7 @@ fn bgeo(given: &Particles) -> Vec<u8> {
 
 /// As [`plain`], within what the format of `bgeo` holds: ids that are positive i32, no pressures.
 fn for_bgeo(count: usize) -> Particles {
-    Particles { ids: (0..count as u32).rev().collect(), pressures: Vec::new(), ..plain(count) }
+    plain(count).with_ids((0..count as u32).rev().collect()).with_pressures(Vec::new())
 }
 
 fn gzip(bytes: &[u8]) -> Vec<u8> {
@@ -131,7 +128,7 @@ const BY_SPLASHSURF: [&[u8]; 2] = [
 fn bgeo_of_splashsurf_is_read() {
     for bytes in BY_SPLASHSURF {
         let positions = vec![[1.0, -2.5, 0.1], [3.0e4, 5.0, -1.0e-3]];
-        assert_eq!(read("theirs.bgeo", bytes).unwrap(), Particles { positions, ..Particles::default() });
+        assert_eq!(read("theirs.bgeo", bytes).unwrap(), Particles::from_positions(positions));
     }
 }
 
@@ -282,10 +279,10 @@ fn what_is_written_is_read() {
     for (name, given) in [
         ("all.vtu", common::particles(5000)),
         ("all.ply", common::particles(5000)),
-        ("bare.vtu", Particles { positions: vec![[1.0, 2.0, 3.0]; 9], ..Particles::default() }),
+        ("bare.vtu", Particles::from_positions(vec![[1.0, 2.0, 3.0]; 9])),
     ] {
         let path = folder.path().join(name);
-        particles::write(&path, &given).unwrap();
+        write_particles(&path, &given).unwrap();
         assert_eq!(read_particles(&path).unwrap(), given, "{name}");
     }
 }
@@ -301,10 +298,11 @@ fn the_shared_particles_are_read_by_their_ending() {
 #[test]
 fn what_is_no_particle_file_is_told() {
     let message = read_particles("points.abc".as_ref()).unwrap_err().to_string();
-    assert!(PARTICLE_FORMATS_READ.iter().all(|ending| message.contains(ending)), "{message}");
+    let endings = Format::endings(Format::reads_particles);
+    assert!(endings.len() == 8 && endings.iter().all(|ending| message.contains(ending)), "{message}");
     assert!(matches!(read_particles("points.xyz.gz".as_ref()), Err(IoError::UnknownFormat { .. })));
     assert!(matches!(read_particles("absent.bgeo".as_ref()), Err(IoError::Read { .. })));
-    for ending in PARTICLE_FORMATS_READ {
+    for ending in endings {
         let name = format!("given{ending}");
         for garbage in
             [&b""[..], b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", &[0xff; 300], b"just\nsome words\n", &[b'<'; 5000]]
@@ -403,8 +401,7 @@ fn packed_npz(given: &Particles) -> Vec<u8> {
 fn numpys_archives_are_read() {
     let given = plain(2500);
     let bytes = packed_npz(&given);
-    let wanted =
-        Particles { ids: given.ids.clone(), positions: given.positions.clone(), ..Particles::default() };
+    let wanted = Particles::from_positions(given.positions.clone()).with_ids(given.ids.clone());
     assert_eq!(read("packed.npz", &bytes).unwrap(), wanted);
     refused("none.npz", &packed_npz(&Particles::default()), "no particles");
     let mut bytes = bytes;
@@ -428,7 +425,7 @@ fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     let written = |name: &'static str| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
-        particles::write(&path, &given).unwrap();
+        write_particles(&path, &given).unwrap();
         (name, fs::read(path).unwrap())
     };
     let mut npy =

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use proptest::prelude::*;
-use splashdown_io::{Mesh, Particles, ply};
+use splashdown_io::{Mesh, Particles, ply, write_mesh, write_particles};
 use tempfile::TempDir;
 
 fn folder() -> TempDir {
@@ -42,14 +42,7 @@ prop_compose! {
          rows in prop::collection::vec((vector(), vector(), prop::num::f32::ANY, prop::num::f32::ANY, any::<u32>()), count),
          has in Just(has)) -> Particles {
         let keep = |wanted: bool| if wanted { count } else { 0 };
-        Particles {
-            positions: rows.iter().map(|row| row.0).collect(),
-            velocities: rows.iter().take(keep(has[0])).map(|row| row.1).collect(),
-            densities: rows.iter().take(keep(has[1])).map(|row| row.2).collect(),
-            pressures: rows.iter().take(keep(has[2])).map(|row| row.3).collect(),
-            ids: rows.iter().take(keep(has[3])).map(|row| row.4).collect(),
-            ..Particles::default()
-        }
+        Particles::from_positions(rows.iter().map(|row| row.0).collect()).with_velocities(rows.iter().take(keep(has[0])).map(|row| row.1).collect()).with_densities(rows.iter().take(keep(has[1])).map(|row| row.2).collect()).with_pressures(rows.iter().take(keep(has[2])).map(|row| row.3).collect()).with_ids(rows.iter().take(keep(has[3])).map(|row| row.4).collect())
     }
 }
 
@@ -57,13 +50,7 @@ prop_compose! {
     fn some_mesh()(vertices in prop::collection::vec((vector(), vector(), vector()), 1..60), [normals, velocities] in any::<[bool; 2]>())
         (triangles in prop::collection::vec(prop::array::uniform3(0..vertices.len() as u32), 0..120),
          vertices in Just(vertices), [normals, velocities] in Just([normals, velocities])) -> Mesh {
-        Mesh {
-            vertices: vertices.iter().map(|v| v.0).collect(),
-            normals: vertices.iter().filter(|_| normals).map(|v| v.1).collect(),
-            velocities: vertices.iter().filter(|_| velocities).map(|v| v.2).collect(),
-            triangles,
-            ..Mesh::default()
-        }
+        Mesh::new(vertices.iter().map(|v| v.0).collect(), triangles).with_normals(vertices.iter().filter(|_| normals).map(|v| v.1).collect()).with_velocities(vertices.iter().filter(|_| velocities).map(|v| v.2).collect())
     }
 }
 
@@ -74,7 +61,7 @@ proptest! {
     fn particles_come_back_bit_by_bit(particles in some_particles()) {
         let folder = folder();
         let path = folder.path().join("particles.ply");
-        let bytes = ply::write_particles(&path, &particles).unwrap();
+        let bytes = write_particles(&path, &particles).unwrap();
         prop_assert_eq!(bytes, fs::metadata(&path).unwrap().len());
         assert_same_bits(&ply::read_particles(&path).unwrap(), &particles);
     }
@@ -83,7 +70,7 @@ proptest! {
     fn meshes_come_back_bit_by_bit(mesh in some_mesh()) {
         let folder = folder();
         let path = folder.path().join("mesh.ply");
-        ply::write_mesh(&path, &mesh).unwrap();
+        write_mesh(&path, &mesh).unwrap();
         let read = ply::read_mesh(&path).unwrap();
         prop_assert_eq!(bits(&read.vertices), bits(&mesh.vertices));
         prop_assert_eq!(bits(&read.normals), bits(&mesh.normals));
@@ -95,7 +82,7 @@ proptest! {
         prop_assume!(!particles.is_empty());
         let folder = folder();
         let path = folder.path().join("cut.ply");
-        ply::write_particles(&path, &particles).unwrap();
+        write_particles(&path, &particles).unwrap();
         let whole = fs::read(&path).unwrap();
         fs::write(&path, &whole[..(whole.len() as f64 * at) as usize]).unwrap();
         let message = ply::read_particles(&path).unwrap_err().to_string();
@@ -106,7 +93,7 @@ proptest! {
     fn a_file_with_a_changed_byte_is_never_a_panic(mesh in some_mesh(), at in any::<prop::sample::Index>(), to in any::<u8>()) {
         let folder = folder();
         let path = folder.path().join("changed.ply");
-        ply::write_mesh(&path, &mesh).unwrap();
+        write_mesh(&path, &mesh).unwrap();
         let mut bytes = fs::read(&path).unwrap();
         let at = at.index(bytes.len());
         bytes[at] = to;
@@ -123,7 +110,7 @@ fn the_round_trip_test_would_see_one_changed_bit() {
     let folder = folder();
     let path = folder.path().join("particles.ply");
     let particles = common::particles(100);
-    ply::write_particles(&path, &particles).unwrap();
+    write_particles(&path, &particles).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     let last = bytes.len() - 36 * 7 - 20;
     bytes[last] ^= 1;

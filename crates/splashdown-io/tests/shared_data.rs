@@ -2,7 +2,7 @@
 
 mod common;
 
-use splashdown_io::{Particles, npy, particles, ply};
+use splashdown_io::{Particles, npy, ply, write_particles};
 
 #[test]
 fn the_particle_files_are_read_and_survive_a_round_trip() {
@@ -14,8 +14,8 @@ fn the_particle_files_are_read_and_survive_a_round_trip() {
 
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("particles.ply");
-        let particles = Particles { positions, ..Particles::default() };
-        particles::write(&file, &particles).unwrap();
+        let particles = Particles::from_positions(positions);
+        write_particles(&file, &particles).unwrap();
         assert_eq!(ply::read_particles(&file).unwrap(), particles);
     }
 }

@@ -12,7 +12,7 @@ use splashdown_io::Mesh;
 fn sphere(triangles: u32) -> Mesh {
     let rings = ((triangles / 4) as f64).sqrt().max(3.0) as u32;
     let round = 2 * rings;
-    let mut mesh = Mesh { vertices: vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]], ..Mesh::default() };
+    let mut mesh = Mesh::new(vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]], Vec::new());
     for ring in 1..rings {
         let (height, across) = (f64::from(ring) / f64::from(rings) * std::f64::consts::PI).sin_cos();
         for k in 0..round {

@@ -151,7 +151,7 @@ fn a_finite_speed_beyond_reason_is_limited_and_counted() {
         let scene = scene(0.0625, "\"y_max\"", SOLVERS[0]);
         // Thousands of spacings in a step; alone in the tank, so that it drags nobody along.
         let (positions, velocities) = (vec![[0.8, 0.3, 0.3]], vec![[0.0, 1e6, 0.0]]);
-        let particles = Particles { positions, velocities, ..Particles::default() };
+        let particles = Particles::from_positions(positions).with_velocities(velocities);
         let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
         let stats = simulation.advance(0.001).unwrap();
         assert!(stats.speed_limits > 0 && stats.particles == 1 && stats.non_finite == 0, "{name}: {stats:?}");
@@ -244,7 +244,7 @@ fn no_particle_and_one_particle_are_simulations_too() {
     }
     for (name, executor) in testing::executors("no_particle_and_one_particle") {
         let scene = scene(0.0625, "", SOLVERS[0]);
-        let one = Particles { positions: vec![[0.7, 0.5, 0.3]], ..Particles::default() };
+        let one = Particles::from_positions(vec![[0.7, 0.5, 0.3]]);
         let mut simulation = Simulation::with_particles(&scene, executor, &one).unwrap();
         let stats = simulation.advance(0.1).unwrap();
         let fallen = 0.5 - simulation.particles().unwrap().positions[0][1];

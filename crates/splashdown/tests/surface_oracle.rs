@@ -19,11 +19,10 @@ fn oracle(points: &[[f32; 3]], params: &SurfaceParams) -> Mesh {
     let mut theirs = splashsurf_lib::Parameters::new(SPACING / 2.0, params.support_radius, params.cell_size);
     theirs.iso_surface_threshold = params.iso_level;
     let mesh = splashsurf_lib::reconstruct_surface::<i64, f32>(&points, &theirs).unwrap().mesh;
-    Mesh {
-        vertices: mesh.vertices.iter().map(|&v| v.into()).collect(),
-        triangles: mesh.triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
-        ..Mesh::default()
-    }
+    Mesh::new(
+        mesh.vertices.iter().map(|&v| v.into()).collect(),
+        mesh.triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
+    )
 }
 
 /// Triangles in a grid of cubes, for the search of the nearest triangle.

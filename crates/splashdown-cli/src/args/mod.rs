@@ -14,6 +14,7 @@ use clap::{ArgAction, Args, Parser, Subcommand};
 use clap_complete::Shell;
 use splashdown::Device;
 use splashdown::scene::Choice;
+use splashdown_io::Format;
 
 use crate::console::Verbosity;
 use crate::exit;
@@ -139,6 +140,11 @@ fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
 /// As [`choice`], with `none` as an additional word.
 fn choice_or_none<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = Option<C>> {
     words::<C>(&["none"]).map(|word| C::from_name(&word))
+}
+
+/// Whether the format stores the mesh of one frame.
+pub fn is_mesh_file(format: &Format) -> bool {
+    format.writes_meshes() && !format.is_series()
 }
 
 fn words<C: Choice>(more: &[&'static str]) -> PossibleValuesParser {

@@ -4,11 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 use splashdown::Device;
-use splashdown::scene::{Format, PictureKind};
+use splashdown::scene::{self, PictureKind};
+use splashdown_io::Format;
 
-use super::{VerbosityArguments, choice, choice_or_none};
+use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file};
 
-const RUN_EXAMPLES: &str = "\
+/// The examples and the output files.
+fn after_help() -> String {
+    let with_velocities = Format::endings(|format| is_mesh_file(format) && format.has_velocities()).join(" ");
+    format!(
+        "\
 Examples:
   splashdown run scenes/dam-break.toml
   splashdown run dam-break --device cpu --frames 20 --no-pictures
@@ -20,8 +25,8 @@ Examples:
 Files in the output folder:
   particles/particles_0000.ply, ...      one file per frame; particles.pvd indexes .vtu files for
                                          ParaView
-  mesh/surface_0000.ply, ...             the closed surface of the fluid; in PLY, VTK and GLB its
-                                         vertices have velocities
+  mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
+                                         velocities in {with_velocities}
   particles.usda, surface.usda           all frames in one file, with --formats usd
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
@@ -34,11 +39,13 @@ A resumed run keeps the settings of the original run, except those given again.
 With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt,
 particles, density_error, max_speed, volume, triangles and files; unknown values are null.
 Events are started, progress, frame, warning, finished, interrupted and error. A frame is
-reported when its files are complete.";
+reported when its files are complete."
+    )
+}
 
 /// Options of `run`.
 #[derive(Debug, Args)]
-#[command(after_help = RUN_EXAMPLES)]
+#[command(after_help = after_help())]
 pub struct RunArguments {
     /// Scene file (TOML), or the name of a built-in scene
     #[arg(value_name = "SCENE", required_unless_present = "resume")]
@@ -60,8 +67,8 @@ pub struct RunArguments {
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
     /// File formats, separated by commas, overriding the scene; `none` writes no particles or meshes
-    #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = choice_or_none::<Format>())]
-    pub formats: Option<Vec<Option<Format>>>,
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = choice_or_none::<scene::Format>())]
+    pub formats: Option<Vec<Option<scene::Format>>>,
     /// Do not extract the surface: no meshes and no pictures of it
     #[arg(long)]
     pub no_surface: bool,

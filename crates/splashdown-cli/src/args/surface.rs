@@ -3,27 +3,41 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use splashdown_io::Format;
 
-use super::DeviceArgument;
+use super::{DeviceArgument, is_mesh_file};
 
-const SURFACE_EXAMPLES: &str = "\
+/// The examples, and the formats in the order of their table.
+fn after_help() -> String {
+    format!(
+        "\
+{EXAMPLES}
+
+Input formats:   {}
+Output formats:  {}
+Velocities of particles are interpolated to the vertices ({}). Other attributes
+(a number or a vector per particle) are interpolated with --attribute ({}). Several input
+files give meshes with the same numbers, in place of the star or before the ending.
+
+Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
+particle radius is half of the particle spacing.",
+        Format::endings(Format::reads_particles).join(" "),
+        Format::endings(is_mesh_file).join(" "),
+        Format::endings(|format| is_mesh_file(format) && format.has_velocities()).join(" "),
+        Format::endings(Format::has_attributes).join(" "),
+    )
+}
+
+const EXAMPLES: &str = "\
 Examples:
   splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
   splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
-  splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02
-
-Input formats are PLY, VTK, VTU, VTP, BGEO, NPY, NPZ and XYZ; output formats are PLY, OBJ, STL,
-VTK and GLB. Velocities of particles are interpolated to the vertices (PLY, VTK, GLB). Other
-attributes (a number or a vector per particle) are interpolated with --attribute (PLY, VTK).
-Several input files give meshes with the same numbers, in place of the star or before the ending.
-
-Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
-particle radius is half of the particle spacing.";
+  splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02";
 
 /// Options of `surface`.
 #[derive(Debug, Args)]
-#[command(after_help = SURFACE_EXAMPLES)]
+#[command(after_help = after_help())]
 pub struct SurfaceArguments {
     /// Particle files, patterns with * and ?, or a folder with one series of files
     #[arg(value_name = "PARTICLES", required = true)]
@@ -53,7 +67,6 @@ pub struct SurfaceArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = particles_of_a_blob)]
     pub min_blob: f64,
     /// Interpolate this attribute of the particles to the vertices, or `all` of them; may be repeated
-    /// (PLY, VTK)
     #[arg(short, long, value_name = "NAME|all")]
     pub attribute: Vec<String>,
     #[command(flatten)]

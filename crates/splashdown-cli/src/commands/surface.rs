@@ -8,11 +8,12 @@ use splashdown::sample::typical_spacing;
 use splashdown::surface::{SurfaceError, SurfaceParams, interpolate, reconstruct, remove_small_components};
 use splashdown_gpu::Executor;
 use splashdown_io::{
-    IoError, Mesh, PARTICLE_FORMATS_READ, Particles, Topology, mesh, prepare_folder, read_all, read_particles,
+    Format, IoError, Mesh, Particles, Topology, prepare_folder, read_particles,
+    read_particles_with_attributes, write_mesh,
 };
 use splashdown_run::sequence::{self, Step};
 
-use crate::args::SurfaceArguments;
+use crate::args::{SurfaceArguments, is_mesh_file};
 use crate::exit::{Exit, Failure};
 use crate::{attributes, console, human, memory};
 
@@ -57,11 +58,11 @@ struct Place {
 /// Reconstructs the meshes.
 pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let start_memory = memory::resident();
-    let inputs = sequence::expand(&arguments.particles, PARTICLE_FORMATS_READ)?;
+    let inputs = sequence::expand(&arguments.particles, &Format::endings(Format::reads_particles))?;
     let steps = sequence::steps(inputs, &arguments.out)?;
     for Step { output, .. } in &steps {
         mesh_format(output, &arguments.out)?;
-        attributes::check_format(&arguments.attribute, output, &ending(output))?;
+        attributes::check_format(&arguments.attribute, output)?;
     }
     let spacing = spacing(arguments, &steps)?;
     let mut params = SurfaceParams::new(spacing);
@@ -114,13 +115,13 @@ fn one(
     } else {
         0
     };
-    if !particles.velocities.is_empty() && holds_velocities(output) {
+    if !particles.velocities.is_empty() && Format::of(output).is_some_and(Format::has_velocities) {
         let Particles { positions, velocities, .. } = &particles;
         surface.velocities = interpolate(&surface.vertices, positions, velocities, params)?;
     }
     attributes::put(&mut surface, &chosen, &particles.positions, params)?;
     let topology = surface.topology()?;
-    mesh::write(output, &surface)?;
+    write_mesh(output, &surface)?;
     let line = Line {
         input,
         output,
@@ -200,7 +201,10 @@ fn conclude(
 
 /// Unreadable input has another exit code than unwritable output.
 fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure> {
-    let particles = if arguments.attribute.is_empty() { read_particles(path) } else { read_all(path) };
+    let particles = match arguments.attribute[..] {
+        [] => read_particles(path),
+        _ => read_particles_with_attributes(path),
+    };
     particles.map_err(|error| Failure::new(Exit::Scene, error.to_string()))
 }
 
@@ -267,21 +271,9 @@ fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure>
 
 /// Checks that the name of a mesh has a known format before anything is computed.
 fn mesh_format(output: &Path, given: &Path) -> Result<(), Failure> {
-    let ending = ending(output);
-    if mesh::FORMATS.iter().any(|format| *format == ending) {
+    if Format::of(output).is_some_and(is_mesh_file) {
         return Ok(());
     }
-    let error = IoError::UnknownFormat { path: given.to_owned(), allowed: mesh::FORMATS };
+    let error = IoError::UnknownFormat { path: given.to_owned(), allowed: Format::endings(is_mesh_file) };
     Err(Failure::new(Exit::Usage, error.to_string()))
-}
-
-fn holds_velocities(path: &Path) -> bool {
-    matches!(ending(path).as_str(), ".ply" | ".vtk" | ".glb")
-}
-
-/// The ending of a name in lower case, with its dot.
-fn ending(path: &Path) -> String {
-    path.extension()
-        .map(|ending| format!(".{}", ending.to_string_lossy().to_ascii_lowercase()))
-        .unwrap_or_default()
 }

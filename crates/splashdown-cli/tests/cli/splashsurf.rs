@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
-use splashdown_io::{Particles, particles};
+use splashdown_io::{Particles, write_particles};
 
 use crate::place::{Outcome, Place, stderr};
 
@@ -30,7 +30,7 @@ fn fluid() -> Particles {
     let lattice = (0..16 * 16 * 16).map(|i| [i % 16, i / 16 % 16, i / 256].map(|c| c as f32));
     let mut positions: Vec<[f32; 3]> = lattice.map(|p| p.map(|c| SPACING * (c + 0.4 * unit()))).collect();
     positions.extend((0..30).map(|_| [unit() + 0.4, 0.5 * unit() + 1.2, unit() + 0.4]));
-    Particles { positions, ..Particles::default() }
+    Particles::from_positions(positions)
 }
 
 /// As in the tests of `splashdown-io`: the environment of `cargo xtask`, one that is named, or the system's.
@@ -69,7 +69,7 @@ fn compare(
 #[test]
 fn the_surface_is_splashsurfs() -> Outcome {
     let place = Place::new()?;
-    particles::write(&place.path("fluid.ply"), &fluid())?;
+    write_particles(&place.path("fluid.ply"), &fluid())?;
     let spacing = SPACING.to_string();
     for smoothing in [0, 10] {
         let rounds = smoothing.to_string();

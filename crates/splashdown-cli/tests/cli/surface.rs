@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
-use splashdown_io::{Mesh, Particles, particles, ply, read_mesh};
+use splashdown_io::{Mesh, Particles, ply, read_mesh, write_particles};
 
 use crate::place::{Outcome, Place, assert_refused, stderr, stdout};
 
@@ -16,7 +16,8 @@ type Case<'a> = (&'a str, &'a str, &'a [&'a str], i32, &'a [&'a str]);
 fn block(at: [f32; 3]) -> Particles {
     let places = (0..12 * 12 * 12).map(|i| [i % 12, i / 12 % 12, i / 144].map(|c| SPACING * c as f32));
     let positions: Vec<_> = places.map(|p| std::array::from_fn(|axis| at[axis] + p[axis])).collect();
-    Particles { velocities: vec![[1.0, 0.5, -2.0]; positions.len()], positions, ..Particles::default() }
+    let velocities = vec![[1.0, 0.5, -2.0]; positions.len()];
+    Particles::from_positions(positions).with_velocities(velocities)
 }
 
 fn with_drops(mut block: Particles, drops: usize) -> Particles {
@@ -30,7 +31,7 @@ fn with_drops(mut block: Particles, drops: usize) -> Particles {
 #[test]
 fn a_file_becomes_a_closed_mesh_with_velocities() -> Outcome {
     let place = Place::new()?;
-    particles::write(&place.path("block.vtk"), &with_drops(block([0.0; 3]), 3))?;
+    write_particles(&place.path("block.vtk"), &with_drops(block([0.0; 3]), 3))?;
     let arguments =
         ["surface", "block.vtk", "-o", "new/mesh.ply", "--particle-spacing", "0.02", "--device", "cpu"];
     let output = place.splashdown(&arguments).output()?;
@@ -129,7 +130,7 @@ fn a_series_becomes_a_series() -> Outcome {
     fs::create_dir(place.path("frames"))?;
     for number in [9, 10, 11] {
         let name = format!("frames/fluid_{number}.npz");
-        particles::write(&place.path(&name), &block([0.1 * number as f32, 0.0, 0.0]))?;
+        write_particles(&place.path(&name), &block([0.1 * number as f32, 0.0, 0.0]))?;
     }
     for given in ["frames", "frames/fluid_*.npz"] {
         let options = ["--particle-spacing", "0.02", "--device", "cpu", "-q"];
@@ -151,15 +152,15 @@ fn a_series_becomes_a_series() -> Outcome {
 #[test]
 fn errors_are_reported_before_anything_is_written() -> Outcome {
     let place = Place::new()?;
-    particles::write(&place.path("block.ply"), &block([0.0; 3]))?;
+    write_particles(&place.path("block.ply"), &block([0.0; 3]))?;
     fs::write(place.path("empty.xyz"), "")?;
     fs::write(place.path("broken.xyz"), "0 0 0\n0 0 nan\n")?;
     fs::write(place.path("two.xyz"), "0 0 0\n0 0 1\n")?;
     fs::write(place.path("notes.txt"), "words")?;
     let spacing = ["--particle-spacing", "0.02"];
     let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let face = Mesh { vertices: corners, triangles: vec![[0, 1, 2]], ..Mesh::default() };
-    splashdown_io::mesh::write(&place.path("mesh.ply"), &face)?;
+    let face = Mesh::new(corners, vec![[0, 1, 2]]);
+    splashdown_io::write_mesh(&place.path("mesh.ply"), &face)?;
     let cases: [Case<'_>; 18] = [
         ("absent.ply", "m.ply", &spacing, 3, &["absent.ply"]),
         ("notes.txt", "m.ply", &spacing, 3, &["notes.txt", ".bgeo", ".xyz"]),

@@ -1,14 +1,14 @@
-//! BGEO, Houdini's classic binary geometry (version 5), in which SPlisHSPlasH and `splashsurf` keep particles:
-//! a reader and a writer.
+//! BGEO, Houdini's classic binary geometry (version 5), in which SPlisHSPlasH and `splashsurf` store particles: a reader
+//! and a writer.
 //!
-//! Big-endian: counts, descriptions of the attributes, then one row for each point: x y z w and the attributes.
-//! Files may be packed by gzip as a whole, which SPlisHSPlasH does without saying so in the name. *Why own
-//! code:* no crate reads it but `splashsurf_lib`, which brings a whole surface reconstruction along; the tests
-//! hold a file of its writer.
+//! The format is big-endian: counts, descriptions of the attributes, then one row per point with x y z w and the
+//! attributes. The whole file may be compressed by gzip; SPlisHSPlasH does so without `.gz` in the name.
+//!
+//! *Why own code:* the only crate that reads it is `splashsurf_lib`, a whole surface reconstruction. The tests read a
+//! file written by it.
 
 mod read;
 mod write;
 
 pub(crate) use read::read;
-pub use read::read_particles;
-pub use write::{write_particles, write_particles_to};
+pub use write::write_particles_to;

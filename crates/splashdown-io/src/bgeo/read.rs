@@ -12,22 +12,12 @@ use crate::number::{Cells, Number};
 use crate::particles::Particles;
 use crate::read::{MOST, regular};
 
-/// Most bytes of a row, and most attributes: far beyond any real file, so that the numbers of a broken one need no
-/// memory to speak of.
+/// The largest size of a row in bytes: far more than in real files, so that a malformed header cannot cause a large
+/// allocation.
 const MOST_ROW: usize = 1 << 16;
 
-/// Rows that are decoded at a time.
+/// Rows decoded at a time.
 const ROWS: usize = 1024;
-
-/// Reads the points of a BGEO file: positions, and where they are there `velocity` (`v`), `density`, `pressure` and
-/// `id`. Primitives are passed over.
-///
-/// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`] where the file is another version or format, or cut short;
-/// [`IoError::TooMany`].
-pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
-    read(path, Wanted::Known)
-}
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     regular(path)?;
@@ -58,7 +48,7 @@ impl From<String> for Reason {
     }
 }
 
-/// An attribute that is wanted: which, where in the row, how many numbers, of which type.
+/// An attribute to read: its name, byte in the row, number of components and their type.
 struct Place {
     name: String,
     at: usize,
@@ -96,7 +86,7 @@ fn parse(file: &mut impl Read, wanted: Wanted) -> Result<Particles, Reason> {
     rows(file, points, row, wanted, &places)
 }
 
-/// Reads the description of one attribute that begins at byte `at` of a row; returns its bytes in the row.
+/// Reads the description of the attribute at byte `at` of a row; returns its size in the row, in bytes.
 fn attribute(
     file: &mut impl Read,
     number: usize,
@@ -110,10 +100,12 @@ fn attribute(
     let kind = match word(file, what)? {
         0 | 5 => Some(Number::F32),
         1 => Some(Number::I32),
-        // Numbers of strings, which follow instead of default values.
+        // Indices of strings, which follow instead of default values.
         4 => None,
         kind => {
-            return Err(format!("attribute {number} (`{name}`) is of type {kind}, known are 0, 1, 4 and 5"));
+            return Err(format!(
+                "attribute {number} (`{name:.24}`) is of type {kind}, but only types 0, 1, 4 and 5 are read"
+            ));
         }
     };
     if let Some(kind) = kind {
@@ -122,7 +114,7 @@ fn attribute(
         }
         if wanted.has(&name, components) {
             let is_id = Column::named(&name, components) == Some(Column::Id);
-            // The format has signed integers only; ids of its upper half are told by their bits.
+            // The format has only signed integers; larger ids are stored in their bits.
             let number = if is_id && kind == Number::I32 { Number::U32 } else { kind };
             places.push(Place { name, at, components, number });
         }
@@ -148,7 +140,7 @@ fn rows(
         file.read_exact(bytes).map_err(|error| {
             cut(
                 &error,
-                &format!("its header promises {points} points, the data ends after {first} or a few more"),
+                &format!("its header promises {points} points, but the data ends after about {first}"),
             )
         })?;
         let numbers = |number: Number, at, components| {
@@ -180,7 +172,7 @@ fn text(file: &mut impl Read, what: &str) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// An end too early, or what the gzip decoder says.
+/// A message for a premature end, or of the gzip decoder.
 fn cut(error: &io::Error, place: &str) -> String {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => format!("it was cut short: {place}"),

@@ -1,42 +1,28 @@
-//! The writer: unpacked, because packing takes longer than the disk.
+//! The writer, without compression, which takes longer than writing.
 
 use std::io::{self, Write};
-use std::path::Path;
 
-use crate::atomic;
-use crate::data::Particles;
-use crate::error::IoError;
+use crate::particles::Particles;
 
-/// Points gathered before each write.
+/// Points per write.
 const ROWS: usize = 2048;
 
-/// An attribute as the header describes it, with the words of one point.
+/// An attribute as described in the header, with its data.
 struct Attribute<'a> {
     name: &'static str,
-    /// 0 is a number, 1 an integer, 5 a vector.
+    /// 0: float, 1: integer, 5: vector.
     kind: i32,
     components: usize,
     words: &'a [u32],
 }
 
-/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// Attributes that are present become `v` (Houdini's name of the velocity, by which it blurs motion),
-/// `density`, `pressure` and `id`.
+/// Writes particles to `out`. Attributes that are present become `v` (Houdini's name of the velocity, used for motion
+/// blur), `density`, `pressure` and `id`.
 ///
 /// # Errors
-/// Those of [`Particles::check`]; [`IoError::Write`].
-pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
-    particles.check()?;
-    atomic::write(path, |out| write_particles_to(out, particles))
-}
-
-/// Writes particles that pass [`Particles::check`] into any writer.
-///
-/// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
-    particles.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    particles.check()?;
     let attribute = |name, kind, components, words| Attribute { name, kind, components, words };
     let mut attributes = vec![
         attribute("v", 5, 3, bytemuck::cast_slice(&particles.velocities)),
@@ -57,7 +43,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         out.write_all(name.as_bytes())?;
         out.write_all(&(*components as u16).to_be_bytes())?;
         out.write_all(&kind.to_be_bytes())?;
-        // What a point has that has none.
+        // The default value.
         out.write_all(&[0; 12][..4 * components])?;
     }
     let mut buffer = Vec::with_capacity(ROWS * 4 * 10);
@@ -73,6 +59,6 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         }
         out.write_all(&buffer)?;
     }
-    // No more groups, and the end.
+    // No extra data, then the end marker.
     out.write_all(&[0, 0xff])
 }

@@ -1,10 +1,10 @@
-//! What the readers of particle files share: the meaning of an array's name, and numbers of any type.
+//! The meaning of the arrays in particle files, shared by the readers.
 
 use crate::attribute::Attribute;
 use crate::number::whole;
 use crate::particles::Particles;
 
-/// The arrays that mean something here.
+/// The arrays that have a field in [`Particles`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Column {
     Velocity,
@@ -14,7 +14,7 @@ pub(crate) enum Column {
 }
 
 impl Column {
-    /// The meaning of an array by its name, in any case, and the count of its components.
+    /// The meaning of an array with this name, in any case, and this number of components.
     pub(crate) fn named(name: &str, components: usize) -> Option<Self> {
         let column = match name.to_ascii_lowercase().as_str() {
             "velocity" | "velocities" | "vel" | "v" | "u" => Self::Velocity,
@@ -26,7 +26,7 @@ impl Column {
         (components == if column == Self::Velocity { 3 } else { 1 }).then_some(column)
     }
 
-    /// Appends values to the array of this meaning.
+    /// Appends values to the field.
     pub(crate) fn append(self, particles: &mut Particles, values: &[f64]) -> Result<(), String> {
         let floats = || values.iter().map(|&value| value as f32);
         match self {
@@ -35,9 +35,11 @@ impl Column {
             Self::Pressure => particles.pressures.extend(floats()),
             Self::Id => {
                 for &value in values {
-                    particles.ids.push(whole(value).ok_or_else(|| {
-                        format!("the id {value} is not a whole number from 0 to {}", u32::MAX)
-                    })?);
+                    particles.ids.push(
+                        whole(value).ok_or_else(|| {
+                            format!("the id {value} is not an integer from 0 to {}", u32::MAX)
+                        })?,
+                    );
                 }
             }
         }
@@ -48,19 +50,19 @@ impl Column {
 /// Which arrays of a file are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Those that mean something here.
+    /// Those that have a field in [`Particles`].
     Known,
-    /// All others too, as attributes.
+    /// All; they are also stored as attributes.
     All,
 }
 
 impl Wanted {
-    /// Whether this array is one of them.
+    /// Whether an array is read.
     pub(crate) fn has(self, name: &str, components: usize) -> bool {
         Column::named(name, components).is_some() || self == Self::All && matches!(components, 1 | 3)
     }
 
-    /// Appends values to the arrays that they belong to.
+    /// Appends values to the field and the attribute that they belong to.
     pub(crate) fn append(
         self,
         particles: &mut Particles,
@@ -84,7 +86,7 @@ impl Wanted {
     }
 }
 
-/// Rows of three.
+/// Vectors from three adjacent numbers each.
 pub(crate) fn triples(values: &[f64]) -> impl Iterator<Item = [f32; 3]> + '_ {
     values.chunks_exact(3).map(|row| [row[0] as f32, row[1] as f32, row[2] as f32])
 }

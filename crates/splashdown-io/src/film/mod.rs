@@ -1,11 +1,11 @@
-//! A film (H.264 in MP4) by an `ffmpeg` child that gets raw pictures through a pipe.
+//! A film (H.264 in MP4), encoded by an `ffmpeg` child process that gets raw pictures through a pipe.
 //!
-//! **How it works.** The pictures go through a thread that owns the pipe, and what `ffmpeg` says is read by another:
-//! neither pipe can fill up and stop both sides. A child that dies breaks the pipe, which is an error here and not a
-//! signal; one that stands still longer than a limit is killed. The film appears under its name when it is complete.
+//! **How it works.** One thread writes pictures to the pipe; another reads the messages of `ffmpeg`, so that no full
+//! pipe can block both processes. If the child ends early the pipe breaks, which is reported as an error; a child that
+//! does not respond within a time limit is killed. The film gets its name when it is complete.
 //!
-//! **Why not a library.** Bindings to libav need its headers on every machine that builds this; an encoder in Rust
-//! of this quality does not exist. Whoever has no `ffmpeg` keeps the pictures and is told the command for later.
+//! **Why not a library.** Bindings to libav need its headers on every build machine; there is no encoder in Rust of this
+//! quality. Without `ffmpeg` the pictures are still written, and a message gives the command that makes the film.
 
 use std::ffi::OsString;
 use std::io::{self, Read, Write};
@@ -22,33 +22,33 @@ pub use crate::error::FilmError;
 use crate::atomic::Temporary;
 use crate::picture::Picture;
 
-/// How much of the child's talk is kept for the error message.
+/// Bytes of the child's messages that are stored for an error.
 const LOG_TAIL: usize = 2000;
 
-/// Between two looks at the child or the queue.
+/// Time between two checks of the child or the queue.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// What film to make, and of what.
+/// Options of a film.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmOptions {
-    /// The film's name, ending in `.mp4`.
+    /// The film's file, ending in `.mp4`.
     pub path: PathBuf,
-    /// Width of every picture in pixels. An odd width or height gets one black column or row more.
+    /// Width of every picture in pixels. An odd width or height is padded by a black column or row.
     pub width: u32,
     /// Height of every picture in pixels.
     pub height: u32,
     /// Pictures per second.
     pub frame_rate: f64,
-    /// The pictures' names with a `%04d` for their number; only for the hint how to make the film by hand.
+    /// The pictures' file names with `%04d` for their number, for the command in error messages.
     pub pictures: String,
-    /// The program; `ffmpeg` is looked for in PATH.
+    /// The program; `ffmpeg` is searched in PATH.
     pub program: PathBuf,
-    /// How long the program may take no picture, or take to end, before it is stopped.
+    /// Time limit for the program to accept a picture, or to end.
     pub stall_limit: Duration,
 }
 
 impl FilmOptions {
-    /// A film of `ffmpeg`'s with two minutes of patience.
+    /// Options for `ffmpeg` with a time limit of two minutes.
     #[must_use]
     pub fn new(
         path: impl Into<PathBuf>,
@@ -80,7 +80,7 @@ impl FilmOptions {
     }
 
     fn later(&self) -> String {
-        format!("The pictures are complete; this makes the film from them: {}", self.command_by_hand())
+        format!("The pictures are complete; this command makes the film: {}", self.command_by_hand())
     }
 
     fn system(&self, path: &Path, error: &io::Error) -> FilmError {
@@ -93,12 +93,12 @@ impl FilmOptions {
         command.args(["-f", "rawvideo", "-pixel_format", "rgba"]);
         command.args(["-video_size", &format!("{}x{}", self.width, self.height)]);
         command.args(["-framerate", &self.frame_rate.to_string(), "-i", "pipe:0"]);
-        // Frames are encoded beside the simulation, so the encoder is told to hurry (50 pictures of 720p: 0.8 s on two
-        // cores); 18 is the quality at which losses are hard to see.
+        // The fast preset leaves the cores to the simulation (50 pictures of 720p: 0.8 s on two cores). At quality 18,
+        // losses are hard to see.
         command.args(["-vf", FILTER, "-c:v", "libx264", "-preset", "veryfast", "-crf", "18"]);
         command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]);
         command.args(["-movflags", "+faststart", "-f", "mp4"]);
-        // The prefix keeps a name with a colon or a leading dash from being taken for something else.
+        // The prefix prevents that a name with a colon or a leading dash is parsed as a protocol or an option.
         let mut file = OsString::from("file:");
         file.push(output);
         command.arg(file);
@@ -107,11 +107,11 @@ impl FilmOptions {
     }
 }
 
-/// H.264 in 4:2:0 wants even sizes; players take untagged HD for BT.709, so that is the matrix used.
+/// H.264 in 4:2:0 needs even sizes; players assume BT.709 for HD.
 const FILTER: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
-/// A film in the making. Share it by `Arc`: pictures come from the writer's thread ([`crate::Job::Film`]), the end
-/// from whoever started it. Dropped unfinished, it leaves no file and no child.
+/// A film that is being made. It is shared by `Arc`: the writer's thread adds pictures ([`crate::Job::Film`]), and its
+/// owner finishes it. If it is dropped unfinished, no file and no child process remain.
 #[derive(Debug)]
 pub struct Film {
     options: FilmOptions,
@@ -125,7 +125,7 @@ enum State {
 }
 
 impl Film {
-    /// Finds the program, asks whether it can encode H.264, and starts it.
+    /// Starts the program, after checking that it exists and can encode H.264.
     ///
     /// # Errors
     /// [`FilmError::NotInstalled`], [`FilmError::NoH264`], [`FilmError::Options`] or [`FilmError::System`].
@@ -150,8 +150,8 @@ impl Film {
         Ok(Self { state: Mutex::new(State::Running(encoder)), options })
     }
 
-    /// Adds a picture; waits while the encoder is busy with the last one. A failure ends the film and is kept for
-    /// [`Film::finish`]; pictures that come after it are ignored.
+    /// Adds a picture; blocks while the encoder is busy. A failure ends the film and is reported by [`Film::finish`];
+    /// later pictures are ignored.
     pub fn push(&self, picture: &Arc<Picture>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let State::Running(encoder) = &mut *state else { return };
@@ -160,7 +160,7 @@ impl Film {
         }
     }
 
-    /// Ends the film and gives it its name; returns its size in bytes. A second call returns the same.
+    /// Completes the film and renames it; returns its size in bytes. A second call returns the same.
     ///
     /// # Errors
     /// The first failure since the start.
@@ -176,15 +176,15 @@ impl Film {
         }
     }
 
-    /// What the film was asked to be.
+    /// The options of the film.
     #[must_use]
     pub fn options(&self) -> &FilmOptions {
         &self.options
     }
 }
 
-/// The child and the two threads that serve its pipes. The threads are not joined: they end with the pipes, and a
-/// grandchild (a wrapper's real program) that outlives a killed child would keep those open.
+/// The child and the two threads of its pipes. The threads are not joined: they end with the pipes, which stay open if a
+/// killed child (a wrapper script) leaves a process behind.
 #[derive(Debug)]
 struct Encoder {
     child: Child,
@@ -248,7 +248,7 @@ impl Encoder {
         if self.pushed == 0 {
             return Err(FilmError::Empty);
         }
-        // With the queue the pipe is closed, which is how the child learns that this was all.
+        // Closing the queue closes the pipe, which tells the child that there are no more pictures.
         drop(self.pictures.take());
         let Some(status) = self.wait(options.stall_limit) else { return Err(self.stalled(options)) };
         if !status.success() || self.delivered.load(Ordering::Acquire) != self.pushed {
@@ -258,7 +258,7 @@ impl Encoder {
         named.map(|data| data.len()).map_err(|error| options.system(&options.path, &error))
     }
 
-    /// The child's exit status, if it ends within the limit.
+    /// The child's exit status, if it ends within the time limit.
     fn wait(&mut self, limit: Duration) -> Option<ExitStatus> {
         let deadline = Instant::now() + limit;
         loop {
@@ -276,7 +276,7 @@ impl Encoder {
         FilmError::Died {
             program: options.program.clone(),
             status,
-            log: self.last_words(),
+            log: self.last_messages(),
             later: options.later(),
         }
     }
@@ -286,20 +286,20 @@ impl Encoder {
         FilmError::Stalled {
             program: options.program.clone(),
             seconds: options.stall_limit.as_secs_f64(),
-            log: self.last_words(),
+            log: self.last_messages(),
             later: options.later(),
         }
     }
 
-    /// The end of what the child said, on one line. It has ended, so the listener is given a moment to hear all.
-    fn last_words(&self) -> String {
+    /// The end of the child's messages, on one line. The child has ended; the listener gets a second to read the rest.
+    fn last_messages(&self) -> String {
         let deadline = Instant::now() + Duration::from_secs(1);
         while !self.listener.is_finished() && Instant::now() < deadline {
             thread::sleep(PAUSE);
         }
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         let words = String::from_utf8_lossy(&log).split_whitespace().collect::<Vec<_>>().join(" ");
-        if words.is_empty() { "it said nothing".to_owned() } else { words }
+        if words.is_empty() { "it printed no message".to_owned() } else { words }
     }
 }
 
@@ -311,12 +311,12 @@ impl Drop for Encoder {
 
 /// Kills and reaps the child; harmless if it has ended.
 fn stop(child: &mut Child) {
-    // Both can fail only where the child is gone already.
+    // Both fail only if the child has already ended.
     let _ = child.kill();
     let _ = child.wait();
 }
 
-/// The feeding thread: ends when the queue or the pipe does.
+/// The feeding thread, which ends with the queue or the pipe.
 fn feed(stdin: Option<ChildStdin>, queue: &Receiver<Arc<Picture>>, delivered: &AtomicU64) {
     let Some(mut stdin) = stdin else { return };
     for picture in queue {
@@ -327,7 +327,7 @@ fn feed(stdin: Option<ChildStdin>, queue: &Receiver<Arc<Picture>>, delivered: &A
     }
 }
 
-/// The listening thread: keeps the end of what the child says.
+/// The listening thread, which stores the end of the child's messages.
 fn listen(stderr: Option<ChildStderr>, log: &Mutex<Vec<u8>>) {
     let Some(mut stderr) = stderr else { return };
     let mut buffer = [0; 1024];

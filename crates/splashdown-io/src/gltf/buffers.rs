@@ -1,4 +1,4 @@
-//! The arrays of a glTF file: where their bytes are, and how they are read from there with every number checked.
+//! Reads the arrays of a glTF file, with every offset and count checked.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -6,17 +6,17 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::document::{Accessor, Document, shown};
+use super::document::{Accessor, Document};
 use crate::error::IoError;
 use crate::input::content;
 
-/// The types of an array's numbers, as the format counts them.
+/// Number types of the format.
 const U8: u32 = 5121;
 const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// The buffers of a file, read when they are first asked for: those of pictures and animations never are.
+/// The buffers of a file, each read on first use; those of pictures and animations are not used.
 pub(super) struct Buffers<'a> {
     path: &'a Path,
     document: &'a Document,
@@ -29,7 +29,7 @@ impl<'a> Buffers<'a> {
         Self { path, document, blob, loaded: vec![None; document.buffers.len()] }
     }
 
-    /// Positions: three floats each.
+    /// Reads positions.
     pub(super) fn positions(&mut self, index: usize) -> Result<Vec<[f32; 3]>, IoError> {
         let accessor = self.accessor(index)?;
         if (accessor.component_type, accessor.shape.as_str()) != (F32, "VEC3") {
@@ -38,7 +38,7 @@ impl<'a> Buffers<'a> {
         self.rows(index, 12, bytemuck::pod_read_unaligned)
     }
 
-    /// Vertex numbers of any of the three sizes.
+    /// Reads vertex numbers of 1, 2 or 4 bytes.
     pub(super) fn indices(&mut self, index: usize) -> Result<Vec<u32>, IoError> {
         let accessor = self.accessor(index)?;
         match (accessor.component_type, accessor.shape.as_str()) {
@@ -52,28 +52,27 @@ impl<'a> Buffers<'a> {
     fn accessor(&self, index: usize) -> Result<&'a Accessor, IoError> {
         let accessors = &self.document.accessors;
         accessors.get(index).ok_or_else(|| {
-            self.malformed(format!("it names array {index}, but holds {} (from 0)", accessors.len()))
+            self.malformed(format!("it uses array {index}, but has {} (numbered from 0)", accessors.len()))
         })
     }
 
     fn not_read(&self, index: usize, what: &str, read: &str) -> IoError {
         let (kind, shape) =
             self.document.accessors.get(index).map_or((0, ""), |a| (a.component_type, &a.shape));
-        let shape = shown(shape);
         self.malformed(format!(
-            "the {what} in array {index} are {shape} of type {kind}, only {read} are read"
+            "the {what} in array {index} are {shape:.80} of type {kind}, but only {read} are read"
         ))
     }
 
-    /// The rows of an array, each handed to `read` with its `size` bytes. The numbers are the file's, so all of it is
-    /// in checked arithmetic.
+    /// Reads the rows of an array, each with `size` bytes, by `read`. Offsets and counts come from the file, so the
+    /// arithmetic is checked.
     fn rows<T>(&mut self, index: usize, size: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, IoError> {
         let accessor = self.accessor(index)?;
         let (count, offset) = (accessor.count, accessor.byte_offset);
         if accessor.sparse.is_some() {
-            return Err(
-                self.malformed(format!("array {index} is sparse, which is not read; export it plain"))
-            );
+            return Err(self.malformed(format!(
+                "array {index} is sparse, which is not supported; export it without sparse arrays"
+            )));
         }
         let view = accessor.buffer_view.and_then(|view| self.document.buffer_views.get(view));
         let Some(view) = view else {
@@ -93,7 +92,7 @@ impl<'a> Buffers<'a> {
         let (Some(part), Some(_)) = (part, needed) else {
             let held = bytes.len();
             return Err(self.malformed(format!(
-                "array {index} ({count} of {size} bytes) does not fit into its part of buffer {}, which has {held} bytes",
+                "array {index} ({count} rows of {size} bytes) does not fit into its part of buffer {}, which has {held} bytes",
                 view.buffer
             )));
         };
@@ -102,14 +101,15 @@ impl<'a> Buffers<'a> {
 
     fn bytes(&mut self, index: usize) -> Result<&[u8], IoError> {
         let Some(buffer) = self.document.buffers.get(index) else {
-            return Err(
-                self.malformed(format!("it names buffer {index}, but holds {} (from 0)", self.loaded.len()))
-            );
+            return Err(self.malformed(format!(
+                "it uses buffer {index}, but has {} (numbered from 0)",
+                self.loaded.len()
+            )));
         };
         if self.loaded[index].is_none() {
             let bytes = match &buffer.uri {
                 Some(uri) => Cow::Owned(self.fetch(index, uri)?),
-                // The binary form's own buffer is the first.
+                // The buffer inside a binary file is the first one.
                 None => Cow::Borrowed(
                     self.blob
                         .filter(|_| index == 0)
@@ -128,7 +128,7 @@ impl<'a> Buffers<'a> {
         Ok(self.loaded[index].as_deref().unwrap_or_default())
     }
 
-    /// A buffer in the JSON itself, or in a file beside it.
+    /// Reads a buffer in the JSON, or in another file in the same folder.
     fn fetch(&self, index: usize, uri: &str) -> Result<Vec<u8>, IoError> {
         if let Some(data) = uri.strip_prefix("data:") {
             let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
@@ -138,20 +138,19 @@ impl<'a> Buffers<'a> {
         }
         if uri.contains("://") {
             return Err(self.malformed(format!(
-                "buffer {index} lies at `{}`; put the file beside and name it alone",
-                shown(uri)
+                "buffer {index} is at `{uri:.80}`; save it to the same folder and refer to it by its file name"
             )));
         }
         content(&self.path.with_file_name(unescaped(uri)))
     }
 
-    /// An error about the file.
+    /// An error of the file.
     pub(super) fn malformed(&self, reason: String) -> IoError {
         IoError::malformed(self.path, "glTF", reason)
     }
 }
 
-/// A file name as it is, from one in which other bytes than letters and digits may be written `%20`.
+/// Decodes a file name in which bytes may be written like `%20`.
 fn unescaped(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

@@ -1,8 +1,8 @@
-//! What is needed of a glTF file's JSON, and the frame of the binary form around it.
+//! The parts of a glTF file's JSON that the reader needs, and the chunks of the binary form.
 
 use serde::Deserialize;
 
-/// The parts of a document that place and hold triangles. Everything else in the JSON is passed over.
+/// The fields of a document that define triangles and their positions. Others are ignored.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document {
@@ -64,7 +64,7 @@ pub(super) struct Attributes {
     pub(super) position: Option<usize>,
 }
 
-/// An array inside a part of a buffer.
+/// An array in a part of a buffer.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
@@ -97,31 +97,32 @@ pub(super) struct Buffer {
 }
 
 impl Document {
-    /// Reads a file of either form; returns the document and the buffer of the binary form.
+    /// Reads a text or binary file; returns the document and the buffer of a binary file.
     pub(super) fn parse(bytes: &[u8]) -> Result<(Self, Option<&[u8]>), String> {
         let (json, blob) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
         let document: Self = serde_json::from_slice(json).map_err(|error| error.to_string())?;
         let version = &document.asset.version;
         if !version.starts_with("2.") {
-            return Err(format!("its version is `{}`, version 2 is read", shown(version)));
+            return Err(format!("its version is `{version:.80}`, only version 2 is read"));
         }
-        // Of the extensions that a file may require only these change where its triangles are.
+        // Only these required extensions change the triangles.
         let changes = |name: &&String| name.contains("compression") || name.contains("quantization");
         if let Some(name) = document.extensions_required.iter().find(changes) {
-            let name = shown(name);
-            return Err(format!("its geometry is packed by `{name}`, which is not read; export it without"));
+            return Err(format!(
+                "its geometry is compressed by `{name:.80}`, which is not supported; export it without compression"
+            ));
         }
         Ok((document, blob))
     }
 }
 
-/// The JSON and the buffer of the binary form: a header of 12 bytes, then chunks of length, kind and data.
+/// The JSON and the buffer of a binary file: a header of 12 bytes, then chunks of length, kind and data.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    let cut = || format!("it was cut short: its parts need more than its {} bytes", bytes.len());
+    let cut = || format!("it was cut short: its chunks need more than its {} bytes", bytes.len());
     let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..at.checked_add(4)?)?.first_chunk()?));
     let (version, total) = (word(4).ok_or_else(cut)?, word(8).ok_or_else(cut)? as usize);
     if version != 2 {
-        return Err(format!("the version of its binary form is {version}, version 2 is read"));
+        return Err(format!("the version of its container is {version}, only version 2 is read"));
     }
     if total > bytes.len() {
         return Err(cut());
@@ -135,15 +136,10 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         match kind {
             b"JSON" => json = json.or(Some(data)),
             b"BIN\0" => blob = blob.or(Some(data)),
-            // A reader has to pass over kinds it does not know.
+            // Unknown kinds must be skipped.
             _ => {}
         }
         at = end;
     }
-    Ok((json.ok_or("it holds no JSON")?, blob))
-}
-
-/// The beginning of a word that may be a megabyte of garbage.
-pub(super) fn shown(word: &str) -> String {
-    word.chars().take(80).collect()
+    Ok((json.ok_or("it has no JSON chunk")?, blob))
 }

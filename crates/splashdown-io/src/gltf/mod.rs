@@ -1,19 +1,21 @@
-//! glTF 2.0, the format of web and game tools: JSON with buffers beside it or inside (`.gltf`), or one binary file
-//! (`.glb`): a reader of both and a writer of the second.
+//! glTF 2.0, the format of web and game tools: JSON with buffers inside or in other files (`.gltf`), or one binary file
+//! (`.glb`). A reader of both and a writer of binary files.
 //!
-//! All meshes of the default scene become one, each placed by its nodes. Materials, pictures, skins and animations
-//! are passed over; geometry that is packed by an extension (Draco, meshopt, quantised) is refused by name.
+//! The reader joins all meshes of the default scene (the first one if none is named), transformed by their nodes. A
+//! mirrored mesh gets its triangles flipped, so that they still face outwards. Vertices at the same position are merged,
+//! because glTF splits them where normals or texture coordinates differ. Materials, pictures, skins and animations are
+//! skipped; geometry compressed by an extension (Draco, meshopt, quantisation) is refused.
 //!
-//! *Why own code:* `gltf` 1.4 panics on files with a number out of range, in its check of the file already, and takes
-//! offsets and counts of arrays for true; a file's triangles need few of the format's fields. Format: Khronos,
-//! "glTF 2.0 Specification".
+//! *Why own code:* `gltf` 1.4 panics on files with a number out of range, even in its validation, and does not check
+//! offsets and counts of arrays; triangles need few of the format's fields. Format: Khronos, "glTF 2.0 Specification".
 
 mod buffers;
 mod document;
 mod transform;
 mod write;
 
-pub use write::{write_mesh, write_mesh_to};
+pub(crate) use write::write_mesh;
+pub use write::write_mesh_to;
 
 use std::path::Path;
 
@@ -24,19 +26,12 @@ use crate::data::Mesh;
 use crate::error::IoError;
 use crate::input::{MOST, Welder, content};
 
-/// The kinds of primitives that are surfaces, by their numbers in the format.
+/// Primitive modes of the format that are surfaces.
 const TRIANGLES: u32 = 4;
 const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
 
-/// Reads the meshes of the default scene (the first, where none is named) of a glTF file, as text or binary.
-///
-/// Node transforms are applied; one that mirrors turns the triangles' order round, so that they keep facing outwards.
-/// Vertices at the same place become one, because glTF cuts them apart where their normals or textures differ.
-///
-/// # Errors
-/// [`IoError::Read`] for the file or a buffer beside it; [`IoError::Malformed`]; [`IoError::TooMany`].
-pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
+pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let bytes = content(path)?;
     let malformed = |reason: String| IoError::malformed(path, "glTF", reason);
     let (document, blob) = Document::parse(&bytes).map_err(malformed)?;
@@ -44,7 +39,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     for (node, transform) in placed(&document).map_err(malformed)? {
         let Some(number) = node.mesh else { continue };
         let mesh = document.meshes.get(number).ok_or_else(|| {
-            malformed(format!("it names mesh {number}, but holds {} (from 0)", document.meshes.len()))
+            malformed(format!("it uses mesh {number}, but has {} (numbered from 0)", document.meshes.len()))
         })?;
         for primitive in &mesh.primitives {
             scene.add(number, primitive, &transform)?;
@@ -53,14 +48,14 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     Ok(scene.welder.into_mesh())
 }
 
-/// What has been read so far.
+/// The state of the reader.
 struct Scene<'a> {
     buffers: Buffers<'a>,
     welder: Welder,
 }
 
 impl Scene<'_> {
-    /// Adds one primitive of mesh `number`; points and lines are passed over.
+    /// Adds one primitive of mesh `number`; points and lines are skipped.
     fn add(&mut self, number: usize, primitive: &Primitive, transform: &Affine) -> Result<(), IoError> {
         let mode = primitive.mode.unwrap_or(TRIANGLES);
         let surface = matches!(mode, TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN);
@@ -78,11 +73,11 @@ impl Scene<'_> {
         }
         if mode == TRIANGLES && !corners.len().is_multiple_of(3) {
             return Err(self.buffers.malformed(format!(
-                "in mesh {number}: its {} corners are no whole number of triangles",
+                "in mesh {number}: the number of its corners, {}, is not a multiple of 3",
                 corners.len()
             )));
         }
-        // Many nodes may show one mesh, so the file's size bounds nothing.
+        // Many nodes may refer to one mesh, so the size of the file is no limit.
         let bounds = [
             ("vertices", self.welder.vertices() + positions.len()),
             ("triangles", self.welder.triangles() + corners.len()),
@@ -102,7 +97,7 @@ impl Scene<'_> {
             welder.push(if mirrored { [a, c, b] } else { [a, b, c] });
         };
         match (mode, corners.as_slice()) {
-            // Every other triangle of a strip runs the other way round.
+            // Every other triangle of a strip has the opposite orientation.
             (TRIANGLE_STRIP, _) => corners.windows(3).enumerate().for_each(|(number, t)| {
                 push(if number % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
             }),

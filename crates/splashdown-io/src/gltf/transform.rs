@@ -1,4 +1,4 @@
-//! Where the nodes of a scene put their meshes.
+//! The transforms of a scene's nodes.
 
 use super::document::{Document, Node};
 
@@ -7,25 +7,25 @@ pub(super) type Affine = [[f64; 4]; 3];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// The nodes of the default scene with their transforms into the scene's frame, parents before children.
+/// The nodes of the default scene with their transforms into the coordinates of the scene, parents before children.
 ///
-/// A node has one parent at most; a file that says otherwise could hold a ring, or a tree that doubles at each step.
+/// A node has at most one parent; otherwise a file could contain a cycle, or a graph with exponentially many paths.
 pub(super) fn placed(document: &Document) -> Result<Vec<(&Node, Affine)>, String> {
     let number = document.scene.unwrap_or(0);
     let scenes = document.scenes.len();
     let scene = document
         .scenes
         .get(number)
-        .ok_or_else(|| format!("its scene is number {number}, but it holds {scenes} (numbered from 0)"))?;
+        .ok_or_else(|| format!("its scene is number {number}, but it has {scenes} (numbered from 0)"))?;
     let mut seen = vec![false; document.nodes.len()];
     let mut open: Vec<(usize, Affine)> = scene.nodes.iter().map(|&node| (node, IDENTITY)).rev().collect();
     let mut placed = Vec::new();
     while let Some((index, parent)) = open.pop() {
         let Some(node) = document.nodes.get(index) else {
-            return Err(format!("it names node {index}, but holds {} (numbered from 0)", seen.len()));
+            return Err(format!("it uses node {index}, but has {} (numbered from 0)", seen.len()));
         };
         if std::mem::replace(&mut seen[index], true) {
-            return Err(format!("node {index} hangs below more than one node, or below itself"));
+            return Err(format!("node {index} is a child of more than one node, or of itself"));
         }
         let transform = product(&parent, &local(node));
         placed.push((node, transform));
@@ -34,7 +34,7 @@ pub(super) fn placed(document: &Document) -> Result<Vec<(&Node, Affine)>, String
     Ok(placed)
 }
 
-/// A node's own transform: a matrix by columns, or scale, then rotation (a quaternion x y z w), then translation.
+/// The transform of a node: a matrix by columns, or scale, then rotation (a quaternion x y z w), then translation.
 fn local(node: &Node) -> Affine {
     if let Some(columns) = node.matrix {
         return std::array::from_fn(|row| std::array::from_fn(|column| columns[4 * column + row]));
@@ -53,7 +53,7 @@ fn local(node: &Node) -> Affine {
     })
 }
 
-/// `parent` after `child`.
+/// The product of two matrices: `child` is applied first.
 fn product(parent: &Affine, child: &Affine) -> Affine {
     parent.map(|row| {
         std::array::from_fn(|column| {
@@ -63,13 +63,13 @@ fn product(parent: &Affine, child: &Affine) -> Affine {
     })
 }
 
-/// Where a position goes.
+/// Transforms a position.
 pub(super) fn place([x, y, z]: [f32; 3], transform: &Affine) -> [f32; 3] {
     let [x, y, z] = [x, y, z].map(f64::from);
     transform.map(|[a, b, c, d]| (a * x + b * y + c * z + d) as f32)
 }
 
-/// Whether a transform mirrors: its determinant is negative.
+/// Whether a transform mirrors, that is, has a negative determinant.
 pub(super) fn mirrors([a, b, c]: &Affine) -> bool {
     let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
     a[0] * minor(1, 2) - a[1] * minor(0, 2) + a[2] * minor(0, 1) < 0.0

@@ -1,4 +1,4 @@
-//! The writer, of the binary form: JSON that describes the arrays, then the arrays.
+//! The writer of binary files: JSON that describes the arrays, then the arrays.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,22 +9,15 @@ use crate::atomic;
 use crate::data::Mesh;
 use crate::error::IoError;
 
-/// The format's numbers for what a part of the buffer is for, and for types of numbers.
+/// The format's constants for the use of a part of a buffer, and for number types.
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// Normals are the attribute `NORMAL`; velocities are `_VELOCITY`, in m/s. A mesh without triangles is an empty scene,
-/// because the format has no empty arrays.
-///
-/// # Errors
-/// Those of [`Mesh::check`]; [`IoError::TooMany`] beyond the 4 GiB of the format; [`IoError::Write`].
-pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
+pub(crate) fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
     mesh.check()?;
-    // Lengths are counted in 32 bits; the JSON before the arrays is short.
+    // Lengths have 32 bits; the JSON before the arrays is short.
     let size = 36 * mesh.vertices.len() as u64 + 12 * mesh.len() as u64;
     if size > u64::from(u32::MAX - (1 << 16)) {
         return Err(IoError::TooMany { what: "vertices", given: mesh.vertices.len(), limit: 60_000_000 });
@@ -32,15 +25,16 @@ pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
     atomic::write(path, |out| write_mesh_to(out, mesh))
 }
 
-/// Writes a mesh that passes [`Mesh::check`] into any writer.
+/// Writes a mesh to `out`. Normals are the attribute `NORMAL`; velocities are `_VELOCITY`, in m/s. A mesh without
+/// triangles becomes an empty scene, because the format has no empty arrays.
 ///
 /// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Mesh::check`] fails.
 pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
-    mesh.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    mesh.check()?;
     let arrays = Arrays::of(mesh);
     let mut json = arrays.document().to_string().into_bytes();
-    // Chunks end at multiples of four; spaces are JSON still.
+    // The size of a chunk is a multiple of four; spaces may follow the JSON.
     json.resize(json.len().next_multiple_of(4), b' ');
     let blob = arrays.bytes();
     let total = 12 + 8 + json.len() + if blob > 0 { 8 + blob } else { 0 };
@@ -60,15 +54,15 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     Ok(())
 }
 
-/// The arrays in the order in which they stand in the file; the last one is that of the corners.
+/// The arrays in the order of the file; the last one holds the vertex numbers of the triangles.
 struct Arrays<'a>(Vec<Array<'a>>);
 
 struct Array<'a> {
-    /// The attribute's name; empty for the corners.
+    /// The attribute's name; empty for vertex numbers.
     name: &'static str,
     data: &'a [u8],
     count: usize,
-    /// The lowest and highest components, which positions must have.
+    /// The smallest and largest components, required for positions.
     bounds: Option<[[f32; 3]; 2]>,
 }
 
@@ -86,7 +80,7 @@ impl<'a> Arrays<'a> {
         let mut arrays = vec![
             vectors("POSITION", &mesh.vertices, Some(bounds(&mesh.vertices))),
             vectors("NORMAL", &mesh.normals, None),
-            // Names of a program's own begin with an underscore.
+            // Names that are not part of the standard begin with an underscore.
             vectors("_VELOCITY", &mesh.velocities, None),
         ];
         arrays.retain(|array| array.count > 0);
@@ -148,7 +142,7 @@ impl<'a> Arrays<'a> {
     }
 }
 
-/// The lowest and highest finite components; JSON knows no others.
+/// The smallest and largest finite components; JSON has no other numbers.
 fn bounds(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let of = |choose: fn(f32, f32) -> f32| {
         std::array::from_fn(|axis| {

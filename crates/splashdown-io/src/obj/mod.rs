@@ -1,12 +1,15 @@
-//! OBJ, the text format of Wavefront that every 3-D program reads and writes: vertices and polygons.
+//! OBJ, Wavefront's text format of vertices and polygons, which every 3-D program reads and writes.
 //!
-//! *Why own code:* the writer is three kinds of lines, which the known crates do not write or build through
-//! `core::fmt`. The reader needs positions and faces only. `tobj` 4.0 gives every group of a file vertices of its
-//! own, so that a closed model of several groups comes back cut open along their seams, and its errors name no line;
-//! the tests compare the two on files of one group.
+//! The reader reads positions and the faces of all groups; normals, texture coordinates, lines and materials are
+//! skipped. A polygon becomes a fan of triangles.
+//!
+//! *Why own code:* the writer has three kinds of lines, which other crates do not write or format through `core::fmt`.
+//! The reader needs only positions and faces. `tobj` 4.0 gives every group vertices of its own, which cuts a closed
+//! model of several groups open at their seams, and its errors do not name the line. The tests compare the two readers
+//! on files with one group.
 
 mod read;
 mod write;
 
-pub use read::read_mesh;
-pub use write::{write_mesh, write_mesh_to};
+pub(crate) use read::read_mesh;
+pub use write::write_mesh_to;

@@ -1,4 +1,4 @@
-//! The reader: positions and faces; normals, texture coordinates, groups, lines and materials are passed over.
+//! The reader of positions and faces.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -7,12 +7,7 @@ use crate::data::Mesh;
 use crate::error::IoError;
 use crate::input::{content, push_fan};
 
-/// Reads the vertices and faces of an OBJ file, those of all its groups together. Polygons are cut into fans of
-/// triangles; corners may count from the end (negative numbers).
-///
-/// # Errors
-/// [`IoError::Read`] or [`IoError::Malformed`], which names the line.
-pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
+pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     parse(&content(path)?).map_err(|reason| IoError::malformed(path, "OBJ", reason))
 }
 
@@ -22,14 +17,14 @@ fn parse(bytes: &[u8]) -> Result<Mesh, String> {
     }
     let mut mesh = Mesh::default();
     let mut corners = Vec::new();
-    // A face may come before its vertices, so the largest number is compared with their count at the end.
+    // A face may precede its vertices, so the largest vertex number is checked at the end.
     let mut largest = (0, 0);
     let mut count = 0;
     let mut lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end).enumerate();
     while let Some((number, first)) = lines.next() {
         let (mut line, number) = (Cow::Borrowed(first), number + 1);
         count += usize::from(!line.is_empty());
-        // A backslash at a line's end carries it on with the next one.
+        // A backslash at the end of a line joins it with the next one.
         while line.last() == Some(&b'\\') {
             let whole = line.to_mut();
             whole.pop();
@@ -69,32 +64,27 @@ fn parse(bytes: &[u8]) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// Three coordinates; a weight or a colour may follow.
+/// Parses three coordinates; a weight or a colour may follow.
 fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f32; 3], String> {
     let mut vertex = [0.0; 3];
     for component in &mut vertex {
         let word = words.next().ok_or("a vertex needs three coordinates")?;
-        *component = word.parse().map_err(|_| format!("`{}` is not a coordinate", shown(word)))?;
+        *component = word.parse().map_err(|_| format!("`{word:.24}` is not a coordinate"))?;
     }
     Ok(vertex)
 }
 
-/// The vertex, from 0, of a corner `vertex/texture/normal` that counts from 1, or backwards from -1.
+/// The vertex number, from 0, of a corner `vertex/texture/normal`, which counts from 1, or backwards from -1.
 fn corner(word: &str, vertices: usize) -> Result<u32, String> {
     let digits = word.split('/').next().unwrap_or(word);
-    let given: i64 = digits.parse().map_err(|_| format!("`{}` is not a vertex number", shown(word)))?;
+    let given: i64 = digits.parse().map_err(|_| format!("`{word:.24}` is not a vertex number"))?;
     let index = match given {
-        0 => return Err("vertex 0: the vertices of an OBJ file count from 1".to_owned()),
+        0 => return Err("vertex 0: the vertices of an OBJ file are numbered from 1".to_owned()),
         1.. => Some(given - 1),
-        // A file in memory never has 2^63 vertices.
+        // No file has 2^63 vertices.
         _ => given.checked_add(vertices as i64),
     };
     index.and_then(|index| u32::try_from(index).ok()).ok_or_else(|| {
         format!("a face uses vertex {given}, but there are {vertices} vertices up to this line")
     })
-}
-
-/// The beginning of a word that may be a megabyte of garbage.
-fn shown(word: &str) -> String {
-    word.chars().take(24).collect()
 }

@@ -1,4 +1,4 @@
-//! A picture on the host. With the feature `png` it is read from and written to PNG files.
+//! A picture in host memory. With the feature `png` it is read from and written to PNG files.
 
 use crate::error::IoError;
 
@@ -20,7 +20,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Tells whether the bytes fit the size, and whether there is a pixel at all.
+    /// Checks that the number of bytes matches the size, and that there is a pixel.
     ///
     /// # Errors
     /// [`IoError::PictureSize`].

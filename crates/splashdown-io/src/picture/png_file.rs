@@ -12,7 +12,7 @@ use crate::error::IoError;
 /// Reads a PNG file of any colour type and depth.
 ///
 /// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`] where it is no PNG or damaged.
+/// [`IoError::Read`]; [`IoError::Malformed`] if it is not a PNG file or damaged.
 pub fn read_png(path: &Path) -> Result<Picture, IoError> {
     let bytes = std::fs::read(path).map_err(|error| IoError::read(path, &error))?;
     decode_png(&bytes).map_err(|error| IoError::malformed(path, "PNG", error.to_string()))
@@ -21,7 +21,7 @@ pub fn read_png(path: &Path) -> Result<Picture, IoError> {
 /// Reads the bytes of a PNG file of any colour type and depth. 16-bit channels lose their lower half.
 ///
 /// # Errors
-/// Of kind [`InvalidData`](io::ErrorKind::InvalidData) where it is no PNG or damaged.
+/// Of kind [`InvalidData`](io::ErrorKind::InvalidData) if it is not a PNG file or damaged.
 pub fn decode_png(bytes: &[u8]) -> io::Result<Picture> {
     let wrong = |error: DecodingError| io::Error::new(io::ErrorKind::InvalidData, error.to_string());
     let mut decoder = Decoder::new(Cursor::new(bytes));
@@ -33,14 +33,16 @@ pub fn decode_png(bytes: &[u8]) -> io::Result<Picture> {
     let rgba = match info.color_type {
         ColorType::Rgba => pixels,
         ColorType::GrayscaleAlpha => pixels.as_chunks().0.iter().flat_map(|&[l, a]| [l, l, l, a]).collect(),
-        other => return Err(io::Error::other(format!("its pixels came as {other:?}"))),
+        other => {
+            return Err(io::Error::other(format!("its pixels were decoded to {other:?} instead of RGBA")));
+        }
     };
     Ok(Picture { width: info.width, height: info.height, rgba })
 }
 
 /// Writes a picture to `path` as PNG, complete or not at all; returns the file's size in bytes.
 ///
-/// The fast compression is used: a frame should not wait for its picture, and the film is made from raw pixels.
+/// It uses fast compression, so that a frame does not wait for its picture; films are made from raw pixels.
 ///
 /// # Errors
 /// [`IoError::PictureSize`] or [`IoError::Write`].
@@ -49,12 +51,12 @@ pub fn write_png(path: &Path, picture: &Picture) -> Result<u64, IoError> {
     atomic::write(path, |out| encode(out, picture))
 }
 
-/// Appends a picture as PNG to `out`, as [`write_png`] does to a file.
+/// Writes a picture as PNG to `out`.
 ///
 /// # Errors
-/// Of kind [`InvalidInput`](io::ErrorKind::InvalidInput) where the bytes do not fit the size; those of `out`.
+/// Of kind [`InvalidInput`](io::ErrorKind::InvalidInput) if the bytes do not match the size; those of `out`.
 pub fn write_png_to(out: &mut dyn Write, picture: &Picture) -> io::Result<()> {
-    picture.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error.to_string()))?;
+    picture.check()?;
     encode(out, picture)
 }
 

@@ -20,4 +20,4 @@ mod write;
 
 pub(crate) use read::read;
 pub use read::{read_mesh, read_particles};
-pub use write::{write_mesh, write_mesh_to, write_particles, write_particles_to};
+pub use write::{write_mesh_to, write_particles_to};

@@ -1,41 +1,20 @@
-//! The writers: a header, then rows gathered into a small buffer.
+//! The writers: a header, then rows, through a small buffer.
 
 use std::io::{self, Write};
-use std::path::Path;
 
-use crate::atomic;
-use crate::data::Attribute;
-use crate::data::Mesh;
-use crate::data::Particles;
-use crate::error::IoError;
+use crate::attribute::Attribute;
+use crate::mesh::Mesh;
+use crate::particles::Particles;
 
-/// Rows gathered before each write; the buffer stays well inside the cache.
+/// Rows per write; the buffer stays in the cache.
 const ROWS: usize = 2048;
 
-/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
+/// Writes particles to `out`.
 ///
 /// # Errors
-/// Those of [`Particles::check`]; [`IoError::Write`].
-pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
-    particles.check()?;
-    atomic::write(path, |out| write_particles_to(out, particles))
-}
-
-/// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// # Errors
-/// Those of [`Mesh::check`]; [`IoError::Write`].
-pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
-    mesh.check()?;
-    atomic::write(path, |out| write_mesh_to(out, mesh))
-}
-
-/// Writes particles that pass [`Particles::check`] into any writer.
-///
-/// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
-    particles.check().map_err(invalid)?;
+    particles.check()?;
     let mut columns: Vec<(&[u8], usize, &str)> = vec![(bytes(&particles.positions), 12, "float x y z")];
     let optional = [
         (bytes(&particles.velocities), 12, "float vx vy vz"),
@@ -51,12 +30,12 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     rows(out, particles.len(), &columns)
 }
 
-/// Writes a mesh that passes [`Mesh::check`] into any writer.
+/// Writes a mesh to `out`.
 ///
 /// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Mesh::check`] fails.
 pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
-    mesh.check().map_err(invalid)?;
+    mesh.check()?;
     let mut columns: Vec<(&[u8], usize, &str)> = vec![(bytes(&mesh.vertices), 12, "float x y z")];
     if !mesh.normals.is_empty() {
         columns.push((bytes(&mesh.normals), 12, "float nx ny nz"));
@@ -87,10 +66,10 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     Ok(())
 }
 
-/// A scalar is a property of its name, a vector `a` the properties `a_x a_y a_z`.
+/// Type and names of an attribute's properties: a scalar is a property of its name, a vector `a` is `a_x a_y a_z`.
 fn properties(attribute: &Attribute) -> String {
     let mut name = attribute.word();
-    // What the vertices have already.
+    // The names of other properties.
     if ["x", "y", "z", "nx", "ny", "nz", "vx", "vy", "vz"].contains(&name.as_str()) {
         name.push('_');
     }
@@ -98,10 +77,6 @@ fn properties(attribute: &Attribute) -> String {
         3 => format!("float {name}_x {name}_y {name}_z"),
         _ => format!("float {name}"),
     }
-}
-
-fn invalid(error: IoError) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, error)
 }
 
 fn bytes<T: bytemuck::NoUninit>(values: &[T]) -> &[u8] {
@@ -112,7 +87,7 @@ fn begin(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment written by Splashdown; SI units, y is up")
 }
 
-/// The header lines of one element; a column is its bytes, the bytes of one row, and its type and names.
+/// Writes the header lines of one element; a column is its bytes, its bytes per row, and its type and names.
 fn element(
     out: &mut dyn Write,
     name: &str,
@@ -130,7 +105,7 @@ fn element(
     Ok(())
 }
 
-/// Row by row, the columns side by side.
+/// Writes rows, each with one cell of all columns.
 fn rows(out: &mut dyn Write, count: usize, columns: &[(&[u8], usize, &str)]) -> io::Result<()> {
     let mut buffer = Vec::with_capacity(ROWS * columns.iter().map(|column| column.1).sum::<usize>());
     for first in (0..count).step_by(ROWS) {

@@ -1,4 +1,4 @@
-//! The reader for both forms.
+//! The reader of text and binary files.
 
 use std::path::Path;
 
@@ -6,29 +6,24 @@ use crate::data::Mesh;
 use crate::error::IoError;
 use crate::input::{Welder, content};
 
-/// Bytes in front of the triangles of the binary form: 80 of free text and their count.
+/// Size of the header of a binary file: 80 bytes of free text and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of one triangle of the binary form: normal, three corners, two bytes of whatever.
+/// Size of a triangle in a binary file: normal, three corners and two unused bytes.
 const TRIANGLE: usize = 50;
 
-/// Reads the triangles of an STL file, binary or text, all its solids together. Corners at the same place become one
-/// vertex.
-///
-/// # Errors
-/// [`IoError::Read`] or [`IoError::Malformed`], which names the line, or the bytes that are missing.
-pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
+pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let bytes = content(path)?;
     let mesh = if is_text(&bytes) { text(&bytes) } else { binary(&bytes) };
     mesh.map_err(|reason| IoError::malformed(path, "STL", reason))
 }
 
-/// Bytes that the binary form needs, by the count in its header.
+/// Number of triangles and size of a binary file, by its header.
 fn promised(bytes: &[u8]) -> Option<(u32, usize)> {
     let count = u32::from_le_bytes(*bytes.get(80..HEADER)?.first_chunk()?);
     Some((count, (count as usize).checked_mul(TRIANGLE)?.checked_add(HEADER)?))
 }
 
-/// The first word alone does not tell: many programs write `solid` into the header of the binary form.
+/// The first word alone is not enough: many programs write `solid` into the header of binary files.
 fn is_text(bytes: &[u8]) -> bool {
     if promised(bytes).is_some_and(|(_, size)| size == bytes.len()) {
         return false;
@@ -41,19 +36,19 @@ fn is_text(bytes: &[u8]) -> bool {
 fn binary(bytes: &[u8]) -> Result<Mesh, String> {
     let Some((count, size)) = promised(bytes) else {
         return Err(format!(
-            "it neither begins with `solid`, as text does, nor has it the {HEADER} bytes of a binary header: it has {} bytes",
+            "it does not begin with `solid`, as text files do, and its {} bytes are fewer than the {HEADER} of a binary header",
             bytes.len()
         ));
     };
     if bytes.len() < size {
         return Err(format!(
-            "its header promises {count} triangles, which need {size} bytes, but the file has {}: it was cut short, or it is no STL file",
+            "its header promises {count} triangles, which need {size} bytes, but the file has {}: it was cut short, or is not an STL file",
             bytes.len()
         ));
     }
     let mut welder = Welder::default();
     for row in bytes[HEADER..size].chunks_exact(TRIANGLE) {
-        // The normal comes first; the corners tell it too.
+        // The normal comes first; it follows from the corners.
         welder.triangle(bytemuck::pod_read_unaligned(&row[12..48]));
     }
     Ok(welder.into_mesh())
@@ -90,8 +85,7 @@ fn text(bytes: &[u8]) -> Result<Mesh, String> {
                 inside = false;
             }
             _ => {
-                let shown: String = keyword.chars().take(24).collect();
-                return wrong(&format!("`{shown}` is no word of STL"));
+                return wrong(&format!("`{keyword:.24}` is not a keyword of STL"));
             }
         }
     }

@@ -1,37 +1,24 @@
-//! The writer of the binary form.
+//! The writer of binary files.
 
 use std::io::{self, Write};
-use std::path::Path;
 
-use crate::atomic;
-use crate::data::{Mesh, cross, dot, sub};
-use crate::error::IoError;
+use crate::mesh::{Mesh, cross, dot, sub};
 
-/// The free text of the header; it must not begin with `solid`, which would look like the text form.
+/// The free text of the header. It must not begin with `solid`, as text files do.
 const TITLE: &[u8] = b"written by Splashdown; metres, y is up";
-/// Triangles gathered before each write.
+/// Triangles per write.
 const CHUNK: usize = 1024;
 
-/// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes.
+/// Writes a mesh to `out`, with the normal of each triangle (zero if it has no area).
 ///
 /// # Errors
-/// Those of [`Mesh::check`]; [`IoError::Write`].
-pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
-    mesh.check()?;
-    atomic::write(path, |out| write_mesh_to(out, mesh))
-}
-
-/// Writes a mesh that passes [`Mesh::check`] into any writer, with the normal of each triangle (zero where it has no
-/// area).
-///
-/// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Mesh::check`] fails.
 pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
-    mesh.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    mesh.check()?;
     let mut header = [0; 80];
     header[..TITLE.len()].copy_from_slice(TITLE);
     out.write_all(&header)?;
-    // The check bounds the count by 2^31.
+    // `check` limits the number of triangles to 2^31.
     out.write_all(&(mesh.len() as u32).to_le_bytes())?;
     let mut buffer = Vec::with_capacity(50 * CHUNK);
     for chunk in mesh.triangles.chunks(CHUNK) {

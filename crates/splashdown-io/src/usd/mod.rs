@@ -1,18 +1,16 @@
-//! USD, the scene format of film and animation, as text (`.usda`): a whole run in one file, with the frames as
-//! time samples.
+//! USD, the scene format of film and animation, as text (`.usda`): all frames of a run in one file, as time samples.
 //!
-//! Blender, Houdini, Maya, `usdview` and Omniverse open it; [`MeshSeries`] is the animated surface, [`PointSeries`] the
-//! particles. Velocities are the attribute `velocities`, by which these programs blur motion.
+//! Blender, Houdini, Maya, `usdview` and Omniverse open it. [`MeshSeries`] is the animated surface, [`PointSeries`] the
+//! particles. Velocities are the attribute `velocities`, which these programs use for motion blur.
 //!
-//! *How it works.* In such a file all frames of one attribute stand before the next attribute, so nothing can
-//! be appended to it. Each attribute has a hidden file of its own beside the final one (`spool`), to which a
-//! frame is appended, and [`MeshSeries::finish`] puts them together. A run that is killed leaves no USD file,
-//! one that ends by itself or by Ctrl-C leaves a whole one.
+//! *How it works.* The file contains all frames of one attribute before the next attribute, so a frame cannot be
+//! appended to it. Each attribute has a hidden temporary file (`spool`), to which frames are appended;
+//! [`MeshSeries::finish`] joins these files. A run that is killed leaves no USD file; one that ends normally or by
+//! Ctrl-C leaves a complete one.
 //!
-//! *Why own code:* text of five kinds of lines. The crate `openusd` 0.8 is young and wants a newer compiler;
-//! the C++ library takes an hour to build. `tests/foreign.rs` opens the files with Pixar's own library. *Why
-//! text:* the binary form (`usdc`) is described nowhere but in that library's source; it would take about a
-//! third of the room.
+//! *Why own code:* the text has five kinds of lines. The crate `openusd` 0.8 is young and needs a newer compiler; the
+//! C++ library takes an hour to build. `tests/foreign` opens the files with Pixar's library. *Why text:* the binary form
+//! (`usdc`) is documented only by that library's source; files would have about a third of the size.
 
 mod spool;
 mod text;
@@ -56,10 +54,10 @@ pub struct MeshSeries(Series);
 pub struct PointSeries(Series);
 
 impl MeshSeries {
-    /// Begins a file; nothing of its name is there before [`MeshSeries::finish`].
+    /// Begins a series. The file appears with [`MeshSeries::finish`].
     ///
     /// # Errors
-    /// [`IoError::Write`] if nothing can be written beside it.
+    /// [`IoError::Write`] if its folder is not writable.
     pub fn start(path: &Path, frames_per_second: f64) -> Result<Self, IoError> {
         let head =
             "def Mesh \"surface\"\n    {\n        uniform token subdivisionScheme = \"none\"\n        \
@@ -68,7 +66,7 @@ impl MeshSeries {
         Series::start(path, frames_per_second, head, &MESH).map(Self)
     }
 
-    /// Appends the mesh of a frame; frames come in the order of their numbers.
+    /// Appends the mesh of a frame. Frames must be appended in the order of their numbers.
     ///
     /// # Errors
     /// Those of [`Mesh::check`]; [`IoError::Write`].
@@ -85,8 +83,8 @@ impl MeshSeries {
         })
     }
 
-    /// Puts the file together; returns its path and size in bytes, or `None` where no frame was pushed. A
-    /// second call does nothing and returns `None`.
+    /// Writes the file; returns its path and size in bytes, or `None` if there are no frames. A second call does nothing
+    /// and returns `None`.
     ///
     /// # Errors
     /// [`IoError::Write`].
@@ -96,10 +94,10 @@ impl MeshSeries {
 }
 
 impl PointSeries {
-    /// Begins a file of particles that are drawn as balls of this diameter in m.
+    /// Begins a series of particles, which are shown as spheres of this diameter in m.
     ///
     /// # Errors
-    /// [`IoError::Write`] if nothing can be written beside it.
+    /// [`IoError::Write`] if its folder is not writable.
     pub fn start(path: &Path, frames_per_second: f64, diameter: f32) -> Result<Self, IoError> {
         let head = format!(
             "def Points \"particles\"\n    {{\n        float[] widths = [{diameter}] (\n            interpolation = \
@@ -108,7 +106,7 @@ impl PointSeries {
         Series::start(path, frames_per_second, head, &POINTS).map(Self)
     }
 
-    /// Appends the particles of a frame; frames come in the order of their numbers.
+    /// Appends the particles of a frame. Frames must be appended in the order of their numbers.
     ///
     /// # Errors
     /// Those of [`Particles::check`]; [`IoError::Write`].
@@ -125,21 +123,21 @@ impl PointSeries {
         })
     }
 
-    /// As [`MeshSeries::finish`].
+    /// Like [`MeshSeries::finish`].
     ///
     /// # Errors
-    /// As [`MeshSeries::finish`].
+    /// Those of [`MeshSeries::finish`].
     pub fn finish(&self) -> Result<Option<(PathBuf, u64)>, IoError> {
         self.0.finish()
     }
 }
 
-/// One prim with its samples so far.
+/// A prim with its samples so far.
 #[derive(Debug)]
 struct Series {
     path: PathBuf,
     frames_per_second: f64,
-    /// The prim as far as it is the same in every frame.
+    /// The beginning of the prim, with attributes that are constant in time.
     head: String,
     state: Mutex<State>,
 }
@@ -174,7 +172,7 @@ impl Series {
     }
 
     fn finish(&self) -> Result<Option<(PathBuf, u64)>, IoError> {
-        // Taken out, so that the hidden files go away whatever happens.
+        // Taken, so that the hidden files are removed even on failure.
         let State { spools, frames } =
             std::mem::replace(&mut *self.state(), State { spools: Vec::new(), frames: None });
         let Some([first, last]) = frames else { return Ok(None) };
@@ -200,7 +198,7 @@ impl Series {
         Ok(Some((self.path.clone(), bytes)))
     }
 
-    /// A panic while the lock was held left a sample cut short; the frames would not fit each other.
+    /// Ignores the panic of another thread that held the lock.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

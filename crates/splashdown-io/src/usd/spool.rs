@@ -1,4 +1,4 @@
-//! The samples of one attribute on their way into the file.
+//! The temporary file with the samples of one attribute.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
@@ -7,23 +7,23 @@ use std::path::Path;
 use super::text::Text;
 use crate::atomic::Temporary;
 
-/// What an attribute is.
+/// The declaration of an attribute.
 #[derive(Debug)]
 pub(super) struct Attribute {
     /// Type and name.
     pub(super) declaration: &'static str,
-    /// What its values belong to, where the prim's kind does not tell.
+    /// What its values belong to, if the kind of the prim does not imply it.
     pub(super) interpolation: Option<&'static str>,
 }
 
-/// A hidden file with the samples of an attribute; it is removed when this is dropped.
+/// A hidden file with the samples of an attribute, removed on drop.
 #[derive(Debug)]
 pub(super) struct Spool {
     attribute: &'static Attribute,
     file: BufWriter<File>,
-    /// Keeps the name until it is removed.
+    /// Removes the file on drop.
     _temporary: Temporary,
-    /// Whether any frame has such values.
+    /// Whether any frame has values.
     used: bool,
 }
 
@@ -70,7 +70,7 @@ impl Spool {
         writeln!(self.file, "],")
     }
 
-    /// Writes the attribute, if any frame has it.
+    /// Writes the attribute if any frame has it.
     pub(super) fn write_to(self, out: &mut dyn Write) -> io::Result<()> {
         let mut file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         if !self.used {

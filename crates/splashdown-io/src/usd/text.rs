@@ -1,11 +1,11 @@
-//! Numbers as text, gathered in a buffer.
+//! Formats numbers as text, through a buffer.
 
 use std::io::{self, Write};
 
-/// Bytes gathered before each write.
+/// Bytes per write.
 const CHUNK: usize = 1 << 16;
 
-/// A list of values with commas between them.
+/// A list of values separated by commas.
 pub(super) struct Text<'a> {
     out: &'a mut dyn Write,
     buffer: Vec<u8>,
@@ -45,7 +45,7 @@ impl<'a> Text<'a> {
         self.out.write_all(&self.buffer)
     }
 
-    /// The fewest digits that give the same float back; USD writes those that are no numbers in small letters.
+    /// Writes the fewest digits that give the same float back; in USD, `nan` and `inf` are lower case.
     fn float(&mut self, value: f32) {
         let mut digits = zmij::Buffer::new();
         let word = match value {
@@ -69,7 +69,7 @@ impl<'a> Text<'a> {
     }
 }
 
-/// The lowest and the highest corner of what is finite; both the origin where nothing is.
+/// The lower and upper corner of the bounding box of all finite points; the origin if there are none.
 pub(super) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let mut finite = points.iter().filter(|point| point.iter().all(|component| component.is_finite()));
     let Some(&first) = finite.next() else { return [[0.0; 3]; 2] };

@@ -1,4 +1,4 @@
-//! The reader, of text and binary files, as SPlisHSPlasH, `meshio` and ParaView write them.
+//! The reader of text and binary files, as written by SPlisHSPlasH, `meshio` and ParaView.
 
 use std::path::Path;
 
@@ -7,15 +7,6 @@ use crate::error::IoError;
 use crate::number::Number;
 use crate::particles::Particles;
 use crate::read::{content, not_particles};
-
-/// Reads the points of a legacy VTK file of the kinds `POLYDATA` and `UNSTRUCTURED_GRID`: positions, and of the point
-/// arrays `velocity` (`v`), `density`, `pressure` and `id`. Cells and other arrays are passed over.
-///
-/// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`], which names the offset.
-pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
-    read(path, Wanted::Known)
-}
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
@@ -26,7 +17,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     })
 }
 
-/// A place in the file.
+/// A position in the file.
 struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -34,7 +25,7 @@ struct Cursor<'a> {
     wanted: Wanted,
 }
 
-/// Which elements the arrays that follow belong to, with their number.
+/// The kind of elements that the following arrays belong to, with their number.
 #[derive(Clone, Copy, PartialEq)]
 enum Owner {
     Points(usize),
@@ -46,7 +37,7 @@ impl Cursor<'_> {
         if !self.line().is_some_and(|line| line.starts_with("# vtk DataFile Version")) {
             return Err("it does not begin with `# vtk DataFile Version`".to_owned());
         }
-        // The second line is a title, which may be empty.
+        // The second line is a title and may be empty.
         self.line();
         self.binary = match self.words()?.first().map(String::as_str) {
             Some("BINARY") => true,
@@ -71,7 +62,7 @@ impl Cursor<'_> {
                 "CELL_TYPES" => self.skip(count(word(1))?, 1, "int")?,
                 "POINT_DATA" => owner = Owner::Points(count(word(1))?),
                 "CELL_DATA" => owner = Owner::Others(count(word(1))?),
-                // Text up to an empty line.
+                // It ends with an empty line.
                 "METADATA" => while self.line().is_some_and(|line| !line.trim().is_empty()) {},
                 "LOOKUP_TABLE" => {
                     self.skip(count(word(2))?, 4, if self.binary { "unsigned_char" } else { "float" })?
@@ -83,7 +74,7 @@ impl Cursor<'_> {
         Ok(particles)
     }
 
-    /// One array with a keyword of its own.
+    /// Reads an array that has a keyword of its own.
     fn attribute(
         &mut self,
         keyword: &str,
@@ -97,13 +88,12 @@ impl Cursor<'_> {
             "VECTORS" | "NORMALS" => 3,
             "TENSORS" => 9,
             _ => {
-                let shown: String = keyword.chars().take(24).collect();
-                return Err(format!("`{shown}` is no keyword that is known"));
+                return Err(format!("`{keyword:.24}` is not a known keyword"));
             }
         };
         if keyword == "SCALARS" {
             let before = self.at;
-            // The line that names the colours is there in almost every file.
+            // The line that names a colour table is optional, but almost every file has it.
             if self.words()?.first().is_none_or(|word| word != "LOOKUP_TABLE") {
                 self.at = before;
             }
@@ -111,7 +101,7 @@ impl Cursor<'_> {
         self.array(name, components, kind, owner, particles)
     }
 
-    /// `FIELD` announces arrays, each with a line `name components tuples type`.
+    /// Reads the arrays of a `FIELD`, each with a line `name components tuples type`.
     fn field(&mut self, arrays: usize, owner: Owner, particles: &mut Particles) -> Result<(), String> {
         for _ in 0..arrays {
             let mut words = self.words()?;
@@ -123,7 +113,7 @@ impl Cursor<'_> {
                 return Err("an array of a FIELD needs `name components tuples type`".to_owned());
             };
             let (components, tuples) = (count(components)?, count(tuples)?);
-            // A field may stand before any `POINT_DATA` and have its own length.
+            // A field can precede `POINT_DATA` and have a length of its own.
             let owner = match owner {
                 Owner::Points(points) if points == tuples => owner,
                 _ => Owner::Others(tuples),
@@ -150,15 +140,14 @@ impl Cursor<'_> {
         }
     }
 
-    /// Passes over a list of cells, in the old form (one list of integers) or the new (two arrays of a type).
+    /// Skips a list of cells, in the old form (one list of integers) or the new form (two typed arrays).
     fn cells(&mut self, words: &[String]) -> Result<(), String> {
         let number = |n: usize| count(words.get(n).map_or("", String::as_str));
         let (first, second) = (number(1)?, number(2)?);
         let before = self.at;
         let offsets = self.words().unwrap_or_default();
         let is_new = offsets.first().is_some_and(|word| word == "OFFSETS");
-        // Triangles or quadrilaterals; the one cell of all points that some programs write has as many corners
-        // as there are points.
+        // A mesh has triangles or quadrilaterals. Particle files have a cell per point, or one cell of all points.
         let (cells, corners) =
             if is_new { (first.saturating_sub(1), second) } else { (first, second.saturating_sub(first)) };
         let is_mesh = cells > 1 && [3, 4].iter().any(|n| cells.checked_mul(*n) == Some(corners));
@@ -174,12 +163,12 @@ impl Cursor<'_> {
         self.skip(second, 1, "int")
     }
 
-    /// Reads `rows` x `components` numbers of a type.
+    /// Reads `rows` x `components` numbers.
     fn numbers(&mut self, rows: usize, components: usize, kind: &str) -> Result<Vec<f64>, String> {
         let number = number(kind)?;
         let total = rows.checked_mul(components).ok_or("an array is too large")?;
         let left = &self.bytes[self.at..];
-        // Text needs a digit and a space for each.
+        // In text each number needs at least a digit and a space.
         let needed =
             total.checked_mul(if self.binary { number.size() } else { 2 }).ok_or("an array is too large")?;
         if needed > left.len() + 1 {
@@ -207,21 +196,19 @@ impl Cursor<'_> {
         Ok(())
     }
 
-    /// The next number of a text file.
+    /// Reads the next number of a text file.
     fn number(&mut self) -> Result<f64, String> {
         let left = &self.bytes[self.at..];
         let start = left.iter().position(|byte| !byte.is_ascii_whitespace());
         let start = start.ok_or("it was cut short inside an array")?;
         let length = left[start..].iter().position(u8::is_ascii_whitespace).unwrap_or(left.len() - start);
         let word = String::from_utf8_lossy(&left[start..start + length]);
-        let value = word
-            .parse()
-            .map_err(|_| format!("`{}` is not a number", word.chars().take(24).collect::<String>()))?;
+        let value = word.parse().map_err(|_| format!("`{word:.24}` is not a number"))?;
         self.at += start + length;
         Ok(value)
     }
 
-    /// The next line without its end; `None` at the end of the file.
+    /// Reads the next line without its line feed; `None` at the end of the file.
     fn line(&mut self) -> Option<String> {
         let left = self.bytes.get(self.at..).filter(|left| !left.is_empty())?;
         let length = left.iter().position(|&byte| byte == b'\n');
@@ -229,7 +216,7 @@ impl Cursor<'_> {
         Some(String::from_utf8_lossy(&left[..length.unwrap_or(left.len())]).into_owned())
     }
 
-    /// The words of the next line that has any.
+    /// Reads the words of the next line that is not empty.
     fn words(&mut self) -> Result<Vec<String>, String> {
         while let Some(line) = self.line() {
             let words: Vec<String> = line.split_ascii_whitespace().map(str::to_owned).collect();
@@ -242,7 +229,7 @@ impl Cursor<'_> {
 }
 
 fn count(word: &str) -> Result<usize, String> {
-    word.parse().map_err(|_| format!("`{}` is not a count", word.chars().take(24).collect::<String>()))
+    word.parse().map_err(|_| format!("`{word:.24}` is not a count"))
 }
 
 fn number(kind: &str) -> Result<Number, String> {
@@ -251,17 +238,14 @@ fn number(kind: &str) -> Result<Number, String> {
         "unsigned_char" | "vtktypeuint8" => Number::U8,
         "short" | "vtktypeint16" => Number::I16,
         "unsigned_short" | "vtktypeuint16" => Number::U16,
-        // VTK writes its own index type as `int`, whatever its size in memory.
+        // VTK writes its index type as `int`, whatever its size in memory.
         "int" | "vtktypeint32" | "vtkidtype" => Number::I32,
         "unsigned_int" | "vtktypeuint32" => Number::U32,
-        // As on the systems on which VTK files are written.
+        // Its size on 64-bit Unix systems.
         "long" | "vtktypeint64" => Number::I64,
         "unsigned_long" | "vtktypeuint64" => Number::U64,
         "float" => Number::F32,
         "double" => Number::F64,
-        _ => {
-            let shown: String = kind.chars().take(24).collect();
-            return Err(format!("`{shown}` is no type of numbers that is known"));
-        }
+        _ => return Err(format!("`{kind:.24}` is not a known number type")),
     })
 }

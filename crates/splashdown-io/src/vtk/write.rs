@@ -1,50 +1,26 @@
-//! The writer, of the binary form: one grid of points, or of triangles.
+//! The writers of binary files: a grid of points, or of triangles.
 //!
 //! Both are of the kind `UNSTRUCTURED_GRID`, which more programs read than `POLYDATA` (`meshio`, `splashsurf`).
 
 use std::io::{self, Write};
-use std::path::Path;
 
-use crate::atomic;
-use crate::data::Mesh;
-use crate::data::Particles;
-use crate::error::IoError;
+use crate::mesh::Mesh;
+use crate::particles::Particles;
 
-/// Numbers turned round and gathered before each write.
+/// Numbers converted to big-endian before each write.
 const CHUNK: usize = 8192;
 
-/// Kinds of cells in VTK's list.
+/// Cell types of VTK.
 const VTK_VERTEX: u32 = 1;
 const VTK_TRIANGLE: u32 = 5;
 
-/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// Each particle is a cell, as in a VTU file; attributes that are present become the point arrays `velocity`,
-/// `density`, `pressure` and `id`.
+/// Writes particles to `out`. Each particle is a cell, as in a VTU file; attributes that are present become the point
+/// arrays `velocity`, `density`, `pressure` and `id`.
 ///
 /// # Errors
-/// Those of [`Particles::check`]; [`IoError::Write`].
-pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
-    particles.check()?;
-    atomic::write(path, |out| write_particles_to(out, particles))
-}
-
-/// Writes a mesh to `path`, complete or not at all; returns the file's size in bytes. Normals and velocities that are
-/// present become the point arrays `normals` and `velocity`, attributes those of their names.
-///
-/// # Errors
-/// Those of [`Mesh::check`]; [`IoError::Write`].
-pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
-    mesh.check()?;
-    atomic::write(path, |out| write_mesh_to(out, mesh))
-}
-
-/// Writes particles that pass [`Particles::check`] into any writer.
-///
-/// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
-    particles.check().map_err(invalid)?;
+    particles.check()?;
     let count = particles.len();
     begin(out, &particles.positions)?;
     cells(out, count, 1, VTK_VERTEX, (0..count as u32).flat_map(|point| [1, point]))?;
@@ -55,16 +31,17 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     scalars(out, "id unsigned_int", &particles.ids)
 }
 
-/// Writes a mesh that passes [`Mesh::check`] into any writer.
+/// Writes a mesh to `out`. Normals and velocities that are present become the point arrays `normals` and `velocity`,
+/// other attributes those of their names.
 ///
 /// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Mesh::check`] fails.
 pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
-    mesh.check().map_err(invalid)?;
+    mesh.check()?;
     begin(out, &mesh.vertices)?;
     cells(out, mesh.len(), 3, VTK_TRIANGLE, mesh.triangles.iter().flat_map(|&[a, b, c]| [3, a, b, c]))?;
     writeln!(out, "POINT_DATA {}", mesh.vertices.len())?;
-    // Not `NORMALS`, at which `meshio` gives up.
+    // `meshio` cannot read the keyword `NORMALS`.
     vectors(out, "VECTORS normals", &mesh.normals)?;
     vectors(out, "VECTORS velocity", &mesh.velocities)?;
     for attribute in &mesh.attributes {
@@ -77,17 +54,13 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     Ok(())
 }
 
-fn invalid(error: IoError) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, error)
-}
-
 fn begin(out: &mut dyn Write, points: &[[f32; 3]]) -> io::Result<()> {
     writeln!(out, "# vtk DataFile Version 3.0\nwritten by Splashdown; SI units, y is up\nBINARY")?;
     writeln!(out, "DATASET UNSTRUCTURED_GRID\nPOINTS {} float", points.len())?;
     words(out, bytemuck::cast_slice::<_, u32>(points).iter().copied())
 }
 
-/// The cells, each its number of corners and the corners, and what they are.
+/// Writes the cells, each as its number of points and the points, and their types.
 fn cells(
     out: &mut dyn Write,
     count: usize,
@@ -117,7 +90,7 @@ fn scalars(out: &mut dyn Write, what: &str, values: &[u32]) -> io::Result<()> {
     words(out, values.iter().copied())
 }
 
-/// Words with their highest byte first, as the format has them, and a line's end.
+/// Writes big-endian words and a line feed.
 fn words(out: &mut dyn Write, mut words: impl Iterator<Item = u32>) -> io::Result<()> {
     let mut buffer = Vec::with_capacity(4 * CHUNK);
     loop {

@@ -1,4 +1,4 @@
-//! The bytes of one array: behind a length, in base64 or raw, and packed by zlib in blocks or not.
+//! The bytes of one array: after a length, in base64 or raw, uncompressed or in blocks compressed by zlib.
 
 use std::io::Read as _;
 
@@ -8,31 +8,31 @@ use flate2::read::ZlibDecoder;
 
 use crate::number::Number;
 
-/// How a file's binary arrays are laid out.
+/// Layout of a file's binary arrays.
 #[derive(Clone, Copy)]
 pub(super) struct Layout {
     pub(super) big_endian: bool,
-    /// The type of the lengths in front of arrays.
+    /// The type of the lengths before arrays.
     pub(super) header: Number,
-    /// Whether arrays are packed by zlib.
-    pub(super) packed: bool,
+    /// Whether arrays are compressed by zlib.
+    pub(super) is_compressed: bool,
 }
 
-/// How bytes are written.
+/// How bytes are stored.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
     Raw,
     Base64,
 }
 
-/// The section behind the XML that arrays are in.
+/// The section after the XML that contains arrays.
 pub(super) enum Appended<'a> {
     Raw(&'a [u8]),
     Base64(&'a [u8]),
 }
 
 impl<'a> Appended<'a> {
-    /// The section's text, which begins with an underscore.
+    /// From the section's text, which begins with an underscore.
     pub(super) fn base64(text: &'a str) -> Result<Self, String> {
         let text = text.trim_ascii().strip_prefix('_').ok_or("its appended data does not begin with `_`")?;
         Ok(Self::Base64(text.as_bytes()))
@@ -51,16 +51,16 @@ impl<'a> Appended<'a> {
 }
 
 impl Layout {
-    /// The bytes of the array that begins where `from` does; they must be `wanted` many.
+    /// Decodes the array at the start of `from`, which must have `wanted` bytes.
     pub(super) fn array(self, from: &[u8], encoding: Encoding, wanted: usize) -> Result<Vec<u8>, String> {
         let mut source = Source { left: from.trim_ascii_start(), encoding };
         if encoding == Encoding::Raw {
             source.left = from;
         }
-        if self.packed { self.blocks(&mut source, wanted) } else { self.plain(&mut source, wanted) }
+        if self.is_compressed { self.blocks(&mut source, wanted) } else { self.plain(&mut source, wanted) }
     }
 
-    /// A length, then as many bytes; base64 holds both in one run.
+    /// Decodes a length and as many bytes; base64 encodes both in one run.
     fn plain(self, source: &mut Source<'_>, wanted: usize) -> Result<Vec<u8>, String> {
         let header = self.header.size();
         let mut bytes = source.take(header.checked_add(wanted).ok_or("it is too large")?)?;
@@ -72,12 +72,12 @@ impl Layout {
         Ok(bytes)
     }
 
-    /// Count of blocks, their size, the last one's size (0 if whole), the packed size of each; then all blocks. Base64
-    /// has one run for the sizes and one for the blocks.
+    /// Decodes the number of blocks, their size, the size of the last block (0 if complete), the compressed size of each,
+    /// then all blocks. Base64 has one run for the sizes and one for the blocks.
     fn blocks(self, source: &mut Source<'_>, wanted: usize) -> Result<Vec<u8>, String> {
         let size = self.header.size();
-        // The three numbers come first in a run whose length they tell: looked at, then read again with the rest. Their
-        // 12 or 24 bytes are whole groups of base64.
+        // The first three numbers give the length of their run, so they are decoded first and then again with the rest.
+        // Their 12 or 24 bytes are complete groups of base64.
         let first = Source { ..*source }.take(3 * size)?;
         let [blocks, block, last] = [0, 1, 2].map(|n| self.word(&first[n * size..]));
         let total = match (blocks, last) {
@@ -88,33 +88,33 @@ impl Layout {
         if total != Some(wanted as u64) {
             return Err(format!("it has {blocks} blocks of {block} bytes, its points need {wanted}"));
         }
-        // As many blocks as bytes, at most: more would be empty ones.
+        // More blocks than bytes would be empty.
         let blocks =
             usize::try_from(blocks).ok().filter(|&blocks| blocks <= wanted).ok_or("it has empty blocks")?;
         let sizes = source.take((3 + blocks) * size)?;
-        let packed: Option<usize> = (0..blocks)
+        let compressed: Option<usize> = (0..blocks)
             .map(|n| usize::try_from(self.word(&sizes[(3 + n) * size..])).ok())
             .try_fold(0_usize, |sum, size| sum.checked_add(size?));
-        let data = source.take(packed.ok_or("its blocks are too large")?)?;
+        let data = source.take(compressed.ok_or("its blocks are too large")?)?;
         let (mut bytes, mut at) = (Vec::new(), 0);
         for number in 0..blocks {
             let length = self.word(&sizes[(3 + number) * size..]) as usize;
             let expected = if number + 1 == blocks && last != 0 { last } else { block };
             let before = bytes.len() as u64;
-            // One byte more than expected is enough to see that there are too many.
+            // One byte more than expected shows that there are too many.
             ZlibDecoder::new(&data[at..at + length])
                 .take(expected.saturating_add(1))
                 .read_to_end(&mut bytes)
                 .map_err(|error| format!("block {number}: {error}"))?;
             if bytes.len() as u64 - before != expected {
-                return Err(format!("block {number} does not unpack to {expected} bytes"));
+                return Err(format!("block {number} does not decompress to {expected} bytes"));
             }
             at += length;
         }
         Ok(bytes)
     }
 
-    /// The length that `bytes` begin with; there are enough.
+    /// The length at the start of `bytes`.
     fn word(self, bytes: &[u8]) -> u64 {
         let mut word = [0; 8];
         let size = self.header.size();
@@ -126,14 +126,14 @@ impl Layout {
     }
 }
 
-/// Bytes that are taken from the front, run by run.
+/// Bytes that are decoded run by run.
 struct Source<'a> {
     left: &'a [u8],
     encoding: Encoding,
 }
 
 impl Source<'_> {
-    /// The next `count` bytes, which end a run of base64.
+    /// Decodes the next run, which has `count` bytes.
     fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
         let cut = "it was cut short";
         let length = match self.encoding {

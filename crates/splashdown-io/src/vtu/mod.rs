@@ -1,18 +1,18 @@
-//! VTU, VTK's XML format for unstructured grids, as ParaView, VisIt and `pyvista` open it: a writer and a reader for
-//! particles. The reader takes `.vtp` (poly data) too.
+//! VTU, VTK's XML format for unstructured grids, which ParaView, VisIt and `pyvista` open: a writer and a reader for
+//! particles. The reader also accepts `.vtp` (poly data).
 //!
-//! Each particle is one `VTK_VERTEX` cell (not one `VTK_POLY_VERTEX` for all: thresholds and selections work on
-//! cells). Arrays follow the XML as raw little-endian bytes, each behind its length as UInt64, uncompressed:
-//! compression would take longer than the disk.
+//! When writing, each particle is one `VTK_VERTEX` cell. (With one `VTK_POLY_VERTEX` of all particles, thresholds and
+//! selections would not work, because they act on cells.) Arrays follow the XML as raw little-endian bytes, each after
+//! its length as UInt64, uncompressed, because compression takes longer than writing.
 //!
-//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) last moved in March 2025, wants its own copy of every
-//! array and offers much that is not needed; the need is these lines. The XML itself is parsed by `roxmltree`. Format:
-//! VTK User's Guide, "XML File Formats".
+//! When reading, the points of all pieces are joined. Cells and other arrays are skipped.
+//!
+//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) has had no release since March 2025 and needs its own copy of
+//! every array. The XML is parsed by `roxmltree`. Format: VTK User's Guide, "XML File Formats".
 
 mod decode;
 mod read;
 mod write;
 
 pub(crate) use read::read;
-pub use read::read_particles;
-pub use write::{write_particles, write_particles_to};
+pub use write::write_particles_to;

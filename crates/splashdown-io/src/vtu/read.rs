@@ -1,4 +1,4 @@
-//! The reader: arrays as text, base64 or raw bytes, in the XML or behind it, packed by zlib or not.
+//! The reader: arrays as text, base64 or raw bytes, in the XML or after it, with or without zlib compression.
 
 use std::path::Path;
 
@@ -10,15 +10,6 @@ use crate::error::IoError;
 use crate::number::Number;
 use crate::particles::Particles;
 use crate::read::{MOST, content, not_particles};
-
-/// Reads the points of a VTU or VTP file: positions, and of the point arrays `velocity` (`v`), `density`, `pressure`
-/// and `id`. Pieces follow one another; cells and other arrays are passed over.
-///
-/// # Errors
-/// [`IoError::Read`]; [`IoError::Malformed`]; [`IoError::TooMany`].
-pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
-    read(path, Wanted::Known)
-}
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
@@ -45,19 +36,19 @@ fn parse(bytes: &[u8], wanted: Wanted) -> Result<Particles, String> {
         big_endian: match root.attribute("byte_order") {
             Some("BigEndian") => true,
             Some("LittleEndian") | None => false,
-            Some(order) => return Err(format!("its byte order `{order}` is not known")),
+            Some(order) => return Err(format!("its byte order `{order:.24}` is not known")),
         },
         header: match root.attribute("header_type") {
             Some("UInt64") => Number::U64,
             Some("UInt32") | None => Number::U32,
             Some(kind) => {
-                return Err(format!("its header type `{kind}` is not known, only UInt32 and UInt64"));
+                return Err(format!("its header type `{kind:.24}` is not known, only UInt32 and UInt64"));
             }
         },
-        packed: match root.attribute("compressor") {
+        is_compressed: match root.attribute("compressor") {
             Some("vtkZLibDataCompressor") => true,
             Some("") | None => false,
-            Some(name) => return Err(format!("it is packed by `{name}`; only zlib is read")),
+            Some(name) => return Err(format!("it is compressed by `{name:.40}`; only zlib is read")),
         },
     };
     let section = root.descendants().find(|node| node.has_tag_name("AppendedData"));
@@ -73,7 +64,7 @@ fn parse(bytes: &[u8], wanted: Wanted) -> Result<Particles, String> {
     Ok(particles)
 }
 
-/// The XML, closed where raw bytes interrupt it, and those bytes, which begin behind an underscore.
+/// Splits a file into its XML, closed where raw bytes interrupt it, and these bytes, which follow an underscore.
 fn split(bytes: &[u8]) -> Result<(String, Option<&[u8]>), String> {
     let find = |from: usize, what: &[u8]| {
         bytes[from..].windows(what.len()).position(|window| window == what).map(|at| from + at)
@@ -92,7 +83,7 @@ fn split(bytes: &[u8]) -> Result<(String, Option<&[u8]>), String> {
     Ok((format!("{xml}</AppendedData></VTKFile>"), Some(&bytes[start..])))
 }
 
-/// A part of the file with its points.
+/// A piece of the grid with its points.
 struct Piece<'a, 'x> {
     piece: Node<'a, 'x>,
     layout: Layout,
@@ -103,7 +94,7 @@ struct Piece<'a, 'x> {
 impl Piece<'_, '_> {
     fn add_to(&self, particles: &mut Particles) -> Result<(), String> {
         let given = self.piece.attribute("NumberOfPoints").unwrap_or("0");
-        let count: usize = given.parse().map_err(|_| format!("its piece has `{given}` points"))?;
+        let count: usize = given.parse().map_err(|_| format!("`{given:.24}` is not a number of points"))?;
         if count > MOST {
             return Err(format!("its piece has {count} points, at most {MOST} are read"));
         }
@@ -150,12 +141,12 @@ impl Piece<'_, '_> {
                 }
                 Some("appended") => {
                     let given = array.attribute("offset").unwrap_or_default();
-                    let offset = given.parse().map_err(|_| format!("its offset is `{given}`"))?;
+                    let offset = given.parse().map_err(|_| format!("`{given:.24}` is not an offset"))?;
                     let appended = self.appended.ok_or("the file has no appended data")?;
                     let (bytes, encoding) = appended.from(offset)?;
                     self.layout.array(bytes, encoding, total * number.size())?
                 }
-                Some(format) => return Err(format!("its format `{format}` is not known")),
+                Some(format) => return Err(format!("its format `{format:.24}` is not known")),
             };
             Ok(number.decode(&bytes, self.layout.big_endian))
         };

@@ -1,35 +1,22 @@
-//! The writer: declarations first, then all arrays.
+//! The writer: declarations in XML, then the bytes of all arrays.
 
 use std::io::{self, Write};
-use std::path::Path;
 
-use crate::atomic;
-use crate::data::Particles;
-use crate::error::IoError;
+use crate::particles::Particles;
 
-/// Numbers handed to the writer in one piece while connectivity is generated.
+/// Numbers of generated connectivity per write.
 const CHUNK: usize = 4096;
 
-/// `VTK_VERTEX` in VTK's list of cell types.
+/// `VTK_VERTEX` among VTK's cell types.
 const VTK_VERTEX: u8 = 1;
 
-/// Writes particles to `path`, complete or not at all; returns the file's size in bytes.
-///
-/// Attributes that are present become the point arrays `velocity`, `density`, `pressure` and `id`.
-///
-/// # Errors
-/// Those of [`Particles::check`]; [`IoError::Write`].
-pub fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
-    particles.check()?;
-    atomic::write(path, |out| write_particles_to(out, particles))
-}
-
-/// Writes particles that pass [`Particles::check`] into any writer.
+/// Writes particles to `out`. Attributes that are present become the point arrays `velocity`, `density`, `pressure` and
+/// `id`.
 ///
 /// # Errors
-/// The writer's own; `InvalidInput` where the check fails.
+/// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
-    particles.check().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    particles.check()?;
     let count = particles.len();
     let point_data = [
         Array::of("velocity", "Float32", 3, &particles.velocities),
@@ -66,7 +53,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     for array in &cells {
         array.declare(out, &mut offset)?;
     }
-    // The underscore marks the byte from which the offsets count.
+    // Offsets are relative to the byte after the underscore.
     write!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
     for array in point_data.chain([&points]).chain(&cells) {
         array.append(out)?;
@@ -74,7 +61,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
-/// An array of the file: declared in the XML, appended behind it.
+/// An array of the file: declared in the XML, appended after it.
 struct Array<'a> {
     name: &'static str,
     kind: &'static str,
@@ -82,7 +69,7 @@ struct Array<'a> {
     data: Data<'a>,
 }
 
-/// The bytes of an array, or how to make them: a cell array is never held in memory.
+/// The bytes of an array, or how to generate them, so that cell arrays need no memory.
 enum Data<'a> {
     Bytes(&'a [u8]),
     Range { first: i32, count: usize },
@@ -110,7 +97,7 @@ impl<'a> Array<'a> {
     fn declare(&self, out: &mut dyn Write, offset: &mut u64) -> io::Result<()> {
         let Self { name, kind, .. } = self;
         write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
-        // As VTK itself does: `meshio` takes an explicit 1 for a matrix of one column.
+        // VTK omits it too: `meshio` reads an explicit 1 as a matrix of one column.
         if self.components > 1 {
             write!(out, " NumberOfComponents=\"{}\"", self.components)?;
         }

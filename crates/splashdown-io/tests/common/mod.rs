@@ -14,7 +14,7 @@ pub fn cube(corner: [f32; 3], size: f32) -> Mesh {
         .collect();
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh { vertices, triangles, ..Mesh::default() }
+    Mesh::new(vertices, triangles)
 }
 
 /// A surface of revolution on a `rings` x `sides` grid that closes in both directions: a torus around y.
@@ -47,14 +47,11 @@ pub fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
 /// Particles with every attribute, all values different.
 pub fn particles(count: usize) -> Particles {
     let value = |n: usize, salt: usize| ((n * 31 + salt) as f32).sin();
-    Particles {
-        ids: (0..count as u32).map(|n| n.wrapping_mul(2_654_435_761)).collect(),
-        positions: (0..count).map(|n| std::array::from_fn(|axis| value(n, axis))).collect(),
-        velocities: (0..count).map(|n| std::array::from_fn(|axis| value(n, axis + 3) * 9.0)).collect(),
-        densities: (0..count).map(|n| 1000.0 + value(n, 6)).collect(),
-        pressures: (0..count).map(|n| 1e4 * value(n, 7)).collect(),
-        ..Particles::default()
-    }
+    Particles::from_positions((0..count).map(|n| std::array::from_fn(|axis| value(n, axis))).collect())
+        .with_ids((0..count as u32).map(|n| n.wrapping_mul(2_654_435_761)).collect())
+        .with_velocities((0..count).map(|n| std::array::from_fn(|axis| value(n, axis + 3) * 9.0)).collect())
+        .with_densities((0..count).map(|n| 1000.0 + value(n, 6)).collect())
+        .with_pressures((0..count).map(|n| 1e4 * value(n, 7)).collect())
 }
 
 /// A file of the shared test data, or `None` with a loud word where the data is absent.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use splashdown_io::{Attribute, Mesh, mesh, read_mesh};
+use splashdown_io::{Attribute, Mesh, read_mesh, write_mesh};
 
 use crate::common;
 use crate::python::{Found, Sums, close, read, same};
@@ -41,8 +41,8 @@ fn changed(given: &Mesh) -> Mesh {
 fn found(test: &str, reader: &str, ending: &str) -> Option<[Found; 2]> {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
-    mesh::write(&path("right"), &given()).unwrap();
-    mesh::write(&path("wrong"), &changed(&given())).unwrap();
+    write_mesh(&path("right"), &given()).unwrap();
+    write_mesh(&path("wrong"), &changed(&given())).unwrap();
     read(test, reader, &[&path("right"), &path("wrong")])?.try_into().ok()
 }
 
@@ -165,10 +165,10 @@ fn what_is_written_is_read_again() {
     let folder = tempfile::tempdir().unwrap();
     for ending in ["ply", "obj", "glb"] {
         let path = folder.path().join(format!("mesh.{ending}"));
-        mesh::write(&path, &given()).unwrap();
+        write_mesh(&path, &given()).unwrap();
         let read = read_mesh(&path).unwrap();
         assert_eq!((read.vertices, read.triangles), (given().vertices, given().triangles), "{ending}");
-        mesh::write(&path, &Mesh::default()).unwrap();
+        write_mesh(&path, &Mesh::default()).unwrap();
         assert!(read_mesh(&path).is_err(), "{ending}: a mesh without triangles is none");
     }
 }

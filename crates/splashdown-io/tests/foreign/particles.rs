@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use splashdown_io::{Particles, particles, read_particles};
+use splashdown_io::{Particles, read_particles, write_particles};
 
 use crate::common;
 use crate::python::{Sums, read, same};
@@ -10,7 +10,7 @@ use crate::python::{Sums, read, same};
 /// Particles whose ids BGEO's signed integers hold as they are.
 fn given() -> Particles {
     let ids = (0..300).map(|n| (n * 7919) % 1009).collect();
-    Particles { ids, ..common::particles(300) }
+    common::particles(300).with_ids(ids)
 }
 
 /// The same with one velocity turned round.
@@ -26,8 +26,8 @@ fn opens(test: &str, reader: &str, ending: &str, names: [&str; 4]) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
     let (right, wrong) = (given(), changed(&given()));
-    particles::write(&path("right"), &right).unwrap();
-    particles::write(&path("wrong"), &wrong).unwrap();
+    write_particles(&path("right"), &right).unwrap();
+    write_particles(&path("wrong"), &wrong).unwrap();
     assert_eq!(read_particles(&path("right")).unwrap(), right);
     let Some(found) = read(test, reader, &[&path("right"), &path("wrong")]) else { return };
     let [velocity, density, pressure, id] = names;

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use splashdown::Checkpoint;
-use splashdown::scene::{Choice, PictureKind};
+use splashdown::scene::{Choice, Format, PictureKind};
 
 use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
 
@@ -80,8 +80,8 @@ impl RunFolder {
     /// The USD file of the surface or the particles, of the frames from `first` on, or of all frames.
     pub fn animated(&self, kind: PictureKind, first: Option<u32>) -> PathBuf {
         match first {
-            Some(frame) => self.numbered("", kind.name(), frame, "usda"),
-            None => self.root.join(format!("{}.usda", kind.name())),
+            Some(frame) => self.numbered("", kind.name(), frame, Format::Usd.ending()),
+            None => self.root.join(format!("{}.{}", kind.name(), Format::Usd.ending())),
         }
     }
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use splashdown::Checkpoint;
+use splashdown_io::Format;
 
 /// The folder of the checkpoints.
 pub const CHECKPOINTS: &str = "checkpoints";
@@ -15,22 +16,34 @@ pub const CHECKPOINT: &str = "checkpoint";
 pub struct Series {
     pub folder: &'static str,
     stems: &'static [&'static str],
-    endings: &'static [&'static str],
+    /// Whether an ending, without its dot, is one of the series.
+    has_ending: fn(&str) -> bool,
 }
 
 pub const PARTICLES: Series = Series {
     folder: "particles",
     stems: &["particles", "spray", "foam", "bubbles"],
-    endings: &["ply", "vtu", "vtk", "bgeo", "npz"],
+    has_ending: |ending| is_format(ending, |format| format.writes_particles() && !format.is_series()),
 };
-pub const MESHES: Series =
-    Series { folder: "mesh", stems: &["surface"], endings: &["ply", "obj", "vtk", "stl", "glb"] };
+pub const MESHES: Series = Series {
+    folder: "mesh",
+    stems: &["surface"],
+    has_ending: |ending| is_format(ending, |format| format.writes_meshes() && !format.is_series()),
+};
 pub const PICTURES: Series =
-    Series { folder: "pictures", stems: &["surface", "particles"], endings: &["png"] };
+    Series { folder: "pictures", stems: &["surface", "particles"], has_ending: |ending| ending == "png" };
 /// USD files of resumed runs, numbered by their first frame.
-pub const ANIMATED: Series = Series { folder: "", stems: &["surface", "particles"], endings: &["usda"] };
+pub const ANIMATED: Series = Series {
+    folder: "",
+    stems: &["surface", "particles"],
+    has_ending: |ending| is_format(ending, Format::is_series),
+};
 const CHECKPOINT_SERIES: Series =
-    Series { folder: CHECKPOINTS, stems: &[CHECKPOINT], endings: &[Checkpoint::ENDING] };
+    Series { folder: CHECKPOINTS, stems: &[CHECKPOINT], has_ending: |ending| ending == Checkpoint::ENDING };
+
+fn is_format(ending: &str, condition: fn(&Format) -> bool) -> bool {
+    Format::with_ending(ending).is_some_and(condition)
+}
 
 /// All series.
 pub const ALL: [Series; 5] = [PARTICLES, MESHES, PICTURES, ANIMATED, CHECKPOINT_SERIES];
@@ -40,25 +53,24 @@ impl Series {
     pub fn files(&self, root: &Path) -> impl Iterator<Item = (u32, PathBuf)> {
         let entries = fs::read_dir(root.join(self.folder)).into_iter().flatten().flatten();
         entries.filter_map(|entry| {
-            let number = frame_number(&entry.file_name().to_string_lossy(), self.stems, self.endings)?;
+            let number = frame_number(&entry.file_name().to_string_lossy(), self.stems, self.has_ending)?;
             Some((number, root.join(self.folder).join(entry.file_name())))
         })
     }
 }
 
 /// The number in `stem_0123.ending`, which has at least four digits.
-pub fn frame_number(name: &str, stems: &[&str], endings: &[&str]) -> Option<u32> {
-    let number = |(stem, ending): (&str, &str)| {
-        let digits = name.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(ending)?.strip_suffix('.')?;
-        let all = digits.len() >= 4 && digits.bytes().all(|digit| digit.is_ascii_digit());
-        digits.parse().ok().filter(|_| all)
-    };
-    stems.iter().find_map(|&stem| endings.iter().find_map(|&ending| number((stem, ending))))
+pub fn frame_number(name: &str, stems: &[&str], has_ending: fn(&str) -> bool) -> Option<u32> {
+    let (name, _) = name.rsplit_once('.').filter(|(_, ending)| has_ending(ending))?;
+    let digits = stems.iter().find_map(|stem| name.strip_prefix(stem)?.strip_prefix('_'))?;
+    let is_number = digits.len() >= 4 && digits.bytes().all(|digit| digit.is_ascii_digit());
+    digits.parse().ok().filter(|_| is_number)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::frame_number;
+    use super::{ALL, PARTICLES, frame_number};
+    use splashdown_io::Format;
 
     #[test]
     fn only_names_of_a_run_have_a_frame_number() {
@@ -71,9 +83,17 @@ mod tests {
             "particles_0000ply",
             "particles_.ply",
         ];
-        assert!(
-            yes.map(|name| frame_number(name, &["particles"], &["ply", "vtu"])) == [Some(0), Some(12_345)]
-        );
-        assert!(!no.iter().any(|name| frame_number(name, &["particles"], &["ply", "vtu"]).is_some()));
+        let number = |name: &str| frame_number(name, &["particles"], PARTICLES.has_ending);
+        assert!(yes.map(number) == [Some(0), Some(12_345)]);
+        assert!(!no.iter().any(|name| number(name).is_some()));
+    }
+
+    #[test]
+    fn every_written_format_has_a_series() {
+        for format in Format::ALL.iter().filter(|format| format.writes_particles() || format.writes_meshes())
+        {
+            assert!(ALL.iter().any(|series| (series.has_ending)(&format.ending[1..])), "{}", format.name);
+        }
+        assert!(!ALL.iter().any(|series| (series.has_ending)("xyz")), "it is not written");
     }
 }

@@ -102,17 +102,17 @@ impl FrameFiles {
         let diffuse: Vec<_> = kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind)))).collect();
         for format in self.formats.iter().filter(|format| format.is_numbered()) {
             if format.has_particles() {
-                let path = self.folder.particles(frame.index, format.name());
+                let path = self.folder.particles(frame.index, format.ending());
                 files.push(path.clone());
                 jobs.push(Job::Particles(path, Arc::clone(&frame.particles)));
                 for (name, particles) in &diffuse {
-                    let path = self.folder.diffuse(name, frame.index, format.name());
+                    let path = self.folder.diffuse(name, frame.index, format.ending());
                     files.push(path.clone());
                     jobs.push(Job::Particles(path, Arc::clone(particles)));
                 }
             }
             if let (true, Some(mesh)) = (format.has_surface(), &frame.mesh) {
-                let path = self.folder.mesh(frame.index, format.name());
+                let path = self.folder.mesh(frame.index, format.ending());
                 files.push(path.clone());
                 jobs.push(Job::Mesh(path, Arc::clone(mesh)));
             }

@@ -31,7 +31,7 @@ impl Earlier {
         let mut missing = Vec::new();
         for frame in since..=last {
             for format in scene.output.formats.iter().filter(|format| format.is_numbered()) {
-                let ending = format.name();
+                let ending = format.ending();
                 if format.has_particles() {
                     missing.push(folder.particles(frame, ending));
                     let kinds = DiffuseKind::ALL.iter().filter(|_| scene.foam.enabled);

@@ -318,12 +318,9 @@ impl DiffuseParticles {
     /// The particles of a kind, with ids, positions and velocities.
     pub fn of_kind(&self, kind: DiffuseKind) -> Particles {
         let of_kind = || (0..self.len()).filter(|&i| self.kinds[i] == kind);
-        Particles {
-            ids: of_kind().map(|i| self.ids[i]).collect(),
-            positions: of_kind().map(|i| self.positions[i]).collect(),
-            velocities: of_kind().map(|i| self.velocities[i]).collect(),
-            ..Particles::default()
-        }
+        Particles::from_positions(of_kind().map(|i| self.positions[i]).collect())
+            .with_ids(of_kind().map(|i| self.ids[i]).collect())
+            .with_velocities(of_kind().map(|i| self.velocities[i]).collect())
     }
 
     /// Number of particles of a kind.

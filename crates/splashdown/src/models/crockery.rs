@@ -61,7 +61,7 @@ pub(super) fn thin_cup() -> Mesh {
     }
     let (foot, rim) = (line[line.len() - 1], vec2(0.0445, 0.1));
     line.extend((1..=28_u8).map(|i| foot.lerp(rim, f32::from(i) / 28.0)));
-    let mut mesh = Mesh { vertices: vec![[0.0; 3]], normals: vec![[0.0, -1.0, 0.0]], ..Mesh::default() };
+    let mut mesh = Mesh::new(vec![[0.0; 3]], Vec::new()).with_normals(vec![[0.0, -1.0, 0.0]]);
     let slope = |k: usize| {
         let before = if k == 0 { Vec2::ZERO } else { line[k - 1] };
         let along = line.get(k + 1).copied().unwrap_or(line[k]) - before;

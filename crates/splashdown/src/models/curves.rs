@@ -76,12 +76,8 @@ pub(super) fn sphere() -> Mesh {
         triangles = split;
     }
     let normals: Vec<Vec3> = points.iter().map(|p| p.normalize_or_zero()).collect();
-    Mesh {
-        vertices: normals.iter().map(|n| (0.1 * n).to_array()).collect(),
-        normals: normals.iter().map(Vec3::to_array).collect(),
-        triangles,
-        ..Mesh::default()
-    }
+    Mesh::new(normals.iter().map(|n| (0.1 * n).to_array()).collect(), triangles)
+        .with_normals(normals.iter().map(Vec3::to_array).collect())
 }
 
 pub(super) fn block() -> Mesh {

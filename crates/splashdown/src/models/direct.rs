@@ -18,7 +18,7 @@ fn prism(outline: &[[f32; 2]], half_width: f32) -> Mesh {
         triangles.push([i, count + i, count + j]);
         triangles.push([i, count + j, j]);
     }
-    Mesh { vertices, triangles, ..Mesh::default() }
+    Mesh::new(vertices, triangles)
 }
 
 pub(super) fn cube() -> Mesh {

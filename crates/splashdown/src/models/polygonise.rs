@@ -30,7 +30,7 @@ pub(super) fn polygonise(min: Vec3, max: Vec3, cell: f32, shape: impl Fn(Vec3) -
     let values = sample(min, cell, blocks, &shape);
     let (vertices, triangles) = march(min, cell, nodes, &values);
     let (vertices, normals) = relax(vertices, &triangles, cell, &shape);
-    Mesh { vertices: to_arrays(&vertices), normals: to_arrays(&normals), triangles, ..Mesh::default() }
+    Mesh::new(to_arrays(&vertices), triangles).with_normals(to_arrays(&normals))
 }
 
 fn to_arrays(points: &[Vec3]) -> Vec<[f32; 3]> {

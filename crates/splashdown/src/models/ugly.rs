@@ -52,11 +52,10 @@ pub fn ugly(mesh: &Mesh, seed: u32) -> Mesh {
     for i in (1..soup.len()).rev() {
         soup.swap(i, dice.below(i + 1));
     }
-    Mesh {
-        vertices: soup.iter().flatten().map(Vec3::to_array).collect(),
-        triangles: (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
-        ..Mesh::default()
-    }
+    Mesh::new(
+        soup.iter().flatten().map(Vec3::to_array).collect(),
+        (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+    )
 }
 
 /// Random numbers in a row.

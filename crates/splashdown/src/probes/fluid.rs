@@ -81,11 +81,8 @@ mod tests {
     fn sums_are_those_of_the_particles_in_the_box() {
         let probes =
             FluidProbes { boxes: Vec::new(), volume: 0.001, mass: 2.0, gravity: DVec3::new(0.0, -10.0, 0.0) };
-        let particles = Particles {
-            positions: vec![[0.0, 1.0, 0.0], [0.5, 3.0, 0.0], [9.0, 5.0, 0.0]],
-            velocities: vec![[1.0, 0.0, 0.0], [0.0, -2.0, 3.0], [100.0; 3]],
-            ..Particles::default()
-        };
+        let particles = Particles::from_positions(vec![[0.0, 1.0, 0.0], [0.5, 3.0, 0.0], [9.0, 5.0, 0.0]])
+            .with_velocities(vec![[1.0, 0.0, 0.0], [0.0, -2.0, 3.0], [100.0; 3]]);
         let all = [DVec3::NEG_INFINITY, DVec3::INFINITY];
         let row = probes.row([DVec3::ZERO, DVec3::ONE * 4.0], 0.5, &particles);
         assert_eq!(row, [0.5, 0.002, 14.0, 80.0, 2.0, -4.0, 6.0]);

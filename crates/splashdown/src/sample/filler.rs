@@ -178,7 +178,7 @@ impl<'a> Filler<'a> {
     /// Everything that was put in, numbered from 0.
     pub fn finish(self) -> Particles {
         let ids = (0..self.positions.len() as u32).collect();
-        Particles { ids, positions: self.positions, velocities: self.velocities, ..Particles::default() }
+        Particles::from_positions(self.positions).with_ids(ids).with_velocities(self.velocities)
     }
 }
 

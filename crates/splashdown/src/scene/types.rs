@@ -311,24 +311,37 @@ choices! {
 }
 
 impl Format {
+    /// Ending of the file names, without its dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Usd => "usda",
+            other => other.name(),
+        }
+    }
+
     /// Whether files of this format hold particles.
     pub fn has_particles(self) -> bool {
-        matches!(self, Self::Ply | Self::Vtu | Self::Vtk | Self::Bgeo | Self::Npz | Self::Usd)
+        self.has(splashdown_io::Format::writes_particles)
     }
 
     /// Whether files of this format hold the surface.
     pub fn has_surface(self) -> bool {
-        matches!(self, Self::Ply | Self::Obj | Self::Vtk | Self::Stl | Self::Glb | Self::Usd)
+        self.has(splashdown_io::Format::writes_meshes)
     }
 
-    /// Whether each frame has a file of its own; else all are in one.
+    /// Whether each frame has a file of its own. Otherwise one file holds all frames.
     pub fn is_numbered(self) -> bool {
-        self != Self::Usd
+        !self.has(splashdown_io::Format::is_series)
     }
 
     /// Whether its surfaces can have velocities.
     pub fn has_vertex_velocities(self) -> bool {
-        matches!(self, Self::Ply | Self::Vtk | Self::Glb | Self::Usd)
+        self.has(|format| format.writes_meshes() && format.has_velocities())
+    }
+
+    /// Whether its row in the table of file formats meets a condition.
+    fn has(self, condition: fn(&splashdown_io::Format) -> bool) -> bool {
+        splashdown_io::Format::with_ending(self.ending()).is_some_and(condition)
     }
 }
 

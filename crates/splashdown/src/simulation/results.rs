@@ -155,12 +155,9 @@ fn in_order_of_id(ids: &[u32], positions: &[Vec4], velocities: &[Vec4], densitie
     let mut order: Vec<u32> = (0..ids.len() as u32).filter(|&i| positions[i as usize].w == 0.0).collect();
     order.sort_unstable_by_key(|&i| ids[i as usize]);
     let order = || order.iter().map(|&i| i as usize);
-    Particles {
-        ids: order().map(|i| ids[i]).collect(),
-        positions: order().map(|i| positions[i].xyz().to_array()).collect(),
-        velocities: order().map(|i| velocities[i].xyz().to_array()).collect(),
-        densities: order().map(|i| densities[i].x).collect(),
-        pressures: order().map(|i| densities[i].y).collect(),
-        ..Particles::default()
-    }
+    Particles::from_positions(order().map(|i| positions[i].xyz().to_array()).collect())
+        .with_ids(order().map(|i| ids[i]).collect())
+        .with_velocities(order().map(|i| velocities[i].xyz().to_array()).collect())
+        .with_densities(order().map(|i| densities[i].x).collect())
+        .with_pressures(order().map(|i| densities[i].y).collect())
 }

@@ -91,11 +91,7 @@ pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
     if rest.len() != count.checked_mul(8)? {
         return None;
     }
-    let mesh = Mesh {
-        vertices: bytemuck::pod_collect_to_vec(vertices),
-        triangles: bytemuck::pod_collect_to_vec(triangles),
-        ..Mesh::default()
-    };
+    let mesh = Mesh::new(bytemuck::pod_collect_to_vec(vertices), bytemuck::pod_collect_to_vec(triangles));
     let field = DistanceField {
         min: Vec3::from(header.min),
         cell_size: header.cell_size,

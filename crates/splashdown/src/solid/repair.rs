@@ -84,7 +84,7 @@ pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
     report.pieces = pieces;
     report.shell = shell.unwrap_or_else(|| open_part(&vertices, &triangles) > OPEN);
     let (vertices, triangles) = compact(&vertices, &triangles);
-    (Mesh { vertices, triangles, ..Mesh::default() }, report)
+    (Mesh::new(vertices, triangles), report)
 }
 
 /// Distinct places, and the number of each vertex among them.

@@ -114,12 +114,11 @@ mod tests {
     }
 
     #[test]
-    fn bubbles_remain() {
-        let mut mesh = Mesh {
-            vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            triangles: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]],
-            ..Mesh::default()
-        };
+    fn bubbles_stay() {
+        let mut mesh = Mesh::new(
+            vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]],
+        );
         assert!(mesh.volume() < 0.0);
         assert_eq!(remove_small_components(&mut mesh, 1e9), 0);
     }

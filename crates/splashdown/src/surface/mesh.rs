@@ -447,7 +447,7 @@ impl Surface {
         let normals = executor.fetch_first(self.b.normals, status.vertices as usize).await?;
         let indices = executor.fetch_first(self.b.indices, 3 * status.triangles as usize).await?;
         let triangles = indices.as_chunks::<3>().0.to_vec();
-        Ok(Mesh { vertices: xyz(vertices), normals: xyz(normals), triangles, ..Mesh::default() })
+        Ok(Mesh::new(xyz(vertices), triangles).with_normals(xyz(normals)))
     }
 
     async fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {

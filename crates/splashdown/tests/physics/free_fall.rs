@@ -42,11 +42,8 @@ fn lone_particles_and_a_block_fall_as_symplectic_euler_says() {
             let scene = scene(&text(method));
             // Lone particles, further from each other than a support, with velocities of their own; then the block.
             let lone = |i: u32| [-3.0 + 0.5 * i as f32, 1.0 + 0.25 * (i % 3) as f32, -2.0];
-            let mut particles = Particles {
-                positions: (0..12).map(lone).collect(),
-                velocities: (0..12).map(|i| [0.25, 0.5 * i as f32 - 2.0, -0.125]).collect(),
-                ..Particles::default()
-            };
+            let mut particles = Particles::from_positions((0..12).map(lone).collect())
+                .with_velocities((0..12).map(|i| [0.25, 0.5 * i as f32 - 2.0, -0.125]).collect());
             let lone = particles.positions.len();
             let block = splashdown::sample::particles(&scene).unwrap();
             particles.positions.extend(&block.positions);

@@ -41,7 +41,7 @@ fn faces(first: u32, without: Option<usize>) -> Vec<[u32; 3]> {
 
 /// A box with sharp edges.
 pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
-    Mesh { vertices: corners(min, max).to_vec(), triangles: faces(0, None), ..Mesh::default() }
+    Mesh::new(corners(min, max).to_vec(), faces(0, None))
 }
 
 /// A tank with walls of this thickness around an inner box, open at the top.
@@ -57,14 +57,14 @@ pub fn tub(min: Vec3, max: Vec3, wall: f32) -> Mesh {
         let (a, b) = (ring[k], ring[(k + 1) % 4]);
         triangles.extend([[a, b, b + 8], [a, b + 8, a + 8]]);
     }
-    Mesh { vertices, triangles, ..Mesh::default() }
+    Mesh::new(vertices, triangles)
 }
 
 /// Writes a mesh for a scene to read.
 pub fn file(folder: &Path, name: &str, mesh: &Mesh) -> MeshShape {
     assert!(mesh.topology().unwrap().is_watertight(), "{name}");
     let path: PathBuf = folder.join(name);
-    splashdown_io::mesh::write(&path, mesh).unwrap();
+    splashdown_io::write_mesh(&path, mesh).unwrap();
     MeshShape::File(path)
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use splashdown::scene::Scene;
-use splashdown_io::{Mesh, stl};
+use splashdown_io::{Mesh, write_mesh};
 
 use crate::CUBE;
 
@@ -30,7 +30,7 @@ fn write_cube(path: &Path, edge: f32) {
     for v in &mut cube.vertices {
         *v = v.map(|c| c * edge);
     }
-    stl::write_mesh(path, &cube).expect("written");
+    write_mesh(path, &cube).expect("written");
 }
 
 #[test]

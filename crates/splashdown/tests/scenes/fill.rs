@@ -6,7 +6,7 @@ use glam::Vec3;
 use splashdown::sample;
 use splashdown::scene::{Derived, Scene};
 use splashdown::{Device, Simulation, memory_forecast};
-use splashdown_io::{Particles, ply};
+use splashdown_io::{Particles, write_particles};
 
 use crate::{changed, parse};
 
@@ -103,19 +103,18 @@ fn what_was_there_first_keeps_the_room() {
 fn some_particles(velocities: bool) -> Particles {
     let positions: Vec<[f32; 3]> =
         (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(|c| 50.0 * c as f32)).collect();
-    Particles {
-        velocities: if velocities { vec![[1000.0, 0.0, 0.0]; 1000] } else { Vec::new() },
-        positions,
-        ..Particles::default()
-    }
+    Particles::from_positions(positions).with_velocities(if velocities {
+        vec![[1000.0, 0.0, 0.0]; 1000]
+    } else {
+        Vec::new()
+    })
 }
 
 #[test]
 fn particles_of_a_file_are_scaled_turned_and_keep_their_velocities() {
     let folder = tempfile::tempdir().expect("a folder");
     for has_velocities in [true, false] {
-        ply::write_particles(&folder.path().join("drop.ply"), &some_particles(has_velocities))
-            .expect("written");
+        write_particles(&folder.path().join("drop.ply"), &some_particles(has_velocities)).expect("written");
         let piece = "[[fluid.file]]\nfile = \"drop.ply\"\nscale = \"mm\"\nposition = [0.6, 0.1, 0.1]\nrotation = [0, 0, 90]\n\
                      velocity = [0, 0, 2]\n";
         let scene = load(folder.path(), &tank(0.05, piece)).expect("legal");
@@ -135,7 +134,7 @@ fn particles_of_a_file_are_scaled_turned_and_keep_their_velocities() {
 #[test]
 fn a_file_of_another_spacing_or_place_is_doubted() {
     let folder = tempfile::tempdir().expect("a folder");
-    ply::write_particles(&folder.path().join("drop.ply"), &some_particles(false)).expect("written");
+    write_particles(&folder.path().join("drop.ply"), &some_particles(false)).expect("written");
     let warnings = |text: &str| {
         let scene = load(folder.path(), text).expect("legal");
         scene.warnings.iter().map(|warning| format!("{warning}\n")).collect::<String>()
@@ -160,7 +159,7 @@ fn a_file_of_another_spacing_or_place_is_doubted() {
 #[test]
 fn a_scene_with_a_mesh_and_a_file_runs() {
     let folder = tempfile::tempdir().expect("a folder");
-    ply::write_particles(&folder.path().join("drop.ply"), &some_particles(true)).expect("written");
+    write_particles(&folder.path().join("drop.ply"), &some_particles(true)).expect("written");
     let text = tank(
         0.05,
         "[[fluid.mesh]]\nmesh = \"sphere\"\nscale = 2.4\nposition = [0.3, 0.3, 0.3]\n\

@@ -6,6 +6,7 @@ mod errors;
 mod files;
 mod fill;
 mod flow;
+mod formats;
 mod hostile;
 mod presets;
 mod probes;

@@ -38,11 +38,10 @@ fn block(low: Vec3, high: Vec3) -> Mesh {
 fn joined(a: &Mesh, b: &Mesh) -> Mesh {
     let offset = a.vertices.len() as u32;
     let moved = b.triangles.iter().map(|t| t.map(|v| v + offset));
-    Mesh {
-        vertices: [a.vertices.as_slice(), &b.vertices].concat(),
-        triangles: a.triangles.iter().copied().chain(moved).collect(),
-        ..Mesh::default()
-    }
+    Mesh::new(
+        [a.vertices.as_slice(), &b.vertices].concat(),
+        a.triangles.iter().copied().chain(moved).collect(),
+    )
 }
 
 /// D(q) on both sides of a wall.
@@ -90,11 +89,10 @@ fn both_sides_of_a_narrow_slot_are_felt_in_its_middle() {
 
 #[test]
 fn a_sheet_on_the_nodes_is_as_solid_as_its_thickness() {
-    let sheet = Mesh {
-        vertices: vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]],
-        triangles: vec![[0, 2, 1], [0, 3, 2]],
-        ..Mesh::default()
-    };
+    let sheet = Mesh::new(
+        vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]],
+        vec![[0, 2, 1], [0, 3, 2]],
+    );
     assert!(compare_with_layers(&sheet, &[[-CELL, CELL]]) >= LAYER);
 }
 
@@ -137,7 +135,7 @@ proptest! {
     ) {
         let count = places.len() as u32;
         let triangles = corners.iter().map(|t| t.map(|v| v % count)).collect();
-        let mesh = Mesh { vertices: places, triangles, ..Mesh::default() };
+        let mesh = Mesh::new(places, triangles);
         let settings = SolidSettings { cell_size: 0.125, support_radius: 0.25, shell, ..settings() };
         match Solid::build(&mesh, &settings, &|_| {}) {
             Ok(solid) => {
