@@ -1,4 +1,5 @@
-//! Measures what writing a frame costs: `cargo run --release -p splashdown-io --example write_speed [FOLDER]`.
+//! Measures how long writing and reading a frame takes:
+//! `cargo run --release -p splashdown-io --example write_speed [FOLDER]`.
 //!
 //! 65,536 particles as PLY and VTU, a mesh of 300,000 triangles as PLY and OBJ, its topology, and a picture of
 //! 1280 x 720 pixels as PNG; the best and the median of 15 runs each.
@@ -8,7 +9,9 @@ use std::io::{Write, stdout};
 use std::path::PathBuf;
 use std::time::Instant;
 
-use splashdown_io::{Mesh, Particles, Picture, picture, prepare_folder, write_mesh, write_particles};
+use splashdown_io::{
+    Mesh, Particles, Picture, picture, prepare_folder, read_mesh, read_particles, write_mesh, write_particles,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os()
@@ -17,10 +20,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     prepare_folder(&folder)?;
     let (particles, mesh, picture) = (particles_of(1 << 16), torus(500, 300), picture_of(1280, 720));
     for name in ["particles.ply", "particles.vtu"] {
-        measure(name, || Ok(write_particles(&folder.join(name), &particles)?))?;
+        let path = folder.join(name);
+        measure(name, || Ok(write_particles(&path, &particles)?))?;
+        measure("  read", || {
+            read_particles(&path)?;
+            Ok(path.metadata()?.len())
+        })?;
     }
     for name in ["mesh.ply", "mesh.obj"] {
-        measure(name, || Ok(write_mesh(&folder.join(name), &mesh)?))?;
+        let path = folder.join(name);
+        measure(name, || Ok(write_mesh(&path, &mesh)?))?;
+        measure("  read", || {
+            read_mesh(&path)?;
+            Ok(path.metadata()?.len())
+        })?;
     }
     measure("picture.png", || Ok(picture::write_png(&folder.join("picture.png"), &picture)?))?;
     measure("(topology)", || Ok(mesh.topology()?.edges as u64 * 8))?;
@@ -41,7 +54,7 @@ fn measure(name: &str, mut run: impl FnMut() -> Result<u64, Box<dyn Error>>) -> 
     Ok(())
 }
 
-/// Numbers with all their digits, as a simulation gives them.
+/// Numbers with all digits, as in a simulation.
 fn value(n: usize, salt: usize) -> f32 {
     ((n * 31 + salt) as f32 * 0.1).sin()
 }
@@ -69,7 +82,7 @@ fn torus(rings: u32, sides: u32) -> Mesh {
     mesh
 }
 
-/// Smooth shading with some noise, roughly what a rendered surface holds.
+/// Smooth shading with some noise, similar to a rendered surface.
 fn picture_of(width: u32, height: u32) -> Picture {
     let mut rgba = Vec::new();
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {

@@ -1,4 +1,4 @@
-//! What else files have for each particle, and meshes that are no particles.
+//! Attributes of any name, and meshes given as particles.
 
 mod common;
 
@@ -15,7 +15,7 @@ fn attribute<'a>(particles: &'a Particles, name: &str) -> &'a Attribute {
 }
 
 #[test]
-fn every_format_gives_all_that_was_written() {
+fn every_format_returns_all_attributes() {
     let folder = tempfile::tempdir().unwrap();
     let given = common::particles(1500);
     for (ending, [velocity, density, pressure]) in [
@@ -33,7 +33,7 @@ fn every_format_gives_all_that_was_written() {
         assert_eq!(attribute(&read, density).values, given.densities, "{ending}");
         assert_eq!(attribute(&read, pressure).values, given.pressures, "{ending}");
         assert_eq!(read.attributes.iter().filter(|attribute| attribute.is_id()).count(), 1, "{ending}");
-        // All else is as without them.
+        // Everything else is the same as without attributes.
         let (bare, read) = (read_particles(&path).unwrap(), read.with_attributes(Vec::new()));
         assert!(bare == read && bare == given, "{ending}");
     }
@@ -74,7 +74,7 @@ fn attributes_of_any_name_and_type_are_read() {
     assert_eq!(attribute(&read, "f").values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     assert_eq!(attribute(&read, "h").values, [0.5, 0.25]);
 
-    // One that a piece lacks belongs to nobody.
+    // An attribute that is missing in a piece is dropped.
     let piece = |more: &str| {
         format!(
             "<Piece NumberOfPoints=\"1\"><PointData>{more}</PointData><Points><DataArray type=\"Float32\" \
@@ -91,7 +91,7 @@ fn attributes_of_any_name_and_type_are_read() {
 }
 
 #[test]
-fn meshes_hold_attributes_and_are_no_particles() {
+fn meshes_have_attributes_and_are_refused_as_particles() {
     let folder = tempfile::tempdir().unwrap();
     let mut torus = common::torus(0.4, 0.15, 24, 12);
     let heights: Vec<f32> = torus.vertices.iter().map(|vertex| vertex[1]).collect();
@@ -113,7 +113,7 @@ fn meshes_hold_attributes_and_are_no_particles() {
         assert_eq!(numbers[vertex * row + 6], *height);
         assert_eq!(numbers[vertex * row + 7..vertex * row + 10], torus.vertices[vertex]);
     }
-    // In VTK they follow their names, the highest byte first.
+    // In VTK they follow their names, in big-endian order.
     write_mesh(&path("mesh.vtk"), &torus).unwrap();
     let bytes = fs::read(path("mesh.vtk")).unwrap();
     let after = |words: &str| {
@@ -133,7 +133,7 @@ fn meshes_hold_attributes_and_are_no_particles() {
     fs::write(path("mesh.vtp"), text).unwrap();
     assert!(read_particles(&path("mesh.vtp")).unwrap_err().to_string().contains("mesh of 1 face,"));
 
-    // Of the wrong length, or neither numbers nor vectors.
+    // Attributes of the wrong length, or that are neither scalars nor vectors.
     for (components, values) in [(1, vec![0.0; 5]), (2, vec![0.0; 2 * torus.vertices.len()])] {
         let wrong = torus.clone().with_attributes(vec![attribute("odd", components, values)]);
         let message = write_mesh(&path("wrong.ply"), &wrong).unwrap_err().to_string();

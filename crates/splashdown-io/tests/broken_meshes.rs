@@ -1,4 +1,4 @@
-//! Mesh files that are broken, cut, foreign or hostile: an error that names the file and the reason, never a panic.
+//! Mesh files that are malformed, cut short, of other formats or hostile: an error names the file and the reason.
 
 mod common;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use splashdown_io::{Format, IoError, read_mesh, write_mesh, write_particles};
 use tempfile::TempDir;
 
-/// Writes `contents` and returns its place with the folder that keeps it alive.
+/// Writes `contents`; returns the path and the folder, which is removed on drop.
 fn file(name: &str, contents: &[u8]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -18,7 +18,7 @@ fn file(name: &str, contents: &[u8]) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// The message of a file that must not be read.
+/// The error message of a file that must be refused.
 fn message(name: &str, contents: &[u8]) -> String {
     let (_keep, path) = file(name, contents);
     let message = match read_mesh(&path) {
@@ -35,7 +35,7 @@ fn refused(name: &str, contents: &[u8], reason: &str) {
     assert!(message.contains(reason), "wanted `{reason}`, got: {message}");
 }
 
-/// One small mesh as the bytes of each format.
+/// The bytes of a small mesh in each format.
 fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     let torus = common::torus(1.0, 0.25, 6, 5);
     let mut files: Vec<_> = ["whole.obj", "whole.stl", "whole.ply"]
@@ -58,7 +58,7 @@ fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 #[test]
-fn what_is_no_mesh_file_at_all_is_told() {
+fn files_of_other_formats_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let missing = read_mesh(&folder.path().join("absent.obj")).unwrap_err();
     assert!(
@@ -86,7 +86,7 @@ fn what_is_no_mesh_file_at_all_is_told() {
 
 #[test]
 #[cfg(unix)]
-fn a_device_is_not_read_for_ever() {
+fn a_device_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["endless.obj", "endless.stl", "endless.ply", "endless.glb"] {
         let path = folder.path().join(name);
@@ -97,7 +97,7 @@ fn a_device_is_not_read_for_ever() {
 }
 
 #[test]
-fn broken_obj_files_name_the_line() {
+fn malformed_obj_files_are_refused_with_the_line() {
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (rest, reason) in [
         ("", "no triangles (3 vertices"),
@@ -122,13 +122,13 @@ fn broken_obj_files_name_the_line() {
         refused("given.obj", format!("{corners}{rest}").as_bytes(), reason);
     }
     refused("given.obj", b"one\ntwo\n\nthree", "none of its 3 lines is a vertex");
-    // The control: the same vertices with a face in order.
+    // The control: the same vertices with a valid face.
     let (_keep, path) = file("given.obj", format!("{corners}f 1 2 3\n").as_bytes());
     assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
 }
 
 #[test]
-fn broken_stl_files_name_the_line_or_the_missing_bytes() {
+fn malformed_stl_files_are_refused_with_the_line_or_the_missing_bytes() {
     let (name, whole) = (
         "given.stl",
         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
@@ -156,7 +156,7 @@ fn broken_stl_files_name_the_line_or_the_missing_bytes() {
 }
 
 #[test]
-fn a_ply_of_points_is_no_mesh() {
+fn a_ply_file_of_points_is_refused_as_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.ply");
     write_particles(&path, &common::particles(7)).unwrap();
@@ -167,12 +167,12 @@ fn a_ply_of_points_is_no_mesh() {
     );
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n\
         element face 1\nproperty list uint uint vertex_indices\nend_header\n";
-    // A list that promises 4 * 10^9 entries must not be given memory for them.
+    // No memory may be allocated for the 4 * 10^9 entries that the list promises.
     refused("given.ply", &[header.as_bytes(), &[0xff; 8]].concat(), "in element `face`");
 }
 
 #[test]
-fn broken_gltf_files_tell_what_is_wrong() {
+fn malformed_gltf_files_are_refused_with_the_reason() {
     let json = Cube::new(CUBE_AT_ORIGIN).json("");
     let buffer = Cube::new(CUBE_AT_ORIGIN).buffer;
     for (from, to, reason) in [
@@ -180,7 +180,7 @@ fn broken_gltf_files_tell_what_is_wrong() {
         ("\"count\": 24", "\"count\": 18446744073709551615", "does not fit"),
         ("\"count\": 24", "\"count\": 0", "a triangle uses vertex"),
         ("\"count\": 24", "\"count\": 20", "in mesh 0: a triangle uses vertex 20, but there are 20 vertices"),
-        ("\"count\": 36", "\"count\": 35", "no whole number of triangles"),
+        ("\"count\": 36", "\"count\": 35", "is not a multiple of 3"),
         ("\"count\": 36", "\"count\": 0", "no triangles (8 vertices"),
         ("\"byteOffset\": 288", "\"byteOffset\": 18446744073709551615", "does not fit"),
         ("5126", "5125", "5126 (float)"),
@@ -223,7 +223,7 @@ fn broken_gltf_files_tell_what_is_wrong() {
         };
         assert!(message.contains(reason), "{to}: wanted `{reason}`, got: {message}");
     }
-    // The header's length is subtracted from: none below 12 may reach the library.
+    // The length in the header must be at least 12, the size of the header.
     for length in [0_u32, 11, 12, u32::MAX] {
         let mut bytes = glb_of(&json, &buffer);
         bytes[8..12].copy_from_slice(&length.to_le_bytes());
@@ -232,12 +232,12 @@ fn broken_gltf_files_tell_what_is_wrong() {
 }
 
 #[test]
-fn a_binary_file_cut_at_any_byte_is_refused_and_a_text_never_a_panic() {
+fn a_binary_file_cut_at_any_byte_is_refused() {
     for (name, whole) in whole_files() {
         let (keep, path) = file(name, &whole);
         assert!(read_mesh(&path).is_ok(), "{name}: {:?}", read_mesh(&path));
         let mut read = 0;
-        // Shortened in place, which is hundreds of times as fast as writing each length.
+        // Truncated in place, which is hundreds of times as fast as writing each length.
         let cut = fs::File::options().write(true).open(&path).unwrap();
         for length in (0..whole.len()).rev() {
             cut.set_len(length as u64).unwrap();
@@ -251,12 +251,12 @@ fn a_binary_file_cut_at_any_byte_is_refused_and_a_text_never_a_panic() {
         }
         drop(keep);
         match name {
-            // A shorter OBJ file is an OBJ file; the text of the others may miss its last digits or line break.
+            // A shorter OBJ file is valid; other text files may lack their last digits or line feed.
             "whole.obj" => assert!(read > 0),
             // Every solid but the last may be missing.
             "text.stl" => assert!(read <= 6 * 9, "{read}"),
             "text.ply" | "whole.gltf" => assert!(read <= 2, "{name}: {read}"),
-            // The padding behind the buffer may be missing... but then its length is wrong.
+            // Without the padding after the buffer the length in the header is wrong.
             _ => assert_eq!(read, 0, "{name}"),
         }
     }
@@ -266,7 +266,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_file_with_changed_bytes_is_never_a_panic(
+    fn a_file_with_changed_bytes_does_not_cause_a_panic(
         which in 0_usize..7,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
@@ -276,7 +276,7 @@ proptest! {
             bytes[at] = to;
         }
         let (_keep, path) = file(name, &bytes);
-        // Either outcome is right; what comes back holds together.
+        // Both outcomes are valid, but a mesh must be consistent.
         if let Ok(mesh) = read_mesh(&path) {
             prop_assert!(mesh.check().is_ok() && !mesh.is_empty());
             prop_assert!(mesh.vertices.iter().flatten().all(|v| v.is_finite()));
@@ -284,7 +284,7 @@ proptest! {
     }
 
     #[test]
-    fn numbers_of_a_gltf_replaced_by_others_are_never_a_panic(
+    fn changed_numbers_in_a_gltf_file_do_not_cause_a_panic(
         at in any::<prop::sample::Index>(),
         to in prop_oneof![Just("-1"), Just("0"), Just("1"), Just("2"), Just("7"), Just("4294967295"), Just("18446744073709551615"), Just("1e300"), Just("null"), Just("[]"), Just("\"x\"")],
     ) {

@@ -1,4 +1,4 @@
-//! The growing table: read while it grows, odd names and numbers, and disks that are full.
+//! Growing tables: read while they grow, unusual names and numbers, full disks.
 
 use std::fs;
 use std::path::Path;
@@ -47,7 +47,7 @@ impl Bits for Vec<f64> {
 }
 
 #[test]
-fn a_row_of_another_length_is_refused_and_leaves_no_trace() {
+fn a_row_of_another_length_is_refused_and_not_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("probe.csv");
     let mut log = CsvLog::create(&path, &["a", "b"]).unwrap();
@@ -61,7 +61,7 @@ fn a_row_of_another_length_is_refused_and_leaves_no_trace() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_reported() {
+fn a_missing_folder_is_reported() {
     let error = CsvLog::create(Path::new("no/such/folder/probe.csv"), &["a"]).unwrap_err();
     assert!(matches!(error, IoError::Write { cause: WriteCause::MissingFolder, .. }), "{error}");
 }
@@ -77,18 +77,18 @@ fn a_full_disk_is_reported() {
     );
 }
 
-/// Names the file for the part of the next test that runs in a process of its own.
+/// The variable with the file name for the part of the next test that runs in its own process.
 const LIMITED: &str = "SPLASHDOWN_TEST_LIMITED_CSV";
 
-/// A limit on the size of files, as `ulimit` sets it for a child, cuts a row in the middle as a full disk does.
+/// The file size limit of `ulimit` cuts a row in the middle, like a full disk.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_row_that_does_not_fit_leaves_only_whole_rows() {
+fn a_row_that_does_not_fit_leaves_only_complete_rows() {
     if let Some(path) = std::env::var_os(LIMITED) {
         let mut log = CsvLog::create(Path::new(&path), &["x", "y"]).unwrap();
         let error = (0..100_000).find_map(|n| log.row(&[f64::from(n), 0.123_456_789]).err()).unwrap();
         assert!(matches!(error, IoError::Write { cause: WriteCause::TooLarge, .. }), "{error}");
-        // The next one fails too, and still there is no half row.
+        // The next row fails too and leaves no partial row.
         log.row(&[1.0 / 3.0, 2.0 / 3.0]).unwrap_err();
         return;
     }
@@ -97,7 +97,7 @@ fn a_row_that_does_not_fit_leaves_only_whole_rows() {
     let status = std::process::Command::new("sh")
         .args([
             "-c",
-            "trap '' XFSZ; ulimit -f 4; exec \"$0\" --exact a_row_that_does_not_fit_leaves_only_whole_rows",
+            "trap '' XFSZ; ulimit -f 4; exec \"$0\" --exact a_row_that_does_not_fit_leaves_only_complete_rows",
         ])
         .arg(std::env::current_exe().unwrap())
         .env(LIMITED, &path)
@@ -106,7 +106,7 @@ fn a_row_that_does_not_fit_leaves_only_whole_rows() {
         .unwrap();
     assert!(status.success());
     let text = fs::read_to_string(&path).unwrap();
-    // 4 blocks of 512 or 1024 bytes are no whole number of rows of these lengths.
+    // 4 blocks of 512 or 1024 bytes are not a multiple of the length of these rows.
     assert!((1900..=4096).contains(&text.len()) && !text.len().is_multiple_of(512), "{} bytes", text.len());
     assert!(text.ends_with(",0.123456789\n"), "{text}");
     assert!(text.lines().skip(1).enumerate().all(|(n, line)| line == format!("{n}.0,0.123456789")), "{text}");

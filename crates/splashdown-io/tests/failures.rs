@@ -1,4 +1,4 @@
-//! Full disks, folders that cannot be written, files that stay valid.
+//! Full disks, folders that are not writable, and existing files that stay valid.
 
 mod common;
 
@@ -14,7 +14,7 @@ fn cause(error: &IoError) -> Option<WriteCause> {
     if let IoError::Write { cause, .. } = error { Some(*cause) } else { None }
 }
 
-/// The device that is always full, where the system has it.
+/// The device that is always full, if the system has it.
 fn full_device() -> Option<File> {
     let device = File::options().write(true).open("/dev/full").ok();
     if device.is_none() {
@@ -24,7 +24,7 @@ fn full_device() -> Option<File> {
 }
 
 #[test]
-fn a_full_disk_leaves_the_old_file_and_no_rest() {
+fn a_full_disk_leaves_the_old_file_and_no_partial_file() {
     let Some(mut full) = full_device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frame.ply");
@@ -67,7 +67,7 @@ fn every_writer_reports_a_full_disk() {
 }
 
 #[test]
-fn a_path_below_a_file_is_refused_early_and_late() {
+fn a_path_below_a_file_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("notes.txt");
     fs::write(&file, "mine").unwrap();
@@ -82,7 +82,7 @@ fn a_path_below_a_file_is_refused_early_and_late() {
 }
 
 #[test]
-fn a_folder_is_made_with_its_parents_and_left_clean() {
+fn a_folder_is_created_with_its_parents_and_left_empty() {
     let folder = tempfile::tempdir().unwrap();
     let deep = folder.path().join("out/dam-break/meshes");
     prepare_folder(&deep).unwrap();
@@ -91,7 +91,7 @@ fn a_folder_is_made_with_its_parents_and_left_clean() {
 }
 
 #[test]
-fn a_missing_folder_or_one_in_the_way_is_named() {
+fn a_missing_folder_or_an_existing_one_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let cube = common::cube([0.0; 3], 1.0);
     let error = write_mesh(&folder.path().join("gone/mesh.obj"), &cube).unwrap_err();
@@ -112,7 +112,7 @@ fn a_folder_without_permission_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
     match prepare_folder(folder.path()) {
-        Ok(()) => eprintln!("SKIPPED: the superuser may write anywhere"),
+        Ok(()) => eprintln!("SKIPPED: the superuser can write to any folder"),
         Err(error) => assert_eq!(cause(&error), Some(WriteCause::Permission), "{error}"),
     }
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
@@ -120,7 +120,7 @@ fn a_folder_without_permission_is_refused() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_file_system_that_takes_no_files_is_refused() {
+fn a_file_system_without_files_is_refused() {
     if std::path::Path::new("/proc/self").exists() {
         let message = prepare_folder(std::path::Path::new("/proc/splashdown")).unwrap_err().to_string();
         assert!(message.contains("/proc/splashdown"), "{message}");
@@ -128,7 +128,7 @@ fn a_file_system_that_takes_no_files_is_refused() {
 }
 
 #[test]
-fn data_that_does_not_fit_together_is_written_nowhere() {
+fn inconsistent_data_is_not_written() {
     let folder = tempfile::tempdir().unwrap();
     let mut bad = common::particles(10);
     bad.pressures.pop();

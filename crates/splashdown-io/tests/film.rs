@@ -1,4 +1,4 @@
-//! The film: a real one where `ffmpeg` is installed, and every way in which the child can fail.
+//! Films: a real one if `ffmpeg` is installed, and every failure of the child process.
 
 mod common;
 
@@ -14,7 +14,7 @@ fn options(folder: &Path, width: u32, height: u32) -> FilmOptions {
     FilmOptions::new(folder.join("film.mp4"), width, height, 25.0, pictures)
 }
 
-/// One colour all over.
+/// A picture of one colour.
 fn picture(width: u32, height: u32, colour: [u8; 4]) -> Arc<Picture> {
     Arc::new(Picture { width, height, rgba: colour.repeat((width * height) as usize) })
 }
@@ -28,12 +28,12 @@ fn has_ffmpeg() -> bool {
 }
 
 #[test]
-fn a_film_holds_the_pictures_in_order_and_colour() {
+fn a_film_has_the_pictures_in_order_and_colour() {
     if !has_ffmpeg() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // Odd in both directions: encoded one column and row larger.
+    // Odd in both directions: padded by a column and a row.
     let film = Arc::new(Film::start(options(folder.path(), 63, 49)).unwrap());
     let colours = [[200, 40, 40, 255], [40, 180, 60, 255], [30, 60, 200, 255], [220, 220, 220, 255]];
     let writer = FrameWriter::start().unwrap();
@@ -42,7 +42,7 @@ fn a_film_holds_the_pictures_in_order_and_colour() {
     }
     assert!(writer.finish().unwrap().is_empty());
     let bytes = film.finish().unwrap();
-    assert_eq!(film.finish(), Ok(bytes), "asking twice gives the same answer");
+    assert_eq!(film.finish(), Ok(bytes), "a second call returns the same");
     assert_eq!(names(folder.path()), ["film.mp4"]);
     assert_eq!(bytes, std::fs::metadata(folder.path().join("film.mp4")).unwrap().len());
 
@@ -57,8 +57,8 @@ fn a_film_holds_the_pictures_in_order_and_colour() {
     assert_eq!(decoded.stdout.len(), 4 * 64 * 50 * colours.len());
     for (frame, colour) in decoded.stdout.chunks(4 * 64 * 50).zip(colours) {
         let middle = &frame[4 * (64 * 25 + 32)..][..3];
-        // Quarter-resolution colour in 8 bits and a lossy code: a few steps, but far less than the wrong matrix
-        // (up to 20 steps for these colours) or a wrong order of frames or channels.
+        // Lossy compression with subsampled colour changes a few steps; a wrong matrix changes up to 20 steps for these
+        // colours, a wrong order of frames or channels much more.
         for (got, wanted) in middle.iter().zip(colour) {
             assert!(got.abs_diff(wanted) <= 5, "{middle:?} instead of {colour:?}");
         }
@@ -66,7 +66,7 @@ fn a_film_holds_the_pictures_in_order_and_colour() {
 }
 
 #[test]
-fn a_missing_program_says_how_to_get_it_and_how_to_go_on_without() {
+fn a_missing_program_is_reported_with_advice() {
     let folder = tempfile::tempdir().unwrap();
     let missing = FilmOptions { program: folder.path().join("no-ffmpeg"), ..options(folder.path(), 64, 48) };
     let error = Film::start(missing).unwrap_err();
@@ -132,7 +132,7 @@ fn a_picture_of_another_size_ends_the_film_without_a_file() {
 }
 
 #[test]
-fn a_film_that_cannot_be_written_carries_the_programs_words() {
+fn a_film_that_cannot_be_written_reports_the_programs_message() {
     if !has_ffmpeg() {
         return;
     }
@@ -140,7 +140,7 @@ fn a_film_that_cannot_be_written_carries_the_programs_words() {
     let nowhere =
         FilmOptions { path: folder.path().join("gone/film.mp4"), ..options(folder.path(), 640, 480) };
     let film = Film::start(nowhere).unwrap();
-    // More than any pipe holds: a child that died must not leave this waiting, nor end the process by a signal.
+    // More than a pipe holds: a child that ended must not block this process, nor end it by a signal.
     for _ in 0..20 {
         film.push(&picture(640, 480, [0; 4]));
     }
@@ -148,7 +148,7 @@ fn a_film_that_cannot_be_written_carries_the_programs_words() {
     assert!(message.contains("No such file or directory") && message.contains("frame_%04d.png"), "{message}");
 }
 
-/// Children that misbehave, played by shell scripts.
+/// Misbehaving children, as shell scripts.
 #[cfg(unix)]
 mod impostors {
     use std::os::unix::fs::PermissionsExt;
@@ -157,7 +157,7 @@ mod impostors {
 
     use super::*;
 
-    /// A program that says it knows H.264 and otherwise does what the test wants.
+    /// A program that claims to support H.264 and then runs `body`.
     fn impostor(folder: &Path, body: &str) -> PathBuf {
         let path = folder.join("ffmpeg");
         let script = format!(
@@ -169,9 +169,9 @@ mod impostors {
     }
 
     #[test]
-    fn a_child_that_dies_midway_is_an_error_with_its_last_words() {
+    fn a_child_that_fails_is_an_error_with_its_last_message() {
         let folder = tempfile::tempdir().unwrap();
-        // Takes a little, talks more than a pipe holds, and goes.
+        // It reads a little, prints more than a pipe holds, and exits.
         let body = "head -c 100000 > /dev/null; yes 'so much to say' | head -c 300000 >&2; echo 'the very end' >&2; exit 3";
         let program = impostor(folder.path(), body);
         let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
@@ -185,7 +185,7 @@ mod impostors {
     }
 
     #[test]
-    fn a_child_that_leaves_early_with_success_is_an_error_too() {
+    fn a_child_that_exits_early_with_success_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let program = impostor(folder.path(), "head -c 1000 > /dev/null; exit 0");
         let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
@@ -196,7 +196,7 @@ mod impostors {
     }
 
     #[test]
-    fn a_child_that_stands_still_is_stopped() {
+    fn a_child_that_does_not_respond_is_stopped() {
         let folder = tempfile::tempdir().unwrap();
         let program = impostor(folder.path(), "echo 'busy with nothing' >&2; exec sleep 600");
         let stuck = FilmOptions {
@@ -204,7 +204,7 @@ mod impostors {
             stall_limit: Duration::from_millis(200),
             ..options(folder.path(), 640, 480)
         };
-        // While it is fed, and when it should end.
+        // While it gets pictures, and when it should end.
         for pictures in [5, 1] {
             let film = Film::start(stuck.clone()).unwrap();
             for _ in 0..pictures {
@@ -219,7 +219,7 @@ mod impostors {
     }
 
     #[test]
-    fn a_program_without_h264_is_told_apart() {
+    fn a_program_without_h264_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let program = impostor(folder.path(), "");
         std::fs::write(&program, "#!/bin/sh\necho ' V....D mpeg4 MPEG-4'\n").unwrap();

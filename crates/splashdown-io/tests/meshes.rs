@@ -1,4 +1,4 @@
-//! Reading meshes of every format: the same mesh comes back from each, and against independent readers.
+//! Reading meshes of every format: round trips, and comparisons with independent readers.
 
 mod common;
 
@@ -12,8 +12,8 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// The corners' places of every triangle, whatever the vertices' numbers, each triangle turned to begin with its
-/// smallest corner (which keeps its orientation), sorted.
+/// The sorted triangles of a mesh as corner positions, independent of vertex numbers. Each triangle is rotated to begin
+/// with its smallest corner, which preserves its orientation.
 fn places(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
     let ordered = |v: [f32; 3]| v.map(|c| (c + 0.0).to_bits());
     let mut triangles: Vec<_> = mesh
@@ -31,12 +31,12 @@ fn places(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
 }
 
 #[test]
-fn a_mesh_comes_back_the_same_from_every_format_it_is_written_in() {
+fn meshes_round_trip_in_every_format() {
     let folder = folder();
     let torus = common::torus(1.0, 0.3, 24, 16);
     let mut turned = torus.clone();
     turned.triangles[5].swap(0, 1);
-    assert_ne!(places(&turned), places(&torus), "the comparison sees one turned triangle");
+    assert_ne!(places(&turned), places(&torus), "the comparison must detect one flipped triangle");
     for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL"] {
         let path = folder.path().join(name);
         let bytes = write_mesh(&path, &torus).unwrap();
@@ -49,7 +49,7 @@ fn a_mesh_comes_back_the_same_from_every_format_it_is_written_in() {
     }
 }
 
-/// What `stl_io` makes of a file.
+/// A file as read by `stl_io`.
 fn by_stl_io(path: &Path) -> Mesh {
     let read = stl_io::read_stl(&mut fs::File::open(path).unwrap()).unwrap();
     Mesh::new(
@@ -75,7 +75,7 @@ fn ascii_stl(mesh: &Mesh) -> String {
 }
 
 #[test]
-fn stl_is_read_and_written_as_the_independent_crate_does() {
+fn stl_agrees_with_the_independent_crate() {
     let folder = folder();
     let torus = common::torus(0.5, 0.2, 12, 10);
     let (text, binary) = (folder.path().join("text.stl"), folder.path().join("binary.stl"));
@@ -102,17 +102,17 @@ fn the_normals_of_a_written_stl_point_outwards() {
 }
 
 #[test]
-fn stl_files_that_trip_other_readers_are_read() {
+fn stl_files_that_other_readers_reject_are_read() {
     let folder = folder();
     let path = folder.path().join("odd.stl");
     let cube = common::cube([0.0; 3], 1.0);
-    // A binary file whose free text begins like the text form.
+    // A binary file whose free text begins like a text file.
     write_mesh(&path, &cube).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     bytes[..12].copy_from_slice(b"solid part 1");
     fs::write(&path, bytes).unwrap();
     assert_eq!(places(&read_mesh(&path).unwrap()), places(&cube));
-    // No name, capitals, Windows line ends, two solids, a minus before zero.
+    // No name, capitals, Windows line ends, two solids, a negative zero.
     let one = ascii_stl(&cube).replace(" some name", "").replace("vertex 0", "vertex -0");
     let two = ascii_stl(&common::cube([2.0; 3], 1.0));
     fs::write(&path, format!("{}{two}", one.to_uppercase()).replace('\n', "\r\n")).unwrap();
@@ -123,7 +123,7 @@ fn stl_files_that_trip_other_readers_are_read() {
 }
 
 #[test]
-fn obj_is_read_as_the_independent_crate_does() {
+fn obj_agrees_with_the_independent_crate() {
     for name in ["spot.obj", "penguin.obj", "BoxOpenedHole.obj", "spot_ugly.obj", "plane_holes.obj"] {
         let Some(path) = common::shared_data(&format!("meshes/{name}")) else { continue };
         let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
@@ -143,7 +143,7 @@ fn obj_is_read_as_the_independent_crate_does() {
 }
 
 #[test]
-fn the_shared_meshes_are_what_their_table_says() {
+fn the_shared_meshes_have_the_documented_topology() {
     for (name, closed) in
         [("spot", true), ("penguin", true), ("cube_no_bottom", false), ("plane_holes", false)]
     {
@@ -157,7 +157,7 @@ fn the_shared_meshes_are_what_their_table_says() {
 }
 
 #[test]
-fn obj_groups_share_vertices_and_odd_lines_are_understood() {
+fn obj_groups_share_vertices_and_unusual_lines_are_read() {
     let folder = folder();
     let path = folder.path().join("tetra.obj");
     let text = "# a tetrahedron of two groups\r\nmtllib none.mtl\r\no T\u{e4}st\r\nv 0 0 0 1.0\r\nv 1. 0 0\r\n\
@@ -169,13 +169,13 @@ fn obj_groups_share_vertices_and_odd_lines_are_understood() {
     assert_eq!(mesh.triangles, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
     assert!(mesh.topology().unwrap().is_watertight());
     assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-12);
-    // A polygon becomes a fan; a face may come before its vertices.
+    // A polygon becomes a fan; a face may precede its vertices.
     fs::write(&path, "f 1 2 3 4 5\nv 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\n").unwrap();
     assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
 }
 
 #[test]
-fn gltf_is_read_from_inside_from_beside_and_binary() {
+fn gltf_is_read_with_inner_outer_and_binary_buffers() {
     let folder = folder();
     let cube = common::cube([0.0; 3], 1.0);
     let files = common::gltf_files::Cube::new(CUBE_AT_ORIGIN);
@@ -194,10 +194,10 @@ fn gltf_is_read_from_inside_from_beside_and_binary() {
 }
 
 #[test]
-fn gltf_nodes_place_turn_and_mirror() {
+fn gltf_nodes_translate_rotate_and_mirror() {
     let folder = folder();
     let path = folder.path().join("tree.glb");
-    // A parent that moves, below it a child that stretches; beside them one that mirrors, and one without a mesh.
+    // A parent that translates with a child that scales; a node that mirrors; a node without a mesh.
     let nodes = r#"[
         {"translation": [10, 0, 0], "children": [1]},
         {"mesh": 0, "scale": [1, 2, 3], "rotation": [0, 0.70710678, 0, 0.70710678]},
@@ -207,15 +207,15 @@ fn gltf_nodes_place_turn_and_mirror() {
     fs::write(&path, glb(&common::gltf_files::Cube::new(nodes).scene("[0, 2, 3]"))).unwrap();
     let mesh = read_mesh(&path).unwrap();
     let topology = mesh.topology().unwrap();
-    assert_eq!(topology.components, 2, "the node that is in no scene is left out");
+    assert_eq!(topology.components, 2, "the node that is in no scene is skipped");
     assert!(topology.is_watertight(), "{topology}");
-    // 1 x 2 x 3 and 1: the mirrored cube counts with the same sign only if its triangles were turned.
+    // 1 x 2 x 3 and 1: the volume of the mirrored cube is positive only if its triangles were flipped.
     assert!((mesh.volume() - 7.0).abs() < 1e-5, "{}", mesh.volume());
     let range = |axis: usize| {
         let values = mesh.vertices.iter().map(|v| v[axis]);
         (values.clone().fold(f32::MAX, f32::min), values.fold(f32::MIN, f32::max))
     };
-    // A quarter turn about y takes z to x: the stretched cube spans 10..13 in x and -1..0 in z.
+    // A quarter turn about y maps z to x: the scaled cube spans 10..13 in x and -1..0 in z.
     let (near, far) = range(0);
     assert!((near + 6.0).abs() < 1e-5 && (far - 13.0).abs() < 1e-5, "{near} {far}");
     let (low, high) = range(2);
@@ -233,7 +233,7 @@ fn gltf_strips_and_fans_become_triangles() {
             .unwrap();
         let mesh = read_mesh(&path).unwrap();
         assert_eq!(mesh.len(), 2);
-        // Both turn the same way, so the square has area 1 and no flipped edge.
+        // Both triangles have the same orientation, so the square has area 1 and no flipped edge.
         assert_eq!(mesh.topology().unwrap().flipped_edges, 0, "mode {mode}");
         assert!((mesh.area() - 1.0).abs() < 1e-6);
     }

@@ -1,11 +1,11 @@
-//! OBJ files, read back by `tobj`, which shares no code with the writer.
+//! OBJ files, read by `tobj`, which shares no code with the writer.
 
 mod common;
 
 use proptest::prelude::*;
 use splashdown_io::{Mesh, obj, write_mesh};
 
-/// Positions and normals of every corner of every triangle, as an OBJ reader sees them.
+/// Positions and normals of the corners of all triangles, as read by an OBJ reader.
 fn corners(text: &[u8]) -> Vec<([f32; 3], Option<[f32; 3]>)> {
     let (models, _) = tobj::load_obj_buf(&mut &text[..], &tobj::LoadOptions::default(), |_| {
         Err(tobj::LoadError::GenericFailure)
@@ -43,7 +43,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_corner_comes_back_exactly(
+    fn every_corner_is_exact(
         vertices in prop::collection::vec((vector(), vector()), 3..40),
         picks in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..80),
         normals in any::<bool>(),
@@ -55,13 +55,13 @@ proptest! {
 }
 
 #[test]
-fn a_large_mesh_comes_back_across_the_buffers_border() {
+fn a_mesh_larger_than_the_buffer_is_exact() {
     let torus = common::torus(1.0, 0.3, 120, 60);
     let text = written(&torus);
     assert!(text.len() > 4 * 65_536);
     assert_eq!(corners(&text), expected(&torus));
 
-    // The control: another vertex in one corner is seen.
+    // The control: another vertex in one corner is detected.
     let mut other = torus.clone();
     other.triangles[5000][1] = 0;
     assert_ne!(corners(&written(&other)), expected(&torus));
@@ -76,7 +76,7 @@ fn the_file_is_as_small_as_its_numbers() {
 }
 
 #[test]
-fn the_ending_of_the_name_picks_the_format() {
+fn the_ending_of_the_name_selects_the_format() {
     let folder = tempfile::tempdir().unwrap();
     let cube = common::cube([0.0; 3], 0.5);
     let path = folder.path().join("cube.OBJ");

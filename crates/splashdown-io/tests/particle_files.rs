@@ -1,4 +1,4 @@
-//! Reading particles of every format, files of other programs among them, and broken ones.
+//! Reading particles of every format, including files of other programs and malformed files.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn refused(name: &str, contents: &[u8], reason: &str) {
     assert!(message.contains(name) && !message.contains('\n'), "{message}");
 }
 
-/// Particles with all attributes that are exactly what a text file says of them.
+/// Particles with all attributes, whose values are exact in text.
 fn plain(count: usize) -> Particles {
     let value = |n: usize| n as f32 * 0.25 - 3.0;
     Particles::from_positions((0..count).map(|n| [value(n), value(2 * n), -0.5]).collect())
@@ -53,7 +53,7 @@ fn big(values: impl IntoIterator<Item = f32>) -> Vec<u8> {
     values.into_iter().flat_map(f32::to_be_bytes).collect()
 }
 
-/// A BGEO file as SPlisHSPlasH's library makes it, with an attribute of strings among the others.
+/// A BGEO file as written by SPlisHSPlasH, with an attribute of strings.
 fn bgeo(given: &Particles) -> Vec<u8> {
     let mut bytes = b"BgeoV".to_vec();
     let count = given.len() as i32;
@@ -87,7 +87,7 @@ fn bgeo(given: &Particles) -> Vec<u8> {
     bytes
 }
 
-/// As [`plain`], within what the format of `bgeo` holds: ids that are positive i32, no pressures.
+/// Like [`plain`], within the limits of `bgeo`: ids are positive i32, without pressures.
 fn for_bgeo(count: usize) -> Particles {
     plain(count).with_ids((0..count as u32).rev().collect()).with_pressures(Vec::new())
 }
@@ -99,7 +99,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn bgeo_is_read_bare_and_packed() {
+fn bgeo_is_read_with_and_without_compression() {
     // More than one block of rows.
     let given = for_bgeo(2500);
     let bytes = bgeo(&given);
@@ -112,7 +112,7 @@ fn bgeo_is_read_bare_and_packed() {
     assert_ne!(read("a.bgeo", &changed).unwrap(), given);
 }
 
-/// Two points as `splashsurf_lib` 0.14.1 writes them, bare and packed. (The crate itself would bring fifty others.)
+/// Two points as written by `splashsurf_lib` 0.14.1, uncompressed and compressed. (The crate has fifty dependencies.)
 const BY_SPLASHSURF: [&[u8]; 2] = [
     b"BgeoV\0\0\0\x05\0\0\0\x02\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\
       \x3f\x80\0\0\xc0\x20\0\0\x3d\xcc\xcc\xcd\x3f\x80\0\0\x46\xea\x60\0\x40\xa0\0\0\xba\x83\x12\x6f\x3f\x80\0\0\0\xff",
@@ -151,7 +151,7 @@ fn vtk_text(given: &Particles) -> String {
     )
 }
 
-/// As SPlisHSPlasH writes it, or with the cells of VTK 9.
+/// As written by SPlisHSPlasH, or with the cells of VTK 9.
 fn vtk_binary(given: &Particles, new_cells: bool) -> Vec<u8> {
     let n = given.len() as i32;
     let mut bytes =
@@ -195,14 +195,14 @@ fn legacy_vtk_is_read_as_text_and_binary() {
     }
 }
 
-/// How the arrays of a VTU file are made: the attributes of the root, and one array's bytes as text.
+/// How the arrays of a VTU file are encoded: the attributes of the root, and the bytes of an array as text.
 type Encode = fn(&[u8]) -> String;
 
 fn with_length<const N: usize>(bytes: &[u8]) -> String {
     STANDARD.encode([&(bytes.len() as u64).to_le_bytes()[..N], bytes].concat())
 }
 
-/// As VTK packs an array: blocks of 100 bytes.
+/// An array compressed as by VTK, in blocks of 100 bytes.
 fn packed(bytes: &[u8]) -> String {
     let blocks: Vec<Vec<u8>> = bytes
         .chunks(100)
@@ -263,7 +263,7 @@ fn vtu_is_read_in_every_encoding() {
             assert_eq!(read("given.vtu", text.as_bytes()).unwrap(), given, "{root} {appended}");
         }
     }
-    // Two pieces as text, with numbers over several lines.
+    // Two pieces as text, with numbers on several lines.
     let piece = "<Piece NumberOfPoints=\"2\"><PointData><DataArray type=\"Float64\" Name=\"v\" NumberOfComponents=\"3\" format=\"ascii\">\
         1 2 3\n4 5 6</DataArray></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0\n\n1e0 0 0\
         </DataArray></Points></Piece>";
@@ -274,7 +274,7 @@ fn vtu_is_read_in_every_encoding() {
 }
 
 #[test]
-fn what_is_written_is_read() {
+fn particles_round_trip_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
     for (name, given) in [
         ("all.vtu", common::particles(5000)),
@@ -288,7 +288,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn the_shared_particles_are_read_by_their_ending() {
+fn the_shared_particles_are_read() {
     let Some(path) = common::shared_data("particles/mid64k.npy") else { return };
     let particles = read_particles(&path).unwrap();
     assert_eq!(particles.len(), 64_000);
@@ -296,7 +296,7 @@ fn the_shared_particles_are_read_by_their_ending() {
 }
 
 #[test]
-fn what_is_no_particle_file_is_told() {
+fn files_of_other_formats_are_refused() {
     let message = read_particles("points.abc".as_ref()).unwrap_err().to_string();
     let endings = Format::endings(Format::reads_particles);
     assert!(endings.len() == 8 && endings.iter().all(|ending| message.contains(ending)), "{message}");
@@ -314,7 +314,7 @@ fn what_is_no_particle_file_is_told() {
 }
 
 #[test]
-fn broken_particle_files_say_what_is_wrong() {
+fn malformed_particle_files_are_refused_with_the_reason() {
     let given = plain(20);
     let text = vtk_text(&given);
     for (from, to, reason) in [
@@ -325,13 +325,13 @@ fn broken_particle_files_say_what_is_wrong() {
             "an array of 29999999997 numbers needs at least 59999999994 bytes",
         ),
         ("POINTS 20", "POINTS 99999999999999999999", "is not a count"),
-        ("POINTS 20", "POINTS 0", "is no keyword"),
+        ("POINTS 20", "POINTS 0", "is not a known keyword"),
         ("POINTS 20 double", "POINTS 20 complex", "`complex` is no type"),
         ("ASCII", "TEXT", "neither `ASCII` nor `BINARY`"),
         ("-0.5", "nan", "1 of its 20 positions are not finite, the first is number 0"),
         ("-0.5", "wet", "`wet` is not a number (near byte"),
-        ("4000000019", "-1", "the id -1 is not a whole number"),
-        ("4000000019", "1.5", "the id 1.5 is not a whole number"),
+        ("4000000019", "-1", "the id -1 is not an integer"),
+        ("4000000019", "1.5", "the id 1.5 is not an integer"),
         ("POINT_DATA 20", "POINT_DATA 19", "near byte"),
     ] {
         let changed = text.replacen(from, to, 1);
@@ -373,7 +373,7 @@ fn broken_particle_files_say_what_is_wrong() {
     refused("given.bgeo", &gzip(&bytes)[..200], "promises 20 points");
 }
 
-/// As `numpy.savez_compressed` packs it.
+/// As written by `numpy.savez_compressed`.
 fn packed_npz(given: &Particles) -> Vec<u8> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
@@ -416,10 +416,10 @@ fn points_of_raw_floats_are_read() {
     let given = plain(30);
     let raw: Vec<u8> = given.positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
     assert_eq!(read("raw.xyz", &raw).unwrap().positions, given.positions);
-    refused("raw.xyz", &raw[1..], "no whole number of points");
+    refused("raw.xyz", &raw[1..], "are not a multiple of 12");
 }
 
-/// One small file of each format and kind.
+/// A small file of each format and encoding.
 fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     let given = plain(12);
     let written = |name: &'static str| {
@@ -451,17 +451,17 @@ fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 #[test]
-fn a_file_cut_at_any_byte_is_never_a_panic_and_never_half_a_particle() {
+fn a_file_cut_at_any_byte_is_refused_or_has_only_complete_particles() {
     for (name, whole) in whole_files() {
         let (_keep, path) = file(name, &whole);
         let complete = read_particles(&path).unwrap_or_else(|error| panic!("{error}"));
-        // Shortened in place, which is hundreds of times as fast as writing each length.
+        // Truncated in place, which is hundreds of times as fast as writing each length.
         let cut = fs::File::options().write(true).open(&path).unwrap();
         for length in (0..whole.len()).rev() {
             cut.set_len(length as u64).unwrap();
             match read_particles(&path) {
-                // What is missing then are attributes that come later, or what follows the points.
-                // A list of points without their number is whole wherever a line ends.
+                // Later attributes or data after the points may be missing.
+                // A list of points without a count may end at any line.
                 Ok(particles) => {
                     assert!(particles.check().is_ok());
                     if name.ends_with("xyz") {
@@ -479,7 +479,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_file_with_changed_bytes_is_never_a_panic(
+    fn a_file_with_changed_bytes_does_not_cause_a_panic(
         which in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {

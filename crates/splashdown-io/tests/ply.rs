@@ -1,4 +1,4 @@
-//! PLY: round trips, foreign files, broken files.
+//! PLY: round trips, files of other programs, malformed files.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// Bits, because NaN differs from itself.
+/// The bits of floats, because NaN is not equal to itself.
 fn bits<const N: usize>(rows: &[[f32; N]]) -> Vec<[u32; N]> {
     rows.iter().map(|row| row.map(f32::to_bits)).collect()
 }
@@ -31,12 +31,12 @@ fn assert_same_bits(a: &Particles, b: &Particles) {
 }
 
 fn vector() -> impl Strategy<Value = [f32; 3]> {
-    // Every kind of float but signalling NaN, whose bits no one promises to keep.
+    // Every kind of float except signalling NaN, whose bits may change.
     prop::array::uniform3(prop::num::f32::ANY)
 }
 
 prop_compose! {
-    /// Any values, any attributes absent; lengths around the writer's chunk among them.
+    /// Any values, any attributes; also with lengths around the writer's chunk size.
     fn some_particles()(count in prop_oneof![0..40_usize, 2047..2050_usize], has in any::<[bool; 4]>())
         (count in Just(count),
          rows in prop::collection::vec((vector(), vector(), prop::num::f32::ANY, prop::num::f32::ANY, any::<u32>()), count),
@@ -58,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
     #[test]
-    fn particles_come_back_bit_by_bit(particles in some_particles()) {
+    fn particles_round_trip_bit_by_bit(particles in some_particles()) {
         let folder = folder();
         let path = folder.path().join("particles.ply");
         let bytes = write_particles(&path, &particles).unwrap();
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn meshes_come_back_bit_by_bit(mesh in some_mesh()) {
+    fn meshes_round_trip_bit_by_bit(mesh in some_mesh()) {
         let folder = folder();
         let path = folder.path().join("mesh.ply");
         write_mesh(&path, &mesh).unwrap();
@@ -78,7 +78,7 @@ proptest! {
     }
 
     #[test]
-    fn a_file_cut_anywhere_is_refused_and_never_a_panic(particles in some_particles(), at in 0.0..1.0_f64) {
+    fn a_file_cut_anywhere_is_refused(particles in some_particles(), at in 0.0..1.0_f64) {
         prop_assume!(!particles.is_empty());
         let folder = folder();
         let path = folder.path().join("cut.ply");
@@ -90,7 +90,7 @@ proptest! {
     }
 
     #[test]
-    fn a_file_with_a_changed_byte_is_never_a_panic(mesh in some_mesh(), at in any::<prop::sample::Index>(), to in any::<u8>()) {
+    fn a_file_with_a_changed_byte_does_not_cause_a_panic(mesh in some_mesh(), at in any::<prop::sample::Index>(), to in any::<u8>()) {
         let folder = folder();
         let path = folder.path().join("changed.ply");
         write_mesh(&path, &mesh).unwrap();
@@ -98,7 +98,7 @@ proptest! {
         let at = at.index(bytes.len());
         bytes[at] = to;
         fs::write(&path, bytes).unwrap();
-        // Either outcome is right; what comes back holds together.
+        // Both outcomes are valid, but a mesh must be consistent.
         if let Ok(read) = ply::read_mesh(&path) {
             prop_assert!(read.check().is_ok());
         }
@@ -106,7 +106,7 @@ proptest! {
 }
 
 #[test]
-fn the_round_trip_test_would_see_one_changed_bit() {
+fn the_round_trip_test_detects_one_changed_bit() {
     let folder = folder();
     let path = folder.path().join("particles.ply");
     let particles = common::particles(100);
@@ -120,7 +120,7 @@ fn the_round_trip_test_would_see_one_changed_bit() {
     assert_eq!(read.len(), particles.len());
 }
 
-/// Writes `contents` and returns its place with the folder that keeps it alive.
+/// Writes `contents`; returns the path and the folder, which is removed on drop.
 fn file(contents: &[u8]) -> (TempDir, PathBuf) {
     let folder = folder();
     let path = folder.path().join("given.ply");
@@ -140,7 +140,7 @@ fn a_foreign_text_file_with_other_types_and_quads_is_read() {
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(mesh.normals.is_empty());
 
-    // The vertices of a mesh are no particles; a mesh without faces is none.
+    // The vertices of a mesh are not particles; without faces they are.
     assert!(ply::read_particles(&path).unwrap_err().to_string().contains("it is a mesh of 1 face,"));
     let (_keep, path) = file(text.replace("face 1", "face 0").as_bytes());
     let particles = ply::read_particles(&path).unwrap();
@@ -164,11 +164,11 @@ fn a_foreign_big_endian_file_is_read() {
     assert_eq!(particles.positions, [[1.0, 2.0, 3.0], [-1.0, -2.0, -3.0]]);
     assert_eq!(particles.ids, [7, 16_777_217]);
     assert_eq!(particles.densities, [998.2; 2]);
-    assert!(particles.velocities.is_empty(), "a velocity with one component only is none");
+    assert!(particles.velocities.is_empty(), "one component is not a velocity");
 }
 
 #[test]
-fn broken_files_say_what_is_wrong() {
+fn malformed_files_are_refused_with_the_reason() {
     let xyz = "property float x\nproperty float y\nproperty float z\n";
     let header = |body: &str| format!("ply\nformat ascii 1.0\n{body}end_header\n");
     let triangle =
@@ -205,12 +205,12 @@ fn broken_files_say_what_is_wrong() {
         );
         assert!(!message.contains('\n'), "{message}");
     }
-    // The control: with everything in place it is read.
+    // The control: the complete file is read.
     let (_keep, path) = file((header(&triangle) + corners + "3 0 1 2\n").as_bytes());
     assert_eq!(ply::read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
 }
 
-/// A header of the given lines behind `ply` and the format.
+/// A header of the given lines after `ply` and the format.
 fn header(format: &str, lines: &[&str]) -> String {
     format!("ply\nformat {format} 1.0\n{}\nend_header\n", lines.join("\n"))
 }
@@ -277,7 +277,7 @@ fn text_is_read_however_numbers_are_spelled() {
     }
 }
 
-/// More rows than a block has, faces before the vertices, lists that are not read, and numbers of several types.
+/// More rows than fit into a block, faces before vertices, skipped lists, and several number types.
 #[test]
 fn a_large_file_with_elements_in_another_order_is_read() {
     const VERTICES: u32 = 40_000;

@@ -1,11 +1,11 @@
-//! The shared particle files: read, written in every format, and read again.
+//! The shared particle files: read, written, and read again.
 
 mod common;
 
 use splashdown_io::{Particles, npy, ply, write_particles};
 
 #[test]
-fn the_particle_files_are_read_and_survive_a_round_trip() {
+fn the_shared_particles_round_trip() {
     for name in ["particles/mid64k.npy", "particles/settled64k_t6.npy"] {
         let Some(path) = common::shared_data(name) else { continue };
         let positions = npy::read_positions(&path).unwrap();

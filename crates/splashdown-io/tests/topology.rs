@@ -1,4 +1,4 @@
-//! Volume, area and topology, with a control for every fault that the report claims to see.
+//! Volume, area and topology, with a control for every defect that is counted.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn a_torus_has_euler_characteristic_zero_and_pappus_volume() {
     let topology = report(&torus);
     assert!(topology.is_watertight(), "{topology}");
     assert_eq!(topology.euler_characteristic, 0);
-    // An inscribed polygon of n sides loses (2 pi / n)^2 / 6 of a circle's area: 2e-4 for 200 sides.
+    // An inscribed polygon of n sides has (2 pi / n)^2 / 6 less area than the circle: 2e-4 for 200 sides.
     let (volume, area) =
         (2.0 * std::f64::consts::PI.powi(2) * 2.0 * 0.25, 4.0 * std::f64::consts::PI.powi(2));
     assert!((torus.volume() / volume - 1.0).abs() < 3e-4, "{}", torus.volume());
@@ -34,7 +34,7 @@ fn a_torus_has_euler_characteristic_zero_and_pappus_volume() {
 }
 
 #[test]
-fn an_inside_out_mesh_has_negative_volume_and_is_still_consistent() {
+fn an_inside_out_mesh_has_negative_volume_and_is_oriented() {
     let mut cube = cube([0.0; 3], 1.0);
     cube.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     assert_eq!(cube.volume(), -1.0);
@@ -42,8 +42,8 @@ fn an_inside_out_mesh_has_negative_volume_and_is_still_consistent() {
 }
 
 #[test]
-fn volume_keeps_its_digits_far_from_the_origin() {
-    // 4096 m away f32 still holds the corners of a 1/8 m cube exactly, so the answer is exact too.
+fn volume_is_accurate_far_from_the_origin() {
+    // At 4096 m the corners of a 1/8 m cube are exact in f32, so the volume is exact too.
     assert_eq!(cube([4096.0, -4096.0, 4096.0], 0.125).volume(), 0.125_f64.powi(3));
 }
 
@@ -60,7 +60,7 @@ fn a_missing_triangle_is_a_hole_of_three_edges() {
 }
 
 #[test]
-fn a_flipped_triangle_shows_on_its_three_edges_and_nowhere_else() {
+fn a_flipped_triangle_has_three_flipped_edges() {
     for flipped in 0..12 {
         let mut cube = cube([0.0; 3], 1.0);
         cube.triangles[flipped].swap(1, 2);
@@ -86,7 +86,7 @@ fn cubes_that_touch_in_a_corner_are_pinched_there() {
     assert!(apart.is_watertight(), "{apart}");
     assert_eq!((apart.components, apart.euler_characteristic), (2, 4));
 
-    // Corner 7 of the first is at corner 0 of the second, which is vertex 8.
+    // Corner 7 of the first cube is at corner 0 of the second, which is vertex 8.
     pair.triangles.iter_mut().flatten().filter(|index| **index == 8).for_each(|index| *index = 7);
     let pinched = report(&pair);
     assert_eq!((pinched.non_manifold_vertices, pinched.components, pinched.unused_vertices), (1, 1, 1));
@@ -114,7 +114,7 @@ fn degenerate_triangles_and_unused_vertices_are_counted() {
 }
 
 #[test]
-fn nothing_is_closed_and_empty() {
+fn an_empty_mesh_is_closed() {
     let topology = report(&Mesh::default());
     assert!(topology.is_watertight());
     assert_eq!((topology.vertices, topology.components, topology.euler_characteristic), (0, 0, 0));

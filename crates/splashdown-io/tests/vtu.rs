@@ -1,4 +1,4 @@
-//! VTU files, taken apart by a small reader of their XML and offsets that is written from the format's description.
+//! VTU files, checked by a small reader of their XML and offsets, written from the description of the format.
 
 mod common;
 
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use splashdown_io::{Particles, pvd, vtu, write_particles};
 
-/// A data array as the file declares it, with its bytes.
+/// A data array as declared in the file, with its bytes.
 #[derive(Debug, PartialEq)]
 struct Found {
     section: String,
@@ -70,8 +70,8 @@ fn written(particles: &Particles) -> Vec<u8> {
 }
 
 #[test]
-fn every_array_is_where_the_header_says() {
-    // Around the writer's chunk, so that generated arrays cross its border.
+fn every_array_is_at_its_declared_offset() {
+    // Around the writer's chunk size, so that generated arrays have several chunks.
     for count in [0, 1, 4095, 4096, 4097, 9000] {
         let given = common::particles(count);
         let (points, arrays) = take_apart(&written(&given)).unwrap();
@@ -110,7 +110,7 @@ fn absent_attributes_are_absent() {
 }
 
 #[test]
-fn the_reader_of_this_test_sees_a_wrong_offset_length_or_value() {
+fn the_reader_of_this_test_detects_a_wrong_offset_length_or_value() {
     let good = written(&common::particles(50));
     let text = String::from_utf8_lossy(&good).into_owned();
     let line = text.lines().find(|line| line.contains("Name=\"density\"")).unwrap();

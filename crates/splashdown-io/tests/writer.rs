@@ -1,4 +1,4 @@
-//! The background writer: order, failure, and that it never holds anyone up for ever.
+//! The background writer: order, failures, and no deadlock.
 
 mod common;
 
@@ -51,7 +51,7 @@ fn frames_arrive_in_order_with_their_sizes() {
 }
 
 #[test]
-fn after_a_failure_earlier_files_stay_and_every_call_says_so() {
+fn after_a_failure_earlier_files_remain_and_every_call_fails() {
     let folder = tempfile::tempdir().unwrap();
     let series = folder.path().join("series");
     fs::create_dir(&series).unwrap();
@@ -62,12 +62,12 @@ fn after_a_failure_earlier_files_stay_and_every_call_says_so() {
         std::thread::yield_now();
     }
 
-    // The folder goes away, as an unplugged disk does; later it is even back.
+    // The folder is removed, as if its disk were unplugged, and restored later.
     let aside = folder.path().join("aside");
     fs::rename(&series, &aside).unwrap();
     writer.submit(frame(&series, 1, &particles)).unwrap();
     let error = loop {
-        // Sooner or later, and never blocking although nothing is written any more.
+        // It fails at some call, and never blocks although nothing is written.
         if let Err(error) = writer.submit(frame(&series, 2, &particles)) {
             break error;
         }
@@ -90,7 +90,7 @@ fn after_a_failure_earlier_files_stay_and_every_call_says_so() {
 }
 
 #[test]
-fn dropping_waits_for_the_frames_handed_over() {
+fn dropping_waits_for_submitted_frames() {
     let folder = tempfile::tempdir().unwrap();
     let writer = FrameWriter::start().unwrap();
     let particles = Arc::new(common::particles(20_000));

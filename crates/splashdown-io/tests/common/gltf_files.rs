@@ -1,13 +1,13 @@
-//! Small glTF files made by hand.
+//! Small glTF files.
 
 use std::path::Path;
 
 use base64::Engine as _;
 
-/// One node, not moved.
+/// A node without a transform.
 pub const CUBE_AT_ORIGIN: &str = r#"[{"mesh": 0}]"#;
 
-/// A mesh of one primitive below some nodes.
+/// A mesh of one primitive, used by some nodes.
 pub struct Cube {
     nodes: String,
     scene: String,
@@ -19,7 +19,7 @@ pub struct Cube {
 }
 
 impl Cube {
-    /// A unit cube as exporters write it: four vertices for each side.
+    /// A unit cube as written by exporters, with four vertices per side.
     pub fn new(nodes: &str) -> Self {
         let cube = super::cube([0.0; 3], 1.0);
         let (mut vertices, mut corners) = (Vec::new(), Vec::new());
@@ -55,7 +55,7 @@ impl Cube {
         self
     }
 
-    /// The JSON with the buffer's place, e.g. `"uri": "cube.bin",`.
+    /// The JSON with the location of the buffer, e.g. `"uri": "cube.bin",`.
     pub fn json(&self, uri: &str) -> String {
         let Self { nodes, scene, mode, vertices, corners, buffer } = self;
         let (first, rest) = (12 * vertices, 2 * corners);

@@ -1,4 +1,4 @@
-//! Meshes and particles that several tests use.
+//! Meshes and particles shared by several tests.
 #![expect(dead_code, reason = "each test binary uses its own part of these helpers")]
 
 pub mod gltf_files;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use splashdown_io::{Mesh, Particles};
 
-/// A cube of the given size with its lowest corner at `corner`, outwards oriented.
+/// A cube with its lower corner at `corner`, oriented outwards.
 pub fn cube(corner: [f32; 3], size: f32) -> Mesh {
     let vertices = (0..8)
         .map(|n| std::array::from_fn(|axis| corner[axis] + if n >> axis & 1 == 1 { size } else { 0.0 }))
@@ -36,7 +36,7 @@ pub fn torus(radius: f32, tube: f32, rings: u32, sides: u32) -> Mesh {
     mesh
 }
 
-/// Both meshes in one, nothing shared.
+/// Both meshes in one, without shared vertices.
 pub fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
     let shift = first.vertices.len() as u32;
     first.vertices.extend(&second.vertices);
@@ -44,7 +44,7 @@ pub fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
     first
 }
 
-/// Particles with every attribute, all values different.
+/// Particles with every attribute and distinct values.
 pub fn particles(count: usize) -> Particles {
     let value = |n: usize, salt: usize| ((n * 31 + salt) as f32).sin();
     Particles::from_positions((0..count).map(|n| std::array::from_fn(|axis| value(n, axis))).collect())
@@ -54,17 +54,17 @@ pub fn particles(count: usize) -> Particles {
         .with_pressures((0..count).map(|n| 1e4 * value(n, 7)).collect())
 }
 
-/// A file of the shared test data, or `None` with a loud word where the data is absent.
+/// A file of the shared test data, or `None` with a message if it is missing.
 pub fn shared_data(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);
     if path.exists() {
         return Some(path);
     }
-    eprintln!("SKIPPED: the shared test data `{name}` is not here");
+    eprintln!("SKIPPED: the shared test data `{name}` is missing");
     None
 }
 
-/// The names in a folder, hidden ones included, sorted.
+/// The sorted names in a folder, including hidden files.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("the test's folder exists");
     let mut names: Vec<_> =

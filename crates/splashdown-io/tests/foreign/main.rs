@@ -1,9 +1,8 @@
-//! Every format opened by software that is not ours: VTK, meshio, trimesh, numpy, splashsurf, Pixar's USD and
-//! Blender, from Python.
+//! Opens every format with other software: VTK, meshio, trimesh, numpy, splashsurf, Pixar's USD and Blender, by Python.
 //!
-//! `read.py` prints sums of what it finds, which are compared with the sums of what was written; each
-//! comparison has a control with one number changed. `cargo xtask test` installs the packages into
-//! `target/python`; without them these tests are skipped, and say so.
+//! `read.py` prints the sums of the arrays it reads, which are compared with the sums of the written data; each
+//! comparison has a control with one number changed. `cargo xtask test` installs the packages into `target/python`;
+//! without them these tests are skipped with a message.
 
 #[path = "../common/mod.rs"]
 mod common;

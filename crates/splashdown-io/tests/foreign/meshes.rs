@@ -26,7 +26,7 @@ fn given() -> Mesh {
     mesh
 }
 
-/// The same with one vertex and one velocity moved, other attributes, and a triangle turned over.
+/// The same with one vertex and one velocity changed, other attributes, and a flipped triangle.
 fn changed(given: &Mesh) -> Mesh {
     let mut changed = given.clone();
     changed.vertices[20][0] += 1e-3;
@@ -37,7 +37,7 @@ fn changed(given: &Mesh) -> Mesh {
     changed
 }
 
-/// What a reader finds in a mesh of this format, and in one that was changed.
+/// What a reader finds in a mesh of this format, and in a changed mesh.
 fn found(test: &str, reader: &str, ending: &str) -> Option<[Found; 2]> {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
@@ -132,7 +132,7 @@ fn trimesh_opens_obj_ply_and_stl() {
     for ending in ["obj", "ply", "stl"] {
         let test = format!("trimesh_opens_obj_ply_and_stl ({ending})");
         let Some(found) = found(&test, "trimesh", ending) else { return };
-        // Text is read in double precision, so its last digits are others.
+        // Text is read in double precision, so the last digits differ.
         close(&found[0], "volume", &Sums::numbers(&[mesh.volume()]), 1e-6);
         if ending != "stl" {
             close(&found[0], "positions", &Sums::vectors(&mesh.vertices), 1e-6);
@@ -141,7 +141,7 @@ fn trimesh_opens_obj_ply_and_stl() {
     }
 }
 
-/// Turns y up into z up, as Blender does when it opens a file that says that y is up.
+/// Rotates y up to z up, as Blender does with formats that define y as up.
 fn turned(values: &[[f32; 3]]) -> Vec<[f32; 3]> {
     values.iter().map(|&[x, y, z]| [x, -z, y]).collect()
 }
@@ -149,7 +149,7 @@ fn turned(values: &[[f32; 3]]) -> Vec<[f32; 3]> {
 #[test]
 fn blender_opens_glb_and_ply() {
     let mesh = given();
-    // Blender's readers weld nothing; the object of a PLY file is not turned.
+    // Blender's readers do not merge vertices; the object of a PLY file is not rotated.
     for (ending, positions) in [("glb", turned(&mesh.vertices)), ("ply", mesh.vertices.clone())] {
         let test = format!("blender_opens_glb_and_ply ({ending})");
         let Some(found) = found(&test, "blender", ending) else { return };
@@ -161,7 +161,7 @@ fn blender_opens_glb_and_ply() {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn meshes_round_trip() {
     let folder = tempfile::tempdir().unwrap();
     for ending in ["ply", "obj", "glb"] {
         let path = folder.path().join(format!("mesh.{ending}"));

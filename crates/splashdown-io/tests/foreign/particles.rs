@@ -7,13 +7,13 @@ use splashdown_io::{Particles, read_particles, write_particles};
 use crate::common;
 use crate::python::{Sums, read, same};
 
-/// Particles whose ids BGEO's signed integers hold as they are.
+/// Particles with ids that fit the signed integers of BGEO.
 fn given() -> Particles {
     let ids = (0..300).map(|n| (n * 7919) % 1009).collect();
     common::particles(300).with_ids(ids)
 }
 
-/// The same with one velocity turned round.
+/// The same with one velocity and one position changed.
 fn changed(given: &Particles) -> Particles {
     let mut changed = given.clone();
     changed.velocities[17][1] *= -1.0;
@@ -21,7 +21,7 @@ fn changed(given: &Particles) -> Particles {
     changed
 }
 
-/// Writes both and compares each with what `reader` finds; the second must differ from the first.
+/// Writes both sets and compares them with what `reader` finds; the changed set must differ.
 fn opens(test: &str, reader: &str, ending: &str, names: [&str; 4]) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
@@ -68,7 +68,7 @@ fn meshio_opens_legacy_vtk_and_vtu() {
 
 #[test]
 fn meshio_opens_ply() {
-    // Its reader gives one property at a time.
+    // Its reader returns single properties.
     opens("meshio_opens_ply", "meshio", "ply", ["", "density", "pressure", "id"]);
 }
 

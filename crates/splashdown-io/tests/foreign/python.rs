@@ -1,4 +1,4 @@
-//! Asking Python.
+//! Runs the Python readers.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The exit code by which `read.py` says that a package is not installed.
+/// The exit code of `read.py` if a package is not installed.
 const MISSING: i32 = 77;
 
 /// Sums of an array.
@@ -16,7 +16,7 @@ pub struct Sums {
     shape: Vec<usize>,
     sum: f64,
     weighted: f64,
-    /// Sum of the amounts, to which errors are compared; Python does not know it.
+    /// Sum of absolute values, the scale of the tolerance. Python does not compute it.
     amount: f64,
 }
 
@@ -24,7 +24,7 @@ pub struct Sums {
 pub type Found = BTreeMap<String, Sums>;
 
 impl Sums {
-    /// Of rows of numbers.
+    /// The sums of rows of numbers.
     pub fn of<const N: usize>(rows: impl IntoIterator<Item = [f64; N]>) -> Self {
         let flat: Vec<f64> = rows.into_iter().flatten().collect();
         let shape = if N == 1 { vec![flat.len()] } else { vec![flat.len() / N, N] };
@@ -37,30 +37,30 @@ impl Sums {
         }
     }
 
-    /// Of vectors.
+    /// The sums of vectors.
     pub fn vectors(values: &[[f32; 3]]) -> Self {
         Self::of(values.iter().map(|value| value.map(f64::from)))
     }
 
-    /// Of numbers.
+    /// The sums of scalars.
     pub fn numbers<T: Copy + Into<f64>>(values: &[T]) -> Self {
         Self::of(values.iter().map(|&value| [value.into()]))
     }
 
-    /// Of the corners of triangles, in rows of three or all in one.
+    /// The sums of the vertex numbers of triangles, in rows of three or in a single row.
     pub fn corners(triangles: &[[u32; 3]], flat: bool) -> Self {
         let values = triangles.iter().map(|triangle| triangle.map(f64::from));
         if flat { Self::of(values.flatten().map(|corner| [corner])) } else { Self::of(values) }
     }
 
-    /// Whether another has the same shape and the same sums to this part of the amounts.
+    /// Whether another array has the same shape and the same sums, within this fraction of the absolute values.
     pub fn agrees(&self, other: &Self, tolerance: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance * self.amount.max(other.amount) + 1e-12;
         self.shape == other.shape && near(self.sum, other.sum) && near(self.weighted, other.weighted)
     }
 }
 
-/// What `reader` finds in each file; `None`, and a word on stderr, where Python or a package is missing.
+/// What `reader` finds in each file; `None`, with a message on stderr, if Python or a package is missing.
 pub fn read(test: &str, reader: &str, files: &[&Path]) -> Option<Vec<Found>> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign/read.py");
     let mut python = Command::new(interpreter());
@@ -105,7 +105,7 @@ fn sums_of(sums: &Value) -> Sums {
     }
 }
 
-/// The environment that `cargo xtask` has made, or one that is named, or the system's.
+/// The interpreter of the environment made by `cargo xtask`, one named by a variable, or the system's.
 fn interpreter() -> PathBuf {
     if let Some(named) = std::env::var_os("SPLASHDOWN_PYTHON") {
         return named.into();
@@ -115,13 +115,13 @@ fn interpreter() -> PathBuf {
     made.into_iter().find(|path| path.exists()).unwrap_or_else(|| "python3".into())
 }
 
-/// Asserts that a file's array is what was written, and that one that was changed is not taken for it.
+/// Asserts that an array is the written one, and that the comparison detects a change.
 #[track_caller]
 pub fn same(found: &Found, name: &str, wanted: &Sums) {
     close(found, name, wanted, 1e-9);
 }
 
-/// As [`same`], where the reader calculates in single precision.
+/// Like [`same`], for readers that compute in single precision.
 #[track_caller]
 pub fn close(found: &Found, name: &str, wanted: &Sums, tolerance: f64) {
     let Some(given) = found.get(name) else {

@@ -10,7 +10,7 @@ use crate::python::{Sums, close, read, same};
 
 const RATE: f64 = 25.0;
 
-/// A surface that falls and comes apart: frames have other points and other triangles, and the third has none.
+/// A surface that falls and splits: points and triangles change, and the third frame has none.
 fn frames() -> Vec<Mesh> {
     let with_velocities = |mut mesh: Mesh| {
         mesh.velocities = mesh.vertices.iter().map(|&[x, y, _]| [0.5 * x, -1.0 - y, 0.25]).collect();
@@ -35,14 +35,14 @@ fn write_surface(path: &Path, frames: &[Mesh]) {
     let series = MeshSeries::start(path, RATE).unwrap();
     for (frame, mesh) in frames.iter().enumerate() {
         series.push(frame as u32, mesh).unwrap();
-        assert!(!path.exists(), "a file that is not finished has no name");
+        assert!(!path.exists(), "an unfinished file has no name");
     }
     let (written, bytes) = series.finish().unwrap().unwrap();
     assert_eq!((written.as_path(), bytes), (path, std::fs::metadata(path).unwrap().len()));
     assert_eq!(series.finish().unwrap(), None);
 }
 
-/// A whole file and one with a vertex moved.
+/// A complete file and one with a vertex moved.
 fn surfaces(folder: &Path) -> [PathBuf; 2] {
     let [right, wrong] = ["right.usda", "wrong.usda"].map(|name| folder.join(name));
     write_surface(&right, &frames());
@@ -50,7 +50,7 @@ fn surfaces(folder: &Path) -> [PathBuf; 2] {
     changed[1].vertices[5][1] += 1e-3;
     changed[1].velocities[5][1] += 1.0;
     write_surface(&wrong, &changed);
-    assert_eq!(common::names(folder), ["right.usda", "wrong.usda"], "nothing hidden stays behind");
+    assert_eq!(common::names(folder), ["right.usda", "wrong.usda"], "no hidden file remains");
     [right, wrong]
 }
 
@@ -101,7 +101,7 @@ fn pixars_library_opens_animated_particles() {
     let path = folder.path().join("particles.usda");
     let series = PointSeries::start(&path, RATE, 0.05).unwrap();
     let mut frames = [common::particles(50), common::particles(40)];
-    // What is no number must not make the file unreadable.
+    // NaN and infinity must not make the file unreadable.
     frames[1].pressures[3] = f32::NAN;
     frames[1].velocities[3][0] = f32::NEG_INFINITY;
     for (frame, particles) in frames.iter().enumerate() {
@@ -119,7 +119,7 @@ fn pixars_library_opens_animated_particles() {
 }
 
 #[test]
-fn a_series_that_is_dropped_leaves_nothing() {
+fn a_dropped_series_leaves_no_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("surface.usda");
     let series = MeshSeries::start(&path, RATE).unwrap();
