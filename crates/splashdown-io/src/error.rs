@@ -7,9 +7,6 @@ pub use film::FilmError;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::film::FilmError;
-use crate::format::Format;
-
 /// The errors of this crate's functions.
 ///
 /// The error of the operating system is stored as text and not as a `source()`, so that one message says everything and
@@ -214,11 +211,6 @@ impl IoError {
     /// `path` was read as `format`, but is not valid.
     pub(crate) fn malformed(path: &Path, format: &'static str, reason: impl Into<String>) -> Self {
         Self::Malformed { path: path.to_owned(), format, reason: reason.into() }
-    }
-
-    /// `path` has an ending of none of the formats that meet a condition.
-    pub(crate) fn unknown_format(path: &Path, condition: fn(&Format) -> bool) -> Self {
-        Self::UnknownFormat { path: path.to_owned(), allowed: Format::endings(condition) }
     }
 }
 

@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::columns::Wanted;
+use crate::data::Mesh;
+use crate::data::Particles;
+use crate::data::columns::Wanted;
 use crate::error::IoError;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
 use crate::{atomic, bgeo, gltf, npy, npz, obj, ply, stl, vtk, vtu, xyz};
 
 type ReadParticles = fn(&Path, Wanted) -> Result<Particles, IoError>;
@@ -212,6 +212,11 @@ fn write_mesh(
 /// The ending of a file name in lower case, without its dot.
 fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
+}
+
+/// The error for a path whose ending names no format that fulfils the condition.
+pub(crate) fn unknown(path: &Path, condition: fn(&Format) -> bool) -> IoError {
+    IoError::UnknownFormat { path: path.to_owned(), allowed: Format::endings(condition) }
 }
 
 #[cfg(test)]

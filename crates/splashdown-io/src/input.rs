@@ -1,31 +1,25 @@
-//! What the readers of meshes and particles share.
+//! Functions that the readers of meshes and particles share.
 
 use std::collections::HashMap;
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use crate::data::Mesh;
 use crate::error::IoError;
 
-/// The most particles, or triangles or vertices of one mesh, that are read: some gigabytes. A small file can
-/// name a large mesh many times (glTF), and must not take all memory.
+/// The largest number of particles, or of triangles or vertices of a mesh, that is read: some gigabytes. A small glTF
+/// file can refer to a large mesh many times, and must not use all memory.
 pub(crate) const MOST: usize = 1 << 27;
 
-/// The ending of a file name in lower case, without its dot.
-pub(crate) fn extension(path: &Path) -> Option<String> {
-    Some(path.extension()?.to_str()?.to_ascii_lowercase())
-}
-
-/// Why a mesh is not read as particles.
+/// The reason why a mesh is not read as particles.
 pub(crate) fn not_particles(faces: usize) -> String {
     let plural = if faces == 1 { "" } else { "s" };
     format!(
-        "it is a mesh of {faces} face{plural}, and the vertices of a mesh are not particles: give the particles themselves"
+        "it is a mesh of {faces} face{plural}, and the vertices of a mesh are not particles: give a file of particles"
     )
 }
 
-/// A pipe or device may never end.
+/// Refuses a folder, and a pipe or device, whose data may never end.
 pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
     let metadata = fs::metadata(path).map_err(|error| IoError::read(path, &error))?;
     if metadata.is_file() {
@@ -38,10 +32,10 @@ pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
 /// All bytes of a regular file.
 pub(crate) fn content(path: &Path) -> Result<Vec<u8>, IoError> {
     regular(path)?;
-    fs::read(path).map_err(|error: io::Error| IoError::read(path, &error))
+    fs::read(path).map_err(|error| IoError::read(path, &error))
 }
 
-/// Cuts a polygon into triangles that share its first corner.
+/// Splits a polygon into triangles that share its first vertex.
 pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result<(), String> {
     match corners {
         [first, rest @ ..] if rest.len() >= 2 => {
@@ -52,7 +46,7 @@ pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result
     }
 }
 
-/// Collects loose triangles into a mesh in which equal places are one vertex.
+/// Collects separate triangles into a mesh in which vertices at the same position are merged.
 #[derive(Default)]
 pub(crate) struct Welder {
     mesh: Mesh,
@@ -60,10 +54,10 @@ pub(crate) struct Welder {
 }
 
 impl Welder {
-    /// The number of the vertex at this place. Bits are compared, with both zeros the same.
+    /// The number of the vertex at this position. Positions are compared bit by bit, with both zeros equal.
     pub(crate) fn vertex(&mut self, position: [f32; 3]) -> u32 {
         let position = position.map(|component| component + 0.0);
-        // The files that are read stay below 2^32 corners: they are checked against their size or `MOST`.
+        // Files have fewer than 2^32 corners: their counts were compared with their size or `MOST`.
         let next = self.mesh.vertices.len() as u32;
         let index = *self.known.entry(position.map(f32::to_bits)).or_insert(next);
         if index == next {
@@ -77,17 +71,17 @@ impl Welder {
         self.mesh.triangles.push(triangle);
     }
 
-    /// Adds a triangle of vertices that have their numbers from [`Self::vertex`].
+    /// Adds a triangle of vertex numbers returned by [`Self::vertex`].
     pub(crate) fn push(&mut self, triangle: [u32; 3]) {
         self.mesh.triangles.push(triangle);
     }
 
-    /// Vertices collected so far.
+    /// Number of vertices so far.
     pub(crate) fn vertices(&self) -> usize {
         self.mesh.vertices.len()
     }
 
-    /// Triangles collected so far.
+    /// Number of triangles so far.
     pub(crate) fn triangles(&self) -> usize {
         self.mesh.len()
     }

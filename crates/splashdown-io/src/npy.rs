@@ -6,10 +6,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::columns::{Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
 use crate::number::Number;
-use crate::particles::Particles;
 
 /// Reads positions from a little-endian float32 or float64 array of shape (N, 3) in C order.
 ///

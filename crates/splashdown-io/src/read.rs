@@ -1,19 +1,13 @@
-//! Reads a mesh or particle file by the ending of its name; also helpers of the readers.
+//! Reads a mesh or particle file by the ending of its name.
 
-use std::collections::HashMap;
-use std::fs;
 use std::path::Path;
 
+use crate::data::Mesh;
+use crate::data::Particles;
 use crate::data::columns::Wanted;
-use crate::data::{Mesh, Particles};
 use crate::error::IoError;
-use crate::format::Format;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
-
-/// The largest number of particles, or of triangles or vertices of a mesh, that is read: some gigabytes. A small glTF
-/// file can refer to a large mesh many times, and must not use all memory.
-pub(crate) const MOST: usize = 1 << 27;
+use crate::format::{self, Format};
+use crate::input::{MOST, regular};
 
 /// Reads a triangle mesh in the format of the file name's ending ([`Format`]).
 ///
@@ -27,7 +21,7 @@ pub(crate) const MOST: usize = 1 << 27;
 /// it is damaged, cut short, without triangles or with coordinates that are not finite; [`IoError::TooMany`].
 pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let format = Format::of(path).and_then(|format| Some((format.name, format.read_mesh?)));
-    let (format, read) = format.ok_or_else(|| IoError::unknown_format(path, Format::reads_meshes))?;
+    let (format, read) = format.ok_or_else(|| format::unknown(path, Format::reads_meshes))?;
     regular(path)?;
     let mut mesh = read(path)?;
     (mesh.normals, mesh.velocities) = (Vec::new(), Vec::new());
@@ -67,7 +61,7 @@ pub fn read_particles_with_attributes(path: &Path) -> Result<Particles, IoError>
 
 fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let format = Format::of(path).and_then(|format| Some((format.name, format.read_particles?)));
-    let (format, read) = format.ok_or_else(|| IoError::unknown_format(path, Format::reads_particles))?;
+    let (format, read) = format.ok_or_else(|| format::unknown(path, Format::reads_particles))?;
     regular(path)?;
     let mut particles = read(path, wanted)?;
     let count = particles.len();
@@ -102,84 +96,4 @@ fn finite(what: &str, vectors: &[[f32; 3]]) -> Result<(), String> {
     Err(format!(
         "{bad} of its {all} {what} are not finite, the first is number {first} (from 0): ({x}, {y}, {z})"
     ))
-}
-
-/// The reason why a mesh is not read as particles.
-pub(crate) fn not_particles(faces: usize) -> String {
-    let plural = if faces == 1 { "" } else { "s" };
-    format!(
-        "it is a mesh of {faces} face{plural}, and the vertices of a mesh are not particles: give a file of particles"
-    )
-}
-
-/// Refuses a folder, and a pipe or device, whose data may never end.
-pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
-    let metadata = fs::metadata(path).map_err(|error| IoError::read(path, &error))?;
-    if metadata.is_file() {
-        return Ok(());
-    }
-    let what = if metadata.is_dir() { "it is a folder, not a file" } else { "it is not a regular file" };
-    Err(IoError::Read { path: path.to_owned(), detail: what.to_owned() })
-}
-
-/// All bytes of a regular file.
-pub(crate) fn content(path: &Path) -> Result<Vec<u8>, IoError> {
-    regular(path)?;
-    fs::read(path).map_err(|error| IoError::read(path, &error))
-}
-
-/// Splits a polygon into triangles that share its first vertex.
-pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result<(), String> {
-    match corners {
-        [first, rest @ ..] if rest.len() >= 2 => {
-            triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
-            Ok(())
-        }
-        _ => Err(format!("a face with {} corners, at least 3 are needed", corners.len())),
-    }
-}
-
-/// Collects separate triangles into a mesh in which vertices at the same position are merged.
-#[derive(Default)]
-pub(crate) struct Welder {
-    mesh: Mesh,
-    known: HashMap<[u32; 3], u32>,
-}
-
-impl Welder {
-    /// The number of the vertex at this position. Positions are compared bit by bit, with both zeros equal.
-    pub(crate) fn vertex(&mut self, position: [f32; 3]) -> u32 {
-        let position = position.map(|component| component + 0.0);
-        // Files have fewer than 2^32 corners: their counts were compared with their size or `MOST`.
-        let next = self.mesh.vertices.len() as u32;
-        let index = *self.known.entry(position.map(f32::to_bits)).or_insert(next);
-        if index == next {
-            self.mesh.vertices.push(position);
-        }
-        index
-    }
-
-    pub(crate) fn triangle(&mut self, corners: [[f32; 3]; 3]) {
-        let triangle = corners.map(|corner| self.vertex(corner));
-        self.mesh.triangles.push(triangle);
-    }
-
-    /// Adds a triangle of vertex numbers returned by [`Self::vertex`].
-    pub(crate) fn push(&mut self, triangle: [u32; 3]) {
-        self.mesh.triangles.push(triangle);
-    }
-
-    /// Number of vertices so far.
-    pub(crate) fn vertices(&self) -> usize {
-        self.mesh.vertices.len()
-    }
-
-    /// Number of triangles so far.
-    pub(crate) fn triangles(&self) -> usize {
-        self.mesh.len()
-    }
-
-    pub(crate) fn into_mesh(self) -> Mesh {
-        self.mesh
-    }
 }

@@ -10,10 +10,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use crate::atomic;
+use crate::data::Mesh;
+use crate::data::Particles;
 use crate::error::IoError;
 use crate::film::Film;
-use crate::mesh::{Mesh, write_mesh};
-use crate::particles::{Particles, write_particles};
+use crate::mesh::write_mesh;
+use crate::particles::write_particles;
 use crate::picture::Picture;
 use crate::usd::{MeshSeries, PointSeries};
 

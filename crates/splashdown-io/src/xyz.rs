@@ -7,7 +7,8 @@
 
 use std::path::Path;
 
-use crate::columns::Wanted;
+use crate::data::Particles;
+use crate::data::columns::Wanted;
 use crate::error::IoError;
 use crate::input::content;
 

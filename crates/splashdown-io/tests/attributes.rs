@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use splashdown_io::{
-    Attribute, Mesh, Particles, read_particles, read_particles_with_attributes, write_mesh, write_particles,
+    Attribute, Particles, read_particles, read_particles_with_attributes, write_mesh, write_particles,
 };
 
 fn attribute<'a>(particles: &'a Particles, name: &str) -> &'a Attribute {

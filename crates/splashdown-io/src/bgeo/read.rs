@@ -6,11 +6,11 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::columns::{Column, Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Column, Wanted, triples};
 use crate::error::IoError;
+use crate::input::{MOST, regular};
 use crate::number::{Cells, Number};
-use crate::particles::Particles;
-use crate::read::{MOST, regular};
 
 /// The largest size of a row in bytes: far more than in real files, so that a malformed header cannot cause a large
 /// allocation.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::particles::Particles;
+use crate::data::Particles;
 
 /// Points per write.
 const ROWS: usize = 2048;

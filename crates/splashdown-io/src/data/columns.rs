@@ -1,8 +1,7 @@
 //! The meaning of the arrays in particle files, shared by the readers.
 
-use crate::attribute::Attribute;
+use super::{Attribute, Particles};
 use crate::number::whole;
-use crate::particles::Particles;
 
 /// The arrays that have a field in [`Particles`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

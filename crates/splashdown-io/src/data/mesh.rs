@@ -1,40 +1,65 @@
-//! A triangle mesh on the host, its volume and area.
+//! A triangle mesh in host memory, with its volume and area.
 
-use super::attribute::Attribute;
+use super::Attribute;
 use super::particles::check_count;
 use crate::error::IoError;
 use crate::topology::{MAX_TRIANGLES, Topology};
 
-/// A triangle mesh with shared vertices. Seen from outside, the corners of a triangle run counter-clockwise.
+/// A triangle mesh with shared vertices. Seen from outside, the vertices of a triangle run counter-clockwise.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Mesh {
     /// Vertex positions in m; y is up.
     pub vertices: Vec<[f32; 3]>,
-    /// Unit normals, one per vertex, pointing outwards; empty where there are none.
+    /// Unit normals, one per vertex, pointing outwards; empty if absent.
     pub normals: Vec<[f32; 3]>,
-    /// Velocities of the vertices in m/s, by which programs blur motion; empty where there are none.
+    /// Velocities of the vertices in m/s, used for motion blur; empty if absent.
     pub velocities: Vec<[f32; 3]>,
     /// Three vertex numbers (from 0) per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// What else the vertices carry; PLY and VTK files hold it.
+    /// Other attributes of the vertices, in the formats with [`Format::has_attributes`](crate::Format::has_attributes).
     pub attributes: Vec<Attribute>,
 }
 
 impl Mesh {
+    /// A mesh of vertex positions in m and triangles of vertex numbers, without any attribute.
+    #[must_use]
+    pub fn new(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices, triangles, ..Self::default() }
+    }
+
+    /// Sets the unit normals of the vertices.
+    #[must_use]
+    pub fn with_normals(self, normals: Vec<[f32; 3]>) -> Self {
+        Self { normals, ..self }
+    }
+
+    /// Sets the velocities of the vertices, in m/s.
+    #[must_use]
+    pub fn with_velocities(self, velocities: Vec<[f32; 3]>) -> Self {
+        Self { velocities, ..self }
+    }
+
+    /// Sets the other attributes of the vertices.
+    #[must_use]
+    pub fn with_attributes(self, attributes: Vec<Attribute>) -> Self {
+        Self { attributes, ..self }
+    }
+
     /// Number of triangles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Whether there is no triangle.
+    /// Whether there are no triangles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// Tells whether normals, velocities and attributes are absent or one per vertex, whether every index is in
-    /// range, and whether a file can count it all.
+    /// Checks that normals, velocities and attributes are absent or one per vertex, that every vertex number is in
+    /// range, and that the formats can count the vertices and triangles.
     ///
     /// # Errors
     /// [`IoError::Length`], [`IoError::IndexOutOfRange`] with the first such triangle, or [`IoError::TooMany`].
@@ -59,12 +84,12 @@ impl Mesh {
         Ok(())
     }
 
-    /// The volume enclosed, in m^3: the sum over the triangles of the signed volumes of their tetrahedra with one
-    /// point, which is the divergence theorem for the field x/3.
+    /// The enclosed volume, in m^3: the sum over the triangles of the signed volumes of their tetrahedra with one
+    /// common point, which is the divergence theorem for the field x/3.
     ///
-    /// It means something for a closed, consistently oriented mesh only ([`Mesh::topology`]); it is negative for a
-    /// mesh turned inside out. The sum is taken in f64 about the first vertex, so that a mesh far from the origin
-    /// loses no digits. Indices must be in range ([`Mesh::check`]); triangles that break this count as nothing.
+    /// The value is meaningful only for a closed, consistently oriented mesh ([`Mesh::topology`]); it is negative for a
+    /// mesh that is inside out. The sum is computed in f64 relative to the first vertex, so that a mesh far from the
+    /// origin loses no digits. Triangles with a vertex number out of range are ignored.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_default().map(f64::from);
@@ -73,7 +98,7 @@ impl Mesh {
         six_fold / 6.0
     }
 
-    /// The area of all triangles, in m^2. Triangles with an index out of range count as nothing.
+    /// The area of all triangles, in m^2. Triangles with a vertex number out of range are ignored.
     #[must_use]
     pub fn area(&self) -> f64 {
         let twice: f64 = self
@@ -86,7 +111,7 @@ impl Mesh {
         twice / 2.0
     }
 
-    /// How the triangles hang together: closed, manifold, oriented, components, Euler characteristic.
+    /// How the triangles are connected: closed, manifold, oriented, components, Euler characteristic.
     ///
     /// # Errors
     /// Those of [`Mesh::check`]; [`IoError::TooMany`] beyond 2^32 / 3 triangles.
@@ -98,7 +123,7 @@ impl Mesh {
         Ok(Topology::of(self.vertices.len(), &self.triangles))
     }
 
-    /// The corners of every triangle whose indices are in range, in f64.
+    /// The corner positions of every triangle whose vertex numbers are in range, in f64.
     fn corners(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         let corner = |index: u32| self.vertices.get(index as usize).map(|v| v.map(f64::from));
         self.triangles.iter().filter_map(move |&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?]))

@@ -1,4 +1,4 @@
-//! Particles and meshes on the host, and what they carry.
+//! Particles and meshes in host memory, and their attributes.
 
 mod attribute;
 pub(crate) mod columns;
@@ -9,4 +9,3 @@ pub use attribute::Attribute;
 pub use mesh::Mesh;
 pub(crate) use mesh::{cross, dot, sub};
 pub use particles::Particles;
-pub(crate) use particles::check_count;

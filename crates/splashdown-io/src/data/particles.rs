@@ -1,16 +1,16 @@
-//! Particles on the host, as plain arrays.
+//! Particles in host memory, as plain arrays.
 
-use super::attribute::Attribute;
+use super::Attribute;
 use crate::error::IoError;
 
-/// A set of particles, one array per attribute, in the order of the solver's choosing (ids tell them apart).
+/// A set of particles, one array per attribute. The order of the particles is arbitrary; `ids` identify them.
 ///
-/// Every array but `positions` may be empty, which means that the attribute is absent; otherwise it is as long as
-/// `positions` ([`Particles::check`]). Values are written as they are, NaN included: a file that hid them would
-/// hide the very thing one looks for.
+/// An array other than `positions` is either empty, which means that the attribute is absent, or as long as `positions`
+/// ([`Particles::check`]). Values are written unchanged, NaN included, so that a file shows what went wrong.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Particles {
-    /// Stable number of each particle, the same in every frame.
+    /// Number of each particle, the same in every frame.
     pub ids: Vec<u32>,
     /// Positions in m; y is up.
     pub positions: Vec<[f32; 3]>,
@@ -20,28 +20,64 @@ pub struct Particles {
     pub densities: Vec<f32>,
     /// Pressures in Pa.
     pub pressures: Vec<f32>,
-    /// Everything that a file has for each particle, where it was asked for ([`read_all`](crate::read_all)).
-    /// The writers pass over it.
+    /// All attributes of a file, as read by
+    /// [`read_particles_with_attributes`](crate::read_particles_with_attributes). They are not written.
     pub attributes: Vec<Attribute>,
 }
 
 impl Particles {
+    /// Particles at these positions in m, without any other attribute.
+    #[must_use]
+    pub fn from_positions(positions: Vec<[f32; 3]>) -> Self {
+        Self { positions, ..Self::default() }
+    }
+
+    /// Sets the ids.
+    #[must_use]
+    pub fn with_ids(self, ids: Vec<u32>) -> Self {
+        Self { ids, ..self }
+    }
+
+    /// Sets the velocities, in m/s.
+    #[must_use]
+    pub fn with_velocities(self, velocities: Vec<[f32; 3]>) -> Self {
+        Self { velocities, ..self }
+    }
+
+    /// Sets the densities, in kg/m^3.
+    #[must_use]
+    pub fn with_densities(self, densities: Vec<f32>) -> Self {
+        Self { densities, ..self }
+    }
+
+    /// Sets the pressures, in Pa.
+    #[must_use]
+    pub fn with_pressures(self, pressures: Vec<f32>) -> Self {
+        Self { pressures, ..self }
+    }
+
+    /// Sets the other attributes.
+    #[must_use]
+    pub fn with_attributes(self, attributes: Vec<Attribute>) -> Self {
+        Self { attributes, ..self }
+    }
+
     /// Number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Tells whether every attribute is absent or as long as `positions`, and whether a file can count them.
+    /// Checks that every attribute is absent or as long as `positions`, and that the formats can count the particles.
     ///
     /// # Errors
-    /// [`IoError::Length`] names the first attribute that does not fit; [`IoError::TooMany`] beyond 2^31 - 1 particles.
+    /// [`IoError::Length`] names the first attribute of another length; [`IoError::TooMany`] beyond 2^31 - 1 particles.
     pub fn check(&self) -> Result<(), IoError> {
         let expected = self.len();
         let lengths = [
@@ -61,7 +97,7 @@ impl Particles {
     }
 }
 
-/// The formats number things with signed 32-bit integers.
+/// The formats count with signed 32-bit integers.
 pub(crate) fn check_count(what: &'static str, given: usize) -> Result<(), IoError> {
     let limit = i32::MAX as usize;
     if given <= limit { Ok(()) } else { Err(IoError::TooMany { what, given, limit }) }
@@ -72,7 +108,7 @@ mod tests {
     use super::*;
 
     fn three() -> Particles {
-        Particles { positions: vec![[0.0; 3]; 3], ids: vec![0, 1, 2], ..Particles::default() }
+        Particles::from_positions(vec![[0.0; 3]; 3]).with_ids(vec![0, 1, 2])
     }
 
     #[test]
@@ -86,10 +122,10 @@ mod tests {
     #[test]
     fn every_attribute_of_wrong_length_is_named() {
         let wrong = [
-            ("ids", Particles { ids: vec![1], ..three() }),
-            ("velocities", Particles { velocities: vec![[0.0; 3]; 4], ..three() }),
-            ("densities", Particles { densities: vec![0.0; 2], ..three() }),
-            ("pressures", Particles { pressures: vec![0.0; 1], ..three() }),
+            ("ids", three().with_ids(vec![1])),
+            ("velocities", three().with_velocities(vec![[0.0; 3]; 4])),
+            ("densities", three().with_densities(vec![0.0; 2])),
+            ("pressures", three().with_pressures(vec![0.0; 1])),
         ];
         for (name, particles) in wrong {
             let message = particles.check().unwrap_err().to_string();

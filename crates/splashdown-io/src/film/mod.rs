@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-pub use crate::error::FilmError;
+use crate::error::FilmError;
 
 use crate::atomic::Temporary;
 use crate::picture::Picture;

@@ -5,7 +5,7 @@
 
 use std::io::{self, Write};
 
-use crate::mesh::Mesh;
+use crate::data::Mesh;
 
 /// Bytes per write.
 const CHUNK: usize = 1 << 16;

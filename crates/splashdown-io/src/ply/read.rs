@@ -5,8 +5,10 @@ use std::path::Path;
 use super::header::{Element, Header, Kind, Property};
 use super::rows::{self, Column};
 use super::source::Source;
-use crate::attribute::Attribute;
-use crate::columns::Wanted;
+use crate::data::Attribute;
+use crate::data::Mesh;
+use crate::data::Particles;
+use crate::data::columns::Wanted;
 use crate::error::IoError;
 use crate::input::not_particles;
 

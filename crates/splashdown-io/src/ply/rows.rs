@@ -2,8 +2,8 @@
 
 use super::header::{Element, Encoding, Kind, Property};
 use super::source::Source;
+use crate::input::push_fan;
 use crate::number::{Cells, Number, whole};
-use crate::read::push_fan;
 
 /// Rows without lists that are decoded at a time.
 const ROWS: usize = 1024;

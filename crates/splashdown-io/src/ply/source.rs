@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::error::IoError;
-use crate::read::regular;
+use crate::input::regular;
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 18;

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use crate::attribute::Attribute;
-use crate::mesh::Mesh;
-use crate::particles::Particles;
+use crate::data::Attribute;
+use crate::data::Mesh;
+use crate::data::Particles;
 
 /// Rows per write; the buffer stays in the cache.
 const ROWS: usize = 2048;

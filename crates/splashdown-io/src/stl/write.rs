@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::mesh::{Mesh, cross, dot, sub};
+use crate::data::{Mesh, cross, dot, sub};
 
 /// The free text of the header. It must not begin with `solid`, as text files do.
 const TITLE: &[u8] = b"written by Splashdown; metres, y is up";

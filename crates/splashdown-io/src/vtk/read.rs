@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::columns::{Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
+use crate::input::{content, not_particles};
 use crate::number::Number;
-use crate::particles::Particles;
-use crate::read::{content, not_particles};
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;

@@ -4,8 +4,8 @@
 
 use std::io::{self, Write};
 
-use crate::mesh::Mesh;
-use crate::particles::Particles;
+use crate::data::Mesh;
+use crate::data::Particles;
 
 /// Numbers converted to big-endian before each write.
 const CHUNK: usize = 8192;

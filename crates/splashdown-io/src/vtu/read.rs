@@ -5,11 +5,11 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::decode::{Appended, Encoding, Layout};
-use crate::columns::{Wanted, triples};
+use crate::data::Particles;
+use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
+use crate::input::{MOST, content, not_particles};
 use crate::number::Number;
-use crate::particles::Particles;
-use crate::read::{MOST, content, not_particles};
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::particles::Particles;
+use crate::data::Particles;
 
 /// Numbers of generated connectivity per write.
 const CHUNK: usize = 4096;
