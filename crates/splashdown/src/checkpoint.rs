@@ -1,14 +1,14 @@
-//! Checkpoints: a simulation in a file, from which it goes on as if it had not stopped.
+//! Checkpoints: a simulation in a file, from which it can be resumed.
 //!
-//! *What is in it.* Everything that a step reads and no scene can tell: the persistent arrays of the particles,
-//! the state on the device, the counters, the bodies with the world in which they collide, what emitters and
-//! probes remember, and the scene's text. What follows from the scene (grids, maps, constants) is made anew,
-//! and compared where a changed file could slip in. Going on from it gives the same bits as not stopping, on
-//! the CPU and on one adapter.
+//! *Content.* Everything that a step reads and that does not follow from the scene: the persistent arrays of the
+//! particles, the state on the device, the counters, the bodies with the state of their collisions, the state of emitters
+//! and probes, and the text of the scene. What follows from the scene (grids, maps, constants) is computed again, and
+//! compared where a file may have changed. On the CPU and on the same adapter, a resumed simulation is bit-identical to an
+//! uninterrupted one.
 //!
 //! *The file* is a ZIP of NPY arrays ([`Archive`]): `numpy.load` opens it. `positions` (N, 4) in m, the fourth
 //! zero for the living; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,); `scene.toml` the
-//! scene; `about.json` for people.
+//! scene; `about.json` describes the file.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -38,8 +38,8 @@ pub enum CheckpointError {
     Malformed(String),
     /// Another program version made it.
     #[error(
-        "this checkpoint has format {given}, written by Splashdown {program}; this program reads format {VERSION}: go on with \
-         that version, or run the scene anew"
+        "this checkpoint has format {given}, written by Splashdown {program}; this program reads format {VERSION}: use \
+         that version, or run the scene again"
     )]
     Version {
         /// Its format.
@@ -52,7 +52,7 @@ pub enum CheckpointError {
     Scene(#[from] SceneErrors),
     /// A mesh of an emitter or a sink has changed.
     #[error(
-        "the mesh of an outlet or a sink is not the one of the checkpoint: put the old file back, or run the scene anew"
+        "the mesh of an outlet or a sink is not the one of the checkpoint: restore the old file, or run the scene again"
     )]
     FlowChanged,
     /// A file that the scene names has changed.
@@ -83,7 +83,7 @@ impl From<BodiesChanged> for CheckpointError {
     }
 }
 
-/// For people and scripts that look into the file.
+/// The description of the file, for readers other than this program.
 #[derive(Serialize, Deserialize)]
 struct About {
     format: String,
@@ -98,7 +98,7 @@ struct About {
     particles: u32,
 }
 
-/// What the host of a simulation knows.
+/// The state of a simulation on the host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct HostState {
     pub stats: Stats,
@@ -107,15 +107,15 @@ pub(crate) struct HostState {
     pub capacity: u32,
     pub initial: u32,
     pub removed: u32,
-    /// Emitters of which it was told that they found no room.
-    pub told: Vec<bool>,
+    /// Emitters whose lack of room has been reported.
+    pub reported: Vec<bool>,
     pub bodies: Vec<BodyKey>,
     /// Of the meshes of outlets and sinks.
     pub flow: u64,
 }
 
 impl HostState {
-    /// What no simulation can have told of itself.
+    /// Refuses values that no simulation can have.
     fn check(&self) -> Result<(), &'static str> {
         let Self { stats, stable_dt, sound_speed, initial, capacity, .. } = self;
         let is_positive = |x: f32| x.is_finite() && x > 0.0;
@@ -136,7 +136,7 @@ impl HostState {
 }
 
 /// A simulation between two frames, in memory: [`Simulation::checkpoint`](crate::Simulation::checkpoint) makes it,
-/// [`Simulation::resume`](crate::Simulation::resume) goes on from it.
+/// [`Simulation::resume`](crate::Simulation::resume) continues from it.
 ///
 /// ```
 /// use splashdown::{Checkpoint, Device, Simulation, scene::Scene};
@@ -176,7 +176,7 @@ impl Checkpoint {
             version: VERSION,
             program: env!("CARGO_PKG_VERSION").to_owned(),
             scene: scene.name.clone(),
-            // As seen from any folder; where that cannot be known, as it is.
+            // An absolute path is valid in every working folder.
             source: scene
                 .source
                 .as_ref()
@@ -302,7 +302,7 @@ impl Checkpoint {
         Ok(host)
     }
 
-    /// Whether it can be gone on from, as far as that can be told without doing it.
+    /// Checks that it can be resumed, as far as that is possible without doing so.
     ///
     /// # Errors
     /// [`CheckpointError`].
@@ -327,7 +327,7 @@ impl Checkpoint {
         self.archive.set_array("foam", bytemuck::cast_slice::<_, u32>(&kept.pool), FOAM_COLUMNS);
     }
 
-    /// The foam in it, if there is some.
+    /// The foam in it, if any.
     ///
     /// # Errors
     /// [`CheckpointError::Malformed`].

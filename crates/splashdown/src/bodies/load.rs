@@ -153,8 +153,8 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     Ok(mesh)
 }
 
-/// Builds a scene's bodies from their meshes, which [`mesh_of`] read in the order of the scene. `told` hears of each body
-/// when it begins and how far it is, in [0, 1].
+/// Builds a scene's bodies from their meshes, which [`mesh_of`] read in the order of the scene. `progress` is called
+/// with the name of a body and the completed part of it, in [0, 1].
 ///
 /// # Errors
 /// [`BodyError`], the first.
@@ -164,10 +164,10 @@ pub fn load(
     params: &Params,
     kernels: KernelPair,
     cache: Option<PathBuf>,
-    told: &(dyn Fn(&str, f32) + Sync),
+    progress: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<Vec<LoadedBody>, BodyError> {
     let bodies = scene.bodies.iter().zip(meshes);
-    bodies.map(|(body, mesh)| load_one(scene, body, mesh, params, kernels, cache.clone(), told)).collect()
+    bodies.map(|(body, mesh)| load_one(scene, body, mesh, params, kernels, cache.clone(), progress)).collect()
 }
 
 fn load_one(
@@ -177,7 +177,7 @@ fn load_one(
     params: &Params,
     kernels: KernelPair,
     cache: Option<PathBuf>,
-    told: &(dyn Fn(&str, f32) + Sync),
+    progress: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<LoadedBody, BodyError> {
     let owner = owner("body", &body.name, &body.mesh);
     if !cfg!(feature = "rigid") && matches!(body.motion, Motion::Dynamic { .. }) {
@@ -196,7 +196,7 @@ fn load_one(
         cache,
     };
     let wrong = |source| BodyError::Solid { owner: owner.clone(), source };
-    let solid = Solid::build(&mesh, &settings, &|part| told(&body.name, part)).map_err(wrong)?;
+    let solid = Solid::build(&mesh, &settings, &|part| progress(&body.name, part)).map_err(wrong)?;
     let mut state = Body {
         position: body.mesh.position,
         orientation: Vec4::from(body.mesh.rotation),

@@ -71,8 +71,8 @@ impl Built {
         built
     }
 
-    /// Keeps what the check of a scene's files has read and filled; the particles only where there are meshes or files.
-    pub fn keep(&self, meshes: Vec<Mesh>, flow: LoadedFlow, fluid: Option<(Particles, Vec<Reach>)>) {
+    /// Stores what the check of a scene's files has read and filled; the particles only where there are meshes or files.
+    pub fn store(&self, meshes: Vec<Mesh>, flow: LoadedFlow, fluid: Option<(Particles, Vec<Reach>)>) {
         lock(&self.bodies).put(meshes.into_iter().map(Ok).collect());
         // It is empty: the scene has only just been read.
         let _ = self.flow.set(Ok(Arc::new(flow)));
@@ -111,7 +111,7 @@ impl Built {
         self.flow.get_or_init(|| LoadedFlow::new(scene).map(Arc::new)).clone()
     }
 
-    /// What the emitters bring until the scene's end: the number of particles, and how many of them are there on average
+    /// The particles that the emitters create until the scene's end: their number, and how many of them exist on average
     /// over the scene's time.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Compares a scene with the files it names: only where the scene itself has a place on disk.
+//! Compares a scene from a file with the files that it names.
 
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
@@ -22,8 +22,8 @@ const MOST_POINTS: usize = 64;
 /// Poses of a scripted body that are looked at.
 const POSES: u32 = 200;
 
-/// Reads every mesh and every file of particles that a whole scene names, and reports what is wrong with them,
-/// each at its line. What was read and built stays with the scene.
+/// Reads every mesh and every file of particles that a whole scene names, and reports each problem at its
+/// line. What was read and built stays with the scene.
 pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let (bodies, meshes, placed) = check_bodies(scene, &root.sections_if_any("body")?);
     let mut flow = LoadedFlow::default();
@@ -31,7 +31,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let sinks = check_sinks(scene, &mut flow, &root.sections_if_any("sink")?);
     let fluid = check_fluid(scene, &root.section("fluid")?);
     bodies.and(emitters).and(sinks)?;
-    Built::of(scene).keep(meshes, flow, fluid?);
+    Built::of(scene).store(meshes, flow, fluid?);
     Ok(())
 }
 

@@ -1,8 +1,8 @@
 //! Emitters and sinks: fluid that comes and goes while a simulation runs.
 //!
-//! *How it works.* The buffers have room for what the emitters will make in the scene's time; what is not yet
-//! born is dead from the start, and the sort keeps the dead behind the living. An emitter's nozzle is a short
-//! pipe that ends at its outlet. At its back face layers of particles are born on a lattice (`emission_schedule`, `emit`),
+//! *How it works.* The buffers have room for the particles that the emitters create in the scene's time; particles that do
+//! not exist yet are marked as dead from the start, and the sort places dead particles behind the others. The nozzle of an
+//! emitter is a short pipe that ends at its outlet. At its back face layers of particles are created on a lattice (`emission_schedule`, `emit`),
 //! and travel to the outlet as one piston (`inflow_constraint`), so that fluid leaves at rest density and with the right
 //! speed. The columns of a falling jet are staggered, or gravity, which stretches it, would draw it out into
 //! discs. A sink marks what is in it as dead (`sink`); its places are used again.
@@ -99,8 +99,8 @@ impl LoadedFlow {
         Ok(())
     }
 
-    /// What the emitters bring until `duration` (s) at this spacing (m): how many particles, and how many of them are
-    /// there on average over that time, as fluid that is not held up and not drained.
+    /// The particles that the emitters create until `duration` (s) at this spacing (m): their number, and how many of
+    /// them exist on average over that time, without obstacles and sinks.
     pub(crate) fn forecast(&self, duration: f32, spacing: f32) -> (u64, f64) {
         let (mut all, mut average) = (0u64, 0.0);
         for nozzle in &self.nozzles {
@@ -200,8 +200,8 @@ struct Nozzles {
     nozzles: Buffer<Nozzle>,
     points: Buffer<Vec4>,
     schedules: Buffer<u32>,
-    /// The emitters of which it was told that they found no room.
-    told: Vec<bool>,
+    /// The emitters whose lack of room has been reported.
+    reported: Vec<bool>,
 }
 
 impl Flow {
@@ -229,7 +229,7 @@ impl Flow {
                 nozzles: executor.create_from("nozzles", &loaded.nozzles)?,
                 points: executor.create_from("points", &loaded.points)?,
                 schedules: executor.create_from("schedules", &schedules)?,
-                told: vec![false; loaded.nozzles.len()],
+                reported: vec![false; loaded.nozzles.len()],
             })
         };
         let drains = if loaded.drains.is_empty() {
@@ -256,15 +256,15 @@ impl Flow {
         self.nozzles.as_ref().map(|nozzles| nozzles.schedules)
     }
 
-    /// The emitters of which it was told that they found no room.
-    pub(crate) fn told(&self) -> &[bool] {
-        self.nozzles.as_ref().map_or(&[], |nozzles| &nozzles.told)
+    /// The emitters whose lack of room has been reported.
+    pub(crate) fn reported(&self) -> &[bool] {
+        self.nozzles.as_ref().map_or(&[], |nozzles| &nozzles.reported)
     }
 
-    /// Sets what has been told.
-    pub(crate) fn set_told(&mut self, told: &[bool]) {
+    /// Sets the emitters whose lack of room has been reported.
+    pub(crate) fn set_reported(&mut self, reported: &[bool]) {
         if let Some(nozzles) = &mut self.nozzles {
-            for (mine, &theirs) in nozzles.told.iter_mut().zip(told) {
+            for (mine, &theirs) in nozzles.reported.iter_mut().zip(reported) {
                 *mine = theirs;
             }
         }
@@ -293,14 +293,14 @@ impl Flow {
     /// If the device was lost.
     pub async fn count(&mut self, executor: &mut Executor) -> Result<(FlowCount, Vec<String>), GpuError> {
         let mut count = FlowCount::default();
-        let mut told = Vec::new();
-        let Some(nozzles) = &mut self.nozzles else { return Ok((count, told)) };
+        let mut messages = Vec::new();
+        let Some(nozzles) = &mut self.nozzles else { return Ok((count, messages)) };
         let schedules = executor.fetch(nozzles.schedules).await?;
         for (k, plan) in schedules.chunks_exact(EmissionSchedule::WORDS).enumerate() {
             count.emitted += plan[EmissionSchedule::EMITTED];
             count.refused += plan[EmissionSchedule::REFUSED];
-            if plan[EmissionSchedule::REFUSED] > 0 && !std::mem::replace(&mut nozzles.told[k], true) {
-                told.push(format!(
+            if plan[EmissionSchedule::REFUSED] > 0 && !std::mem::replace(&mut nozzles.reported[k], true) {
+                messages.push(format!(
                     "emitter {:?} found no room for more after {} particles: the buffers were made for the scene's own \
                      duration. Make duration longer, or drain more",
                     nozzles.names[k],
@@ -308,7 +308,7 @@ impl Flow {
                 ));
             }
         }
-        Ok((count, told))
+        Ok((count, messages))
     }
 }
 

@@ -19,9 +19,9 @@ const SLACK: f32 = 0.02;
 /// What became of one source.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Taken {
-    /// Particles that are there now.
+    /// Particles that were added.
     pub made: u64,
-    /// Left out because an earlier source is there.
+    /// Particles left out because they overlap an earlier source.
     pub crowded: u64,
     /// Left out because they lie outside the domain.
     pub outside: u64,

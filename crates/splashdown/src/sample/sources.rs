@@ -1,4 +1,4 @@
-//! The meshes and files that bring fluid, as they were read.
+//! The meshes and files of the initial fluid, as they were read.
 
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};

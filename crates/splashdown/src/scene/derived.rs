@@ -18,7 +18,7 @@ pub struct Derived {
     /// Number of particles at the start. [`Derived::new`] counts those inside bodies, too; see
     /// [`Derived::with_inventory`].
     pub particles: u64,
-    /// Number of particles that emitters will bring until the end.
+    /// Number of particles that emitters create until the end.
     pub emitted: u64,
     /// Number of particles on average over the scene's time, if none is drained.
     pub mean_particles: f64,
@@ -66,7 +66,7 @@ pub(crate) struct Reach {
 }
 
 impl Derived {
-    /// With this number of particles at the start, and the number that emitters bring: in all, and on average over the
+    /// With this number of particles at the start, and the number that emitters create: in all, and on average over the
     /// scene's time.
     pub(crate) fn with_particles(
         self,

@@ -155,7 +155,7 @@ fn check_block(section: &Section<'_>, block: &Block, domain: &Domain, spacing: f
     Ok(())
 }
 
-/// Warns where blocks overlap: the later one gives way.
+/// Warns where blocks overlap; particles of the later one are left out.
 fn report_overlaps(domain: &Domain, fluid: &Fluid, blocks: &[ReadBlock<'_>]) {
     for (sampler, (_, section)) in Sampler::all(domain, fluid).iter().zip(blocks) {
         let (made, left_out) = sampler.counts();

@@ -150,7 +150,7 @@ impl Sampler {
         }
     }
 
-    /// How many particles it makes, and how many it leaves out because an earlier block is there.
+    /// How many particles it makes, and how many it leaves out because they overlap an earlier block.
     pub fn counts(&self) -> (u64, u64) {
         if let (Solid::Box { .. }, true) = (&self.solid, self.earlier.is_empty()) {
             return (self.counts.into_iter().fold(1, u64::saturating_mul), 0);

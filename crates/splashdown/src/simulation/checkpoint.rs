@@ -11,7 +11,7 @@ use crate::state::StepCounters;
 use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
-    /// Everything that is needed to go on later; a frame that has begun is completed first. `scene_text` is the
+    /// Everything that is needed to resume later; a frame that has begun is completed first. `scene_text` is the
     /// text of the scene as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was
     /// [adopted](Self::update_parameters).
     ///
@@ -47,13 +47,13 @@ impl Simulation {
             capacity: self.params.particle_count,
             initial: self.initial,
             removed: self.removed,
-            told: Vec::new(),
+            reported: Vec::new(),
             bodies: Vec::new(),
             flow: 0,
         };
         if let Some(flow) = &self.flow {
             host.flow = flow.hash();
-            host.told = flow.told().to_vec();
+            host.reported = flow.reported().to_vec();
         }
         if let Some(bodies) = &self.bodies {
             host.bodies = bodies.keys();
@@ -80,7 +80,7 @@ impl Simulation {
         block_on(Self::resume_async(checkpoint, executor, &|_, _| {}))
     }
 
-    /// [`resume`](Self::resume) where blocking is not possible, as on a web page; `told` as in
+    /// [`resume`](Self::resume) where blocking is not possible, as on a web page; `progress` as in
     /// [`prepare`](Self::prepare).
     ///
     /// # Errors
@@ -88,14 +88,14 @@ impl Simulation {
     pub async fn resume_async(
         checkpoint: &Checkpoint,
         executor: Executor,
-        told: &(dyn Fn(&str, f32) + Sync),
+        progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
         // Before anything is made that is as large as the file says.
         checkpoint.check()?;
         let scene = checkpoint.scene()?;
         let built = Built::of(&scene);
         let host = checkpoint.host()?;
-        let loaded = Self::load_bodies(&scene, told)?;
+        let loaded = Self::load_bodies(&scene, progress)?;
         let loaded_flow = built.flow(&scene)?;
         let spacing = scene.fluid.particle_spacing;
         memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), spacing)?;
@@ -122,7 +122,7 @@ impl Simulation {
             if flow.hash() != host.flow {
                 return Err(CheckpointError::FlowChanged.into());
             }
-            flow.set_told(&host.told);
+            flow.set_reported(&host.reported);
         }
         if let Some(bodies) = &mut self.bodies {
             bodies.check_keys(&host.bodies).map_err(CheckpointError::from)?;
@@ -133,8 +133,8 @@ impl Simulation {
         (self.initial, self.removed) = (host.initial, host.removed);
         let counters = self.executor.fetch(self.fields.counters).await?;
         let stats = &self.stats;
-        let told = [stats.escaped, stats.non_finite, stats.drained];
-        if told
+        let counted = [stats.escaped, stats.non_finite, stats.drained];
+        if counted
             != [StepCounters::ESCAPED, StepCounters::NON_FINITE, StepCounters::DRAINED]
                 .map(|word| counters[word])
         {
@@ -149,7 +149,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The small buffers whose content no scene can tell, with their names in the file and their columns.
+    /// The small buffers whose content does not follow from the scene, with their names in the file and their columns.
     fn words(&self) -> Vec<(&'static str, Words, usize)> {
         let mut words = vec![
             ("state", Words::State(self.fields.state), 1),

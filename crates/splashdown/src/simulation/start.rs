@@ -38,18 +38,18 @@ impl Simulation {
         Self::prepare(scene, executor, &|_, _| {})
     }
 
-    /// As [`with_executor`](Self::with_executor); `told` hears of each body whose distances are being computed,
-    /// its name and how far it is, in [0, 1]: a mesh of a hundred thousand triangles takes seconds when it is
-    /// first seen.
+    /// As [`with_executor`](Self::with_executor); `progress` is called with the name of each body whose distances
+    /// are being computed and the completed part, in [0, 1]: a mesh of a hundred thousand triangles takes seconds the first
+    /// time.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn prepare(
         scene: &Scene,
         executor: Executor,
-        told: &(dyn Fn(&str, f32) + Sync),
+        progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
-        block_on(Self::prepare_async(scene, executor, told))
+        block_on(Self::prepare_async(scene, executor, progress))
     }
 
     /// [`prepare`](Self::prepare) where blocking is not possible, as on a web page.
@@ -59,9 +59,9 @@ impl Simulation {
     pub async fn prepare_async(
         scene: &Scene,
         executor: Executor,
-        told: &(dyn Fn(&str, f32) + Sync),
+        progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
-        let bodies = Self::load_bodies(scene, told)?;
+        let bodies = Self::load_bodies(scene, progress)?;
         let mut particles = Built::of(scene).take_particles(scene)?;
         let removed = sample::remove_inside(scene, &mut particles, &bodies);
         if removed > 0 && particles.positions.is_empty() {
@@ -89,12 +89,12 @@ impl Simulation {
 
     pub(crate) fn load_bodies(
         scene: &Scene,
-        told: &(dyn Fn(&str, f32) + Sync),
+        progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Vec<LoadedBody>, SimulationError> {
         let kernels = Scheme::new(scene).walls();
         let params = schemes::params(scene, 0);
         let meshes = Built::of(scene).take_meshes(scene);
-        Ok(bodies::load(scene, meshes, &params, kernels, solid::default_cache_folder(), told)?)
+        Ok(bodies::load(scene, meshes, &params, kernels, solid::default_cache_folder(), progress)?)
     }
 
     pub(super) async fn with_bodies(
