@@ -82,7 +82,7 @@ pub enum FilmError {
     Stalled {
         /// The program.
         program: PathBuf,
-        /// The limit, [`super::FilmOptions::stall_limit`].
+        /// The limit, [`FilmOptions::stall_limit`](crate::FilmOptions::stall_limit).
         seconds: f64,
         /// The end of its error output.
         log: String,
