@@ -21,7 +21,7 @@ pub fn run(arguments: &PlotArguments) -> Result<(), Failure> {
         Some("svg") => true,
         Some("png") => false,
         _ => {
-            let error = IoError::UnknownFormat { path: path.clone(), allowed: &[".svg", ".png"] };
+            let error = IoError::UnknownFormat { path: path.clone(), allowed: vec![".svg", ".png"] };
             return Err(Failure::new(Exit::Usage, error.to_string()));
         }
     };

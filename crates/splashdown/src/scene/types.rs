@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use super::choice::choices;
+use super::choice::{Choice, choices};
 use super::errors::SceneWarning;
 use super::slot::BuiltSlot;
 use super::things::{Body, Emitter, MeshSource, Probe, Sink};
