@@ -104,7 +104,7 @@ fn malformed_obj_files_are_refused_with_the_line() {
         ("f 1 2\n", "line 4: a face with 2 corners"),
         ("f\n", "line 4: a face with 0 corners"),
         ("f 1 2 4\n", "line 4: a face uses vertex 4, but the file has 3 vertices (numbered from 1)"),
-        ("\n# x\nf 1 2 0\n", "line 6: vertex 0: the vertices of an OBJ file count from 1"),
+        ("\n# x\nf 1 2 0\n", "line 6: vertex 0: the vertices of an OBJ file are numbered from 1"),
         ("f 1 2 -4\n", "line 4: a face uses vertex -4, but there are 3 vertices"),
         ("f 1 2 -9223372036854775808\n", "line 4: a face uses vertex -9223372036854775808"),
         ("f 1 2 9223372036854775807\n", "line 4: a face uses vertex 9223372036854775807"),
@@ -141,13 +141,13 @@ fn malformed_stl_files_are_refused_with_the_line_or_the_missing_bytes() {
         ("endfacet\nendsolid\n", "", "without `endsolid`"),
         ("endsolid\n", "", "without `endsolid`"),
         ("endfacet\n", "facet normal 0 0 1\n", "line 8: a facet begins inside another"),
-        ("outer loop", "inner loop", "line 3: `inner` is no word of STL"),
+        ("outer loop", "inner loop", "line 3: `inner` is not a keyword of STL"),
     ] {
         refused(name, whole.replacen(from, to, 1).as_bytes(), reason);
     }
     refused(name, b"solid empty\nendsolid empty\n", "no triangles (0 vertices");
     refused(name, &[0; 84], "no triangles (0 vertices");
-    refused(name, &[0; 83], "nor has it the 84 bytes of a binary header: it has 83 bytes");
+    refused(name, &[0; 83], "its 83 bytes are fewer than the 84 of a binary header");
     refused(
         name,
         &[0xff; 84],
@@ -188,12 +188,12 @@ fn malformed_gltf_files_are_refused_with_the_reason() {
         ("5123", "9999", "(unsigned)"),
         ("\"VEC3\"", "\"VEC2\"", "5126 (float)"),
         ("\"mode\": 4", "\"mode\": 1", "no triangles"),
-        ("\"POSITION\": 0", "\"POSITION\": 9", "names array 9, but holds 2"),
-        ("\"buffer\": 0", "\"buffer\": 7", "names buffer 7, but holds 1"),
-        ("\"mesh\": 0", "\"mesh\": 1", "names mesh 1, but holds 1"),
-        ("\"mesh\": 0", "\"mesh\": 0, \"children\": [0]", "below itself"),
+        ("\"POSITION\": 0", "\"POSITION\": 9", "uses array 9, but has 2"),
+        ("\"buffer\": 0", "\"buffer\": 7", "uses buffer 7, but has 1"),
+        ("\"mesh\": 0", "\"mesh\": 1", "uses mesh 1, but has 1"),
+        ("\"mesh\": 0", "\"mesh\": 0, \"children\": [0]", "or of itself"),
         ("\"nodes\": [0]", "\"nodes\": [0, 0]", "more than one node"),
-        ("\"scene\": 0, \"scenes\": [{\"nodes\": [0]}],", "", "holds 0"),
+        ("\"scene\": 0, \"scenes\": [{\"nodes\": [0]}],", "", "it has 0"),
         (
             "\"mesh\": 0",
             "\"mesh\": 0, \"scale\": [1e38, 1e38, 1e38], \"translation\": [3e38, 0, 3e38]",

@@ -326,7 +326,7 @@ fn malformed_particle_files_are_refused_with_the_reason() {
         ),
         ("POINTS 20", "POINTS 99999999999999999999", "is not a count"),
         ("POINTS 20", "POINTS 0", "is not a known keyword"),
-        ("POINTS 20 double", "POINTS 20 complex", "`complex` is no type"),
+        ("POINTS 20 double", "POINTS 20 complex", "`complex` is not a known number type"),
         ("ASCII", "TEXT", "neither `ASCII` nor `BINARY`"),
         ("-0.5", "nan", "1 of its 20 positions are not finite, the first is number 0"),
         ("-0.5", "wet", "`wet` is not a number (near byte"),
@@ -340,7 +340,7 @@ fn malformed_particle_files_are_refused_with_the_reason() {
     }
     let xml = vtu(&given, ZLIB, packed, false);
     for (from, to, reason) in [
-        ("vtkZLib", "vtkLZ4", "packed by `vtkLZ4DataCompressor`"),
+        ("vtkZLib", "vtkLZ4", "compressed by `vtkLZ4DataCompressor`"),
         ("NumberOfPoints=\"20\"", "NumberOfPoints=\"21\"", "array `Points`"),
         ("NumberOfPoints=\"20\"", "NumberOfPoints=\"9999999999\"", "at most"),
         ("NumberOfPoints=\"20\"", "NumberOfPoints=\"0\"", "array `velocity`"),
