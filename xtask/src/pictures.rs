@@ -22,7 +22,7 @@ const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
 
 /// Scenes and what is shown of them.
 const PICTURES: [(&str, &[Shown]); 11] = [
-    ("dam-break", &[shown("surface", 38, "dam-break"), shown("particles", 34, "dam-break-particles")]),
+    ("dam-break", &[shown("surface", 101, "dam-break"), shown("particles", 91, "dam-break-particles")]),
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
     ("honey", &[shown("surface", 20, "honey")]),
     ("lighthouse", &[shown("surface", 20, "lighthouse")]),
