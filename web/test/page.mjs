@@ -1,10 +1,10 @@
-// The page as a person uses it, in a real Chromium: node page.mjs ADDRESS CHROMIUM PICTURE CHECKPOINT
+// Tests the page in Chromium as a user would operate it: node page.mjs ADDRESS CHROMIUM PICTURE CHECKPOINT
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { chromium } from "playwright-core";
 
 const [address, executablePath, picture, checkpoint] = process.argv.slice(2);
-// Software Vulkan beneath WebGPU, and a canvas that shows something.
+// WebGPU on software Vulkan, and a canvas with content.
 const args = ["--headless=new", "--no-sandbox", "--enable-unsafe-webgpu", "--enable-features=Vulkan",
   "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--disable-background-networking",
   "--disable-component-update", "--no-first-run"];
@@ -55,14 +55,14 @@ async function runs() {
     return now?.mean_height ? now : undefined;
   });
   assert.equal(before.particles, 8 * 8 * 6);
-  const after = await until("a fall of the water", 60, async () => {
+  const after = await until("falling water", 60, async () => {
     const now = await figures(page);
     return now.mean_height < before.mean_height - 0.005 ? now : undefined;
   });
   assert(after.time > before.time);
   assert.equal(after.particles, before.particles);
 
-  // A drag turns the picture, and a click on Pause stops the clock.
+  // The space key pauses the simulation, and a drag rotates the view.
   const clip = { x: 40, y: 80, width: 320, height: 240 };
   await page.keyboard.press("Space");
   const paused = await until("a pause", 20, async () => {
@@ -73,24 +73,24 @@ async function runs() {
   await new Promise((resolve) => setTimeout(resolve, 1500));
   const still = await page.screenshot({ clip });
   await new Promise((resolve) => setTimeout(resolve, 1000));
-  assert(still.equals(await page.screenshot({ clip })), "nothing moves, and the picture does");
+  assert(still.equals(await page.screenshot({ clip })), "the picture changes while paused");
   await page.mouse.move(150, 200);
   await page.mouse.down();
   await page.mouse.move(230, 220, { steps: 4 });
   await page.mouse.up();
   await page.mouse.move(360, 300);
   await new Promise((resolve) => setTimeout(resolve, 1500));
-  assert(!still.equals(await page.screenshot({ clip })), "a drag did not turn the picture");
+  assert(!still.equals(await page.screenshot({ clip })), "a drag did not rotate the view");
   assert.equal((await figures(page)).time, paused.time);
 
-  // The mesh that is downloaded is a PLY with as many triangles as it says.
+  // The downloaded mesh is a closed PLY.
   const download = page.waitForEvent("download", { timeout: 60_000 });
   await page.keyboard.press("m");
   const file = await (await download).path();
   const ply = fs.readFileSync(file);
   closed(ply);
 
-  // A checkpoint is downloaded, kept for the desktop to go on with, and dropped onto the page again.
+  // A checkpoint is downloaded, stored for the command line, and dropped onto the page again.
   const saved = page.waitForEvent("download", { timeout: 60_000 });
   await page.keyboard.press("k");
   await (await saved).saveAs(checkpoint);
@@ -104,7 +104,7 @@ async function runs() {
   }, bytes);
   await until("the time of the checkpoint", 30, async () => (await figures(page)).time === paused.time);
 
-  // The surface is drawn, and the picture of it kept for whoever looks.
+  // The surface is drawn, and a screenshot is stored.
   await page.keyboard.press("3");
   await until("a surface", 60, async () => (await figures(page)).triangles > 100);
   await new Promise((resolve) => setTimeout(resolve, 1500));
@@ -113,7 +113,7 @@ async function runs() {
   await page.close();
 }
 
-// Every edge twice, in opposite senses: by nothing of ours.
+// Independent check: every edge exists twice, in opposite directions.
 function closed(ply) {
   const end = ply.indexOf("end_header\n") + "end_header\n".length;
   const header = ply.subarray(0, end).toString();
@@ -135,7 +135,7 @@ function closed(ply) {
   }
   assert.equal(at, ply.length);
   for (const edge of edges.keys()) {
-    assert(edges.has(edge.split(",").reverse().join(",")), `edge ${edge} has no other side`);
+    assert(edges.has(edge.split(",").reverse().join(",")), `edge ${edge} has no opposite`);
   }
 }
 
@@ -145,7 +145,7 @@ async function compilesEveryPass() {
   const sound = await page.evaluate(() => window.splashdown.tryPasses(false));
   assert(sound.passes > 60, `only ${sound.passes} passes`);
   assert.deepEqual(sound.refused, []);
-  // Control: one that no device accepts.
+  // Negative control: a pass that no device accepts.
   const broken = await page.evaluate(() => window.splashdown.tryPasses(true));
   assert.equal(broken.passes, sound.passes + 1);
   assert.equal(broken.refused.length, 1);
@@ -154,8 +154,8 @@ async function compilesEveryPass() {
   return sound.passes;
 }
 
-// A browser takes the device away: the program starts again where the water was some seconds ago.
-async function survivesALostDevice() {
+// The browser takes the device away: the program restarts with the fluid of some seconds before.
+async function recoversFromALostDevice() {
   const catchDevice = (page) => page.addInitScript(() => {
     const request = GPUAdapter.prototype.requestDevice;
     GPUAdapter.prototype.requestDevice = async function (...given) {
@@ -164,24 +164,24 @@ async function survivesALostDevice() {
   });
   const { page } = await open("#toml=" + encodeURIComponent(scene), catchDevice);
   let begun;
-  const before = await until("a rescue to be taken", 90, async () => {
+  const before = await until("a saved state", 90, async () => {
     const now = await figures(page).catch(() => undefined);
     if (now) begun ??= Date.now();
     return now?.time > 0.1 && Date.now() - begun > 15_000 ? now : undefined;
   });
   await page.evaluate(() => window.lastDevice.destroy());
   await until("the loss", 30, () => page.evaluate(() => window.splashdown.restarts() === 1));
-  const after = await until("another start", 60, async () => {
+  const after = await until("a restart", 60, async () => {
     const now = await figures(page).catch(() => undefined);
     return now && !now.lost && now.time > 0 ? now : undefined;
   });
   assert(after.time > 0.3 * before.time, `from ${before.time} s back to ${after.time} s`);
   assert.equal(after.particles, before.particles);
-  await until("water that moves again", 60, async () => (await figures(page)).time > after.time);
+  await until("moving water", 60, async () => (await figures(page)).time > after.time);
   await page.close();
 }
 
-async function saysWhatIsMissing() {
+async function reportsMissingFeatures() {
   const hide = (page) => page.addInitScript(() => Object.defineProperty(navigator, "gpu", { value: undefined }));
   const { page } = await open("", hide);
   await until("a message", 20, () => page.evaluate(() => document.body.innerText.includes("has no WebGPU")));
@@ -194,12 +194,12 @@ async function saysWhatIsMissing() {
 try {
   const begun = Date.now();
   await runs();
-  console.log("ok: runs, is dragged and paused, hands out a closed mesh");
+  console.log("ok: runs, can be rotated and paused, exports a closed mesh");
   console.log(`ok: ${await compilesEveryPass()} passes compile`);
-  await survivesALostDevice();
-  console.log("ok: survives a lost device");
-  await saysWhatIsMissing();
-  console.log(`ok: says what is missing (${((Date.now() - begun) / 1000).toFixed(0)} s in all)`);
+  await recoversFromALostDevice();
+  console.log("ok: recovers from a lost device");
+  await reportsMissingFeatures();
+  console.log(`ok: reports missing features (${((Date.now() - begun) / 1000).toFixed(0)} s in total)`);
 } finally {
   await browser.close();
 }

@@ -9,7 +9,8 @@ use splashdown_gpu::{CpuExecutor, DeviceRequest, Executor, Gpu, GpuError, GpuExe
 /// Where to simulate.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Device {
-    /// The best GPU, else the CPU. A software driver does not count as a GPU: the CPU is about fifteen times faster.
+    /// The best GPU, else the CPU. Software drivers are not used: the CPU is about twelve times as fast
+    /// (`docs/performance.md`).
     #[default]
     Auto,
     /// The best GPU; an error where there is none.

@@ -1,4 +1,5 @@
-//! `wasm-bindgen` without its command line, which takes four minutes to build: `splashdown-bindgen IN.wasm FOLDER`.
+//! Runs `wasm-bindgen` as a library, because its command line takes four minutes to build:
+//! `splashdown-bindgen IN.wasm FOLDER`.
 
 use anyhow::{Result, bail};
 use wasm_bindgen_cli_support::Bindgen;

@@ -3,6 +3,7 @@
 mod bad_input;
 #[cfg(target_os = "linux")]
 mod checkpoints;
+mod guide;
 mod place;
 mod plot;
 mod resume;

@@ -1,4 +1,4 @@
-//! Commands that neither simulate nor draw: help, scenes, check, doctor, completions; and what the guide says of them.
+//! The commands that neither simulate nor draw: help, scenes, check, doctor, completions.
 
 use crate::place::{Outcome, Place, SMALL, splashdown, stderr, stdout};
 use serde_json::Value;
@@ -184,35 +184,5 @@ fn schema_is_json_and_the_reference_lists_keys() -> Outcome {
     assert!(schema["properties"]["fluid"].is_object());
     let reference = stdout(&splashdown(&["scenes", "reference"]).output()?);
     assert!(reference.contains("| `particle_spacing` |") && reference.contains("## `[[fluid.block]]`"));
-    Ok(())
-}
-
-#[test]
-fn the_guide_agrees_with_the_program() -> Outcome {
-    let guide = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/guide/src/");
-    let page = std::fs::read_to_string(format!("{guide}command-line.md"))?;
-    let help = stdout(&splashdown(&["run", "--help"]).output()?);
-    let table = page
-        .split("## Options of `run`")
-        .nth(1)
-        .and_then(|rest| rest.split("## ").next())
-        .ok_or("no table")?;
-    let options: Vec<&str> =
-        table.split(['`', ' ', ',', ';']).filter(|word| word.starts_with("--")).collect();
-    assert!(options.len() >= 10, "{options:?}");
-    for option in options {
-        assert!(help.contains(option), "the guide has {option}, the help has not");
-    }
-    let codes = stdout(&splashdown(&["--help"]).output()?);
-    let codes = codes.split("Exit codes:").nth(1).ok_or("no codes")?;
-    for code in codes.split_whitespace().filter(|word| word.bytes().all(|byte| byte.is_ascii_digit())) {
-        assert!(page.contains(&format!("| {code} |")), "the guide has no exit code {code}");
-    }
-    let page = std::fs::read_to_string(format!("{guide}first-simulation.md"))?;
-    let scene = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).ok_or("no scene")?;
-    let place = Place::new()?;
-    place.write("guide.toml", scene)?;
-    let output = place.splashdown(&["check", "guide.toml", "--device", "cpu"]).output()?;
-    assert!(output.status.success(), "{}", stderr(&output));
     Ok(())
 }

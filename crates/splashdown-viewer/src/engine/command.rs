@@ -9,7 +9,7 @@ use splashdown::{Checkpoint, MouseForce};
 pub enum Simulate {
     /// The one that draws.
     WhereDrawn,
-    /// The CPU, which is many times faster than a software driver.
+    /// The CPU, which is about twelve times as fast as a software driver (`docs/performance.md`).
     OnCpu,
 }
 

@@ -7,6 +7,7 @@ mod files;
 mod fill;
 mod flow;
 mod formats;
+mod guide;
 mod hostile;
 mod presets;
 mod probes;
