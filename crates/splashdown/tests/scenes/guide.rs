@@ -62,8 +62,11 @@ fn every_scene_of_the_guide_is_valid() {
             if block.starts_with("[dependencies]") {
                 continue;
             }
-            if let Err(errors) = parse(&completed(&block)) {
-                panic!("{}:{line}: {errors}", path.display());
+            let scene = parse(&completed(&block))
+                .unwrap_or_else(|errors| panic!("{}:{line}: {errors}", path.display()));
+            let mut warnings = scene.warnings.iter().map(ToString::to_string);
+            if let Some(warning) = warnings.find(|warning| warning.contains("deprecated")) {
+                panic!("{}:{line}: {warning}", path.display());
             }
             count += 1;
         }

@@ -13,7 +13,7 @@ fn materials() -> Vec<Word> {
     MATERIALS.iter().map(|known| (known.name, known.about)).collect()
 }
 pub(super) static FLUID: Table = Table {
-    about: "The fluid and where it starts.",
+    about: "The fluid and its initial shape.",
     keys: &[
         key(
             "particle_spacing",
