@@ -8,7 +8,7 @@ use crate::scene::things::UpAxis;
 pub(super) const MESH: Key = key(
     "mesh",
     Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
-    "Mesh file, or the name of a model that comes with the program, for example lighthouse.",
+    "Mesh file, or the name of a built-in model, for example lighthouse.",
 )
 .also(&["file", "model", "geometry_file"]);
 pub(super) const SCALE: Key = key(
