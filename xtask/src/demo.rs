@@ -18,7 +18,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     setup::ensure_requirements()?;
     let binary = process::build_release_with(&BUILD)?;
     let mut command = process::command(&binary);
-    command.args(["run", "scenes/dam-break.toml"]);
+    command.args(["run", "dam-break"]);
     if !arguments.iter().any(|argument| argument == "--out" || argument.starts_with("--out=")) {
         command.args(["--out", OUT]);
     }

@@ -39,7 +39,7 @@ fn input() -> Result<(Vec<[f32; 3]>, f32), Failure> {
             arguments.next().ok_or("give the particles' spacing in metres after the file")?.parse()?;
         return Ok((npy::read_positions(Path::new(&file))?, spacing));
     }
-    let scene = Scene::parse(include_str!("../../../scenes/dam-break.toml"), "dam-break")?;
+    let scene = Scene::parse(include_str!("../scenes/dam-break.toml"), "dam-break")?;
     let mut simulation = Simulation::new(&scene, &Device::Auto)?;
     simulation.advance(0.2)?;
     Ok((simulation.particles()?.positions, scene.fluid.particle_spacing))

@@ -140,7 +140,7 @@ impl HostState {
 ///
 /// ```
 /// use splashdown::{Checkpoint, Device, Simulation, scene::Scene};
-/// # let text = include_str!("../../../scenes/dam-break-small.toml");
+/// # let text = include_str!("../scenes/dam-break-small.toml");
 /// let scene = Scene::parse(text, "dam-break-small.toml")?;
 /// let mut first = Simulation::new(&scene, &Device::Cpu)?;
 /// first.advance(0.001)?;

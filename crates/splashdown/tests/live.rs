@@ -6,7 +6,7 @@ use splashdown::{Device, MouseForce, Simulation};
 use splashdown_gpu::block_on;
 
 fn scene() -> Scene {
-    let text = include_str!("../../../scenes/dam-break-small.toml");
+    let text = include_str!("../scenes/dam-break-small.toml");
     let mut scene = Scene::parse(text, "dam-break-small.toml").unwrap();
     scene.fluid.particle_spacing *= 1.5;
     scene
@@ -64,7 +64,7 @@ fn ball(name: &str, position: Vec3) -> Body {
     let mut scene = Scene::parse(
         &format!(
             "{}\n[[body]]\nname = {name:?}\nmesh = \"sphere\"\nscale = 0.1\nmotion = \"dynamic\"\ndensity = 300\n",
-            include_str!("../../../scenes/dam-break-small.toml")
+            include_str!("../scenes/dam-break-small.toml")
         ),
         "ball.toml",
     )

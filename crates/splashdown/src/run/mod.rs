@@ -26,7 +26,7 @@ const PROGRESS: Duration = Duration::from_millis(100);
 ///
 /// ```
 /// use splashdown::{Event, Run, RunOptions, scene::Scene};
-/// # let text = include_str!("../../../../scenes/dam-break-small.toml");
+/// # let text = include_str!("../../scenes/dam-break-small.toml");
 /// let scene = Scene::parse(text, "dam-break-small.toml")?;
 /// let options = RunOptions { frames: Some(1), ..RunOptions::new(&scene) };
 /// for event in Run::new(&scene, options)? {

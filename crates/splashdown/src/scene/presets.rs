@@ -4,7 +4,7 @@ macro_rules! presets {
     ($($name:literal),+ $(,)?) => {
         /// Name and text of every scene that comes with the program, the demo first.
         pub fn presets() -> &'static [(&'static str, &'static str)] {
-            &[$(($name, include_str!(concat!("../../../../scenes/", $name, ".toml")))),+]
+            &[$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),+]
         }
     };
 }

@@ -31,7 +31,7 @@ use crate::state::{Fields, Params};
 ///
 /// ```
 /// use splashdown::{Device, Simulation, scene::Scene};
-/// # let text = include_str!("../../../../scenes/dam-break-small.toml");
+/// # let text = include_str!("../../scenes/dam-break-small.toml");
 /// let scene = Scene::parse(text, "dam-break-small.toml")?;
 /// let mut simulation = Simulation::new(&scene, &Device::Cpu)?;
 /// let stats = simulation.advance(0.001)?;

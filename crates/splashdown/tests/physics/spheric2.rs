@@ -34,7 +34,7 @@ struct Case {
 impl Case {
     /// What every probe read, by its name.
     fn simulate(&self) -> Vec<(String, ProbeRows)> {
-        let text = include_str!("../../../../scenes/spheric2.toml");
+        let text = include_str!("../../scenes/spheric2.toml");
         let mut scene = Scene::parse(text, "spheric2.toml").unwrap();
         scene.fluid.particle_spacing = self.spacing as f32;
         scene.gravity.y = -self.gravity;

@@ -7,7 +7,7 @@ use splashdown::scene::{Derived, Method, Scene, presets};
 
 /// The folder of the scenes.
 pub fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn expect_file(name: &str, generated: &str) {
     let committed = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
     assert!(
         committed == generated,
-        "scenes/{name} is out of date: run `UPDATE_EXPECT=1 cargo test -p splashdown --test scenes` and commit it"
+        "crates/splashdown/scenes/{name} is out of date: run `UPDATE_EXPECT=1 cargo test -p splashdown --test scenes` and commit it"
     );
 }
 
