@@ -1,6 +1,7 @@
 //! Every habit of this repository as one word: `cargo xtask WORD`. Nothing but the standard library and
 //! `anyhow`, so that it builds in a second on a machine that has only Rust.
 
+mod api;
 mod bench;
 mod build_times;
 mod demo;
@@ -8,6 +9,7 @@ mod guide;
 mod kill;
 mod layers;
 mod modules;
+mod package;
 mod page;
 mod peers;
 mod pictures;
@@ -42,6 +44,12 @@ Usage: cargo xtask <WORD> [OPTIONS]
   web [--build] [--port N]
                     the web page: build it and serve it on localhost (--build: build it only)
   validate [CASE]   the checks against measurements at full resolution, in release mode: figures, plots, one page
+  api               compare the public API of the library crates with that of an earlier commit
+  package           pack every published crate and build it from its package
+  dist [--target TRIPLE] [--no-check]
+                    release archives, a Debian package and checksums in target/dist
+  release X.Y.Z [--commit]
+                    set the version and date of a release in every file that holds them
   setup             check what demo and test need and install it where that is possible
   help              this text
 
@@ -49,6 +57,9 @@ Environment: CI=true makes a missing Vulkan driver an error and `test` run with 
 ";
 
 fn main() -> ExitCode {
+    if let Some(code) = api::as_rustdoc() {
+        return code;
+    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (word, rest) = match arguments.split_first() {
         Some((word, rest)) => (word.as_str(), rest),
@@ -62,6 +73,10 @@ fn main() -> ExitCode {
         "pictures" => pictures::run(rest),
         "web" => web::run(rest),
         "validate" => validate::run(rest),
+        "api" => api::run(rest),
+        "package" => package::run(rest),
+        "dist" => package::dist(rest),
+        "release" => package::release(rest),
         "setup" => setup::run(rest),
         "guide" => guide::run(rest),
         "help" | "--help" | "-h" => {

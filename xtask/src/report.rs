@@ -48,8 +48,8 @@ impl Page {
     }
 }
 
-/// The day, as the system tells it.
-fn date() -> String {
+/// Today, in UTC.
+pub fn date() -> String {
     let seconds =
         std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let [year, month, day] = civil(seconds / 86_400);

@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
 use crate::watch::Watch;
-use crate::{guide, page, python, setup};
+use crate::{api, guide, page, python, setup};
 
 /// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -63,6 +63,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
             succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))
         });
+        report.layer("public API", |_| api::layer(extent == Extent::All));
         report.layer("guide", |_| guide::test(extent == Extent::All));
         report.layer("web page", |_| page::test(extent == Extent::All));
         for (name, target) in OTHER_SYSTEMS {

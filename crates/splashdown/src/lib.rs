@@ -146,9 +146,9 @@ pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
     .concat()
 }
 
-/// The examples of the README.
+/// The example of the README.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;
 
 /// The examples of the user guide.

@@ -1,0 +1,32 @@
+//! Release archives, the Debian package and the version number. `cargo xtask dist` and `cargo xtask release` start
+//! this program; it is a crate of its own so that `xtask` needs nothing but the standard library and `anyhow`.
+
+mod command;
+mod dist;
+mod metadata;
+#[cfg(test)]
+mod packages;
+mod release;
+
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> Result<()> {
+    match arguments.split_first() {
+        Some((word, rest)) if word == "dist" => dist::run(rest),
+        Some((word, rest)) if word == "release" => release::run(rest),
+        _ => bail!("this program is started by `cargo xtask dist` and `cargo xtask release`"),
+    }
+}

@@ -1,0 +1,109 @@
+//! The part of `cargo metadata` that packaging needs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use semver::Version;
+use serde::Deserialize;
+
+use crate::command::{cargo, output};
+
+/// Packages and, unless left out, how they depend on each other.
+#[derive(Debug, Deserialize)]
+pub struct Metadata {
+    pub packages: Vec<Package>,
+    pub resolve: Option<Resolve>,
+    pub target_directory: PathBuf,
+}
+
+/// One package.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(not(test), expect(dead_code, reason = "the test of the packages reads all fields"))]
+pub struct Package {
+    pub id: String,
+    pub name: String,
+    pub version: Version,
+    pub description: Option<String>,
+    pub license: Option<String>,
+    pub license_file: Option<PathBuf>,
+    pub repository: Option<String>,
+    pub readme: Option<PathBuf>,
+    pub keywords: Vec<String>,
+    pub categories: Vec<String>,
+    pub manifest_path: PathBuf,
+    pub publish: Option<Vec<String>>,
+    /// Where it comes from; none for the packages of this workspace.
+    pub source: Option<String>,
+}
+
+impl Package {
+    /// Its folder.
+    pub fn folder(&self) -> &Path {
+        self.manifest_path.parent().unwrap_or(&self.manifest_path)
+    }
+}
+
+/// Which package depends on which.
+#[derive(Debug, Deserialize)]
+pub struct Resolve {
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Node {
+    id: String,
+    deps: Vec<Dependency>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Dependency {
+    pkg: String,
+    dep_kinds: Vec<DependencyKind>,
+}
+
+#[derive(Debug, Deserialize)]
+struct DependencyKind {
+    /// `build` or `dev`; none for a normal dependency.
+    kind: Option<String>,
+}
+
+impl Metadata {
+    /// Asks cargo, with further arguments.
+    ///
+    /// # Errors
+    /// If cargo fails.
+    pub fn ask(arguments: &[&str]) -> Result<Self> {
+        let text = output(cargo(["metadata", "--format-version", "1"]).args(arguments))?;
+        serde_json::from_str(&text).context("cannot read the output of `cargo metadata`")
+    }
+
+    /// The packages that are linked into a package, itself included, by name and version.
+    ///
+    /// # Errors
+    /// If there is no such package.
+    pub fn linked_into(&self, name: &str) -> Result<Vec<&Package>> {
+        let start = self.packages.iter().find(|package| package.name == name && package.source.is_none());
+        let start = start.with_context(|| format!("there is no package {name}"))?;
+        let nodes = self.resolve.as_ref().context("`cargo metadata` gave no dependencies")?;
+        let nodes: BTreeMap<&str, &Node> = nodes.nodes.iter().map(|node| (node.id.as_str(), node)).collect();
+        let packages: BTreeMap<&str, &Package> =
+            self.packages.iter().map(|package| (package.id.as_str(), package)).collect();
+        let mut found = BTreeMap::new();
+        let mut open = vec![start.id.as_str()];
+        while let Some(id) = open.pop() {
+            let package = packages.get(id).with_context(|| format!("there is no package {id}"))?;
+            if found.insert((&package.name, &package.version), *package).is_some() {
+                continue;
+            }
+            let dependencies = nodes.get(id).map_or(&[][..], |node| &node.deps);
+            open.extend(
+                dependencies
+                    .iter()
+                    .filter(|dependency| dependency.dep_kinds.iter().any(|kind| kind.kind.is_none()))
+                    .map(|dependency| dependency.pkg.as_str()),
+            );
+        }
+        Ok(found.into_values().collect())
+    }
+}

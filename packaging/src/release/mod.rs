@@ -1,0 +1,111 @@
+//! `cargo xtask release X.Y.Z`: the version number and the changelog of a release, in every file that holds them.
+
+mod changelog;
+mod citation;
+mod manifest;
+#[cfg(test)]
+mod tests;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use semver::Version;
+
+use crate::command::{output, program, root, run as execute, say};
+
+/// The word `release`: a version, `--date YYYY-MM-DD` (`xtask` adds it), and `--commit` to commit and tag.
+///
+/// # Errors
+/// If the version does not grow, the working tree has changes, or a file cannot be edited. Then no file is changed.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let mut version = None;
+    let mut date = None;
+    let mut commit = false;
+    let mut arguments = arguments.iter();
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--commit" => commit = true,
+            "--date" => date = Some(arguments.next().context("--date needs a day, as in 2026-01-31")?),
+            text if version.is_none() && !text.starts_with('-') => {
+                version = Some(Version::parse(text).with_context(|| {
+                    format!("{text:?} is no version: three numbers are needed, as in 0.2.0")
+                })?);
+            }
+            other => bail!("release takes a version and --commit, got {other}"),
+        }
+    }
+    let version = version.context("release needs a version, as in `cargo xtask release 0.2.0`")?;
+    let date = date.context("release needs --date YYYY-MM-DD")?;
+    let files = prepare(root(), &version, date)?;
+    for file in &files {
+        file.write()?;
+        say(format!("Changed: {}", file.path.display()));
+    }
+    if commit {
+        let paths = files.iter().map(|file| file.path.as_os_str());
+        execute(program("git", root(), ["add", "--"]).args(paths))?;
+        execute(&mut program(
+            "git",
+            root(),
+            ["commit", "--quiet", "--message", &format!("Release {version}")],
+        ))?;
+        let tag = format!("v{version}");
+        execute(&mut program(
+            "git",
+            root(),
+            ["tag", "--annotate", &tag, "--message", &format!("Release {version}")],
+        ))?;
+        say(format!("Committed and tagged {tag}. Push both: `git push --follow-tags`."));
+    } else {
+        say(format!("Next: read `git diff`, run `cargo xtask test`, commit, and tag the commit v{version}."));
+    }
+    Ok(())
+}
+
+/// A file with its new content.
+struct Edit {
+    path: PathBuf,
+    text: String,
+}
+
+impl Edit {
+    fn write(&self) -> Result<()> {
+        fs::write(&self.path, &self.text).with_context(|| format!("cannot write {}", self.path.display()))
+    }
+}
+
+/// Computes every change of a release, writes nothing.
+fn prepare(folder: &Path, version: &Version, date: &str) -> Result<Vec<Edit>> {
+    ensure!(is_date(date), "{date:?} is no day: the form is 2026-01-31");
+    let changes = output(&mut program("git", folder, ["status", "--porcelain"]))?;
+    ensure!(
+        changes.is_empty(),
+        "the working tree has changes; commit or stash them first:\n{}",
+        changes.trim_end()
+    );
+    let read = |name: &str| {
+        let path = folder.join(name);
+        fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    };
+    let manifest = read("Cargo.toml")?;
+    let old = manifest::version(&manifest)?;
+    ensure!(*version > old, "the version must grow: it is {old}, asked for was {version}");
+    let edit = |name: &str, text: String| Edit { path: folder.join(name), text };
+    let mut edits = vec![
+        edit("Cargo.toml", manifest::with_version(&manifest, &old, version)?),
+        edit("Cargo.lock", manifest::lock_with_version(&read("Cargo.lock")?, &old, version)?),
+        edit("CHANGELOG.md", changelog::released(&read("CHANGELOG.md")?, version, date)?),
+    ];
+    if folder.join("CITATION.cff").exists() {
+        edits.push(edit("CITATION.cff", citation::released(&read("CITATION.cff")?, version, date)?));
+    }
+    Ok(edits)
+}
+
+/// True for four digits, two digits and two digits with hyphens between them.
+fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let lengths: Vec<usize> = parts.iter().map(|part| part.len()).collect();
+    lengths == [4, 2, 2] && parts.iter().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()))
+}
