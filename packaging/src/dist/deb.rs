@@ -132,7 +132,7 @@ fn gzip(bytes: &[u8]) -> Result<Vec<u8>> {
 
 /// Appends a member to an `ar` archive: a header of 60 bytes, the content, and padding to an even length.
 fn append(archive: &mut Vec<u8>, name: &str, content: &[u8], time: u64) -> Result<()> {
-    write!(archive, "{name:<16}{time:<12}{:<6}{:<6}{:<8}{:<10}`\n", 0, 0, "100644", content.len())?;
+    writeln!(archive, "{name:<16}{time:<12}{:<6}{:<6}{:<8}{:<10}`", 0, 0, "100644", content.len())?;
     archive.extend_from_slice(content);
     if content.len() % 2 == 1 {
         archive.push(b'\n');
