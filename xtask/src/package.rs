@@ -9,7 +9,8 @@ use crate::report;
 /// The word `package`: packs every published crate and builds it from its package.
 pub fn run(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "package takes no arguments, got {}", arguments.join(" "));
-    process::run(&mut cargo(["package", "--workspace", "--allow-dirty"]))
+    // Without `--workspace` cargo takes the default members: `crates/*`, which are the published ones.
+    process::run(&mut cargo(["package", "--allow-dirty"]))
 }
 
 /// The word `dist`.

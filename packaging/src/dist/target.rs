@@ -71,8 +71,8 @@ impl Target {
     }
 }
 
-/// The static binary has no window; what else it leaves out would not work there either.
-const STATIC_FEATURES: &[&str] = &[];
+/// Everything except the window.
+const STATIC_FEATURES: &[&str] = &["--no-default-features", "--features", "plot,rigid"];
 
 /// The targets that were asked for, or all that this machine can link.
 pub fn chosen(asked: &[String]) -> Result<Vec<Target>> {
