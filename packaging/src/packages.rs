@@ -119,7 +119,7 @@ fn every_package_is_described() -> Result<()> {
         assert!((1..=5).contains(&package.categories.len()), "{name} has {:?}", package.categories);
         assert!(package.keywords.iter().all(|keyword| keyword.len() <= 20), "{name}: {:?}", package.keywords);
     }
-    for name in ["xtask", "splashdown-web", "splashdown-packaging"] {
+    for name in ["xtask", "splashdown-docs", "splashdown-web", "splashdown-packaging"] {
         assert!(!packages.iter().any(|package| package.name == name), "{name} must not be published");
     }
     Ok(())

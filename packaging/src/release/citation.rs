@@ -10,7 +10,7 @@ pub fn released(text: &str, version: &Version, date: &str) -> Result<String> {
     let text = with_version.unwrap_or_default();
     Ok(replace(&text, "date-released", date).unwrap_or_else(|| {
         let end = if text.ends_with('\n') { "" } else { "\n" };
-        format!("{text}{end}date-released: \"{date}\"\n")
+        format!("{text}{end}date-released: {date}\n")
     }))
 }
 
@@ -19,7 +19,11 @@ fn replace(text: &str, key: &str, value: &str) -> Option<String> {
     let start = format!("{key}:");
     text.lines().any(|line| line.starts_with(&start)).then(|| {
         let line = |line: &str| {
-            if line.starts_with(&start) { format!("{start} \"{value}\"\n") } else { format!("{line}\n") }
+            match line.strip_prefix(&start) {
+                Some(old) if old.trim().starts_with('"') => format!("{start} \"{value}\"\n"),
+                Some(_) => format!("{start} {value}\n"),
+                None => format!("{line}\n"),
+            }
         };
         text.lines().map(line).collect()
     })

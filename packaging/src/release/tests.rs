@@ -12,7 +12,7 @@ use crate::command::{output, program, root, run};
 use crate::metadata::Metadata;
 
 const DATE: &str = "2031-02-03";
-const CITATION: &str = "cff-version: 1.2.0\ntitle: Splashdown\nversion: 0.0.1\ndate-released: 2030-01-01\n";
+const CITATION: &str = "cff-version: 1.2.0\ntitle: Splashdown\nversion: 0.0.1\ndate-released: \"2030-01-01\"\n";
 
 /// A committed copy of the files that a release changes, with a changelog that lists one change.
 fn copy() -> Result<TempDir> {
@@ -81,7 +81,7 @@ fn a_release_changes_every_file_that_holds_the_version() -> Result<()> {
         )
     );
     let citation = read("CITATION.cff")?;
-    assert!(citation.contains(&format!("\nversion: \"{version}\"\n")), "{citation}");
+    assert!(citation.contains(&format!("\nversion: {version}\n")), "{citation}");
     assert!(citation.contains(&format!("\ndate-released: \"{DATE}\"\n")), "{citation}");
     assert!(citation.starts_with("cff-version: 1.2.0\n"), "{citation}");
     Ok(())
@@ -143,7 +143,7 @@ fn a_dependency_of_another_version_is_refused() -> Result<()> {
 #[test]
 fn a_citation_without_a_date_gets_one() -> Result<()> {
     let text = citation::released("version: 1.0.0\ntitle: x", &Version::new(1, 1, 0), DATE)?;
-    assert_eq!(text, format!("version: \"1.1.0\"\ntitle: x\ndate-released: \"{DATE}\"\n"));
+    assert_eq!(text, format!("version: 1.1.0\ntitle: x\ndate-released: {DATE}\n"));
     assert!(citation::released("title: x\n", &Version::new(1, 1, 0), DATE).is_err());
     Ok(())
 }
