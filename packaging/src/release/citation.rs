@@ -18,12 +18,10 @@ pub fn released(text: &str, version: &Version, date: &str) -> Result<String> {
 fn replace(text: &str, key: &str, value: &str) -> Option<String> {
     let start = format!("{key}:");
     text.lines().any(|line| line.starts_with(&start)).then(|| {
-        let line = |line: &str| {
-            match line.strip_prefix(&start) {
-                Some(old) if old.trim().starts_with('"') => format!("{start} \"{value}\"\n"),
-                Some(_) => format!("{start} {value}\n"),
-                None => format!("{line}\n"),
-            }
+        let line = |line: &str| match line.strip_prefix(&start) {
+            Some(old) if old.trim().starts_with('"') => format!("{start} \"{value}\"\n"),
+            Some(_) => format!("{start} {value}\n"),
+            None => format!("{line}\n"),
         };
         text.lines().map(line).collect()
     })

@@ -12,7 +12,8 @@ use crate::command::{output, program, root, run};
 use crate::metadata::Metadata;
 
 const DATE: &str = "2031-02-03";
-const CITATION: &str = "cff-version: 1.2.0\ntitle: Splashdown\nversion: 0.0.1\ndate-released: \"2030-01-01\"\n";
+const CITATION: &str =
+    "cff-version: 1.2.0\ntitle: Splashdown\nversion: 0.0.1\ndate-released: \"2030-01-01\"\n";
 
 /// A committed copy of the files that a release changes, with a changelog that lists one change.
 fn copy() -> Result<TempDir> {
