@@ -6,11 +6,11 @@
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use splashdown::scene::Scene;
+//! use splashdown::scene::{Scene, presets};
 //! use splashdown_run::{RunEnd, RunRequest, RunSettings, Stop, run};
 //!
-//! # let text = include_str!("../../../scenes/dam-break-small.toml");
-//! let scene = Scene::parse(text, "dam-break-small.toml")?;
+//! let (name, text) = presets()[1]; // or Scene::load("my.toml")
+//! let scene = Scene::parse(text, name)?;
 //! let mut settings = RunSettings::default();
 //! settings.frames = Some(1);
 //! settings.pictures = Some(Vec::new());
