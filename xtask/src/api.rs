@@ -46,7 +46,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     }
 }
 
-/// The layer of `cargo xtask test`. Without the tool it is skipped, unless the tool may be installed, which takes
+/// The layer of `cargo xtask test`. Without the tool it is skipped, unless `install` is set: building the tool takes
 /// several minutes once.
 pub fn layer(install: bool) -> Result<Outcome> {
     let tool = match tool() {
