@@ -51,7 +51,7 @@
 //! check foam
 //! sample flow probes
 //! bodies mouse_force passes
-//! solid coupling scene
+//! solid coupling pairs scene
 //! boundary cells models
 //! state kernel marching_cubes
 //! simd fingerprint stats device

@@ -118,7 +118,9 @@ impl RunFolder {
             .flatten()
             .filter_map(|entry| {
                 let name = entry.file_name();
-                let number = frame_number(&name.to_string_lossy(), &[CHECKPOINT], &[Checkpoint::ENDING])?;
+                let number = frame_number(&name.to_string_lossy(), &[CHECKPOINT], |ending| {
+                    ending == Checkpoint::ENDING
+                })?;
                 Some((number, entry.path()))
             })
             .collect();

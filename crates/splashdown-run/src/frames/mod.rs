@@ -5,7 +5,7 @@ mod tracker;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use splashdown::scene::{Choice, Format, PictureKind, Scene};
+use splashdown::scene::{Format, PictureKind, Scene};
 use splashdown::{DiffuseKind, Frame, Stats};
 use splashdown_io::usd::{MeshSeries, PointSeries};
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};

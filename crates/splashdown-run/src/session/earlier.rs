@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use splashdown::DiffuseKind;
-use splashdown::scene::{Choice, PictureKind, Scene};
+use splashdown::scene::{PictureKind, Scene};
 use splashdown_io::WrittenFile;
 
 use super::count_of;

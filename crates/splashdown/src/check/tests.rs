@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use splashdown_io::{Particles, ply, stl};
+use splashdown_io::Particles;
 
 use crate::scene::{Derived, Scene};
 use crate::{Checkpoint, Device, Simulation, inventory, memory_forecast, memory_forecast_of, models, work};
@@ -58,10 +58,10 @@ const ONCE: [(&str, u32); 6] = [
 ];
 
 fn write(folder: &Path) -> std::path::PathBuf {
-    stl::write_mesh(&folder.join("cube.stl"), &models::build("cube").unwrap()).unwrap();
+    splashdown_io::write_mesh(&folder.join("cube.stl"), &models::build("cube").unwrap()).unwrap();
     let positions = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| 0.6 + 0.05 * c as f32)).collect();
-    let drop = Particles { positions, ..Particles::default() };
-    ply::write_particles(&folder.join("drop.ply"), &drop).unwrap();
+    let drop = Particles::from_positions(positions);
+    splashdown_io::write_particles(&folder.join("drop.ply"), &drop).unwrap();
     let path = folder.join("everything.toml");
     std::fs::write(&path, SCENE).unwrap();
     path
