@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p splashdown --example reconstruct`
 
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
+
 use splashdown::{Device, SurfaceParams, reconstruct};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

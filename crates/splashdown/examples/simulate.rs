@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p splashdown --example simulate`
 
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
+
 use splashdown::{Device, Scene, Simulation};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -48,7 +48,7 @@ pub(super) enum Kind {
 impl Header {
     /// Reads the header up to and including the line `end_header`.
     pub(super) fn read(source: &mut Source) -> Result<Self, String> {
-        if !source.line()?.is_some_and(|line| line.trim_ascii_end() == b"ply") {
+        if source.line()?.is_none_or(|line| line.trim_ascii_end() != b"ply") {
             return Err("it does not begin with the line `ply`".to_owned());
         }
         let (mut encoding, mut elements) = (None, Vec::<Element>::new());

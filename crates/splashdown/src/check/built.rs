@@ -38,13 +38,16 @@ struct Inputs {
     support_ratio: f32,
 }
 
+/// The lower and the upper corner of each mesh in m, in its own frame; `None` for a mesh that cannot be read.
+type Extents = Arc<[Option<(Vec3, Vec3)>]>;
+
 /// The meshes of the bodies, in the order of the scene.
 #[derive(Default)]
 struct BodyMeshes {
     /// Until a simulation takes them.
     meshes: Option<Vec<Result<Mesh, BodyError>>>,
     /// Lower and upper corners in m, in the meshes' own frames; `None` for a mesh that cannot be read.
-    extents: Option<Arc<[Option<(Vec3, Vec3)>]>>,
+    extents: Option<Extents>,
 }
 
 #[derive(Default)]

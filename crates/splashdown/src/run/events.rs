@@ -32,7 +32,10 @@ pub struct RunOptions {
 /// A callback for the progress of distance fields. Its arguments are a body's name and the completed fraction, in
 /// [0, 1]. Several threads may call it at once.
 #[derive(Clone)]
-pub struct ProgressFn(Arc<dyn Fn(&str, f32) + Send + Sync>);
+pub struct ProgressFn(Arc<Report>);
+
+/// What [`ProgressFn`] calls: a name, and the part in [0, 1] that is done.
+type Report = dyn Fn(&str, f32) + Send + Sync;
 
 impl ProgressFn {
     /// Wraps a function.
