@@ -12,12 +12,26 @@ pub struct Flag {
     pub buffer: BufferId,
     /// The index of the word in the buffer.
     pub word: u32,
+    /// Beginnings of the labels of passes that need not read the flag: see [`Flag::except`].
+    pub(crate) repeatable: &'static [&'static str],
 }
 
 impl Flag {
     /// The word at `byte_offset` (use `core::mem::offset_of!`) of a buffer that holds one struct.
     pub fn new<T: GpuElement>(buffer: Buffer<T>, byte_offset: usize) -> Self {
-        Self { buffer: buffer.id, word: (byte_offset / 4) as u32 }
+        Self { buffer: buffer.id, word: (byte_offset / 4) as u32, repeatable: &[] }
+    }
+
+    /// Passes whose labels begin so need not bind the flag's buffer: they compute their output from their input alone,
+    /// so running them again after the flag is set has no effect.
+    #[must_use]
+    pub fn except(self, labels: &'static [&'static str]) -> Self {
+        Self { repeatable: labels, ..self }
+    }
+
+    /// True if a pass of this label need not bind the flag's buffer.
+    pub(crate) fn excepts(&self, label: &str) -> bool {
+        self.repeatable.iter().any(|start| label.starts_with(start))
     }
 }
 

@@ -117,14 +117,15 @@ impl Table {
     fn check_commands(
         &self,
         commands: &[Command],
-        flags: &mut Vec<BufferId>,
+        flags: &mut Vec<Flag>,
         bad: &impl Fn(String) -> GpuError,
     ) -> Result<(), GpuError> {
         for command in commands {
             match command {
                 Command::Dispatch { pass, size, buffers } => {
                     self.check_dispatch(pass, buffers)?;
-                    if let Some(flag) = flags.iter().find(|flag| !buffers.contains(flag)) {
+                    let misses = |flag: &&Flag| !buffers.contains(&flag.buffer) && !flag.excepts(pass.label);
+                    if let Some(Flag { buffer: flag, .. }) = flags.iter().find(misses) {
                         return Err(bad(format!(
                             "pass {} is repeated until a flag in {flag:?} is set, and does not bind that buffer: on a \
                              GPU it would not stop",
@@ -159,9 +160,9 @@ impl Table {
                 Command::Clear { buffer } => {
                     self.known(*buffer).map_err(bad)?;
                 }
-                Command::Repeat { body, until: Flag { buffer, word }, .. } => {
-                    self.check_words(*buffer, *word, 1).map_err(bad)?;
-                    flags.push(*buffer);
+                Command::Repeat { body, until, .. } => {
+                    self.check_words(until.buffer, until.word, 1).map_err(bad)?;
+                    flags.push(*until);
                     self.check_commands(body, flags, bad)?;
                     flags.pop();
                 }

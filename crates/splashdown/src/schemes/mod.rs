@@ -25,6 +25,11 @@ use crate::cells::{self, Cells};
 use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
 use crate::state::{Fields, begin};
 
+/// Beginnings of the labels of passes that a completed frame may repeat: each computes its output from its input alone,
+/// and with the cells empty there is no input. All other passes of a step read the flag of a completed frame.
+pub(crate) const REPEATABLE: &[&str] =
+    &["scan.", "sort.", "cells.reorder", "density.", "normals.", "bodies.boundary_lookup."];
+
 /// A scheme with the choices of a scene's `[solver]` section that select passes.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {

@@ -210,7 +210,7 @@ impl Simulation {
             phases.push(Phase::Host { action: HostAction::ResolveCollisions, steps: HOST_STEPS });
         }
         let end_step = state::end_step::record(&self.fields);
-        let done = Flag::new(self.fields.state, offset_of!(StepState, done));
+        let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);
         self.schedule = Schedule::new(phases, &end_step, done, MOST_STEPS);
         Ok(())
     }

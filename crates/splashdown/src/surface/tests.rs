@@ -38,23 +38,24 @@ fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<St
     Some(format!("{what}[{place}]: CPU {}, GPU {}", cpu[place], gpu[place]))
 }
 
-/// Runs code for every buffer of the extraction.
+/// Runs code for every buffer of two extractions, one on each executor.
 macro_rules! for_each_buffer {
-    ($b:expr, $buffer:ident, $name:ident => $body:block) => {
-        for_each_buffer!(@ $b, $buffer, $name, $body;
+    ($a:expr, $b:expr, $one:ident, $two:ident, $name:ident => $body:block) => {
+        for_each_buffer!(@ $a, $b, $one, $two, $name, $body;
             samples local_density marks mark_starts block_slot block_list values signs rows vertex_counts triangle_counts
             vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertices normals
             indices valences one_ring_starts one_rings relaxed)
     };
-    (@ $b:expr, $buffer:ident, $name:ident, $body:block; $($field:ident)*) => {
-        $({ let $buffer = $b.$field; let $name = stringify!($field); $body })*
+    (@ $a:expr, $b:expr, $one:ident, $two:ident, $name:ident, $body:block; $($field:ident)*) => {
+        $({ let ($one, $two) = ($a.$field, $b.$field); let $name = stringify!($field); $body })*
     };
 }
 
-fn copy_all(b: &Buffers, from: &mut Executor, to: &mut Executor) {
-    for_each_buffer!(b, buffer, _name => {
-        let data = from.read(buffer).unwrap();
-        to.write(buffer, &data).unwrap();
+fn copy_all(buffers: [&Buffers; 2], from: &mut Executor, to: &mut Executor) {
+    let [a, b] = buffers;
+    for_each_buffer!(a, b, source, target, _name => {
+        let data = from.read(source).unwrap();
+        to.write(target, &data).unwrap();
     });
 }
 
@@ -69,11 +70,12 @@ fn sort_one_rings(starts: &[u32], one_rings: &mut [UVec2]) {
 }
 
 /// The differences between the executors after a command.
-fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec<String> {
+fn compare(buffers: [&Buffers; 2], iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec<String> {
+    let [a, b] = buffers;
     let mut wrong = Vec::new();
-    let values = cpu.read(b.values).unwrap();
-    for_each_buffer!(b, buffer, name => {
-        let (mut here, mut there) = (cpu.read(buffer).unwrap(), gpu.read(buffer).unwrap());
+    let values = cpu.read(a.values).unwrap();
+    for_each_buffer!(a, b, one, two, name => {
+        let (mut here, mut there) = (cpu.read(one).unwrap(), gpu.read(two).unwrap());
         match name {
             // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8,
             // and the hardware's square root.
@@ -97,7 +99,7 @@ fn compare(b: &Buffers, iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec
             }
             _ => {
                 if name == "one_rings" {
-                    let starts = cpu.read(b.one_ring_starts).unwrap();
+                    let starts = cpu.read(a.one_ring_starts).unwrap();
                     sort_one_rings(&starts, bytemuck::cast_slice_mut(&mut here));
                     sort_one_rings(&starts, bytemuck::cast_slice_mut(&mut there));
                 }
@@ -124,18 +126,23 @@ fn prepare(executor: &mut Executor, params: SurfaceParams, capacity: Option<u32>
 fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Option<u32>) {
     let mut cpu = Executor::from(CpuExecutor::new());
     let surface = prepare(&mut cpu, params, capacity);
-    prepare(gpu, params, capacity);
-    for command in surface.recording.commands.clone() {
-        let label = match &command {
+    let twin = prepare(gpu, params, capacity);
+    let buffers = [&surface.b, &twin.b];
+    assert_eq!(surface.recording.commands.len(), twin.recording.commands.len());
+    for (command, other) in surface.recording.commands.iter().zip(&twin.recording.commands) {
+        let label = match command {
             Command::Dispatch { pass, .. } => pass.label.to_owned(),
             other => format!("{other:?}"),
         };
-        copy_all(&surface.b, &mut cpu, gpu);
-        let mut one = Recording::new(label.clone());
-        one.commands.push(command);
-        cpu.run(&one).unwrap();
-        gpu.run(&one).unwrap();
-        let wrong = compare(&surface.b, params.iso_level, &mut cpu, gpu);
+        copy_all(buffers, &mut cpu, gpu);
+        let alone = |command: &Command| {
+            let mut recording = Recording::new(label.clone());
+            recording.commands.push(command.clone());
+            recording
+        };
+        cpu.run(&alone(command)).unwrap();
+        gpu.run(&alone(other)).unwrap();
+        let wrong = compare(buffers, params.iso_level, &mut cpu, gpu);
         assert!(wrong.is_empty(), "{label}: {}", wrong.join("\n"));
     }
     let status = cpu.read(surface.b.status).unwrap()[0];
@@ -176,22 +183,23 @@ fn the_comparison_detects_a_wrong_bit_and_a_wrong_digit() {
     let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
     let (mut a, mut b) = (Executor::from(CpuExecutor::new()), Executor::from(CpuExecutor::new()));
     let surface = prepare(&mut a, params, None);
-    prepare(&mut b, params, None);
+    let twin = prepare(&mut b, params, None);
+    let buffers = [&surface.b, &twin.b];
     a.run(&surface.recording).unwrap();
-    copy_all(&surface.b, &mut a, &mut b);
-    assert!(compare(&surface.b, params.iso_level, &mut a, &mut b).is_empty());
+    copy_all(buffers, &mut a, &mut b);
+    assert!(compare(buffers, params.iso_level, &mut a, &mut b).is_empty());
 
     let values = a.read(surface.b.values).unwrap();
     let mut changed = values.clone();
     changed[values.iter().position(|&value| value > 0.1).unwrap()] *= 1.0001;
-    b.write(surface.b.values, &changed).unwrap();
-    b.write(surface.b.vertices, &[Vec4::splat(0.001)]).unwrap();
+    b.write(twin.b.values, &changed).unwrap();
+    b.write(twin.b.vertices, &[Vec4::splat(0.001)]).unwrap();
     let mut one_rings = a.read(surface.b.one_rings).unwrap();
     one_rings[0].y += 1;
-    b.write(surface.b.one_rings, &one_rings).unwrap();
+    b.write(twin.b.one_rings, &one_rings).unwrap();
     let mut signs = a.read(surface.b.signs).unwrap();
     signs[0] ^= 1;
-    b.write(surface.b.signs, &signs).unwrap();
-    let wrong = compare(&surface.b, params.iso_level, &mut a, &mut b);
+    b.write(twin.b.signs, &signs).unwrap();
+    let wrong = compare(buffers, params.iso_level, &mut a, &mut b);
     assert_eq!(wrong.len(), 4, "{wrong:?}");
 }
