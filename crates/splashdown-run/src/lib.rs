@@ -32,6 +32,11 @@
 //! * A [`RunRequest::resume`]d run is bit-identical to an uninterrupted one on the same device.
 //! * One run at a time writes into a folder.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    expect(dead_code, unused_imports, reason = "a page exports files, and has no folder to run into")
+)]
+
 pub mod appearance;
 mod checkpoints;
 mod error;
@@ -41,6 +46,7 @@ mod folder;
 mod frames;
 mod lock;
 mod outcome;
+#[cfg(not(target_arch = "wasm32"))]
 mod pictures;
 mod probe_files;
 mod recorder;
@@ -48,6 +54,7 @@ mod report;
 mod reporter;
 mod request;
 pub mod sequence;
+#[cfg(not(target_arch = "wasm32"))]
 mod session;
 mod settings;
 
@@ -60,5 +67,6 @@ pub use recorder::Recorder;
 pub use report::{PassNumbers, pass_numbers};
 pub use reporter::{Reporter, Stop};
 pub use request::RunRequest;
+#[cfg(not(target_arch = "wasm32"))]
 pub use session::{Session, run};
 pub use settings::RunSettings;

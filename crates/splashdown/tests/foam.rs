@@ -240,7 +240,7 @@ fn a_full_pool_accepts_candidates_evenly_and_reports_it() {
     let state = state(&mut simulation, &foam);
     assert!(state.refused > 100 && free.len() > 600, "{state:?}, {}", free.len());
     let told = simulation.take_warnings();
-    assert!(told.len() == 1 && told[0].contains("room for 200"), "{told:?}");
+    assert!(told.len() == 1 && told[0].contains("pool of 200"), "{told:?}");
     simulation.diffuse(&mut foam).unwrap();
     assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "it is told once");
     // Saved foam, for example in a checkpoint, includes that the warning was reported.

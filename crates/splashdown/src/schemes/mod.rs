@@ -26,9 +26,10 @@ use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension}
 use crate::state::{Fields, begin};
 
 /// Beginnings of the labels of passes that a completed frame may repeat: each computes its output from its input alone,
-/// and with the cells empty there is no input. All other passes of a step read the flag of a completed frame.
+/// and with the cells empty there is no input. `flow.emit` follows the schedule, which a completed frame empties. All
+/// other passes of a step read the flag of a completed frame.
 pub(crate) const REPEATABLE: &[&str] =
-    &["scan.", "sort.", "cells.reorder", "density.", "normals.", "bodies.boundary_lookup."];
+    &["scan.", "sort.", "cells.reorder", "density.", "normals.", "bodies.boundary_lookup.", "flow.emit"];
 
 /// A scheme with the choices of a scene's `[solver]` section that select passes.
 #[derive(Clone, Copy, Debug)]

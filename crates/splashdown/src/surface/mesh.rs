@@ -341,7 +341,6 @@ impl Surface {
                 b.lattice.id(),
                 input.grid.id(),
                 status,
-                b.block_list.id(),
                 b.vertex_starts.id(),
                 input.cell_start.id(),
                 b.samples.id(),

@@ -7,7 +7,7 @@ use crate::simd::Register;
 use crate::surface::params::{Lattice, Status};
 
 pub(super) fn smoothing_weights(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, grid, status, _, starts, cell_start, samples, local_density, positions] = slots else {
+    let [lattice, grid, status, starts, cell_start, samples, local_density, positions] = slots else {
         unreachable!()
     };
     let (lattice, grid) = (lattice.get::<Lattice>(), grid.get());

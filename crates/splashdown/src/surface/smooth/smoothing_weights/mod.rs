@@ -22,7 +22,6 @@ pub(crate) static SMOOTHING_WEIGHTS: PassDesc = PassDesc {
         uniform::<Lattice>("lattice"),
         uniform::<Grid>("grid"),
         read::<Status>("status"),
-        read::<u32>("block_list"),
         read::<u32>("vertex_starts"),
         read::<u32>("cell_start"),
         read::<Vec4>("samples"),

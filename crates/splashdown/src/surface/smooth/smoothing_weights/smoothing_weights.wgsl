@@ -7,12 +7,11 @@
 @group(0) @binding(0) var<uniform> lattice: Lattice;
 @group(0) @binding(1) var<uniform> grid: Grid;
 @group(0) @binding(2) var<storage, read> status: Status;
-@group(0) @binding(3) var<storage, read> block_list: array<u32>;
-@group(0) @binding(4) var<storage, read> vertex_starts: array<u32>;
-@group(0) @binding(5) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(6) var<storage, read> samples: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> local_density: array<f32>;
-@group(0) @binding(8) var<storage, read_write> positions: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> vertex_starts: array<u32>;
+@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
+@group(0) @binding(5) var<storage, read> samples: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> local_density: array<f32>;
+@group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
 
 fn smoothing_weight(p: vec3<f32>, cells: CellRange) -> f32 {
     let support2 = lattice.support_radius * lattice.support_radius;
