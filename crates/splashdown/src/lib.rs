@@ -150,8 +150,3 @@ pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
-
-/// The examples of the user guide.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/guide/src/library.md")]
-struct Guide;

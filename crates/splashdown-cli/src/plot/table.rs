@@ -45,7 +45,7 @@ fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
     let mut rows = Vec::new();
     for record in records {
         let record = record.map_err(|error| error.to_string())?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let line = record.position().map_or(0, |position| line_at(text, position.byte()));
         if record.len() == 1 && record[0].trim().is_empty() {
             continue;
         }
@@ -70,6 +70,13 @@ fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
         points: rows.iter().map(|row| (row[0], row[column])).collect(),
     };
     Ok(names.iter().enumerate().skip(1).map(curve).collect())
+}
+
+/// The line, from 1, of the record at this byte. The reader's position is before the blank lines that it skips.
+fn line_at(text: &str, byte: u64) -> usize {
+    let (before, rest) = text.split_at_checked(byte as usize).unwrap_or((text, ""));
+    let skipped = rest.len() - rest.trim_start_matches(['\r', '\n']).len();
+    1 + before.matches('\n').count() + rest[..skipped].matches('\n').count()
 }
 
 /// The unit of a quantity with its brackets. Curves with the same unit share a panel.
