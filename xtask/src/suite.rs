@@ -73,7 +73,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     report.close()
 }
 
-/// Lints the code for another system; skipped only where its standard library cannot be installed. The usual extent is
+/// Type-checks the code for another system; skipped only where its standard library cannot be installed. The usual extent is
 /// the smallest command line: that checks the build without features too, and has 40 % of the crates.
 fn check_for(target: &str, all: bool) -> Result<Outcome> {
     let added = command("rustup").args(["target", "add", target]).output();
@@ -86,14 +86,13 @@ fn check_for(target: &str, all: bool) -> Result<Outcome> {
         }
         Ok(_) => {}
     }
-    let smallest = cargo_clippy(target, &["--package", "splashdown-cli", "--no-default-features"])?;
+    let smallest = cargo_check(target, &["--package", "splashdown-cli", "--no-default-features"])?;
     if smallest != Outcome::Passed || !all {
         return Ok(smallest);
     }
-    cargo_clippy(target, &["--workspace"])
+    cargo_check(target, &["--workspace"])
 }
 
-fn cargo_clippy(target: &str, extent: &[&str]) -> Result<Outcome> {
-    let mut clippy = cargo(["clippy", "--quiet", "--target", target]);
-    succeeds(clippy.args(extent).args(["--", "--deny", "warnings"]))
+fn cargo_check(target: &str, extent: &[&str]) -> Result<Outcome> {
+    succeeds(cargo(["check", "--quiet", "--target", target]).args(extent))
 }

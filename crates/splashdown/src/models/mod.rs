@@ -5,7 +5,7 @@
 //! and oriented outwards, but for `thin-cup`, a sheet without thickness. Lengths are in metres and y is up: what
 //! stands has its foot at y = 0 and its middle over the origin, what floats has its centre of mass at the origin.
 //!
-//! [`ugly`] spoils a mesh, as material for tests of whatever repairs meshes.
+//! `ugly` spoils a mesh, as material for tests of whatever repairs meshes.
 
 mod boats;
 mod crockery;

@@ -2,8 +2,8 @@
 //!
 //! | scheme | function | reference |
 //! |---|---|---|
-//! | `wcsph` | [`wcsph::wcsph`] | Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009 |
-//! | `mueller2003` | [`mueller2003::mueller2003`] | Müller, Charypar & Gross 2003 |
+//! | `wcsph` | `wcsph::wcsph` | Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009 |
+//! | `mueller2003` | `mueller2003::mueller2003` | Müller, Charypar & Gross 2003 |
 //!
 //! The functions call the operations of [`Step`], which choose the variant of a pass by the scene's kernel, density form
 //! and surface tension. Parameters that only one scheme has stand beside its function.

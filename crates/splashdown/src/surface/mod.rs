@@ -13,7 +13,7 @@
 //!
 //! The mesh is closed, manifold and oriented outwards for any set of particles: vertices and
 //! connectivity follow from the signs of the nodes alone (see
-//! [`marching_cubes`](crate::marching_cubes)), the sign of each node is computed once, and the
+//! `marching_cubes`), the sign of each node is computed once, and the
 //! nodes at the border of the marked blocks are outside. On the same device, the same particles
 //! give bit-identical meshes for any number of threads.
 //!
