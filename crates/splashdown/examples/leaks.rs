@@ -1,12 +1,11 @@
-//! Counts what must never happen, over ten seconds of every scene that comes with the program: particles inside
-//! a body or outside a closed side, and particles that had to be put back (allowed in the first second, while a
-//! scene settles).
+//! Counts leaks over ten seconds of every built-in scene: particles inside a body, particles outside a closed side, and
+//! particles that were moved back inside (allowed in the first second, until the initial state has relaxed).
 //!
 //! `cargo run --release -p splashdown --example leaks -- [SCENE ...] [--device cpu|gpu|NAME] [--seconds S]
 //! [--spacing-factor F]`
 //!
-//! A factor of 2 makes the particles twice as large and the study thirty times as short. The exit code is 1 if anything
-//! leaked.
+//! A spacing factor of 2 doubles the particle spacing, which makes the study about thirty times shorter. The exit code is
+//! 1 if there was a leak.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -14,43 +13,43 @@ use std::time::Instant;
 use splashdown::scene::{Scene, presets};
 use splashdown::{Device, Simulation, SimulationError};
 
-struct Wishes {
+struct Options {
     scenes: Vec<String>,
     device: Device,
     seconds: f32,
     factor: f32,
 }
 
-fn wishes() -> Result<Wishes, String> {
-    let mut wishes = Wishes { scenes: Vec::new(), device: Device::Cpu, seconds: 10.0, factor: 1.0 };
+fn options() -> Result<Options, String> {
+    let mut options = Options { scenes: Vec::new(), device: Device::Cpu, seconds: 10.0, factor: 1.0 };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
         match argument.as_str() {
             "--device" => {
-                wishes.device = value()?.parse().map_err(|error| format!("--device: {error}"))?;
+                options.device = value()?.parse().map_err(|error| format!("--device: {error}"))?;
             }
             "--seconds" => {
-                wishes.seconds = value()?.parse().map_err(|error| format!("--seconds: {error}"))?
+                options.seconds = value()?.parse().map_err(|error| format!("--seconds: {error}"))?
             }
             "--spacing-factor" => {
-                wishes.factor = value()?.parse().map_err(|error| format!("--spacing-factor: {error}"))?;
+                options.factor = value()?.parse().map_err(|error| format!("--spacing-factor: {error}"))?;
             }
             option if option.starts_with('-') => return Err(format!("there is no option {option}")),
-            name => wishes.scenes.push(name.to_owned()),
+            name => options.scenes.push(name.to_owned()),
         }
     }
-    if wishes.scenes.is_empty() {
-        wishes.scenes = presets().iter().map(|(name, _)| (*name).to_owned()).collect();
+    if options.scenes.is_empty() {
+        options.scenes = presets().iter().map(|(name, _)| (*name).to_owned()).collect();
     }
-    Ok(wishes)
+    Ok(options)
 }
 
-/// What was counted in one scene.
+/// The counts of one scene.
 #[derive(Default)]
 struct Count {
     particles: u32,
-    /// Most particles inside a body at the end of a tenth of a second.
+    /// Largest number of particles inside a body, sampled every 0.1 s.
     inside: u32,
     outside: u32,
     early_corrections: u32,
@@ -59,10 +58,10 @@ struct Count {
     density_error: f32,
 }
 
-fn count(scene: &Scene, wishes: &Wishes) -> Result<Count, SimulationError> {
-    let mut simulation = Simulation::new(scene, &wishes.device)?;
+fn count(scene: &Scene, options: &Options) -> Result<Count, SimulationError> {
+    let mut simulation = Simulation::new(scene, &options.device)?;
     let mut count = Count::default();
-    for tenth in 1..=(10.0 * wishes.seconds).ceil() as u32 {
+    for tenth in 1..=(10.0 * options.seconds).ceil() as u32 {
         let stats = simulation.advance(0.1)?;
         let particles = simulation.particles()?;
         let domain = &scene.domain;
@@ -88,8 +87,8 @@ fn count(scene: &Scene, wishes: &Wishes) -> Result<Count, SimulationError> {
 
 #[expect(clippy::print_stdout, clippy::print_stderr, reason = "an example that prints")]
 fn main() -> ExitCode {
-    let wishes = match wishes() {
-        Ok(wishes) => wishes,
+    let options = match options() {
+        Ok(options) => options,
         Err(message) => {
             eprintln!("error: {message}");
             return ExitCode::from(2);
@@ -100,17 +99,17 @@ fn main() -> ExitCode {
     );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|");
     let mut leaks = 0;
-    for name in &wishes.scenes {
+    for name in &options.scenes {
         let Some((_, text)) = presets().iter().find(|(known, _)| known == name) else {
             eprintln!("error: there is no scene {name}; `splashdown scenes` lists them");
             return ExitCode::from(2);
         };
         let begun = Instant::now();
         let outcome = Scene::parse(text, name).map_err(|errors| errors.to_string()).and_then(|mut scene| {
-            scene.fluid.particle_spacing *= wishes.factor;
+            scene.fluid.particle_spacing *= options.factor;
             // Emitters get room for the whole study.
-            scene.duration = wishes.seconds;
-            count(&scene, &wishes).map_err(|error| error.to_string())
+            scene.duration = options.seconds;
+            count(&scene, &options).map_err(|error| error.to_string())
         });
         match outcome {
             Ok(count) => {

@@ -168,7 +168,7 @@ impl Session {
             }
         }
         let films = films::finish(&films, reporter);
-        // Older checkpoints have been removed meanwhile.
+        // The writer has removed older checkpoints.
         written.retain(|file| file.path.exists());
 
         report.status = match (&failure, &summary) {

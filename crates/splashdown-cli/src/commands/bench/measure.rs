@@ -32,7 +32,7 @@ const COUNTED: u32 = 2;
 /// docs/performance.md derives both.
 const LEAST_BYTES: f64 = 192.0;
 const LEAST_OPERATIONS: f64 = 6047.0;
-/// Particles of whose neighbours the mean is told.
+/// Number of particles in the sample for the mean number of neighbours.
 const SAMPLED: usize = 256;
 
 /// The measurement of one size.
