@@ -1,22 +1,23 @@
-//! Couplings: what acts on the fluid beside its own forces, or measures it. Each declares where in a step it acts.
+//! Couplings act on the fluid or measure it: bodies, emitters, sinks, probes, the mouse force. Each declares the
+//! stages of a step in which it acts.
 
 use splashdown_gpu::{BufferSet, DispatchSize, PassDesc, Recording};
 
 use crate::cells::Cells;
 use crate::state::Fields;
 
-/// A place in a step where couplings act, in the order of the step.
+/// A stage of a step in which couplings act, in the order of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// Behind the sort: finds the boundaries near each particle.
+    /// After the sort: finds the boundaries near each particle.
     BoundaryLookup,
-    /// Behind the density of the fluid: adds the boundary's contribution.
+    /// After the density of the fluid: adds the boundary's contribution.
     BoundaryDensity,
-    /// Behind the accelerations by fluid and walls: boundary forces, their reactions, and the motion of bodies.
+    /// After the accelerations by fluid and walls: boundary forces, their reactions, and the motion of bodies.
     BoundaryForces,
-    /// Behind all forces: changes accelerations, or removes particles.
+    /// After all forces: changes accelerations, or removes particles.
     ExternalForces,
-    /// Behind the motion of the particles: reads the fields before and after it.
+    /// After the integration of the particles: reads the fields before and after it.
     Measurement,
     /// At the end of the step: adds particles.
     Emission,
@@ -34,17 +35,17 @@ impl Stage {
     ];
 }
 
-/// A step while it is recorded: where couplings and schemes append their passes.
+/// A step during its recording. Couplings and schemes append their passes to it.
 pub struct StepRecorder<'a> {
-    /// The passes so far.
+    /// The passes recorded so far.
     pub recording: Recording,
-    /// The buffers of fields, cells and couplings, which passes find by name.
+    /// The buffers of fields, cells and couplings, which passes bind by name.
     pub buffers: BufferSet,
     /// The sorting grid and its buffers.
     pub cells: &'a Cells,
-    /// The buffers that passes share.
+    /// The buffers shared by passes.
     pub fields: &'a Fields,
-    /// One invocation for each particle.
+    /// The dispatch size with one invocation for each particle.
     pub particles: DispatchSize,
     /// True if the density is integrated by the continuity equation, false if it is summed.
     pub is_density_integrated: bool,
@@ -62,14 +63,14 @@ impl StepRecorder<'_> {
     }
 }
 
-/// Something that acts on the fluid in a step, or measures it.
+/// A coupling: acts on the fluid in a step, or measures it.
 pub trait Coupling {
-    /// The stages in which it acts.
+    /// The stages in which the coupling acts.
     fn stages(&self) -> &'static [Stage];
 
-    /// The buffers that its passes bind beside those of fields and cells.
+    /// The buffers that its passes bind in addition to those of fields and cells.
     fn buffers(&self) -> BufferSet;
 
-    /// Appends its passes of one of its [`stages`](Self::stages).
+    /// Appends the passes of one of its [`stages`](Self::stages).
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>);
 }

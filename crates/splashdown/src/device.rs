@@ -1,4 +1,4 @@
-//! Which device a simulation runs on.
+//! Selection of the device that runs a simulation.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,18 +6,18 @@ use std::sync::Arc;
 
 use splashdown_gpu::{CpuExecutor, DeviceRequest, Executor, Gpu, GpuError, GpuExecutor};
 
-/// Where to simulate.
+/// The device that runs a simulation.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Device {
-    /// The best GPU, else the CPU. Software drivers are not used: the CPU is about twelve times as fast
-    /// (`docs/performance.md`).
+    /// The best GPU, or the CPU if there is no GPU. Software drivers are not used: the CPU executor is about
+    /// twelve times as fast (`docs/performance.md`).
     #[default]
     Auto,
-    /// The best GPU; an error where there is none.
+    /// The best GPU; an error if there is none.
     Gpu,
     /// The CPU.
     Cpu,
-    /// The adapter whose name contains this, software drivers among them.
+    /// The adapter whose name contains this text. Software drivers are included.
     Named(String),
 }
 
@@ -54,11 +54,10 @@ impl Device {
         self.open(true)
     }
 
-    /// As [`executor`](Self::executor), without the checks that keep shaders inside their buffers: to measure what they
-    /// cost.
+    /// As [`executor`](Self::executor), without the bounds checks in shaders. For measuring the cost of these checks.
     ///
     /// # Safety
-    /// Only passes of this library may run on it, over buffers that only they have written: see
+    /// Run only passes of this library on it, and only over buffers that these passes have written. See
     /// [`Gpu::without_shader_checks`].
     ///
     /// # Errors
@@ -70,7 +69,7 @@ impl Device {
     fn open(&self, checks_shaders: bool) -> Result<Executor, GpuError> {
         let gpu = |request: &DeviceRequest| {
             let gpu = Gpu::open(request)?;
-            // SAFETY: who asks for it has promised so to `unchecked_executor`.
+            // SAFETY: guaranteed by the caller of `unchecked_executor`.
             let gpu = if checks_shaders { gpu } else { unsafe { gpu.without_shader_checks() } };
             Ok(Executor::from(GpuExecutor::new(Arc::new(gpu))))
         };

@@ -2,35 +2,35 @@
 
 use splashdown_gpu::GpuError;
 
-/// What can go wrong from a validated scene to a frame.
+/// Errors of a simulation.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The device or its driver.
+    /// The device or its driver failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// Particles could not be placed.
     #[error(transparent)]
     Sample(#[from] crate::sample::SampleError),
-    /// A body.
+    /// A body could not be loaded.
     #[error(transparent)]
     Body(#[from] crate::bodies::BodyError),
-    /// The surface.
+    /// The surface could not be reconstructed.
     #[error(transparent)]
     Surface(#[from] crate::surface::SurfaceError),
-    /// A checkpoint.
+    /// A checkpoint could not be used.
     #[error(transparent)]
     Checkpoint(Box<crate::CheckpointError>),
-    /// More than the device or the indices allow.
+    /// A count exceeds what the device or 32-bit indices allow.
     #[error("{given} {what} are too many: at most {allowed} fit; {advice}")]
     TooMany {
-        /// What there is too much of.
+        /// What is counted.
         what: &'static str,
-        /// How many.
+        /// The count requested.
         given: u64,
-        /// How many fit.
+        /// The largest count possible.
         allowed: u64,
-        /// What to do.
+        /// How to stay below it.
         advice: String,
     },
     /// Every particle left the domain or became NaN.
@@ -38,10 +38,10 @@ pub enum SimulationError {
     NothingLeft {
         /// Simulated time in seconds.
         time: f64,
-        /// Where they went.
+        /// How they were lost.
         reason: String,
     },
-    /// The time step that stability asks for is below the scene's smallest.
+    /// The time step required for stability is below `solver.min_dt`.
     #[error(
         "at {time:.4} s the time step that keeps the simulation stable is below solver.min_dt = {min_dt:.3e} s (largest speed \
          {max_speed:.3e} m/s, acceleration {max_acceleration:.3e} m/s^2): look for particles placed inside one another, or \
@@ -57,7 +57,7 @@ pub enum SimulationError {
         /// The largest acceleration in m/s^2.
         max_acceleration: f32,
     },
-    /// A frame's length is negative, infinite or NaN.
+    /// The duration of a frame is negative, infinite or NaN.
     #[error("a simulation cannot advance by {seconds} s: give a finite number of seconds, zero or more")]
     BadDuration {
         /// The seconds given.

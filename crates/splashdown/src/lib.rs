@@ -129,7 +129,7 @@ pub use stats::Stats;
 pub use surface::{Surface, SurfaceParams, SurfaceStats};
 pub use {glam, splashdown_gpu::Executor, splashdown_io::Mesh, splashdown_io::Particles};
 
-/// Every pass of this crate, for the gate and the tests.
+/// All passes of this crate, for the shader validation and the tests.
 #[doc(hidden)]
 pub fn passes() -> Vec<&'static splashdown_gpu::PassDesc> {
     [

@@ -1,4 +1,4 @@
-//! Surface reconstruction for any particle data, on a device that it opens itself.
+//! Surface reconstruction for any particle data in one call, which also opens the device.
 
 use splashdown_io::Mesh;
 
@@ -6,7 +6,7 @@ use crate::surface::{self, SurfaceParams, SurfaceStats};
 use crate::{Device, SimulationError};
 
 /// Reconstructs the surface of particles as a closed, manifold triangle mesh. `points` are the centres of the particles
-/// in m; points that are not finite are left out and counted in [`SurfaceStats::not_finite`].
+/// in m; points that are not finite are skipped and counted in [`SurfaceStats::not_finite`].
 ///
 /// ```
 /// use splashdown::{Device, SurfaceParams, reconstruct};
@@ -17,7 +17,7 @@ use crate::{Device, SimulationError};
 /// ```
 ///
 /// # Errors
-/// [`SimulationError::Surface`] if a parameter makes no sense, no surface has the iso level, or the points are too far
+/// [`SimulationError::Surface`] if a parameter is invalid, no surface has the iso level, or the points are too far
 /// apart for the cell size; [`SimulationError::Gpu`] if the device is missing or too small.
 pub fn reconstruct(
     points: &[[f32; 3]],

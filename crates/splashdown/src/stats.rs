@@ -1,4 +1,4 @@
-//! What a simulation tells about itself.
+//! Statistics of a simulation.
 
 /// The state of a simulation at the end of a call of [`Simulation::advance`](crate::Simulation::advance).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -14,26 +14,27 @@ pub struct Stats {
     pub dt: f32,
     /// Particles inside the domain.
     pub particles: u32,
-    /// Particles that emitters made, in all.
+    /// Total number of particles created by emitters.
     pub emitted: u32,
-    /// Particles that emitters found no room for, in all.
+    /// Total number of particles that emitters could not create for lack of room.
     pub refused: u32,
-    /// Particles that went into sinks, in all.
+    /// Total number of particles removed by sinks.
     pub drained: u32,
-    /// Particles that left through an open side, in all.
+    /// Total number of particles that left through an open side.
     pub escaped: u32,
-    /// Particles whose position or velocity became NaN or infinite, in all; they are taken out.
+    /// Total number of particles removed because their position or velocity became NaN or infinite.
     pub non_finite: u32,
-    /// Where the first such particle (by id) was last seen, in metres.
+    /// The last finite position of the first such particle (by id), in metres.
     pub non_finite_place: [f32; 3],
     /// The id of that particle.
     pub non_finite_id: u32,
-    /// How often a particle had to be put back through a closed wall or out of a body, in all. Zero in a sound run.
+    /// Total number of times a particle was moved back from behind a closed wall or out of a body. Zero in a sound
+    /// run.
     pub wall_corrections: u32,
-    /// Particles inside a body, by the host's own look-up at the end of a frame of a [`Run`](crate::Run); zero
+    /// Particles inside a body at the end of a frame of a [`Run`](crate::Run), by a separate test on the host. Zero
     /// in a sound run.
     pub inside_bodies: u32,
-    /// How often a velocity had to be limited to half a spacing per step, in all. Zero in a sound run.
+    /// Total number of times a velocity was limited to half a spacing per step. Zero in a sound run.
     pub speed_limits: u32,
     /// The largest relative excess of density over the rest density in this call: max(0, rho/rho0 - 1).
     pub density_error: f32,

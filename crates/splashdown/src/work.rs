@@ -1,9 +1,9 @@
-//! Counts of expensive work, for the test that none of it is done twice.
+//! Counters of expensive work, for the test that no work is done twice.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// How often each kind of work was done.
+/// The number of times that each kind of work was done.
 pub(crate) type Counts = BTreeMap<&'static str, u32>;
 
 thread_local! {

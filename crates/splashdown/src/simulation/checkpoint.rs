@@ -1,4 +1,4 @@
-//! Leaving a simulation and going on with it.
+//! Saving and resuming a simulation.
 
 use bytemuck::Pod;
 use splashdown_gpu::{Buffer, Executor, GpuElement, block_on};
@@ -11,9 +11,9 @@ use crate::state::StepCounters;
 use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
-    /// Everything that is needed to resume later; a frame that has begun is completed first. `scene_text` is the
-    /// text of the scene as it is simulated now: [`Scene::text`](crate::scene::Scene::text), unless another was
-    /// [adopted](Self::update_parameters).
+    /// Returns a checkpoint from which the simulation can be resumed. A frame in progress is completed first.
+    /// `scene_text` is the text of the scene that is simulated now: [`Scene::text`](crate::scene::Scene::text), unless
+    /// [`update_parameters`](Self::update_parameters) has replaced the scene.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -71,11 +71,11 @@ impl Simulation {
         Ok(checkpoint)
     }
 
-    /// Goes on from a checkpoint on any device. On the CPU, and on the adapter that it was made on, the same
-    /// bits follow as if the simulation had not stopped.
+    /// Resumes a simulation from a checkpoint on any device. On the CPU, and on the GPU that made the checkpoint, the
+    /// resumed run is bit-identical to an uninterrupted one.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`SimulationError::Checkpoint`] if its scene cannot be used any more.
+    /// As [`new`](Self::new), and [`SimulationError::Checkpoint`] if the scene of the checkpoint is no longer usable.
     pub fn resume(checkpoint: &Checkpoint, executor: Executor) -> Result<Self, SimulationError> {
         block_on(Self::resume_async(checkpoint, executor, &|_, _| {}))
     }
@@ -90,7 +90,7 @@ impl Simulation {
         executor: Executor,
         progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
-        // Before anything is made that is as large as the file says.
+        // Validates the sizes before buffers of these sizes are created.
         checkpoint.check()?;
         let scene = checkpoint.scene()?;
         let built = Built::of(&scene);
@@ -141,15 +141,16 @@ impl Simulation {
             let reason = "its entry `tally` contradicts its counts of particles".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
-        // A step that has not ended would end twice.
+        // A step that has not ended would end a second time.
         if counters[StepCounters::MOVED] != 0 {
-            let reason = "its entry `tally` is of the middle of a step".to_owned();
+            let reason = "its entry `tally` belongs to an unfinished step".to_owned();
             return Err(CheckpointError::Malformed(reason).into());
         }
         Ok(())
     }
 
-    /// The small buffers whose content does not follow from the scene, with their names in the file and their columns.
+    /// The small buffers whose content cannot be derived from the scene, with their names in the file and their
+    /// numbers of columns.
     fn words(&self) -> Vec<(&'static str, Words, usize)> {
         let mut words = vec![
             ("state", Words::State(self.fields.state), 1),
@@ -170,7 +171,7 @@ impl Simulation {
     }
 }
 
-/// A buffer as 32-bit words.
+/// A buffer, read and written as 32-bit words.
 #[derive(Clone, Copy)]
 enum Words {
     Plain(Buffer<u32>),
@@ -204,7 +205,7 @@ fn floats<T: Pod>(data: &[T]) -> &[f32] {
     bytemuck::cast_slice(data)
 }
 
-/// Writes numbers into a buffer whose elements are made of them.
+/// Writes numbers into a buffer, whose elements consist of several numbers each.
 fn upload<T: GpuElement, N: NpyElement>(
     executor: &mut Executor,
     buffer: Buffer<T>,

@@ -8,8 +8,7 @@ use crate::foam::{self, DiffuseParticles, Foam, FoamParams, FoamState, KeptFoam}
 use crate::scene::{Derived, FoamSettings};
 
 impl Simulation {
-    /// Prepares foam, spray and bubbles with these settings; there are none yet. Whether they are enabled there
-    /// does not matter.
+    /// Creates foam, spray and bubbles with these settings, without particles. The setting `enabled` is ignored.
     ///
     /// # Errors
     /// [`SimulationError::TooMany`], and those of the device.
@@ -19,15 +18,15 @@ impl Simulation {
         let speed = Derived::without_particles(&self.scene).reference_speed;
         let constants = FoamParams::new(settings, &self.params, speed, capacity);
         let foam = Foam::new(&mut self.executor, &constants, &self.fields, &self.cells, particles)?;
-        // So that time counts from now on.
+        // Sets the time from which the first update counts.
         self.executor.run(foam.recording())?;
         Ok(foam)
     }
 
-    /// Brings the foam up to the simulation's time; it does not wait for the device. Call it between two
-    /// frames: it sorts the particles, as [`sort`](Self::sort). Called within a frame too, wherever
-    /// [`continue_frame`](Self::continue_frame) returns, it takes finer steps: every 4 ms of simulated time, as
-    /// far as batches of steps allow.
+    /// Advances the foam to the time of the simulation, without waiting for the device. Between two frames it
+    /// sorts the particles, as [`sort`](Self::sort). Within a frame it may be called after each
+    /// [`continue_frame`](Self::continue_frame), for finer steps of the foam: every 4 ms of simulated time, as far as
+    /// the batches of steps allow.
     ///
     /// # Errors
     /// Those of the device.
@@ -35,7 +34,7 @@ impl Simulation {
         if self.frame.is_none() {
             self.sort()?;
         } else {
-            // Within a frame the sorted arrays are those of the last step, whose ids went straight to the persistent ones.
+            // Within a frame the sorted arrays are those of the last step, which wrote the ids to the persistent array.
             let mut ids = Recording::new("ids");
             ids.copy(self.fields.ids, self.fields.sorted_ids);
             self.executor.run(&ids)?;
@@ -43,8 +42,8 @@ impl Simulation {
         Ok(self.executor.run(foam.recording())?)
     }
 
-    /// All that is needed to go on with the foam later, in this simulation, in one that is resumed from a
-    /// checkpoint, or in one that this was carried over to.
+    /// Fetches the state of the foam, from which it can be restored later: in this simulation, in one resumed from a
+    /// checkpoint, or in one made by [`rebuild_with`](Self::rebuild_with).
     ///
     /// # Errors
     /// Those of the device.
@@ -54,8 +53,8 @@ impl Simulation {
         Ok(KeptFoam { state, pool })
     }
 
-    /// Goes on with foam that was kept at the time where the simulation is now. Where there is less room than
-    /// there was, the youngest are left out.
+    /// Restores foam that was saved at the present time of the simulation. If the capacity is smaller than it was, the
+    /// youngest particles are dropped.
     ///
     /// # Errors
     /// Those of the device.
@@ -66,18 +65,18 @@ impl Simulation {
         Ok(self.executor.write(foam.state(), &[FoamState { count: count as u32, ..kept.state }])?)
     }
 
-    /// Diffuse particles there are, and what their last update did.
+    /// The number of diffuse particles, and the counters of their last update.
     ///
     /// # Errors
     /// Those of the device.
     pub async fn foam_state_async(&mut self, foam: &mut Foam) -> Result<FoamState, SimulationError> {
         let state = self.executor.fetch(foam.state()).await?[0];
-        self.told.extend(foam.tell(&state));
+        self.warnings.extend(foam.tell(&state));
         Ok(state)
     }
 
-    /// Fetches the foam as it is now. Where there was no room for all, [`take_warnings`](Self::take_warnings)
-    /// says so afterwards.
+    /// Fetches the diffuse particles. If there was no room for all of them, [`take_warnings`](Self::take_warnings)
+    /// returns a warning afterwards.
     ///
     /// # Errors
     /// Those of the device.

@@ -1,4 +1,4 @@
-//! A frame, from its first step to its account.
+//! The steps of a frame, and the statistics at its end.
 
 use glam::Vec4Swizzles;
 use splashdown_gpu::{Executor, Readback, block_on};
@@ -9,24 +9,24 @@ use crate::bodies::Bodies;
 use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
-/// Most steps in one submission to a device: a bound on how long it does not answer.
+/// The largest number of steps in one submission to a device: bounds the time for which the device is unresponsive.
 pub(super) const MOST_STEPS: u32 = 64;
-/// Steps in one submission on the CPU, which tests for the end of the frame before each, and where the host has to act
-/// between steps.
+/// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
+/// CPU executor tests for the end of the frame before each step.
 pub(super) const HOST_STEPS: u32 = 16;
 
-/// A frame that has begun.
+/// A frame in progress.
 pub(super) struct FrameInProgress {
     duration: f32,
     /// Steps submitted so far.
     submitted: u32,
-    /// The state behind the batch before the last: the device always has work while the host looks.
+    /// The state after the batch before the last, so that the device has work while the host reads it.
     pending: Option<Readback<StepState>>,
     pub(super) state: Option<StepState>,
 }
 
 impl Simulation {
-    /// Simulates `seconds`, in as many steps as stability asks for, and waits for the end.
+    /// Simulates `seconds`, in as many steps as stability requires, and waits for the end.
     ///
     /// # Errors
     /// [`SimulationError::BadDuration`], [`SimulationError::StepTooSmall`], [`SimulationError::NothingLeft`],
@@ -48,11 +48,11 @@ impl Simulation {
         }
     }
 
-    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) works on it. A frame of no
-    /// length is complete at once, without a step.
+    /// Begins a frame of this many seconds; [`continue_frame`](Self::continue_frame) advances it. A frame of zero
+    /// seconds is complete at once, without a step.
     ///
     /// # Errors
-    /// [`SimulationError::BadDuration`] if that is not a length of time, and those of the device.
+    /// [`SimulationError::BadDuration`] if `seconds` is negative or not finite, and those of the device.
     pub fn begin(&mut self, seconds: f32) -> Result<(), SimulationError> {
         if !(seconds >= 0.0 && seconds.is_finite()) {
             return Err(SimulationError::BadDuration { seconds });
@@ -71,8 +71,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Submits the next steps of the frame, without waiting for them; the frame's account once it is complete, `None`
-    /// before.
+    /// Submits the next steps of the frame, without waiting for them. Returns the statistics once the frame is
+    /// complete, and `None` before.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -80,14 +80,14 @@ impl Simulation {
         block_on(self.continue_frame_async())
     }
 
-    /// [`continue_frame`](Self::continue_frame) where blocking is not possible, as on a web page. A frame whose
-    /// future is dropped half-way is given up.
+    /// [`continue_frame`](Self::continue_frame) where blocking is not possible, as on a web page. If the future is
+    /// dropped before it completes, the frame is abandoned.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
     pub async fn continue_frame_async(&mut self) -> Result<Option<Stats>, SimulationError> {
         let Some(mut frame) = self.frame.take() else { return Ok(Some(self.stats)) };
-        // What is known is one batch old, or nothing yet; one step more meets the frame's end.
+        // The known state is one batch old or absent. One step more than estimated reaches the end of the frame.
         let (steps, remaining) =
             frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
         let to_come = (remaining / self.stable_dt).ceil() as u32;
@@ -98,7 +98,7 @@ impl Simulation {
         let steps = 1 << left.ilog2();
         let (mut state_before, mut action) = (remaining, None);
         for submission in self.schedule.submissions(steps) {
-            // The action behind the last submission waits for the state that is read below.
+            // The action after the last submission waits for the state that is read below.
             if let Some(action) = action {
                 let left = self.executor.fetch(self.fields.state).await?[0].remaining;
                 act(action, &mut self.bodies, &mut self.executor, state_before - left).await?;
@@ -109,8 +109,8 @@ impl Simulation {
         }
         frame.submitted += steps;
         let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
-        // Once all expected steps are submitted there is nothing left to overlap with; on the CPU there never
-        // is. A host action precedes the next step.
+        // The host waits for the newest state where nothing can overlap: all expected steps are submitted, the
+        // executor is the CPU, or a host action precedes the next step.
         let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || action.is_some() {
             frame.pending.take()
         } else {
@@ -124,7 +124,7 @@ impl Simulation {
                 act(action, &mut self.bodies, &mut self.executor, passed).await?;
             }
             frame.state = Some(state);
-            // A step too small for the scene would take for ever to reach the frame's end.
+            // With a step below `min_dt` the frame might never end.
             if state.done != 0 || state.too_small != 0 {
                 return self.end_frame(state).await.map(Some);
             }
@@ -173,7 +173,7 @@ impl Simulation {
         Ok(self.stats)
     }
 
-    /// Brings the counters of lost particles up to date.
+    /// Updates the statistics of emitted and lost particles.
     pub(super) async fn count(&mut self) -> Result<(), SimulationError> {
         let counters = self.executor.fetch(self.fields.counters).await?;
         let stats = &mut self.stats;
@@ -182,18 +182,18 @@ impl Simulation {
         stats.speed_limits = counters[StepCounters::LIMITED];
         stats.drained = counters[StepCounters::DRAINED];
         if let Some(flow) = &mut self.flow {
-            let (count, told) = flow.count(&mut self.executor).await?;
+            let (count, warnings) = flow.count(&mut self.executor).await?;
             (stats.emitted, stats.refused) = (count.emitted, count.refused);
-            self.told.extend(told);
+            self.warnings.extend(warnings);
         }
-        let gone = stats.escaped + stats.drained + counters[StepCounters::NON_FINITE];
-        stats.particles = self.initial + stats.emitted - gone;
+        let lost = stats.escaped + stats.drained + counters[StepCounters::NON_FINITE];
+        stats.particles = self.initial + stats.emitted - lost;
         if counters[StepCounters::NON_FINITE] > stats.non_finite {
             stats.non_finite = counters[StepCounters::NON_FINITE];
             let positions = self.executor.fetch(self.fields.positions).await?;
             let ids = self.executor.fetch(self.fields.ids).await?;
-            let dead = positions.iter().zip(ids).filter(|(p, _)| p.w == DEAD_NON_FINITE);
-            if let Some((p, id)) = dead.min_by_key(|(_, id)| *id) {
+            let removed = positions.iter().zip(ids).filter(|(p, _)| p.w == DEAD_NON_FINITE);
+            if let Some((p, id)) = removed.min_by_key(|(_, id)| *id) {
                 stats.non_finite_place = p.xyz().to_array();
                 stats.non_finite_id = id;
             }
@@ -202,7 +202,7 @@ impl Simulation {
     }
 }
 
-/// Does what a host phase asks for, `seconds` after the last time.
+/// Executes the action of a host phase, `seconds` of simulated time after the last one.
 async fn act(
     action: HostAction,
     bodies: &mut Option<Bodies>,

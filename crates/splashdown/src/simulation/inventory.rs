@@ -1,4 +1,4 @@
-//! The particles of a scene, counted before they are simulated.
+//! Counts the particles of a scene without simulating it.
 
 use super::Simulation;
 use crate::SimulationError;
@@ -6,7 +6,7 @@ use crate::check::Built;
 use crate::sample::{self, Inventory, SampleError};
 use crate::scene::{Scene, lattice};
 
-/// Counts a scene's particles as a [`Simulation`] would have them; bodies are loaded for it, which may take
+/// Counts the particles that a [`Simulation`] of this scene starts with. Bodies are loaded for this, which may take
 /// seconds the first time.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Changing a simulation while it runs: a hand in the water, other numbers, other things.
+//! Changes of a running simulation: the mouse force, parameters, and the scene.
 
 use glam::Vec3;
 use splashdown_gpu::block_on;
@@ -11,7 +11,7 @@ use crate::state::{Params, StepState};
 use crate::{SimulationError, sample, schemes};
 
 impl Simulation {
-    /// Puts a hand into the water, moves it, or takes it out. From the first hand on, a step takes two more passes.
+    /// Sets, changes or removes the mouse force. From the first call with a force, each step takes two more passes.
     ///
     /// # Errors
     /// Those of the device.
@@ -27,15 +27,15 @@ impl Simulation {
         coupling.set(&mut self.executor, mouse_force.unwrap_or(MouseForce::NONE))?;
         self.mouse_force = Some(coupling);
         if is_first && let Err(error) = self.record_step() {
-            // Without its pass a hand would do nothing, and nobody would be told.
+            // Without its passes the force would have no effect, and no later call would report it.
             self.mouse_force = None;
             return Err(error);
         }
         Ok(())
     }
 
-    /// Pulls a free body by the point `anchor` (m, in its own frame) towards `target` (m): its velocity
-    /// becomes, once, the one that brings the point there at `rate` times its distance per second. For between
+    /// Pulls a dynamic body by the point `anchor` (m, in its own frame) towards `target` (m): changes the velocity
+    /// of the body once, so that the point approaches the target at `rate` (1/s) times their distance. Call it between
     /// two frames.
     ///
     /// # Errors
@@ -53,15 +53,15 @@ impl Simulation {
         }
     }
 
-    /// At most this many steps go to a device at once, between 1 and 64: fewer leave it free for drawing
-    /// sooner. On the CPU it is also how often a frame comes back to its caller.
+    /// Limits the number of steps in one submission, between 1 and 64. With fewer steps a GPU is free for drawing
+    /// sooner, and [`continue_frame`](Self::continue_frame) on the CPU returns sooner.
     pub fn set_steps_at_once(&mut self, steps: u32) {
         self.most_steps = steps.max(1);
     }
 
-    /// Goes on under another scene that differs in numbers alone: gravity, the fluid's material, the solver's
-    /// coefficients, and what is not about motion (camera, output, surface, foam). False, and nothing changed,
-    /// if it differs in more; then [`rebuild_with`](Self::rebuild_with) does it.
+    /// Continues with another scene that differs in parameters only: gravity, the material of the fluid, the
+    /// coefficients of the solver, and settings that do not affect motion (camera, output, surface, foam). Returns
+    /// false, and changes nothing, if the scene differs in more; use [`rebuild_with`](Self::rebuild_with) then.
     ///
     /// # Errors
     /// Those of the device.
@@ -76,7 +76,7 @@ impl Simulation {
         twin.foam = old.foam;
         twin.domain.shake = old.domain.shake;
         twin.fluid.material.name.clone_from(&old.fluid.material.name);
-        // The density at rest counts in the masses of particles, which stay.
+        // The rest density must not change: it determines the particle mass.
         twin.fluid.material.viscosity = old.fluid.material.viscosity;
         twin.fluid.material.surface_tension = old.fluid.material.surface_tension;
         let kinds = &scene.solver;
@@ -92,7 +92,8 @@ impl Simulation {
         if twin != *old {
             return Ok(false);
         }
-        // Water that moves was made for its speed of sound: with a lower one it would be soft, and pressures burst.
+        // The speed of sound must not decrease: the state of the fluid would be too compressed for a softer equation
+        // of state, and pressures would burst.
         let params = schemes::params(scene, self.params.particle_count);
         let params = Params { sound_speed: params.sound_speed.max(self.params.sound_speed), ..params };
         self.executor.write(self.fields.params, &[params])?;
@@ -101,12 +102,12 @@ impl Simulation {
         Ok(true)
     }
 
-    /// The same fluid, at the same time, under another scene: its bodies, its box, its solver. Particles keep
-    /// their places, velocities and ids; those outside the box or inside a new body are taken out. Free bodies
-    /// that both scenes have, by name, stay where they are. The scene's own fluid is not added; its emitters
-    /// begin to count anew.
+    /// Creates a simulation of another scene with the present fluid, at the present time. Particles retain their
+    /// positions, velocities and ids; those outside the new domain or inside a new body are removed. A dynamic body
+    /// that both scenes contain, by name, retains its position. The fluid blocks of the scene are not added, and the
+    /// counts of its emitters start from zero.
     ///
-    /// This simulation is of no more use then, but for its results.
+    /// Afterwards this simulation can be read, but not advanced.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -132,7 +133,7 @@ impl Simulation {
                 (free(&body.motion) && free(&self.scene.bodies[old].motion)).then(|| states[old])
             })
             .collect();
-        // Fluid is already where the old bodies are not.
+        // The fluid does not overlap the old bodies: only new ones displace particles.
         let new: Vec<&LoadedBody> = loaded.iter().filter(|body| place(&body.name).is_none()).collect();
         let removed = sample::retain_outside(scene, &mut particles, &new);
         let mut next = Self::with_bodies(scene, self.executor.successor(), &particles, loaded).await?;
@@ -142,7 +143,7 @@ impl Simulation {
         Ok(next)
     }
 
-    /// Sets the clock, and bodies that have moved.
+    /// Sets the time, and the states of retained bodies.
     async fn begin_at(&mut self, time: f64, kept: &[Option<BodyState>]) -> Result<(), SimulationError> {
         self.stats.time = time;
         let mut state = self.executor.fetch(self.fields.state).await?;

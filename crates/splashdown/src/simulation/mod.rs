@@ -27,7 +27,7 @@ use crate::scene::Scene;
 use crate::solid::RepairReport;
 use crate::state::{Fields, Params};
 
-/// A fluid in its box, with everything that moves it, on one device.
+/// A simulation of a scene on one device.
 ///
 /// ```
 /// use splashdown::{Device, Simulation, scene::Scene};
@@ -50,7 +50,7 @@ pub struct Simulation {
     prime: Recording,
     schedule: Schedule,
     stats: Stats,
-    /// What `stable_dt` was when last heard of, in seconds.
+    /// The last known stable time step in seconds.
     stable_dt: f32,
     frame: Option<FrameInProgress>,
     bodies: Option<Bodies>,
@@ -58,28 +58,28 @@ pub struct Simulation {
     flow: Option<Flow>,
     probes: Option<Probes>,
     mouse_force: Option<MouseForceCoupling>,
-    /// Most steps in one submission.
+    /// The largest number of steps in one submission.
     most_steps: u32,
-    /// Rows of the probes since they were last asked for.
+    /// Rows of the probes since the last call of `take_probe_rows`.
     rows: Vec<ProbeRows>,
     /// Particles at the start.
     initial: u32,
-    /// What the emitters had to tell since it was last asked for.
-    told: Vec<String>,
+    /// Warnings of emitters and foam since the last call of `take_warnings`.
+    warnings: Vec<String>,
 }
 
 impl Simulation {
-    /// The scene as it is simulated now.
+    /// The scene that is simulated now.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The account of the last frame.
+    /// The statistics at the end of the last frame.
     pub fn stats(&self) -> Stats {
         self.stats
     }
 
-    /// Simulated time in seconds and steps, those of the frame in progress included as far as they are known.
+    /// Simulated time in seconds and the number of steps, including the known part of the frame in progress.
     pub fn progress(&self) -> (f64, u64) {
         let known = self.frame.as_ref().and_then(|frame| frame.state);
         known.map_or((self.stats.time, self.stats.steps), |state| {
@@ -88,33 +88,34 @@ impl Simulation {
         })
     }
 
-    /// The time step in seconds that stability asked for when last heard of.
+    /// The last known stable time step in seconds.
     pub fn dt(&self) -> f32 {
         self.stable_dt
     }
 
-    /// What emitters had to tell since the last call: each says once when it found no room.
+    /// The warnings since the last call. Each emitter warns once if it finds no room.
     pub fn take_warnings(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.told)
+        std::mem::take(&mut self.warnings)
     }
 
-    /// What the scene's probes have measured in whole frames since the last call: rows of each, in the scene's order.
-    /// Those of the whole fluid come from a [`Run`](crate::Run), which has the particles on the host.
+    /// The rows that the probes of the scene have measured in complete frames since the last call, one entry per probe
+    /// in the order of the scene. Probes of the whole fluid are evaluated by a [`Run`](crate::Run), which has the
+    /// particles on the host.
     pub fn take_probe_rows(&mut self) -> Vec<ProbeRows> {
         self.rows.iter_mut().map(std::mem::take).collect()
     }
 
-    /// The meshes of the scene's bodies, in its order.
+    /// The meshes of the scene's bodies, in the order of the scene.
     pub fn body_meshes(&self) -> &[BodyMesh] {
         self.bodies.as_ref().map_or(&[], Bodies::meshes)
     }
 
-    /// How many particles of the scene were left out because they would have been inside a body.
+    /// The number of particles of the scene that were not created because they lie inside a body.
     pub fn removed(&self) -> u32 {
         self.removed
     }
 
-    /// What was found in the meshes of the scene's bodies and done about it, in its order.
+    /// The repairs of the meshes of the scene's bodies, in the order of the scene.
     pub fn body_reports(&self) -> &[RepairReport] {
         self.bodies.as_ref().map_or(&[], Bodies::reports)
     }
@@ -124,27 +125,27 @@ impl Simulation {
         &self.params
     }
 
-    /// Its buffers, for drawing straight from them.
+    /// The buffers of the particles, for drawing without a copy.
     pub fn fields(&self) -> &Fields {
         &self.fields
     }
 
-    /// The grid and the sorted order.
+    /// The sorting grid and its buffers.
     pub fn cells(&self) -> &Cells {
         &self.cells
     }
 
-    /// Where it runs.
+    /// The executor on which the simulation runs.
     pub fn executor(&mut self) -> &mut Executor {
         &mut self.executor
     }
 
-    /// The device, if this does not run on the CPU.
+    /// The GPU, or `None` on the CPU.
     pub fn gpu(&self) -> Option<&Arc<Gpu>> {
         self.executor.gpu()
     }
 
-    /// The device's name.
+    /// The name of the device.
     pub fn device_name(&self) -> String {
         match self.executor.gpu() {
             Some(gpu) => gpu.name(),
@@ -152,22 +153,22 @@ impl Simulation {
         }
     }
 
-    /// Bytes in buffers.
+    /// The size of all buffers in bytes.
     pub fn memory(&self) -> u64 {
         self.executor.bytes()
     }
 
-    /// From now on every pass is timed; false where the device cannot.
+    /// Starts timing every pass. Returns false if the device does not support it.
     pub fn enable_timing(&mut self) -> bool {
         self.executor.enable_timing()
     }
 
-    /// From now on passes are not timed.
+    /// Stops timing passes.
     pub fn disable_timing(&mut self) {
         self.executor.disable_timing();
     }
 
-    /// Time per pass since the last call.
+    /// The time per pass since the last call.
     pub fn take_timings(&mut self) -> Timings {
         self.executor.take_timings()
     }

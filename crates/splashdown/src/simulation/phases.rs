@@ -1,44 +1,44 @@
-//! A step as a list of phases: what the device does, and where the host has to look.
+//! A step as a list of phases: passes on the device, and actions of the host.
 //!
-//! Neighbouring device phases become one submission. Where the host has to look only between steps, and not after each of
-//! them, several steps become one submission too: a [`Repeat`](splashdown_gpu::Command::Repeat) whose number of rounds
-//! the host sets before each submission.
+//! Neighbouring device phases become one submission. If the host acts between batches of steps only, several steps
+//! become one submission too: a [`Repeat`](splashdown_gpu::Command::Repeat) whose number of rounds the host sets
+//! before each submission.
 
 use splashdown_gpu::{Flag, Recording, Rounds};
 
-/// What the host does when it looks.
+/// An action of the host between device phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HostAction {
-    /// Lets bodies that touch each other collide.
+    /// Resolves collisions of bodies.
     ResolveCollisions,
 }
 
 /// A part of a step.
 pub(super) enum Phase {
-    /// The device runs these passes.
+    /// Passes that run on the device.
     Device(Recording),
-    /// The host waits for the device and acts, after at most this many steps.
+    /// The host waits for the device and acts.
     Host {
-        /// What it does.
+        /// The action.
         action: HostAction,
-        /// The number of steps that may pass before it acts; 1 for every step.
+        /// The largest number of steps between two actions; 1 for every step.
         steps: u32,
     },
 }
 
-/// Device work, and what the host does behind it.
+/// Work of the device, and the action of the host after it.
 pub(super) struct Submission {
     recording: Recording,
     action: Option<HostAction>,
 }
 
 impl Submission {
-    /// The device's part.
+    /// The passes of the device.
     pub fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// The host's part, once the device is done.
+    /// The action of the host, once the device is done.
     pub fn action(&self) -> Option<HostAction> {
         self.action
     }
@@ -52,12 +52,12 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    /// A step of these phases, repeated until `done` and at most `most_steps` times in a submission; `end` follows the
-    /// last step of each submission.
+    /// Schedules a step of these phases, which repeats until `done` and at most `most_steps` times in a submission.
+    /// `end` follows the last step of each submission.
     pub fn new(phases: Vec<Phase>, end: &Recording, done: Flag, most_steps: u32) -> Self {
         let (mut merged, most_steps) = merge(phases, most_steps);
         let rounds = Rounds::new(most_steps);
-        // A step that the host interrupts is submitted piece by piece; any other is repeated as a whole.
+        // A step with a host action inside is submitted in parts; any other step is repeated as a whole.
         if let [only] = merged.as_mut_slice() {
             let mut steps = Recording::new("steps");
             steps.repeat(&only.recording, &rounds, done);
@@ -69,24 +69,24 @@ impl Schedule {
         Self { submissions: merged, rounds, most_steps }
     }
 
-    /// A schedule of no step.
+    /// A schedule without phases.
     pub fn empty() -> Self {
         Self { submissions: Vec::new(), rounds: Rounds::new(0), most_steps: 0 }
     }
 
-    /// The largest number of steps that the host may submit before it looks.
+    /// The largest number of steps that the host may submit before it acts.
     pub fn most_steps(&self) -> u32 {
         self.most_steps
     }
 
-    /// The submissions of this many steps, which is limited to [`most_steps`](Self::most_steps).
+    /// The submissions of this many steps; the number is limited to [`most_steps`](Self::most_steps).
     pub fn submissions(&self, steps: u32) -> &[Submission] {
         self.rounds.set(steps.min(self.most_steps));
         &self.submissions
     }
 }
 
-/// Merges neighbouring device phases, and finds how many steps may pass between two looks of the host.
+/// Merges neighbouring device phases. Also returns the largest number of steps between two actions of the host.
 fn merge(phases: Vec<Phase>, most_steps: u32) -> (Vec<Submission>, u32) {
     let mut merged: Vec<Submission> = Vec::new();
     let mut most = most_steps;
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn device_phases_merge_unless_the_host_looks_between_them() {
+    fn device_phases_merge_unless_the_host_acts_between_them() {
         let mut executor = Executor::from(CpuExecutor::new());
         let buffer = executor.create::<u32>("numbers", 4).unwrap();
         let count = |phases| {
@@ -134,7 +134,7 @@ mod tests {
             (commands, most)
         };
         assert_eq!(count(vec![device(buffer), device(buffer)]), (vec![2], 64));
-        // A look behind a step allows several steps; one inside a step allows one.
+        // A host action after the step allows several steps per submission; one inside the step allows one.
         assert_eq!(count(vec![device(buffer), device(buffer), host(16)]), (vec![2], 16));
         assert_eq!(count(vec![device(buffer), host(1), device(buffer)]), (vec![1, 1], 1));
         assert_eq!(count(vec![device(buffer), host(16), device(buffer)]), (vec![1, 1], 1));

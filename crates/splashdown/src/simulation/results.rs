@@ -1,4 +1,4 @@
-//! What a simulation hands out: particles, bodies, the surface.
+//! Results of a simulation: particles, bodies, the surface.
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
 use splashdown_gpu::{Recording, block_on};
@@ -11,7 +11,8 @@ use crate::scene::{Probe, Quantity, SurfaceSettings};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
 
 impl Simulation {
-    /// The living particles in order of id. Densities and pressures are those of the last step's beginning.
+    /// The active particles in the order of their ids. Densities and pressures are those at the beginning of the last
+    /// step.
     ///
     /// # Errors
     /// Those of the device.
@@ -25,7 +26,7 @@ impl Simulation {
     /// Those of the device.
     pub async fn particles_async(&mut self) -> Result<Particles, SimulationError> {
         let (fields, executor) = (self.fields, &mut self.executor);
-        // All four travel together; only then does the host wait.
+        // All four copies are requested before the host waits for the first.
         let n = self.params.particle_count as usize;
         let positions = executor.request(fields.positions, n)?;
         let velocities = executor.request(fields.velocities, n)?;
@@ -36,7 +37,7 @@ impl Simulation {
         Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
     }
 
-    /// How many of these particles lie inside a body: zero in a sound run.
+    /// The number of these particles that lie inside a body: zero in a sound run.
     ///
     /// # Errors
     /// Those of the device.
@@ -46,7 +47,7 @@ impl Simulation {
         Ok(bodies.inside(&states, particles))
     }
 
-    /// A sentence for each gauge that is so deep inside a body that no fluid is near it, as things are now.
+    /// A warning for each gauge that is now so deep inside a body that no fluid reaches it.
     ///
     /// # Errors
     /// Those of the device.
@@ -59,7 +60,7 @@ impl Simulation {
             let depth = -1000.0 * distance;
             (distance < -self.params.particle_spacing).then(|| {
                 format!(
-                    "probe {:?} is {depth:.0} mm inside body {body:?}, where it measures nothing; move it to the surface",
+                    "probe {:?} is {depth:.0} mm inside body {body:?} and measures nothing; move it to the surface",
                     probe.name
                 )
             })
@@ -67,7 +68,8 @@ impl Simulation {
         Ok(buried.collect())
     }
 
-    /// Where the scene's bodies are and what the fluid does to them, in its order.
+    /// The positions and velocities of the scene's bodies and the forces of the fluid on them, in the order of the
+    /// scene.
     ///
     /// # Errors
     /// Those of the device.
@@ -86,8 +88,8 @@ impl Simulation {
         }
     }
 
-    /// Sorts the particles as they are now by cell, without a step: input of the surface. For between two frames: one
-    /// that has begun and is not complete is given up.
+    /// Sorts the particles by cell without a step, as input for the surface. Call it between two frames: a frame in
+    /// progress is abandoned.
     ///
     /// # Errors
     /// Those of the device.
@@ -100,7 +102,7 @@ impl Simulation {
         Ok(self.executor.run(&recording)?)
     }
 
-    /// Prepares the fluid's surface with the scene's settings.
+    /// Creates a surface of the fluid with these settings.
     ///
     /// # Errors
     /// Those of the device.
@@ -116,7 +118,7 @@ impl Simulation {
         Ok(Surface::new(&mut self.executor, params, input)?)
     }
 
-    /// Extracts the surface of the particles as they are now; it stays on the device. For between two frames, as
+    /// Extracts the surface of the particles; the mesh stays on the device. Call it between two frames, as
     /// [`sort`](Self::sort).
     ///
     /// # Errors
@@ -134,7 +136,7 @@ impl Simulation {
         Ok(surface.extract_async(&mut self.executor).await?)
     }
 
-    /// Fetches the surface extracted last.
+    /// Fetches the mesh of the last [`extract`](Self::extract).
     ///
     /// # Errors
     /// Those of the device.

@@ -1,4 +1,4 @@
-//! Where a simulation comes from.
+//! Construction of a simulation.
 
 use std::mem::offset_of;
 
@@ -22,7 +22,7 @@ use crate::state::{DEAD_UNBORN, Fields, Params, StepState};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample, state};
 
 impl Simulation {
-    /// Places a scene's particles on a device.
+    /// Creates a simulation of a scene on a device.
     ///
     /// # Errors
     /// Any [`SimulationError`] of devices, sampling and sizes.
@@ -30,7 +30,7 @@ impl Simulation {
         Self::with_executor(scene, device.executor()?)
     }
 
-    /// Places a scene's particles on an executor that is already there.
+    /// Creates a simulation of a scene on an open executor.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -38,9 +38,8 @@ impl Simulation {
         Self::prepare(scene, executor, &|_, _| {})
     }
 
-    /// As [`with_executor`](Self::with_executor); `progress` is called with the name of each body whose distances
-    /// are being computed and the completed part, in [0, 1]: a mesh of a hundred thousand triangles takes seconds the first
-    /// time.
+    /// As [`with_executor`](Self::with_executor). `progress` is called with the name of each body whose distances
+    /// are being computed, and the completed part in [0, 1]: a mesh of 100,000 triangles takes seconds the first time.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -72,9 +71,9 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be different from each
-    /// other; `densities`, if given, are where the continuity equation starts, in kg/m^3. Particles that lie
-    /// outside the domain, are not finite, or have a density that is not positive are taken out and counted.
+    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be unique; `densities` in
+    /// kg/m^3, if given, are the initial values of the continuity equation. Particles that lie outside the domain, are
+    /// not finite, or have a density that is not positive are removed and counted.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -107,7 +106,7 @@ impl Simulation {
         let largest = executor.largest_buffer();
         memory::check_particles(n as u64, largest, scene.fluid.particle_spacing)?;
         let loaded_flow = Built::of(scene).flow(scene)?;
-        // The unborn have places of their own.
+        // Particles that are not yet emitted follow the initial ones.
         let initial = n as u32;
         let capacity = loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as u32;
         let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
@@ -120,7 +119,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Makes the buffers and records the step; the particles, `capacity` at most, are still to be put in.
+    /// Creates the buffers and records the step, for at most `capacity` particles; does not write the particles.
     pub(super) fn assemble(
         scene: &Scene,
         mut executor: Executor,
@@ -183,13 +182,13 @@ impl Simulation {
             mouse_force: None,
             most_steps: MOST_STEPS,
             initial: 0,
-            told: Vec::new(),
+            warnings: Vec::new(),
         };
         simulation.record_step()?;
         Ok(simulation)
     }
 
-    /// Records the step of this scene with the present couplings.
+    /// Records the step of the scene with the present couplings.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -223,20 +222,21 @@ fn upload(
     params: &Params,
 ) -> Result<(), SimulationError> {
     let n = particles.positions.len();
-    let unborn = params.particle_count as usize - n;
+    let not_emitted = params.particle_count as usize - n;
     let rest_density = params.rest_density;
     let mut positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
-    positions.extend(vec![params.domain_min.extend(DEAD_UNBORN); unborn]);
-    // Passes divide by densities: one that is not positive is as good as none, and its particle is taken out as such.
+    positions.extend(vec![params.domain_min.extend(DEAD_UNBORN); not_emitted]);
+    // Passes divide by densities. A density that is not positive becomes NaN, so that the particle is removed as not
+    // finite.
     let positive = |rho: f32| if rho > 0.0 { rho } else { f32::NAN };
     let density = |i: usize| particles.densities.get(i).map_or(rest_density, |&rho| positive(rho));
     let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
     let mut velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
-    velocities.extend(vec![Vec3::ZERO.extend(rest_density); unborn]);
+    velocities.extend(vec![Vec3::ZERO.extend(rest_density); not_emitted]);
     let mut ids: Vec<u32> =
         if particles.ids.len() == n { particles.ids.clone() } else { (0..n as u32).collect() };
-    // Ids of the unborn must differ from each other and from those of the dead: they count down from the largest.
-    ids.extend((0..unborn as u32).map(|k| u32::MAX - k));
+    // Ids of particles not yet emitted must differ from all others: they count down from the largest number.
+    ids.extend((0..not_emitted as u32).map(|k| u32::MAX - k));
     executor.write(fields.positions, &positions)?;
     executor.write(fields.velocities, &velocities)?;
     executor.write(fields.ids, &ids)?;
