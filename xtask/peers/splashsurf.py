@@ -1,12 +1,12 @@
-"""Times splashsurf's surface of particles, or tells how much memory it takes.
+"""Measures the time or the memory of a surface reconstruction with splashsurf.
 
 usage: splashsurf.py time PARTICLES RADIUS CELL SMOOTHING REPETITIONS
        splashsurf.py memory PARTICLES.xyz RADIUS CELL SMOOTHING
        splashsurf.py convert PARTICLES PARTICLES.xyz
 
-Particles are .npy, or .npz with an array `positions`; .xyz is what splashsurf's command line reads. Lengths are as splashsurf wants
-them: the radius in the particles' unit, cells in radii. With smoothing there are clean-up, weights and normals. Memory is that of
-splashsurf's command line, beyond what Python takes. The number of threads comes from RAYON_NUM_THREADS. Prints one line of JSON.
+Particles are .npy, or .npz with an array `positions`; splashsurf's command line reads .xyz. Lengths follow splashsurf's convention:
+the radius in the particles' unit, cells in radii. Smoothing includes clean-up, weights and normals. Memory is that of splashsurf's
+command line, without that of Python. The number of threads comes from RAYON_NUM_THREADS. Prints one line of JSON.
 """
 
 import json
@@ -23,7 +23,7 @@ SMOOTHING_LENGTH, THRESHOLD = 2.0, 0.6
 
 
 def memory(name):
-    """What the system says of this process, in bytes; the highest value is counted from the start of the program."""
+    """A memory figure of this process from the system, in bytes; peaks count from the start of the program."""
     with open("/proc/self/status") as file:
         [line] = [line for line in file if line.startswith(name + ":")]
     return 1024 * int(line.split()[1])

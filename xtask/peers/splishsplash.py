@@ -2,9 +2,9 @@
 
 usage: splishsplash.py wcsph|dfsph DIVISOR STEPS FOLDER
 
-The block has 40 particles a side (64,000), DIVISOR times fewer for a trial. WCSPH gets the stiffness, exponent and time
-step below; DFSPH is as in the scene. The folder is for the scene and for what it keeps beside it: the box's map. The
-number of threads comes from OMP_NUM_THREADS. Prints one line of JSON.
+The block has 40 particles per edge (64,000), divided by DIVISOR for a trial. WCSPH uses the stiffness, exponent and time
+step below; DFSPH is as in the scene. FOLDER receives the scene and the volume map of the box. The number of threads comes
+from OMP_NUM_THREADS. Prints one line of JSON.
 """
 
 import ctypes
@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-# The wheel brings a part of a GL library. Without the system's whole one loaded first, its import crashes on Debian.
+# The wheel contains part of a GL library. Its import crashes on Debian unless the system's complete library is loaded first.
 try:
     ctypes.CDLL("libGL.so.1", mode=ctypes.RTLD_GLOBAL)
 except OSError:
@@ -30,7 +30,7 @@ SAMPLED = 500
 
 
 def scene(method, divisor, folder):
-    """Writes the scene; the wheel's own is the base."""
+    """Writes the scene, based on the one in the wheel."""
     data = os.path.join(sys.prefix, "bin", "data")
     with open(os.path.join(data, "Scenes", "DamBreakModel.json")) as file:
         scene = json.load(file)
@@ -45,9 +45,9 @@ def scene(method, divisor, folder):
     for owner, keys in ((box, ("translation", "scale")), (block, ("start", "end"))):
         for key in keys:
             owner[key] = [scale * x for x in owner[key]]
-    # A row of particles less fits than one would think.
+    # The block holds one row of particles fewer than its length divided by the spacing.
     block["end"] = [x + 2 * configuration["particleRadius"] for x in block["end"]]
-    # One corner of the box, less the distance of the scene's own from its walls.
+    # A corner of the box, at the distance from the walls that the original scene has.
     gap, [left, floor] = 0.05, [box["translation"][axis] - box["scale"][axis] / 2 for axis in (0, 1)]
     block["translation"] = [left + gap - block["start"][0], floor + gap - block["start"][1], 0]
     path = os.path.join(folder, f"{method}_{divisor}.json")

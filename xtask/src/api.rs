@@ -1,8 +1,8 @@
-//! The public API of the library crates against that of an earlier commit, by `cargo-semver-checks`.
+//! Compares the public API of the library crates with that of an earlier commit, using `cargo-semver-checks`.
 //!
-//! The tool would compile every dependency again, twice per crate. Here `cargo doc` describes both states instead,
-//! with the artifacts that the other layers of `cargo xtask test` have built, and the tool compares the descriptions.
-//! Those of the earlier commit are kept in `target/api`.
+//! The tool alone would compile every dependency again, twice per crate. Here `cargo doc` describes both states
+//! instead, with the artifacts that the other layers of `cargo xtask test` have built, and the tool compares the
+//! descriptions. Those of the earlier commit are cached in `target/api`.
 
 use std::ffi::OsString;
 use std::fs;
@@ -30,14 +30,14 @@ const BASELINE: &str = ".semver-baseline";
 const TOOL: &str = "cargo-semver-checks";
 const TOOL_VERSION: &str = "0.51.0";
 
-/// Set while this program stands in for rustdoc: the folder of the descriptions.
+/// Set while this program replaces rustdoc: the folder of the descriptions.
 const OUTPUT: &str = "SPLASHDOWN_API_OUTPUT";
 
 /// The flags of rustdoc with which the tool itself describes a crate.
 const RUSTDOC_FLAGS: &str = "-Zunstable-options --output-format=json --document-private-items \
                              --document-hidden-items --cap-lints=allow";
 
-/// The word `api`: compares, and installs the tool if necessary.
+/// The command `api`: compares, and installs the tool if necessary.
 pub fn run(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "api takes no arguments, got {}", arguments.join(" "));
     match layer(true)? {
@@ -101,7 +101,7 @@ fn tools_folder() -> PathBuf {
     process::target().join("tools")
 }
 
-/// Compiles the tool without optimization: building it takes longer than all that it does here.
+/// Compiles the tool without optimization: an optimized build takes longer than the comparison.
 fn install_tool() -> Result<PathBuf> {
     say(format!("Installing {TOOL} {TOOL_VERSION} into {} ...", tools_folder().display()));
     let build = tools_folder().join("build");
@@ -110,7 +110,7 @@ fn install_tool() -> Result<PathBuf> {
     install.envs([("CARGO_PROFILE_DEV_DEBUG", "0"), ("CARGO_PROFILE_DEV_OPT_LEVEL", "0")]);
     process::run(&mut install)?;
     fs::remove_dir_all(&build).with_context(|| format!("cannot remove {}", build.display()))?;
-    tool().with_context(|| format!("{TOOL} was installed and does not start"))
+    tool().with_context(|| format!("{TOOL} was installed but does not start"))
 }
 
 /// The full id of the commit that the file names: an id, a branch or a tag. Lines with `#` are comments.
@@ -165,9 +165,9 @@ fn describe(workspace: &Path, output: &Path) -> Result<()> {
     process::run(&mut doc)
 }
 
-/// Stands in for rustdoc if `describe` has started this program. It differs in two points: unstable flags are
-/// allowed, and the output goes to a folder of its own. If cargo itself set `RUSTC_BOOTSTRAP`, build scripts would
-/// notice, and every dependency would be compiled again.
+/// Replaces rustdoc if `describe` has started this program. It differs in two points: unstable flags are allowed,
+/// and the output goes to a separate folder. `RUSTC_BOOTSTRAP` is not set for cargo itself: build scripts would
+/// react to it, and every dependency would be compiled again.
 pub fn as_rustdoc() -> Option<ExitCode> {
     let output = std::env::var_os(OUTPUT)?;
     let arguments = with_output(std::env::args_os().skip(1).collect(), &output);
@@ -192,7 +192,7 @@ fn with_output(mut arguments: Vec<OsString>, output: &OsString) -> Vec<OsString>
     arguments
 }
 
-/// True if the tool finds no break that the versions of the two do not allow. It prints what it finds.
+/// True if the tool finds no breaking change beyond those that the versions allow. The tool prints its findings.
 fn compatible(tool: &Path, old: &Path, new: &Path) -> Result<bool> {
     let mut check = command(tool);
     check.args(["semver-checks", "--baseline-rustdoc"]).arg(old).arg("--current-rustdoc").arg(new);
@@ -204,7 +204,7 @@ mod tests {
     use super::{revision, with_output};
 
     #[test]
-    fn the_first_line_that_is_no_comment_names_the_commit() {
+    fn the_first_line_that_is_not_a_comment_names_the_commit() {
         assert_eq!(revision("# why\n\n v1.0.0 \nother\n"), Some("v1.0.0"));
         assert_eq!(revision("# why\n"), None);
     }

@@ -53,7 +53,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     section(&mut page, &binary, "GPU", &["--device", "gpu", "--particles", GPU_SIZES])?;
     section(&mut page, &binary, "Software Vulkan", &["--device", "llvmpipe", "--particles", one])?;
     if quick {
-        say("\n--quick: docs/bench.md is left as it is.");
+        say("\n--quick: docs/bench.md is unchanged.");
         return Ok(());
     }
     page.write("docs/bench.md")
@@ -83,7 +83,7 @@ fn section(page: &mut Page, binary: &Path, title: &str, arguments: &[&str]) -> R
     match output.status.code() {
         Some(0) => page.add_anchored(&anchor(title), &text),
         Some(4) if text.is_empty() => page.add_anchored(&anchor(title), "This machine has no such device."),
-        // The rows of the sizes that fit are kept.
+        // The rows of the sizes that fit are still written.
         Some(4) => {
             page.add_anchored(&anchor(title), &format!("{text}\nFurther sizes do not fit this device."));
         }

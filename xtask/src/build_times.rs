@@ -1,4 +1,4 @@
-//! How long a first build takes, from an empty target folder with all crates downloaded.
+//! Measures the time of a first build: an empty target folder, all crates downloaded.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -60,7 +60,7 @@ fn seconds(build: &[&str], jobs: Option<usize>) -> Result<f64> {
     Ok(time)
 }
 
-/// Crates that a build compiles, build scripts' dependencies and own crates among them.
+/// Number of crates that a build compiles, including dependencies of build scripts and the workspace's own crates.
 fn crates(build: &[&str]) -> Result<usize> {
     let mut tree =
         cargo(["tree", "--offline", "--edges", "normal,build", "--prefix", "none", "--format", "{p}"]);
@@ -68,7 +68,7 @@ fn crates(build: &[&str]) -> Result<usize> {
     let output = tree.output()?;
     ensure!(output.status.success(), "`{}` failed ({})", process::line(&tree), output.status);
     let text = String::from_utf8_lossy(&output.stdout);
-    // A crate that was listed before is marked with an asterisk.
+    // `cargo tree` marks a crate that it has already listed with an asterisk.
     let names: BTreeSet<&str> = text.lines().map(|line| line.trim_end_matches(" (*)")).collect();
     Ok(names.iter().filter(|name| !name.is_empty()).count())
 }

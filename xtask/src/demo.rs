@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use crate::process::{self, say};
 use crate::setup;
 
-/// Where the demo's results go.
+/// Output folder of the demo.
 const OUT: &str = "out/dam-break";
 
 /// The window, plots and collisions are not built: the demo uses none of them, and they are more than half of the crates.

@@ -1,16 +1,16 @@
-//! Killing what another program started.
+//! Kills a process with all its descendants.
 
 use std::process::Command;
 
-/// Kills everything below a process, however deep, and, if `root` says so, the process itself. What cannot be killed
-/// is left: the caller has reported the failure already.
+/// Kills all descendants of a process and, if `root` is set, the process itself. Failures are ignored: the caller has
+/// already reported an error.
 pub fn tree(process: u32, root: bool) {
     if cfg!(windows) {
-        // taskkill ends the whole tree only.
+        // taskkill can only end the whole tree.
         let _ = Command::new("taskkill").args(["/T", "/F", "/PID", &process.to_string()]).output();
         return;
     }
-    // Parents first, so that none reacts to the end of its child.
+    // Parents first, so that no parent reacts to the end of its child.
     let mut doomed = if root { vec![process] } else { Vec::new() };
     doomed.extend(below(process, &parents()));
     let numbers: Vec<String> = doomed.iter().map(u32::to_string).collect();
@@ -26,7 +26,7 @@ fn parents() -> Vec<(u32, u32)> {
     text.lines().filter_map(|line| pair(line.split_whitespace())).collect()
 }
 
-/// The same from Linux's `/proc`, where `ps` is not installed.
+/// The same from Linux's `/proc`, for systems without `ps`.
 fn proc_parents() -> Vec<(u32, u32)> {
     let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
     let stat = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("stat")).ok();

@@ -1,4 +1,4 @@
-//! The layers of `cargo xtask test`: each one runs even if an earlier one failed, and all are reported at the end.
+//! The layers of `cargo xtask test`: each layer runs even if an earlier one failed, and a summary reports all of them.
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
@@ -16,11 +16,11 @@ use crate::watch::{SILENCE, Watch};
 /// How a layer ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Success.
+    /// It succeeded.
     Passed,
-    /// Something is wrong; the text says what.
+    /// It failed; the text states the reason.
     Failed(String),
-    /// It could not run; the text says why.
+    /// It could not run; the text states the reason.
     Skipped(String),
 }
 
@@ -32,7 +32,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Runs one layer, whatever the earlier ones gave, and records its time.
+    /// Runs one layer, independent of earlier outcomes, and records its wall time.
     pub fn layer(&mut self, name: &str, body: impl FnOnce(&mut Filter) -> Result<Outcome>) {
         say(format!("\n=== {name}"));
         let start = Instant::now();
@@ -82,7 +82,7 @@ impl Report {
     }
 }
 
-/// A command whose success is the outcome. It is killed if it does not end within [`SILENCE`].
+/// Runs a command; its exit status is the outcome. It is killed if it does not end within [`SILENCE`].
 pub fn succeeds(command: &mut Command) -> Result<Outcome> {
     let words = process::line(command);
     let mut child = command.spawn().with_context(|| format!("cannot start `{words}`"))?;
@@ -102,7 +102,7 @@ pub fn succeeds(command: &mut Command) -> Result<Outcome> {
     }
 }
 
-/// A test run. Its output goes through the filter. With a watch, tests that hang are killed and named.
+/// Runs tests. Their output goes through the filter. With a watch, hung tests are killed and named.
 pub fn tests(command: &mut Command, filter: &mut Filter, mut watch: Option<Watch>) -> Result<Outcome> {
     let words = process::line(command);
     let mut child = command
@@ -160,7 +160,7 @@ enum Source {
     Harness,
 }
 
-/// Sends the lines of a pipe from a thread of its own.
+/// Sends the lines of a pipe from a separate thread.
 fn read(
     pipe: impl Read + Send + 'static,
     source: Source,

@@ -1,5 +1,5 @@
-//! Every habit of this repository as one word: `cargo xtask WORD`. Nothing but the standard library and
-//! `anyhow`, so that it builds in a second on a machine that has only Rust.
+//! The development commands of this repository: `cargo xtask COMMAND`. The only dependency is `anyhow`, so this
+//! program builds in a few seconds on a machine that has only Rust.
 
 mod api;
 mod bench;
@@ -27,33 +27,33 @@ mod web;
 use std::process::ExitCode;
 
 const HELP: &str = "\
-Usage: cargo xtask <WORD> [OPTIONS]
+Usage: cargo xtask <COMMAND> [OPTIONS]
 
-  demo [ARGUMENTS]  check or install what is needed, build, and run the dam break into out/dam-break;
-                    further arguments go to `splashdown run` (for example --frames 20)
+  demo [ARGUMENTS]  install missing requirements, build, and run the dam break into out/dam-break;
+                    ARGUMENTS are passed to `splashdown run` (for example --frames 20)
   test [--fast|--all]
-                    format, lints, tests, documentation, the web page, other systems (--fast: the first three only;
-                    --all, and with CI=true: Blender, the page as it is published, all code on other systems too)
-  bench [--quick]   measure and write docs/bench.md (--quick: small sizes only, and nothing is written)
+                    check format, lints, tests, documentation, the web page and other systems (--fast: the first
+                    three only; --all or CI=true: also Blender, the optimized page, all code for other systems)
+  bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)
   bench --peers [--quick] [--particles FILE SPACING]
-                    measure beside SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
+                    compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
   guide             build the user guide as HTML into target/guide and check its links
   build-times [--jobs N]
-                    measure first builds of the demo, the whole program and the library into an empty folder
-  pictures [SCENE]  make the pictures of the README anew
+                    measure builds of the demo, the whole program and the library into an empty folder
+  pictures [SCENE]  render the pictures of the README and the gallery
   web [--build] [--port N]
-                    the web page: build it and serve it on localhost (--build: build it only)
-  validate [CASE]   the checks against measurements at full resolution, in release mode: figures, plots, one page
+                    build the web page and serve it on localhost (--build: build only)
+  validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
   api               compare the public API of the library crates with that of an earlier commit
   package           pack every published crate and build it from its package
   dist [--target TRIPLE] [--no-check]
-                    release archives, a Debian package and checksums in target/dist
+                    build release archives, a Debian package and checksums in target/dist
   release X.Y.Z [--commit]
                     set the version and date of a release in every file that holds them
-  setup             check what demo and test need and install it where that is possible
-  help              this text
+  setup             check the requirements of demo and test, and install them where possible
+  help              print this text
 
-Environment: CI=true makes a missing Vulkan driver an error and `test` run with --all.
+Environment: CI=true makes a missing Vulkan driver an error and implies --all for `test`.
 ";
 
 fn main() -> ExitCode {
@@ -61,11 +61,11 @@ fn main() -> ExitCode {
         return code;
     }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (word, rest) = match arguments.split_first() {
-        Some((word, rest)) => (word.as_str(), rest),
+    let (command, rest) = match arguments.split_first() {
+        Some((command, rest)) => (command.as_str(), rest),
         None => ("help", &[][..]),
     };
-    let outcome = match word {
+    let outcome = match command {
         "demo" => demo::run(rest),
         "test" => suite::run(rest),
         "bench" => bench::run(rest),
@@ -84,7 +84,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         other => {
-            eprintln!("error: there is no word `{other}`\n\n{HELP}");
+            eprintln!("error: unknown command `{other}`\n\n{HELP}");
             return ExitCode::from(2);
         }
     };

@@ -1,24 +1,24 @@
-//! Releases: the crates as packages, the archives, the version. The last two are the work of the crate
-//! `splashdown-packaging`, whose dependencies this program does without.
+//! Release commands: packages of the crates, archives, version. The crate `splashdown-packaging` implements the last
+//! two, so that this program does not need its dependencies.
 
 use anyhow::{Result, ensure};
 
 use crate::process::{self, cargo};
 use crate::report;
 
-/// The word `package`: packs every published crate and builds it from its package.
+/// The command `package`: packs every published crate and builds it from its package.
 pub fn run(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "package takes no arguments, got {}", arguments.join(" "));
     // Without `--workspace` cargo takes the default members: `crates/*`, which are the published ones.
     process::run(&mut cargo(["package", "--allow-dirty"]))
 }
 
-/// The word `dist`.
+/// The command `dist`.
 pub fn dist(arguments: &[String]) -> Result<()> {
     process::run(packaging().arg("dist").args(arguments))
 }
 
-/// The word `release`.
+/// The command `release`.
 pub fn release(arguments: &[String]) -> Result<()> {
     process::run(packaging().arg("release").args(arguments).args(["--date", &report::date()]))
 }

@@ -1,4 +1,4 @@
-//! The web page in a real browser.
+//! Tests the web page in a real browser.
 
 use std::{fs, thread};
 
@@ -8,19 +8,19 @@ use crate::layers::Outcome;
 use crate::process::{self, command, say};
 use crate::{serve, setup, web};
 
-/// Names under which Chromium goes.
+/// Names under which Chromium is installed.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 const PACKAGES: [&str; 3] = ["chromium", "nodejs", "npm"];
 
-/// Builds the page and uses it as a person would; skipped only where there is no browser and none can be installed.
-/// `published`: the page as it is published, which takes minutes to optimise; else one built quickly.
+/// Builds the page and operates it like a user; skipped only if there is no browser and none can be installed.
+/// `published` selects the optimized page, which takes minutes to build; otherwise a quick build is tested.
 pub fn test(published: bool) -> Result<Outcome> {
     let mut browser = browser();
     let missing = |browser: Option<&str>| browser.is_none() || !process::exists("npm", "--version");
     if missing(browser) && setup::can_install() {
         say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
         if let Err(error) = setup::install(&PACKAGES) {
-            say(format!("WARNING: the installation failed: {error:#}. Is there a network?"));
+            say(format!("WARNING: the installation failed: {error:#}. Check the network connection."));
         }
         browser = self::browser();
     }
@@ -44,12 +44,12 @@ pub fn test(published: bool) -> Result<Outcome> {
     let checkpoint = folder.join("small.splashdown");
     test.args(["web/test/page.mjs", &address, &which(browser)?]).arg(&picture).arg(&checkpoint);
     process::run(&mut test)?;
-    // What the page handed out, the command line goes on with.
+    // The command line resumes from the checkpoint that the page exported.
     let mut run = command("cargo");
     run.args(["run", "--quiet", "--package", "splashdown-cli", "--", "run", "--resume"]).arg(&checkpoint);
     run.args(["--frames", "20", "--no-pictures", "--quiet", "--out"]).arg(folder.join("out"));
     process::run(&mut run)?;
-    say(format!("The page as it was seen is in {}.", picture.display()));
+    say(format!("The screenshot of the page is {}.", picture.display()));
     Ok(Outcome::Passed)
 }
 
@@ -57,7 +57,7 @@ fn browser() -> Option<&'static str> {
     BROWSERS.into_iter().find(|name| process::exists(name, "--version"))
 }
 
-/// The path of a program: Playwright wants no mere name.
+/// The path of a program: Playwright does not accept a bare name.
 fn which(program: &str) -> Result<String> {
     let output = command("which").arg(program).output()?;
     ensure!(output.status.success(), "`which {program}` finds nothing");

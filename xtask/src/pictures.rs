@@ -1,4 +1,4 @@
-//! The pictures of the README, made by the program itself.
+//! Renders the pictures of the README and of the window's gallery.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::setup;
 struct Shown {
     kind: &'static str,
     frame: u32,
-    /// Name in `docs/pictures`, without its ending.
+    /// Name in `docs/pictures`, without the extension.
     name: &'static str,
 }
 
@@ -20,7 +20,7 @@ const fn shown(kind: &'static str, frame: u32, name: &'static str) -> Shown {
     Shown { kind, frame, name }
 }
 
-/// Scenes and what is shown of them.
+/// Scenes and the frames that are shown of them.
 const PICTURES: [(&str, &[Shown]); 11] = [
     ("dam-break", &[shown("surface", 101, "dam-break"), shown("particles", 91, "dam-break-particles")]),
     ("falling-drop", &[shown("surface", 30, "falling-drop")]),
@@ -35,10 +35,10 @@ const PICTURES: [(&str, &[Shown]); 11] = [
     ("sloshing-tank", &[shown("surface", 60, "sloshing-tank")]),
 ];
 
-/// Scenes that are shown in the window's gallery alone, with the frame of their surface that is.
+/// Scenes that appear only in the window's gallery, with the frame of the surface that is shown.
 const THUMBNAILS: [(&str, u32); 3] = [("dam-break-small", 18), ("double-dam-break", 16), ("drum", 36)];
 
-/// The word `pictures`; names of scenes, or none for all.
+/// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {
     let wanted = |scene: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == scene);
     let scenes =
@@ -81,7 +81,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// A small picture for the gallery of the window, with few colours: all of them travel with the program.
+/// A small picture for the gallery of the window. It has few colours, because all thumbnails are embedded in the program.
 fn thumbnail(from: &Path, name: &str) -> Result<()> {
     let to = format!("crates/splashdown-viewer/thumbnails/{name}.png");
     let filter = "scale=192:108:flags=lanczos,split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse";

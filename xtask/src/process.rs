@@ -1,5 +1,5 @@
-//! Starting other programs: always from the repository's root, always with a runtime folder that Vulkan's
-//! loader accepts.
+//! Starts other programs, always from the repository root and with a runtime folder that the Vulkan loader
+//! accepts.
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -9,13 +9,13 @@ use std::sync::OnceLock;
 
 use anyhow::{Context, Result, ensure};
 
-/// Prints a line. A closed pipe (`cargo xtask help | head -1`) is no reason to panic.
+/// Prints a line. A closed pipe (`cargo xtask help | head -1`) does not cause a panic.
 pub fn say(text: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout().lock(), "{}", text.as_ref());
 }
 
-/// The folder that holds the workspace. Cargo names it to what it runs; what it named when this was built may
-/// be another clone, if they share a target folder.
+/// The root of the workspace. Cargo passes it at run time; the value from build time may be another clone if clones
+/// share a target folder.
 pub fn root() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let find = || {
@@ -26,7 +26,7 @@ pub fn root() -> &'static Path {
     FOLDER.get_or_init(find)
 }
 
-/// A command that starts in the repository's root.
+/// A command that starts in the repository root.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root());
@@ -43,7 +43,7 @@ pub fn cargo<I: IntoIterator<Item = S>, S: AsRef<OsStr>>(arguments: I) -> Comman
     command
 }
 
-/// Where cargo builds.
+/// The target folder of cargo.
 pub fn target() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     root().join(target)
@@ -71,14 +71,14 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// The command as one would type it.
+/// The command as typed in a shell.
 pub fn line(command: &Command) -> String {
     let name = Path::new(command.get_program()).file_stem().unwrap_or_default();
     let words = std::iter::once(name).chain(command.get_args());
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// True if a program can be started at all.
+/// True if a program starts and accepts the argument.
 pub fn exists(program: &str, argument: &str) -> bool {
     let mut command = Command::new(program);
     command.arg(argument).stdin(std::process::Stdio::null());
@@ -86,7 +86,7 @@ pub fn exists(program: &str, argument: &str) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// True if a program can be started, whatever it thinks of the argument.
+/// True if a program can be started, even if it rejects the argument.
 pub fn exists_at_all(program: &str, argument: &str) -> bool {
     let mut command = Command::new(program);
     command.arg(argument).stdin(std::process::Stdio::null());
@@ -94,12 +94,12 @@ pub fn exists_at_all(program: &str, argument: &str) -> bool {
     command.status().is_ok()
 }
 
-/// True where nothing may be skipped for want of a driver.
+/// True in continuous integration, where a missing driver is an error instead of a reason to skip.
 pub fn is_ci() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
-/// A private folder for `XDG_RUNTIME_DIR` where the system gave none: without it software Vulkan fills stderr.
+/// A private folder for `XDG_RUNTIME_DIR` if the system sets none: without it software Vulkan floods stderr.
 #[cfg(target_os = "linux")]
 fn runtime_folder() -> Option<&'static Path> {
     use std::os::unix::fs::DirBuilderExt;
@@ -115,17 +115,17 @@ fn runtime_folder() -> Option<&'static Path> {
     FOLDER.get_or_init(make).as_deref()
 }
 
-/// Other systems know no such folder.
+/// Other systems have no such folder.
 #[cfg(not(target_os = "linux"))]
 fn runtime_folder() -> Option<&'static Path> {
     static NONE: OnceLock<Option<PathBuf>> = OnceLock::new();
     NONE.get_or_init(|| None).as_deref()
 }
 
-/// Removes what this run left in the system's temporary folder.
+/// Removes this run's files from the system's temporary folder.
 pub fn clean_up() {
     if let Some(folder) = runtime_folder() {
-        // An empty or foreign folder in a temporary place does no harm if it stays.
+        // A leftover temporary folder is harmless, so failure is ignored.
         let _ = std::fs::remove_dir_all(folder);
     }
 }

@@ -1,5 +1,5 @@
-//! The Python packages with which tests open files: an environment of their own in the target folder, so that
-//! nothing of the user's is touched.
+//! Installs the Python packages with which tests open files, in a separate environment in the target folder, so that
+//! the user's packages stay unchanged.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,13 +8,13 @@ use anyhow::{Context, Result};
 
 use crate::process::{self, command, root, say, target};
 
-/// The packages that the usual tests use.
+/// The packages that the default tests use.
 const USUAL: &str = "requirements.txt";
 /// Blender: a download of 370 MB, for two tests.
 const BLENDER: &str = "blender.txt";
 
-/// Makes the environment and installs what is missing; Blender only if `all` is asked for. Tests whose packages
-/// cannot be installed are skipped and print so.
+/// Creates the environment and installs missing packages; Blender only with `all`. Tests whose packages cannot be
+/// installed are skipped and report it.
 pub fn ensure(all: bool) {
     let folder = target().join("python");
     for list in [Some(USUAL), all.then_some(BLENDER)].into_iter().flatten() {
@@ -27,11 +27,11 @@ pub fn ensure(all: bool) {
     }
 }
 
-/// Makes an environment in a folder, installs a list of packages into it where that has not been done, and
-/// returns its interpreter.
+/// Creates an environment in a folder, installs a list of packages into it unless that has been done, and returns its
+/// interpreter.
 ///
 /// # Errors
-/// If Python or a package cannot be had.
+/// If Python is missing or a package cannot be installed.
 pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
     install(folder, list)?;
     Ok(interpreter(folder))
@@ -39,7 +39,7 @@ pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
 
 fn install(folder: &Path, list: &Path) -> Result<()> {
     let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
-    // What was installed last is noted beside it, so that a second call costs nothing.
+    // A copy of the installed list lies beside the environment, so that a second call costs nothing.
     let note = folder.join(list.file_name().unwrap_or_default());
     if fs::read_to_string(&note).is_ok_and(|installed| installed == wanted) {
         return Ok(());
@@ -56,7 +56,7 @@ fn install(folder: &Path, list: &Path) -> Result<()> {
     Ok(fs::write(&note, wanted)?)
 }
 
-/// The environment's own interpreter.
+/// The interpreter of the environment.
 fn interpreter(folder: &Path) -> PathBuf {
     folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }

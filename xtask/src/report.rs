@@ -1,4 +1,4 @@
-//! A page of measurements: what was measured, when, on which machine and with which command.
+//! A page of measurements, with date, machine and command.
 
 use std::fs;
 use std::path::Path;
@@ -69,12 +69,12 @@ fn civil(days: u64) -> [u64; 3] {
     [year + era * 400 + u64::from(january), number, day - (153 * month + 2) / 5 + 1]
 }
 
-/// How many programs wanted to run on average over the last minute, where the system tells.
+/// The load average of the last minute, where the system provides it.
 fn load() -> Option<String> {
     Some(fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.to_owned())
 }
 
-/// Threads that this machine runs at once.
+/// Number of hardware threads of this machine.
 pub fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
@@ -97,13 +97,13 @@ fn machine(binary: &Path) -> Result<String> {
     ))
 }
 
-/// All texts of this name.
+/// All string values with this name.
 fn texts(json: &str, name: &str) -> Vec<String> {
     let key = format!("\"{name}\":\"");
     json.split(&key).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect()
 }
 
-/// The texts of the list of this name, with commas between them.
+/// The strings of the list with this name, separated by commas.
 fn list(json: &str, name: &str) -> String {
     let key = format!("\"{name}\":[");
     let inside =
@@ -111,7 +111,7 @@ fn list(json: &str, name: &str) -> String {
     inside.replace('"', "").replace(',', ", ")
 }
 
-/// What the processor calls itself, where the system tells it in a file.
+/// The name of the processor, where the system provides it in a file.
 fn processor() -> String {
     let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
@@ -123,7 +123,7 @@ mod tests {
     use super::{civil, list, texts};
 
     #[test]
-    fn days_have_their_dates() {
+    fn days_are_converted_to_dates() {
         for (days, date) in [
             (0, [1970, 1, 1]),
             (59, [1970, 3, 1]),
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_doctor_says_is_read() {
+    fn the_output_of_doctor_is_read() {
         let json = r#"{"cpu":{"features":["avx2","fma"]},"adapters":[{"name":"a (b)","kind":"software driver"},{"name":"c"}]}"#;
         assert_eq!(list(json, "features"), "avx2, fma");
         assert_eq!(texts(json, "name"), ["a (b)", "c"]);

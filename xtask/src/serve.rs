@@ -1,4 +1,4 @@
-//! Files of one folder over HTTP, to this machine alone: for looking at the page and for its tests.
+//! Serves the files of one folder over HTTP on localhost, for viewing the page and for its tests.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -15,14 +15,14 @@ pub struct Server {
 }
 
 impl Server {
-    /// Takes the port; 0 takes any that is free.
+    /// Opens the port; 0 selects any free port.
     pub fn new(folder: &Path, port: u16) -> Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
-            .with_context(|| format!("cannot serve on port {port}; another one: --port N"))?;
+            .with_context(|| format!("cannot serve on port {port}; choose another with --port N"))?;
         Ok(Self { listener, folder: folder.to_owned() })
     }
 
-    /// Where the page is.
+    /// The address of the page.
     pub fn address(&self) -> String {
         let port = self.listener.local_addr().map_or(0, |address| address.port());
         format!("http://localhost:{port}/")
@@ -32,7 +32,7 @@ impl Server {
     pub fn serve(self) -> Result<()> {
         for stream in self.listener.incoming() {
             let folder = self.folder.clone();
-            // A browser that goes away in the middle is nobody's error.
+            // A browser may close the connection at any time; that is not an error.
             let work = move || stream.and_then(|stream| answer(&folder, stream));
             thread::Builder::new().name("answer".to_owned()).spawn(work)?;
         }
@@ -51,7 +51,7 @@ fn answer(folder: &Path, mut stream: TcpStream) -> std::io::Result<()> {
     let content = if inside { fs::read(folder.join(file)).ok() } else { None };
     let (status, kind, body) = match content {
         Some(body) => ("200 OK", kind(file), body),
-        None => ("404 Not Found", "text/plain", b"not here".to_vec()),
+        None => ("404 Not Found", "text/plain", b"not found".to_vec()),
     };
     write!(
         stream,

@@ -1,5 +1,5 @@
-//! What the project needs from the system beside Rust: a Vulkan driver for the pictures (a software one will do) and
-//! ffmpeg for the film. Neither is needed to simulate or to write particles and meshes.
+//! Checks and installs the system requirements besides Rust: a Vulkan driver for the pictures (a software driver
+//! suffices) and ffmpeg for the film. Simulating and writing particles and meshes needs neither.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::process::{self, say};
 
 const PACKAGES: [&str; 3] = ["mesa-vulkan-drivers", "libvulkan1", "ffmpeg"];
 
-/// For a window on a machine without a screen.
+/// Packages for testing the window on a machine without a screen.
 const SCREEN_PACKAGES: [&str; 10] = [
     "xvfb",
     "xdotool",
@@ -23,7 +23,7 @@ const SCREEN_PACKAGES: [&str; 10] = [
     "fonts-dejavu-core",
 ];
 
-/// What is missing.
+/// The missing requirements.
 #[derive(Debug, Default)]
 pub struct Missing {
     driver: bool,
@@ -31,7 +31,7 @@ pub struct Missing {
 }
 
 impl Missing {
-    /// Looks at the system.
+    /// Checks the system.
     pub fn find() -> Self {
         Self { driver: !has_vulkan_driver(), ffmpeg: !process::exists("ffmpeg", "-version") }
     }
@@ -47,45 +47,45 @@ impl Missing {
     }
 }
 
-/// The word `setup`.
+/// The command `setup`.
 pub fn run(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "setup takes no arguments, got {}", arguments.join(" "));
     ensure_requirements()
 }
 
-/// Checks, installs where that can be done without asking, and says what is left. Only with `CI=true` is a driver that
-/// stays missing an error: everywhere else the simulation goes on without pictures.
+/// Checks the requirements, installs them where no password is needed, and reports what is still missing. A missing driver
+/// is an error only with `CI=true`; otherwise the simulation runs without pictures.
 pub fn ensure_requirements() -> Result<()> {
     let mut missing = Missing::find();
     if missing.nothing() {
-        say("Requirements: a Vulkan driver and ffmpeg are there.");
+        say("Requirements: a Vulkan driver and ffmpeg are installed.");
         return Ok(());
     }
     say(format!("Requirements: missing {}.", missing.names()));
     if can_install() {
         say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
         if let Err(error) = install(&PACKAGES) {
-            say(format!("WARNING: the installation failed: {error:#}. Is there a network?"));
+            say(format!("WARNING: the installation failed: {error:#}. Check the network connection."));
         }
         missing = Missing::find();
     }
     if missing.nothing() {
-        say("Requirements: all there now.");
+        say("Requirements: all are installed now.");
         return Ok(());
     }
     say(format!("WARNING: {} is still missing.", missing.names()));
-    say(format!("  To get it: {}", advice()));
+    say(format!("  To install: {}", advice()));
     if missing.driver && process::is_ci() {
-        bail!("CI=true, and there is no Vulkan driver: the tests of the GPU code could not run");
+        bail!("CI=true, but no Vulkan driver is installed: the tests of the GPU code cannot run");
     }
-    say("  Going on without: particles and meshes are written all the same.");
+    say("  Continuing without it: particles and meshes are still written.");
     Ok(())
 }
 
-/// An X server that nobody sees, for the test of the window; without it that test is skipped, and says so.
+/// Installs a virtual X server for the test of the window; without one that test is skipped and reports it.
 pub fn ensure_screen() {
-    let there = [("Xvfb", "-help"), ("xdotool", "version"), ("import", "-version")];
-    if there.iter().all(|(tool, argument)| process::exists_at_all(tool, argument)) || !can_install() {
+    let installed = [("Xvfb", "-help"), ("xdotool", "version"), ("import", "-version")];
+    if installed.iter().all(|(tool, argument)| process::exists_at_all(tool, argument)) || !can_install() {
         return;
     }
     say(format!("Installing {} (apt-get) ...", SCREEN_PACKAGES.join(", ")));
@@ -94,7 +94,7 @@ pub fn ensure_screen() {
     }
 }
 
-/// The system's OpenGL, without which a wheel that is compared with does not load.
+/// Installs the system's OpenGL library, which the SPlisHSPlasH wheel needs.
 pub fn ensure_gl() {
     if !cfg!(target_os = "linux") || has_library("libGL.so.1") || !can_install() {
         return;
@@ -105,7 +105,7 @@ pub fn ensure_gl() {
     }
 }
 
-/// Debian or Ubuntu, and allowed to install.
+/// True on Debian or Ubuntu with the right to install packages.
 pub fn can_install() -> bool {
     cfg!(target_os = "linux") && is_root() && process::exists("apt-get", "--version")
 }
@@ -115,13 +115,13 @@ fn is_root() -> bool {
     output.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
 }
 
-/// Installs packages of Debian.
+/// Installs Debian packages.
 pub fn install(packages: &[&str]) -> Result<()> {
     process::run(process::command("apt-get").args(["update", "-qq"]))?;
     let mut install = process::command("apt-get");
     install.env("DEBIAN_FRONTEND", "noninteractive");
     install.args(["install", "-y", "-qq", "--no-install-recommends"]).args(packages);
-    // The list of unpacked packages is long and tells nobody anything; errors go to stderr.
+    // The list of unpacked packages is long and of no use; errors go to stderr.
     install.stdout(std::process::Stdio::null());
     process::run(&mut install)
 }
@@ -138,7 +138,7 @@ fn advice() -> &'static str {
     }
 }
 
-/// True if a driver is installed that will find a device: a software one, or any other where there is a card.
+/// True if a driver is installed that finds a device: a software driver, or any driver if there is a graphics card.
 fn has_vulkan_driver() -> bool {
     if !cfg!(target_os = "linux") {
         return true; // Direct3D 12 and Metal come with the system.
@@ -175,10 +175,10 @@ fn has_loader() -> bool {
             .any(|path| Path::new(path).exists())
 }
 
-/// True if the dynamic loader knows this library.
+/// True if the dynamic loader finds this library.
 fn has_library(name: &str) -> bool {
     let listed = process::command("ldconfig").arg("-p").output().or_else(|_| {
-        // Outside of root's PATH on some systems.
+        // Not on the search path of some systems.
         process::command("/sbin/ldconfig").arg("-p").output()
     });
     listed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(name))

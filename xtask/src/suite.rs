@@ -1,4 +1,4 @@
-//! The second command of the README, and all of the continuous integration.
+//! `cargo xtask test`, which is also all of the continuous integration.
 
 use std::time::Instant;
 
@@ -13,14 +13,14 @@ use crate::{api, guide, page, python, setup};
 const OTHER_SYSTEMS: [(&str, &str); 2] =
     [("Windows", "x86_64-pc-windows-msvc"), ("macOS", "aarch64-apple-darwin")];
 
-/// How much is tested.
+/// The extent of a test run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Extent {
     /// Format, lints and tests.
     Fast,
-    /// Documentation, the page and other systems too, with quick builds.
+    /// Also documentation, the web page and other systems, with quick builds.
     Usual,
-    /// Blender, the page as it is published, and all code on other systems too.
+    /// Also Blender, the optimized page, and all code for other systems.
     All,
 }
 
@@ -57,7 +57,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
     });
     if extent == Extent::Fast {
-        say("\n--fast: documentation, the page and other systems were left out.");
+        say("\n--fast: documentation, the web page and other systems were not checked.");
     } else {
         report.layer("documentation", |_| {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
@@ -73,8 +73,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
     report.close()
 }
 
-/// Type-checks the code for another system; skipped only where its standard library cannot be installed. The usual extent is
-/// the smallest command line: that checks the build without features too, and has 40 % of the crates.
+/// Type-checks the code for another system; skipped only if its standard library cannot be installed. By default this
+/// covers the smallest command line, which also checks the build without features and has 40 % of the crates.
 fn check_for(target: &str, all: bool) -> Result<Outcome> {
     let added = command("rustup").args(["target", "add", target]).output();
     match added {

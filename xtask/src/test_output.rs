@@ -1,25 +1,25 @@
-//! Reading along while the tests run. Rust's test harness hides what a passing test prints, and a skipped test passes;
-//! `--show-output` makes it print that at the end, and this filter keeps of it only the lines that say `SKIPPED:`.
+//! Filters the output of the tests. Rust's test harness hides the output of a passing test, and a skipped test passes.
+//! `--show-output` prints that output at the end; this filter passes on only the lines with `SKIPPED:`.
 
 use std::collections::BTreeMap;
 
-/// The word that a skipped test prints.
+/// The prefix that a skipped test prints.
 pub const MARK: &str = "SKIPPED:";
 
 /// Reads the harness's output line by line.
 #[derive(Debug, Default)]
 pub struct Filter {
     in_successes: bool,
-    /// Why something was skipped, and how often.
+    /// The reasons for skipping, each with its count.
     pub skipped: BTreeMap<String, usize>,
-    /// Tests that passed.
+    /// Number of tests that passed.
     pub passed: usize,
-    /// Tests that failed.
+    /// Number of tests that failed.
     pub failed: usize,
 }
 
 impl Filter {
-    /// Takes in a line; true if it should be shown.
+    /// Processes a line; true if it should be shown.
     pub fn see(&mut self, line: &str) -> bool {
         if let Some(at) = line.find(MARK) {
             *self.skipped.entry(line[at..].trim().to_owned()).or_default() += 1;
@@ -87,7 +87,7 @@ test result: FAILED. 0 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; 
 ";
 
     #[test]
-    fn skips_are_shown_and_counted_and_chatter_is_not() {
+    fn skips_are_shown_and_counted_but_other_output_is_hidden() {
         let mut filter = Filter::default();
         let shown: Vec<&str> = OUTPUT.lines().filter(|line| filter.see(line)).collect();
         assert!(shown.contains(&"SKIPPED: no Vulkan driver"));
@@ -98,7 +98,7 @@ test result: FAILED. 0 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; 
     }
 
     #[test]
-    fn a_skip_outside_of_the_successes_counts_too() {
+    fn a_skip_outside_the_successes_is_counted() {
         let mut filter = Filter::default();
         assert!(filter.see("[thread] SKIPPED: no data"));
         assert!(filter.see("[thread] SKIPPED: no data"));

@@ -1,5 +1,5 @@
-//! The checks against measurements at full resolution: the same tests as in `cargo xtask test`, which read a
-//! variable and then take the particle spacing and the duration of the measurement instead of the small ones.
+//! Validation against measurements at full resolution. It runs the physics tests of `cargo xtask test`; an environment
+//! variable makes them use the particle spacing and the duration of the measurement instead of the small ones.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use anyhow::{Context, Result, bail};
 use crate::layers::{self, Report};
 use crate::process::{self, say};
 
-/// Where the figures go.
+/// Output folder of the figures.
 const FIGURES: &str = "out/validation";
 
-/// How the page begins.
+/// The beginning of the page.
 const HEAD: &str = "<!DOCTYPE html>
 <html lang=\"en\">
 <head>
@@ -28,16 +28,16 @@ strong { color: #b00020; }
 </head>
 <body>
 <h1>Splashdown: validation</h1>
-<p>Dots are measurements, lines are simulated. Gates were set before the first run; what misses one says so.</p>
+<p>Dots are measurements, lines are simulations. Gates were set before the first run; missed gates are marked.</p>
 ";
 
-/// The word `validate`.
+/// The command `validate`.
 pub fn run(arguments: &[String]) -> Result<()> {
     if let Some(option) = arguments.iter().find(|argument| argument.starts_with('-')) {
         bail!("validate takes names of cases, for example `spheric2`, or nothing for all; got {option}");
     }
     let folder = process::root().join(FIGURES);
-    // One case's figures take the place of its earlier ones, beside those of the others.
+    // The figures of one case replace its earlier ones; those of other cases remain.
     if folder.exists() && arguments.is_empty() {
         std::fs::remove_dir_all(&folder).with_context(|| format!("cannot empty {}", folder.display()))?;
     }
@@ -55,7 +55,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     for table in left(&folder, "txt") {
         say(table.trim_end());
     }
-    // Every file holds an array; one array of all their entries needs no more than the brackets' removal.
+    // Each file holds an array; removing the brackets is enough to join their entries.
     let cases = left(&folder, "json");
     let entries: Vec<&str> = cases
         .iter()
@@ -73,7 +73,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     report.close()
 }
 
-/// What the cases left in files that end so, in the order of their names.
+/// The contents of the cases' files with this extension, in the order of their names.
 fn left(folder: &Path, ending: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();

@@ -7,16 +7,16 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// What a test may take. The slowest takes about a minute.
+/// Time limit of a test. The slowest takes about a minute.
 pub const LIMIT: Duration = Duration::from_secs(600);
-/// How long a whole run may print nothing. Compiling one crate takes a minute at most.
+/// Longest time without any output. Compiling one crate takes a minute at most.
 pub const SILENCE: Duration = Duration::from_secs(1200);
 
-/// When the harness reports a slow test.
+/// Time after which the harness reports a slow test.
 const REPORTED_AFTER: Duration = Duration::from_secs(60);
 const SLOW: &str = " has been running for over 60 seconds";
 
-/// Which tests are slow, and when something was printed last.
+/// The slow tests, and the time of the last output.
 #[derive(Debug)]
 pub struct Watch {
     /// Start of each slow test that has no result yet.
@@ -27,7 +27,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// A run that starts now, with [`LIMIT`] for each test.
+    /// Watches a run that starts now, with [`LIMIT`] for each test.
     pub fn new(now: Instant) -> Self {
         Self { slow: BTreeMap::new(), binary: "the build".to_owned(), last_line: now, limit: LIMIT }
     }
@@ -56,7 +56,7 @@ impl Watch {
         }
     }
 
-    /// What hangs, with its binary; `None` while all is well.
+    /// The hung tests with their binary; `None` if none hangs.
     pub fn hung(&self, now: Instant) -> Option<String> {
         let late = |start: Instant| now.duration_since(start) > self.limit;
         let tests: Vec<&str> =
@@ -70,7 +70,7 @@ impl Watch {
         silent.then(|| format!("{binary} printed nothing for {} minutes", SILENCE.as_secs() / 60))
     }
 
-    /// Forgets what was running, after it was killed.
+    /// Forgets the tests that were running, after they were killed.
     pub fn killed(&mut self, now: Instant) {
         self.slow.clear();
         self.last_line = now;
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_is_named_by_its_binary() {
+    fn a_silent_binary_is_named() {
         let start = Instant::now();
         let mut watch = Watch::new(start);
         watch.see(RUNNING, start);

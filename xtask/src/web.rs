@@ -1,4 +1,4 @@
-//! The web page: built into `target/page`, served to this machine alone.
+//! Builds the web page into `target/page` and serves it on localhost.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,15 +9,15 @@ use anyhow::{Context, Result, bail, ensure};
 use crate::process::{self, cargo, command, say};
 use crate::serve;
 
-/// What the page may weigh, compressed, in bytes.
+/// Allowed size of the compressed page in bytes.
 const BUDGET: u64 = 5_000_000;
-/// The profile of the page as it is published.
+/// The build profile of the published page.
 pub const PUBLISHED: &str = "web";
-/// The profile of the page in tests.
+/// The build profile of the page in tests.
 pub const QUICK: &str = "dev";
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The word `web`: `--build` only builds, `--port N` serves there.
+/// The command `web`: `--build` only builds, `--port N` selects the port.
 pub fn run(arguments: &[String]) -> Result<()> {
     let mut port = 8080;
     let mut only_build = false;
@@ -29,7 +29,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
                 let value = arguments.next().context("--port needs a number")?;
                 port = value
                     .parse()
-                    .with_context(|| format!("--port {value:?} is no number from 0 to 65535"))?;
+                    .with_context(|| format!("--port {value:?} is not a number from 0 to 65535"))?;
             }
             other => bail!("web takes --build or --port N, got {other}"),
         }
@@ -39,11 +39,11 @@ pub fn run(arguments: &[String]) -> Result<()> {
         return Ok(());
     }
     let server = serve::Server::new(&folder, port)?;
-    say(format!("Splashdown is at {} (Ctrl-C ends it)", server.address()));
+    say(format!("Serving Splashdown at {}; press Ctrl-C to stop", server.address()));
     server.serve()
 }
 
-/// Builds the page with a profile and returns its folder. Only the published page is held against the budget.
+/// Builds the page with a profile and returns its folder. Only the published page is checked against the size limit.
 pub fn build(profile: &str) -> Result<PathBuf> {
     let added = command("rustup").args(["target", "add", TARGET]).output().context("cannot start rustup")?;
     ensure!(
@@ -63,8 +63,8 @@ pub fn build(profile: &str) -> Result<PathBuf> {
     ]))?;
     let target = process::target();
     let folder = target.join("page");
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    // Cargo names the folder of the profile `dev` after its older name.
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    // The output folder of the profile `dev` is called `debug`.
     let name = if profile == "dev" { "debug" } else { profile };
     let module = target.join(TARGET).join(name).join("splashdown_web.wasm");
     let mut bindgen = cargo(["run", "--quiet", "--package", "splashdown-bindgen", "--"]);
@@ -76,7 +76,7 @@ pub fn build(profile: &str) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Compresses what is fetched, as a server would, and holds it against the budget.
+/// Compresses the files as a server would and checks their total size against the limit.
 fn weigh(folder: &Path) -> Result<()> {
     let mut sum = 0;
     for name in ["splashdown_web_bg.wasm", "splashdown_web.js", "index.html"] {
@@ -84,12 +84,12 @@ fn weigh(folder: &Path) -> Result<()> {
         let packed = Command::new("gzip").args(["-9", "--stdout"]).arg(&file).output();
         let bytes = match packed {
             Ok(output) if output.status.success() => output.stdout.len() as u64,
-            // Without gzip the whole file counts.
+            // Without gzip the uncompressed size counts.
             _ => fs::metadata(&file)?.len(),
         };
         say(format!("  {name}: {:.2} MB compressed", bytes as f64 / 1e6));
         sum += bytes;
     }
-    ensure!(sum <= BUDGET, "the page weighs {sum} bytes compressed, allowed are {BUDGET}");
+    ensure!(sum <= BUDGET, "the compressed page has {sum} bytes, more than the allowed {BUDGET}");
     Ok(())
 }

@@ -8,10 +8,10 @@ use anyhow::{Context, Result, ensure};
 use super::{PAGES, links};
 use crate::process::{self, command, root, say, target};
 
-/// The version that is installed. Any version of the same minor series on the search path is used instead.
+/// The version to install. Any version of the same minor series on the search path is used instead.
 const VERSION: &str = "0.5.4";
 
-/// The program `mdbook` where it is installed: on the search path, or by [`program`].
+/// The program `mdbook`, if it is installed: on the search path, or by [`program`].
 pub fn installed() -> Option<PathBuf> {
     [PathBuf::from("mdbook"), own()].into_iter().find(is_suitable)
 }

@@ -1,4 +1,4 @@
-//! Checks the links between documents: files, pages and headings. Addresses of other sites are not fetched.
+//! Checks the links between documents: files, pages and headings. External links are not fetched.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use super::PAGES;
 use super::markdown::{self, Document};
 
-/// Documents outside of the guide: the Markdown files in these folders.
+/// Documents outside the guide: the Markdown files in these folders.
 const FOLDERS: [&str; 3] = ["", "docs", "crates/splashdown/scenes"];
 
 /// Checks every document and returns the number of links and the broken ones.
@@ -73,7 +73,7 @@ fn check_link(
     }
 }
 
-/// Removes `.` and `..`; `None` if the path leaves its start.
+/// Removes `.` and `..`; `None` if the path leaves its starting folder.
 fn normal(path: &Path) -> Option<PathBuf> {
     let mut out = PathBuf::new();
     for part in path.components() {
@@ -210,7 +210,7 @@ mod tests {
         assert!(check(&repository.0).unwrap().0 >= 6);
     }
 
-    /// Controls: each kind of broken link is found.
+    /// Negative controls: each kind of broken link is found.
     #[test]
     fn broken_links_are_found() {
         for (index, (text, complaint)) in [
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_the_book() {
+    fn page_names_match_those_of_mdbook() {
         assert_eq!(normal(Path::new("a/../b/./c")), Some(PathBuf::from("b/c")));
         assert_eq!(normal(Path::new("../a")), None);
         assert_eq!(html_name(&Path::new(PAGES).join("scenes/README.md")), Path::new("scenes/index.html"));

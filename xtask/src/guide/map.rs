@@ -1,5 +1,5 @@
-//! The map of the code: a picture and a table of the crates, a table of their modules, and the graph of modules in
-//! `ARCHITECTURE.md`.
+//! Generates the map of the code: a picture and a table of the crates, a table of their modules, and the graph of
+//! modules in `ARCHITECTURE.md`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -37,7 +37,7 @@ pub fn files() -> Result<Vec<(PathBuf, String)>> {
     ])
 }
 
-/// The crates that the map shows: all but those that build the others.
+/// The crates that the map shows: all except the build tools.
 ///
 /// # Errors
 /// If a manifest cannot be read.
@@ -56,7 +56,7 @@ pub fn packages() -> Result<Vec<Package>> {
     folders.iter().map(manifest).collect()
 }
 
-/// The few keys of a manifest that the map shows.
+/// Reads the keys of a manifest that the map shows.
 fn package(folder: &str, manifest: &str) -> Package {
     let text = |key: &str| {
         let line = manifest.lines().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
@@ -81,7 +81,7 @@ fn package(folder: &str, manifest: &str) -> Package {
 fn levels(packages: &[Package]) -> BTreeMap<&str, usize> {
     let mut levels: BTreeMap<&str, usize> =
         packages.iter().map(|package| (package.name.as_str(), 0)).collect();
-    // Cargo allows no cycles, so this ends after as many rounds as there are crates.
+    // Cargo allows no cycles, so this ends after at most as many rounds as there are crates.
     for _ in packages {
         for package in packages {
             let above =
@@ -172,7 +172,7 @@ fn crates_table(packages: &[Package]) -> String {
     text
 }
 
-/// `ARCHITECTURE.md` with the graph of modules between its marks.
+/// `ARCHITECTURE.md` with the graph of modules between its markers.
 fn architecture(packages: &[Package]) -> Result<(PathBuf, String)> {
     const MARKS: [&str; 2] = ["<!-- ANCHOR: modules -->\n", "<!-- ANCHOR_END: modules -->"];
     let path = root().join("ARCHITECTURE.md");
@@ -181,7 +181,7 @@ fn architecture(packages: &[Package]) -> Result<(PathBuf, String)> {
     let parts =
         text.split_once(MARKS[0]).and_then(|(before, rest)| Some((before, rest.split_once(MARKS[1])?.1)));
     let (before, after) =
-        parts.with_context(|| format!("{} lacks the marks of its modules", path.display()))?;
+        parts.with_context(|| format!("{} lacks the markers of the module graph", path.display()))?;
     let levels = levels(packages);
     let mut sorted: Vec<_> = packages.iter().collect();
     sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_and_indirect_arrows() {
+    fn levels_and_indirect_dependencies() {
         let make = |name: &str, uses: &[&str]| {
             let lines: String = uses.iter().map(|name| format!("{name} = \"1\"\n")).collect();
             package("", &format!("name = \"{name}\"\n[dependencies]\n{lines}"))

@@ -6,16 +6,16 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-/// What one document contains.
+/// The links and headings of one document.
 #[derive(Debug, Default, PartialEq)]
 pub struct Document {
-    /// Targets of links and pictures with their lines.
+    /// Targets of links and pictures with their line numbers.
     pub links: Vec<(usize, String)>,
     /// Identifiers of headings, as GitHub and mdBook form them.
     pub anchors: BTreeSet<String>,
 }
 
-/// Reads a document and replaces mdBook's includes by the included text.
+/// Reads a document and replaces mdBook's includes with the included text.
 ///
 /// # Errors
 /// If the file or an included file or part does not exist.
@@ -44,14 +44,14 @@ fn expand(path: &Path) -> Result<String> {
     Ok(out)
 }
 
-/// The text between the marks `ANCHOR: name` and `ANCHOR_END: name`.
+/// The text between the markers `ANCHOR: name` and `ANCHOR_END: name`.
 fn section<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let mark = |word: &str| format!("<!-- {word}: {name} -->");
     let (_, rest) = text.split_once(&mark("ANCHOR"))?;
     Some(rest.split_once(&mark("ANCHOR_END"))?.0)
 }
 
-/// Finds links and headings outside of code.
+/// Finds links and headings outside code.
 pub fn parse(text: &str) -> Document {
     let mut document = Document::default();
     let mut fence: Option<&str> = None;
@@ -139,7 +139,7 @@ mod tests {
     use super::{identifier, parse, section};
 
     #[test]
-    fn links_and_headings_are_found_outside_of_code() {
+    fn links_and_headings_are_found_outside_code() {
         let text = "# A [title](x.md) of `code`!\n\nSee [a](b.md#c), ![d](e.png) and `[no](f.md)`.\n\n```sh\n# no heading\n[no](g.md)\n```\n\n## Same\n## Same\n\n[name]: h.md\n";
         let document = parse(text);
         let links: Vec<_> = document.links.iter().map(|(line, target)| (*line, target.as_str())).collect();
@@ -149,14 +149,14 @@ mod tests {
     }
 
     #[test]
-    fn identifiers_are_those_of_github() {
+    fn identifiers_match_those_of_github() {
         assert_eq!(identifier("`[[fluid.block]]`"), "fluidblock");
         assert_eq!(identifier("Density: summation or continuity"), "density-summation-or-continuity");
         assert_eq!(identifier("0.1.0 - 2026"), "010---2026");
     }
 
     #[test]
-    fn a_part_lies_between_its_marks() {
+    fn a_section_is_the_text_between_its_markers() {
         let text = "x\n<!-- ANCHOR: a -->\ny\n<!-- ANCHOR_END: a -->\nz";
         assert_eq!(section(text, "a"), Some("\ny\n"));
         assert_eq!(section(text, "b"), None);

@@ -31,8 +31,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// The layer `guide` of `cargo xtask test`: generated parts up to date, links valid, book built. mdBook is compiled only if
-/// `all` is asked for; the layer is then skipped if it cannot be installed.
+/// The layer `guide` of `cargo xtask test`: generated parts up to date, links valid, book built. mdBook is compiled only
+/// with `all`; the layer is skipped if it cannot be installed.
 ///
 /// # Errors
 /// If a generated file is out of date, a link is broken, or the book has errors.

@@ -1,4 +1,4 @@
-//! The modules of a crate, and which imports which.
+//! The graph of a crate's modules and their imports.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -12,7 +12,7 @@ use super::tokens::{Token, tokens};
 /// The name of the crate's root in a graph: `lib.rs` or `main.rs`.
 pub const ROOT: &str = "the crate root";
 
-/// Modules at the root of a crate, each with the modules that it imports and a file that does.
+/// Modules at the root of a crate, each with the modules that it imports and a file that contains the import.
 pub type Graph = BTreeMap<String, BTreeMap<String, PathBuf>>;
 
 /// A source file by its path below `src`, and its text.
@@ -87,8 +87,8 @@ pub fn graph(sources: &[Source]) -> Graph {
     graph
 }
 
-/// The module in which a name at the root of the crate is: itself, the one that exports it there, or the root. `None` for
-/// another crate's.
+/// The module that a name at the root of the crate belongs to: the module of that name, the module that it is re-exported
+/// from, or the root. `None` for names of other crates.
 fn home<'a>(name: &'a str, modules: &BTreeSet<&str>, homes: &'a BTreeMap<String, String>) -> Option<&'a str> {
     if modules.contains(name) {
         return Some(name);

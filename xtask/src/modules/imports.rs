@@ -1,20 +1,20 @@
-//! The paths of a source file that lead to other modules of its crate.
+//! Finds the paths of a source file that refer to other modules of its crate.
 
 use super::tokens::{Token, tokens};
 
 /// What a source file imports.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Imports {
-    /// The first name behind the root of the crate, of each path that leads there: a module or an item of the root.
+    /// The first name after the crate root of each path: a module or an item of the root.
     pub names: Vec<String>,
-    /// Child modules of files that are compiled for tests or documentation alone.
+    /// Child modules that are compiled only for tests or documentation.
     pub test_modules: Vec<String>,
-    /// Names that the file's macros have at the root of the crate (`#[macro_export]`).
+    /// Names of macros that the file exports at the root of the crate (`#[macro_export]`).
     pub macros: Vec<String>,
 }
 
-/// Reads the file of the module at this path below the root (empty for the root itself). Items for tests alone are left
-/// out, and so are comments.
+/// Reads the file of the module at this path below the root (empty for the root itself). Comments and items that exist
+/// only for tests are ignored.
 pub fn imports(source: &str, module: &[String]) -> Imports {
     let tokens = tokens(source);
     let mut found = Imports::default();
@@ -35,7 +35,7 @@ pub fn imports(source: &str, module: &[String]) -> Imports {
                     && let Some(name) = macro_name(&tokens[after..])
                 {
                     found.macros.push(name);
-                    // Its paths are those of the modules that use it.
+                    // The paths in an exported macro belong to the modules that use it.
                     i = after_item(&tokens, after).0;
                 }
             }
@@ -76,14 +76,14 @@ pub fn imports(source: &str, module: &[String]) -> Imports {
     found
 }
 
-/// True of `crate::`, `self::` and `super::`, as the beginning of a path.
+/// True for `crate::`, `self::` and `super::` at the beginning of a path.
 fn starts_path(tokens: &[Token], i: usize, word: &str) -> bool {
     matches!(word, "crate" | "self" | "super")
         && tokens.get(i + 1) == Some(&Token::Path)
         && (i == 0 || tokens[i - 1] != Token::Path)
 }
 
-/// The name behind a path's beginning, or all names of a group.
+/// The name after the beginning of a path, or all names of a group.
 fn first_names(tokens: &[Token]) -> Vec<String> {
     match tokens.first() {
         Some(Token::Word(word)) => vec![word.clone()],
@@ -115,7 +115,7 @@ fn first_names(tokens: &[Token]) -> Vec<String> {
     }
 }
 
-/// The tokens inside of an attribute that begins here, and the place behind it.
+/// The tokens inside an attribute that begins here, and the index after it.
 fn attribute(tokens: &[Token], i: usize) -> Option<(&[Token], usize)> {
     if tokens[i] != Token::Sign('#') {
         return None;
@@ -129,7 +129,7 @@ fn attribute(tokens: &[Token], i: usize) -> Option<(&[Token], usize)> {
     Some((&tokens[open + 1..end - 1], end))
 }
 
-/// True of `#[cfg(test)]`, `#[cfg(all(test, ..))]`, `#[cfg(doc)]` and `#[test]`.
+/// True for `#[cfg(test)]`, `#[cfg(all(test, ..))]`, `#[cfg(doc)]` and `#[test]`.
 fn is_for_tests(attribute: &[Token]) -> bool {
     let has = |word: &str| attribute.iter().any(|token| token.is(word));
     let is_test = attribute.len() == 1 && has("test");
@@ -137,7 +137,7 @@ fn is_for_tests(attribute: &[Token]) -> bool {
     is_test || (is_cfg && !has("not") && !has("any") && (has("test") || has("doc") || has("doctest")))
 }
 
-/// The place behind the item that begins here, and the name of the module if it is `mod name;`.
+/// The index after the item that begins here, and the name of the module if the item is `mod name;`.
 fn after_item(tokens: &[Token], mut i: usize) -> (usize, Option<String>) {
     while i < tokens.len() {
         match attribute(tokens, i) {
@@ -156,11 +156,11 @@ fn after_item(tokens: &[Token], mut i: usize) -> (usize, Option<String>) {
                 return (i + 1, place.and_then(|place| words.get(place + 1)).map(|name| (*name).to_owned()));
             }
             Token::Sign(',') => return (i + 1, None),
-            // The end of what it stands in: the last field of a struct, say.
+            // The end of the enclosing block, for example after the last field of a struct.
             Token::Sign('}') => return (i, None),
             Token::Sign('{') if !is_use => {
                 let end = after_group(tokens, i);
-                // A block in front of something more, as in `static X: [u8; { 1 }] = ..`, is inside of brackets.
+                // A block that does not end the item, as in `static X: [u8; { 1 }] = ..`, is inside brackets.
                 return (end, None);
             }
             Token::Sign('{' | '(' | '[') => {
@@ -174,7 +174,7 @@ fn after_item(tokens: &[Token], mut i: usize) -> (usize, Option<String>) {
     (i, None)
 }
 
-/// The place behind a group in brackets.
+/// The index after a group in brackets.
 fn after_group(tokens: &[Token], mut i: usize) -> usize {
     let mut depth = 0;
     while i < tokens.len() {
@@ -191,7 +191,7 @@ fn after_group(tokens: &[Token], mut i: usize) -> usize {
     i
 }
 
-/// The name of a macro whose definition follows, maybe behind other attributes.
+/// The name of the macro whose definition follows, possibly after other attributes.
 fn macro_name(tokens: &[Token]) -> Option<String> {
     let at = tokens.iter().take(40).position(|token| token.is("macro_rules"))?;
     Some(tokens.get(at + 2)?.word()?.to_owned())
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_and_comments_do_not_count() {
+    fn tests_and_comments_are_ignored() {
         let source = "
             #[cfg(test)] use crate::a;
             #[cfg(test)] #[path = \"t.rs\"] mod tests;

@@ -1,11 +1,11 @@
-//! The order of a crate's modules: no cycle, and no import upward.
+//! Checks the order of a crate's modules: no cycle, and no upward import.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::graph::{Graph, ROOT};
 
-/// The declared order of a crate's modules: the first block of code behind the heading `# Modules` in the documentation of
-/// the crate's root, from top to bottom. Modules of one line do not import each other. `None` where there is none.
+/// The declared order of a crate's modules: the first code block after the heading `# Modules` in the documentation of
+/// the crate root, from top to bottom. Modules on one line do not import each other. `None` without such a block.
 pub fn declared(root: &str) -> Option<Vec<Vec<String>>> {
     let lines = root.lines().filter_map(|line| line.strip_prefix("//!")).map(str::trim);
     let mut lines = lines.skip_while(|line| *line != "# Modules").skip_while(|line| !line.starts_with("```"));
@@ -14,7 +14,7 @@ pub fn declared(root: &str) -> Option<Vec<Vec<String>>> {
     Some(lines.map(|line| line.split_whitespace().map(str::to_owned).collect()).collect())
 }
 
-/// What is wrong with a graph: a cycle, or imports against the declared order.
+/// The problems of a graph: a cycle, or imports that violate the declared order.
 pub fn problems(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
     let mut problems = Vec::new();
     for (from, edges) in graph {
@@ -40,7 +40,7 @@ pub fn problems(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
             problems.push(format!("the declared order names `{name}` twice"));
         }
         if !graph.contains_key(name) {
-            problems.push(format!("the declared order names `{name}`, which is no module"));
+            problems.push(format!("the declared order names `{name}`, which is not a module"));
         }
     }
     for (from, edges) in graph {
@@ -58,7 +58,7 @@ pub fn problems(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
     problems
 }
 
-/// The modules along a cycle, the first one again at the end.
+/// The modules along a cycle; the first one is repeated at the end.
 fn cycle(graph: &Graph) -> Option<Vec<String>> {
     let mut done = BTreeSet::new();
     graph.keys().find_map(|start| visit(graph, start, &mut Vec::new(), &mut done))
@@ -84,7 +84,7 @@ fn visit<'a>(
     found
 }
 
-/// The modules from top to bottom: in the declared order, else each above those that it imports.
+/// The modules from top to bottom: in the declared order, or else each module above those that it imports.
 pub fn sorted(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
     if let Some(order) = order {
         return order.concat();
@@ -95,7 +95,7 @@ pub fn sorted(graph: &Graph, order: Option<&[Vec<String>]>) -> Vec<String> {
     }) {
         sorted.push(lowest.0.clone());
     }
-    // Modules on a cycle, and those above it.
+    // Modules on a cycle, and those that import them.
     sorted.extend(graph.keys().filter(|name| !sorted.contains(name)).cloned().collect::<Vec<_>>());
     sorted.reverse();
     sorted
@@ -129,13 +129,13 @@ mod tests {
         let problems = problems(&of(&files), None);
         assert_eq!(problems.len(), 1, "{problems:?}");
         assert!(problems[0].contains("`a` imports `c` (a.rs), `c` imports `a` (c.rs)"), "{problems:?}");
-        // Without one of the two arrows there is none.
+        // Without one of the two imports there is no cycle.
         let files = [LIB, ("a.rs", "// use crate::c::x;"), files[2], files[3]];
         assert_eq!(super::problems(&of(&files), None), [""; 0]);
     }
 
     #[test]
-    fn an_import_upward_or_sideways_fails() {
+    fn an_upward_or_sideways_import_fails() {
         for (from, to) in [("a.rs", "use crate::c;"), ("b.rs", "use crate::a;"), ("a.rs", "use crate::item;")]
         {
             let mut files = vec![LIB, ("a.rs", ""), ("b.rs", ""), ("c.rs", "")];
@@ -147,12 +147,12 @@ mod tests {
     }
 
     #[test]
-    fn an_order_that_does_not_fit_the_crate_fails() {
+    fn a_declared_order_that_does_not_match_the_crate_fails() {
         let found =
             problems(&of(&[LIB, ("a.rs", ""), ("c.rs", ""), ("d.rs", "")]), declared(LIB.1).as_deref());
         assert_eq!(
             found,
-            ["the declared order names `b`, which is no module", "the declared order lacks `d`"]
+            ["the declared order names `b`, which is not a module", "the declared order lacks `d`"]
         );
     }
 }

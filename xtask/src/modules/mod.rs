@@ -1,8 +1,8 @@
-//! The graph of modules: which module of a crate imports which, for the test that forbids cycles and imports upward, and
-//! for `ARCHITECTURE.md`.
+//! The import graph of a crate's modules, for the test that forbids cycles and upward imports, and for
+//! `ARCHITECTURE.md`.
 //!
-//! It is a scan of the text: `crate::`, `self::` and `super::` paths outside of comments, strings and items for tests
-//! alone. Methods and trait implementations are not seen.
+//! The source text is scanned for `crate::`, `self::` and `super::` paths outside comments, strings and items that exist
+//! only for tests. Method calls and trait implementations are not recorded.
 
 mod graph;
 mod imports;
@@ -17,7 +17,7 @@ use anyhow::{Context, Result};
 
 use graph::Graph;
 
-/// A crate's graph, and the order that its root declares.
+/// The graph of a crate, and the order that its root declares.
 pub struct Modules {
     graph: Graph,
     order: Option<Vec<Vec<String>>>,
@@ -36,7 +36,7 @@ pub fn read(source: &Path) -> Result<Modules> {
 }
 
 impl Modules {
-    /// Cycles, and imports against the declared order.
+    /// Cycles, and imports that violate the declared order.
     pub fn problems(&self) -> Vec<String> {
         layers::problems(&self.graph, self.order.as_deref())
     }
@@ -52,7 +52,7 @@ impl Modules {
         layers::sorted(&self.graph, self.order.as_deref())
     }
 
-    /// One line for each module, from top to bottom: its name, and what it imports.
+    /// One line for each module, from top to bottom: its name and its imports.
     pub fn lines(&self) -> String {
         let sorted = self.sorted();
         let width = sorted.iter().map(String::len).max().unwrap_or(0);
@@ -73,7 +73,7 @@ mod tests {
     use crate::guide::map;
     use crate::process::root;
 
-    /// The crates of the workspace from bottom to top. A crate may depend on those before it alone.
+    /// The crates of the workspace from bottom to top. A crate may depend only on those before it.
     const CRATES: [&str; 8] = [
         "splashdown-gpu",
         "splashdown-io",
@@ -109,7 +109,7 @@ mod tests {
             problems.extend(modules.problems().into_iter().map(|problem| format!("{folder}: {problem}")));
         }
         assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
-        // Control: the largest crate declares its order, and has the arrows that everyone knows of.
+        // Control: the largest crate declares its order, and its known imports are found.
         let modules = read(&root().join("crates/splashdown/src"))?;
         assert!(modules.order.is_some());
         assert!(modules.imports("cells").contains(&"state".to_owned()));
@@ -121,7 +121,7 @@ mod tests {
         let mut packages = map::packages()?;
         assert_eq!(packages.len(), CRATES.len());
         assert_eq!(upward(&packages), [""; 0]);
-        // Control: an arrow upward is found.
+        // Control: an upward dependency is found.
         let lowest = packages.iter_mut().find(|package| package.name == CRATES[0]);
         lowest.into_iter().for_each(|package| package.uses.extend(["splashdown".to_owned()]));
         assert_eq!(upward(&packages), ["splashdown-gpu depends on splashdown"]);

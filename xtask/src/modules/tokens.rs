@@ -1,4 +1,4 @@
-//! Rust source as words and signs, without comments and strings: as much of the language as paths need.
+//! Splits Rust source into tokens, without comments and strings: the part of the language that paths need.
 
 /// A word (identifier, keyword or number), a sign, or the path separator.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub enum Token {
 }
 
 impl Token {
-    /// The word, if it is one.
+    /// The word, if the token is one.
     pub fn word(&self) -> Option<&str> {
         match self {
             Self::Word(word) => Some(word),
@@ -18,13 +18,13 @@ impl Token {
         }
     }
 
-    /// True of this word.
+    /// True if the token is this word.
     pub fn is(&self, word: &str) -> bool {
         self.word() == Some(word)
     }
 }
 
-/// Splits a source file.
+/// Splits a source file into tokens.
 pub fn tokens(source: &str) -> Vec<Token> {
     let text: Vec<char> = source.chars().collect();
     let mut tokens = Vec::new();
@@ -67,12 +67,12 @@ fn is_part_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The first place from `i` on of which this is true, or the end.
+/// The first index from `i` on at which `is` holds, or the end.
 fn find(text: &[char], i: usize, is: impl Fn(char) -> bool) -> usize {
     text[i..].iter().position(|&c| is(c)).map_or(text.len(), |offset| i + offset)
 }
 
-/// Block comments may contain others.
+/// Block comments may be nested.
 fn after_comment(text: &[char], mut i: usize) -> usize {
     let mut depth = 0;
     while i + 1 < text.len() {
@@ -100,7 +100,7 @@ fn after_string(text: &[char], start: usize) -> usize {
     (i + 1).min(text.len())
 }
 
-/// From the signs behind `r`; a raw identifier (`r#type`) loses its prefix alone.
+/// Starts at the characters after `r`; of a raw identifier (`r#type`) only the prefix is skipped.
 fn after_raw_string(text: &[char], start: usize) -> usize {
     let open = find(text, start, |c| c != '#');
     if text.get(open) != Some(&'"') {
@@ -113,7 +113,7 @@ fn after_raw_string(text: &[char], start: usize) -> usize {
     (open + 1..text.len()).find(is_end).map_or(text.len(), |end| end + 1 + hashes)
 }
 
-/// A character, or the sign of a lifetime.
+/// A character literal, or the apostrophe of a lifetime.
 fn after_quote(text: &[char], start: usize) -> usize {
     let is_character = text.get(start + 1) == Some(&'\\') || text.get(start + 2) == Some(&'\'');
     if !is_character {

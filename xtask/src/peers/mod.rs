@@ -15,27 +15,27 @@ use crate::process::{self, root, say, target};
 use crate::report::Page;
 use crate::{python, report, setup};
 
-/// How often each side is measured, in turn; the median counts.
+/// Number of alternating measurements of each program; the median is reported.
 const ROUNDS: usize = 3;
 
-/// What both sides are started with.
+/// What both programs are started with.
 struct Sides {
-    /// This program.
+    /// The `splashdown` binary.
     ours: PathBuf,
-    /// The interpreter that knows the peers.
+    /// The Python interpreter whose environment contains the other programs.
     python: PathBuf,
-    /// Where scenes and meshes go.
+    /// Folder of scenes and meshes.
     folder: PathBuf,
     threads: usize,
     rounds: usize,
     quick: bool,
 }
 
-/// What `bench --peers` is told.
+/// The options of `bench --peers`.
 #[derive(Debug, Default, PartialEq)]
 struct Options {
     quick: bool,
-    /// Particles for the surface, and their spacing.
+    /// Particles for the surface reconstruction, and their spacing.
     particles: Option<(PathBuf, f64)>,
 }
 
@@ -47,7 +47,7 @@ impl Options {
             match word.as_str() {
                 "--quick" => options.quick = true,
                 "--particles" => {
-                    let usage = "--particles takes a file (.npy, .npz) and the particles' spacing";
+                    let usage = "--particles takes a file (.npy, .npz) and the particle spacing";
                     let path = words.next().context(usage)?;
                     let spacing = words.next().and_then(|text| text.parse().ok()).context(usage)?;
                     options.particles = Some((path.into(), spacing));
@@ -61,14 +61,14 @@ impl Options {
     }
 }
 
-/// Measures and writes `docs/peers.md`; with `--quick`, which is for trying the command, it only prints.
+/// Measures and writes `docs/peers.md`; with `--quick`, a trial run, the results are only printed.
 pub fn run(arguments: &[String]) -> Result<()> {
     let options = Options::parse(arguments)?;
     let ours = process::build_release()?;
     setup::ensure_gl();
     let folder = target().join("peers");
     let python = python::environment(&folder, &root().join("xtask/peers/requirements.txt"))
-        .context("the peers cannot be installed (is there a network?)")?;
+        .context("cannot install the other programs; check the network connection")?;
     let sides = Sides {
         ours,
         python,
@@ -91,13 +91,13 @@ pub fn run(arguments: &[String]) -> Result<()> {
     steps::compare(&sides, &mut page)?;
     surface::compare(&sides, options.particles, &mut page)?;
     if options.quick {
-        say("\n--quick: docs/peers.md is left as it is.");
+        say("\n--quick: docs/peers.md is unchanged.");
         return Ok(());
     }
     page.write("docs/peers.md")
 }
 
-/// Runs a command and returns the last line that it prints, which is its answer.
+/// Runs a command and returns the last line that it prints, which is its result.
 fn answer(command: &mut Command) -> Result<String> {
     let words = process::line(command);
     let output = command.output().with_context(|| format!("cannot start `{words}`"))?;
@@ -109,7 +109,7 @@ fn answer(command: &mut Command) -> Result<String> {
         String::from_utf8_lossy(&output.stderr)
     );
     let line = text.lines().rev().find(|line| line.starts_with('{'));
-    Ok(line.with_context(|| format!("`{words}` printed no answer:\n{text}"))?.to_owned())
+    Ok(line.with_context(|| format!("`{words}` printed no result:\n{text}"))?.to_owned())
 }
 
 #[cfg(test)]
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn options_are_read_and_others_refused() {
+    fn unknown_and_incomplete_options_are_rejected() {
         assert_eq!(parse(&[]).unwrap(), Options::default());
         let options = parse(&["--particles", "a.npy", "0.05", "--quick"]).unwrap();
         assert_eq!(options, Options { quick: true, particles: Some(("a.npy".into(), 0.05)) });

@@ -1,11 +1,11 @@
-//! Numbers out of one line of JSON, and what becomes of several: the little that is needed here of either.
+//! Minimal JSON reading and statistics: a number from a line of JSON, and the median.
 
 use anyhow::{Context, Result};
 
-/// The first number that has this name.
+/// The first number with this name.
 ///
 /// # Errors
-/// If there is none.
+/// If the name is missing or its value is not a number.
 pub fn number(json: &str, name: &str) -> Result<f64> {
     let key = format!("\"{name}\":");
     let place = json.find(&key).with_context(|| format!("`{name}` is missing in {json}"))?;
@@ -15,7 +15,7 @@ pub fn number(json: &str, name: &str) -> Result<f64> {
     text.parse().with_context(|| format!("`{name}` is `{text}`, not a number"))
 }
 
-/// The median: of an even number of values, the mean of the two in the middle. NaN of none.
+/// The median; for an even number of values, the mean of the middle two. NaN without values.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn medians_stand_in_the_middle() {
+    fn medians_of_odd_and_even_counts() {
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
         assert!(median(&[]).is_nan());

@@ -1,4 +1,4 @@
-//! A step of water: `wcsph` against SPlisHSPlasH's WCSPH and DFSPH.
+//! Compares the time of a step: `wcsph` against SPlisHSPlasH's WCSPH and DFSPH.
 
 use std::fs;
 use std::path::Path;
@@ -11,14 +11,14 @@ use super::{Sides, answer};
 use crate::process::{command, root, say};
 use crate::report::Page;
 
-/// How much faster a step of ours is to be than the peer's WCSPH.
+/// Required speed of a step relative to the peer's WCSPH.
 const BAR: f64 = 10.0;
 
-/// Steps of the peer in a round, after its warm-up.
+/// Steps of the peer per round, after its warm-up.
 const STEPS: u32 = 40;
 
-/// The peer's dam break: a block of 2 m in a box of 8 m, 6 m and 3 m, in particles 0.05 m apart, all `divisor`
-/// times shorter.
+/// The peer's dam break: a block of 2 m in a box of 8 m by 6 m by 3 m at a spacing of 0.05 m, with the lengths of block
+/// and box divided by `divisor`.
 fn scene(divisor: f64) -> String {
     let [width, height, depth, side] = [8.0, 6.0, 3.0, 2.0].map(|length| length / divisor);
     let z = (depth - side) / 2.0;
@@ -30,7 +30,7 @@ fn scene(divisor: f64) -> String {
     )
 }
 
-/// What was measured of one side.
+/// The measurements of one program.
 #[derive(Default)]
 struct Side {
     seconds: Vec<f64>,
@@ -67,7 +67,7 @@ impl Side {
 
 /// Adds the section of the page.
 pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
-    // Half as long on every side is an eighth of the particles.
+    // Half the edge length gives an eighth of the particles.
     let divisor = if sides.quick { 2 } else { 1 };
     let path = sides.folder.join("dam-break.toml");
     fs::write(&path, scene(f64::from(divisor)))?;
@@ -79,7 +79,7 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
         ours.note(&step(sides, &path)?)?;
         dfsph.note(&their_step(sides, "dfsph", divisor)?)?;
     }
-    // Per particle, should their numbers ever differ.
+    // Per particle, in case the numbers of particles differ.
     let each = |side: &Side| median(&side.seconds) / side.particles;
     let mut table = Table::new(&[
         "step",
@@ -127,14 +127,14 @@ mod tests {
     use super::{Side, scene};
 
     #[test]
-    fn the_scene_shrinks_as_a_whole() {
+    fn the_divisor_scales_block_and_box() {
         let text = scene(2.0);
         assert!(text.contains("max = [4, 3, 1.5]"), "{text}");
         assert!(text.contains("position = [0, 0, 0.25]\nsize = [1, 1, 1]"), "{text}");
     }
 
     #[test]
-    fn both_sides_answers_are_understood() {
+    fn results_of_both_programs_are_read() {
         let mut side = Side::default();
         for seconds in [3.0, 1.0, 2.0] {
             let json = format!(

@@ -1,4 +1,4 @@
-//! The surface of particles, against splashsurf.
+//! Compares surface reconstruction with splashsurf.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,17 +11,17 @@ use super::{Sides, answer};
 use crate::process::{command, root, run, say};
 use crate::report::Page;
 
-/// How many times splashsurf's particles per second are wanted, and how much of its memory may be taken.
+/// Required speed relative to splashsurf, and allowed memory relative to splashsurf.
 const SPEED_BAR: f64 = 1.5;
 const MEMORY_BAR: f64 = 1.0;
 
-/// Reconstructions in a process; their median counts.
+/// Reconstructions per process; their median is reported.
 const REPETITIONS: usize = 5;
 
-/// Particles in mid-splash that lie beside the repository of those who have them, and their spacing.
+/// An optional data set beside the repository, particles of a dam break in mid-splash, and its spacing.
 const SHARED: (&str, f64) = ("../shared/data/particles/mid64k.npy", 0.05);
 
-/// Cells in particle radii, and rounds of smoothing.
+/// Cell sizes in particle radii, and numbers of smoothing iterations.
 const CASES: [(f64, u32); 4] = [(1.0, 0), (1.0, 25), (0.5, 0), (0.5, 25)];
 
 /// Adds the section of the page.
@@ -87,10 +87,10 @@ fn script() -> PathBuf {
     root().join("xtask/peers/splashsurf.py")
 }
 
-/// The particles that were named, those beside the repository, or our own dam break after 0.3 s.
+/// The given particles, those beside the repository, or the built-in dam break after 0.3 s.
 fn particles(sides: &Sides, given: Option<(PathBuf, f64)>) -> Result<(PathBuf, f64)> {
     if let Some((path, spacing)) = given {
-        // Relative to where the command was typed, which is not where others are started.
+        // Relative to the user's working directory; other programs start in the root of the repository.
         return Ok((std::path::absolute(path)?, spacing));
     }
     let shared = root().join(SHARED.0);
@@ -98,7 +98,7 @@ fn particles(sides: &Sides, given: Option<(PathBuf, f64)>) -> Result<(PathBuf, f
         return Ok((shared, SHARED.1));
     }
     say(format!(
-        "NOTE: {} is not there, so the surface is that of our own dam break. To name particles: --particles FILE SPACING",
+        "NOTE: {} does not exist; the built-in dam break is used. To use other particles: --particles FILE SPACING",
         SHARED.0
     ));
     let out = sides.folder.join("dam-break");
@@ -106,11 +106,11 @@ fn particles(sides: &Sides, given: Option<(PathBuf, f64)>) -> Result<(PathBuf, f
     simulate.args(["run", "dam-break", "--frames", "9", "--no-surface", "--no-pictures", "--quiet"]);
     run(simulate.args(["--formats", "npz", "--out"]).arg(&out))?;
     let path = out.join("particles/particles_0009.npz");
-    ensure!(path.exists(), "the run went well, but {} is not there", path.display());
+    ensure!(path.exists(), "the run succeeded, but {} does not exist", path.display());
     Ok((path, 0.015_625))
 }
 
-/// One line of the table.
+/// One row of the table.
 struct Case<'a> {
     sides: &'a Sides,
     particles: &'a Path,
@@ -120,7 +120,7 @@ struct Case<'a> {
     smoothing: u32,
 }
 
-/// What our side answers.
+/// The result of Splashdown.
 struct Answer {
     seconds: Vec<f64>,
     vertices: f64,
@@ -128,13 +128,13 @@ struct Answer {
 }
 
 impl Case<'_> {
-    /// One process that makes the surface so many times.
+    /// Reconstructs the surface `repetitions` times in one process.
     fn ours(&self, repetitions: usize) -> Result<Answer> {
         let mut surface = command(&self.sides.ours);
         surface.arg("surface");
         let ending = self.particles.extension().unwrap_or_default().to_string_lossy();
         for repetition in 0..repetitions {
-            // A file that is named twice is read once.
+            // A file that is given twice is read once.
             let copy = self.sides.folder.join(format!("particles_{repetition}.{ending}"));
             fs::copy(self.particles, &copy)?;
             surface.arg(copy);
@@ -154,7 +154,7 @@ impl Case<'_> {
         Ok(Answer { seconds, vertices: number(last, "vertices")?, memory })
     }
 
-    /// The same by splashsurf.
+    /// The same with splashsurf.
     fn theirs(&self) -> Result<String> {
         let mut peer = self.peer("time", self.particles);
         answer(peer.arg(REPETITIONS.to_string()))

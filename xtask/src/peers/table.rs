@@ -1,12 +1,12 @@
 //! Tables in Markdown.
 
-/// A table: its heads, of which those of numbers are set to the right, and its rows.
+/// A table with a header row; numeric columns are right-aligned.
 pub struct Table {
     text: String,
 }
 
 impl Table {
-    /// A table with these heads; all columns but the first hold numbers.
+    /// A table with these column headers; all columns but the first hold numbers.
     pub fn new(heads: &[&str]) -> Self {
         let rule = std::iter::once("---").chain(std::iter::repeat_n("---:", heads.len().saturating_sub(1)));
         let rule = rule.collect::<Vec<_>>().join("|");
@@ -18,18 +18,18 @@ impl Table {
         self.text += &format!("\n| {} |", cells.join(" | "));
     }
 
-    /// As text.
+    /// The table as Markdown.
     pub fn text(&self) -> &str {
         &self.text
     }
 }
 
-/// A number against what it should reach: `12.3 (bar 10: met)`.
+/// A number and the minimum that it should reach: `12.3 (bar 10: met)`.
 pub fn at_least(value: f64, bar: f64) -> String {
     verdict(value, bar, value >= bar)
 }
 
-/// As [`at_least`], for what should not be more.
+/// A number and the maximum that it should not exceed, in the form of [`at_least`].
 pub fn at_most(value: f64, bar: f64) -> String {
     verdict(value, bar, value <= bar)
 }
@@ -43,14 +43,14 @@ mod tests {
     use super::{Table, at_least, at_most};
 
     #[test]
-    fn rows_have_as_many_columns_as_heads() {
+    fn rows_have_as_many_columns_as_the_header() {
         let mut table = Table::new(&["who", "ms", "ratio"]);
         table.row(&["we".into(), "1.0".into(), "10".into()]);
         assert_eq!(table.text(), "| who | ms | ratio |\n|---|---:|---:|\n| we | 1.0 | 10 |");
     }
 
     #[test]
-    fn bars_are_met_from_their_side() {
+    fn minimum_and_maximum_bars_are_judged() {
         assert_eq!(at_least(10.0, 10.0), "10.00 (bar 10: met)");
         assert_eq!(at_least(9.994, 10.0), "9.99 (bar 10: **missed**)");
         assert_eq!(at_most(1.0, 1.0), "1.00 (bar 1: met)");
