@@ -63,7 +63,7 @@ struct ScriptSample {
     unused_3: f32,
 }
 
-// A vector turned by a unit quaternion, and back.
+// Rotates a vector by a unit quaternion; `turned_back` by its inverse.
 fn turned(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     let t = 2.0 * cross(q.xyz, v);
     return v + q.w * t + cross(q.xyz, t);

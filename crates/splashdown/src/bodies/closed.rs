@@ -1,4 +1,4 @@
-//! Meshes that must have an inside: what is filled with fluid, pours or drains it.
+//! Closed meshes, which must enclose a volume: fluid shapes, outlets and sinks.
 
 use splashdown_io::Mesh;
 
@@ -7,11 +7,11 @@ use crate::boundary::KernelPair;
 use crate::scene::{Domain, MeshSource};
 use crate::solid::{self, Solid, SolidKind, SolidSettings};
 
-/// The solid of a mesh, in the mesh's frame, with distances but without shares of the kernel. `owner` is what
-/// the mesh is for.
+/// The solid of a mesh in the mesh's frame, with distances but without kernel fractions. `owner` names the purpose
+/// of the mesh in messages.
 ///
 /// # Errors
-/// [`BodyError`] of the file, the size or the shape; [`BodyError::Open`] for a sheet without an inside.
+/// [`BodyError`] of the file, the size or the shape; [`BodyError::Open`] if the mesh encloses no volume.
 pub(crate) fn closed_solid(
     owner: &str,
     source: &MeshSource,
@@ -21,7 +21,7 @@ pub(crate) fn closed_solid(
     solid_of(owner, source, &mesh_of(owner, source)?, domain, spacing)
 }
 
-/// As [`closed_solid`], of a mesh that was read by [`mesh_of`].
+/// As [`closed_solid`], for a mesh read by [`mesh_of`].
 ///
 /// # Errors
 /// As [`closed_solid`].
@@ -35,18 +35,18 @@ pub(crate) fn solid_of(
     check_scale(owner, source, mesh, domain)?;
     let settings = SolidSettings {
         cell_size: cell_size(solid::bounds(mesh), spacing, 0.0, 0.0),
-        // Nothing feels it, so no node needs to know its share.
+        // The solid exerts no force, so its nodes need no kernel fractions.
         support_radius: 0.0,
         kernels: KernelPair::WendlandC2,
         half_thickness: 0.5 * spacing,
         shell: None,
         cache: solid::default_cache_folder(),
     };
-    let wrong = |source| BodyError::Solid { owner: owner.into(), source };
-    let solid = Solid::build(mesh, &settings, &|_| {}).map_err(wrong)?;
+    let solid_error = |source| BodyError::Solid { owner: owner.into(), source };
+    let solid = Solid::build(mesh, &settings, &|_| {}).map_err(solid_error)?;
     if solid.kind == SolidKind::Shell {
         return Err(BodyError::Open { owner: owner.into(), open_edges: solid.report.boundary_edges });
     }
-    solid.require_volume().map_err(wrong)?;
+    solid.require_volume().map_err(solid_error)?;
     Ok(solid)
 }

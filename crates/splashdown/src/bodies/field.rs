@@ -1,23 +1,24 @@
-//! A body's map and boundary particles, looked up on the host's side; see [`contacts`](super::contacts).
+//! Interpolation of a body's map and sums over its boundary particles on the CPU; see
+//! [`boundary_lookup`](super::boundary_lookup).
 
 use glam::{UVec3, Vec2, Vec3, Vec4};
 
 use super::types::Body;
 use crate::kernel::Kernel;
 
-/// The map at a point.
+/// The values of a body's map at a point.
 pub(super) struct Field {
     /// Signed distance in m.
     pub distance: f32,
     /// Effective distance in m.
     pub effective: f32,
-    /// Gradient of the first in the mesh's frame.
+    /// Gradient of the signed distance in the mesh's frame.
     pub distance_gradient: Vec3,
-    /// Gradient of the second.
+    /// Gradient of the effective distance in the mesh's frame.
     pub effective_gradient: Vec3,
 }
 
-/// The map at a point of the mesh's frame, if the body is felt there.
+/// The values of the map at a point of the mesh's frame; `None` if the body is farther than the support radius.
 #[inline]
 pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Field> {
     let size = UVec3::new(body.nodes_x, body.nodes_y, body.nodes_z);
@@ -32,7 +33,7 @@ pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Fi
     let (row, plane) = (size.x as usize, (size.x * size.y) as usize);
     let first = body.first_node as usize + cell.z as usize * plane + cell.y as usize * row + cell.x as usize;
     let node = |k: usize| maps[first + k];
-    // Distances change by no more than a cell from node to node: most particles are done after one read.
+    // Distances differ by at most a cell between neighbouring nodes, so one read rejects most particles.
     if node(0).min_element() >= support + 3.0 * body.cell_size {
         return None;
     }
@@ -57,7 +58,8 @@ pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Fi
     })
 }
 
-/// The boundary particles round a point of the mesh's frame: minus the gradient of their share, and the share.
+/// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction
+/// (xyz), and the fraction (w).
 pub(super) fn sampled<K: Kernel>(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Vec4 {
     let scale = 1.0 / support;
     let scale3 = scale * scale * scale;

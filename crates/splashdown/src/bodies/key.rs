@@ -1,4 +1,4 @@
-//! How a checkpoint recognises the bodies that it was made with.
+//! Fingerprints of bodies, by which a checkpoint identifies them.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,9 @@ pub(crate) struct BodyKey {
     pub name: String,
     pub vertices: usize,
     pub triangles: usize,
-    /// Of the repaired mesh in m^3.
+    /// Volume of the repaired mesh in m^3.
     pub volume: f32,
-    /// Of its vertices and triangles.
+    /// Hash of its vertices and triangles.
     pub hash: u64,
 }
 
@@ -25,7 +25,7 @@ impl std::fmt::Display for BodyKey {
 }
 
 impl BodyKey {
-    /// Of a body.
+    /// The fingerprint of a body.
     pub fn new(BodyMesh { name, mesh, .. }: &BodyMesh) -> Self {
         Self {
             name: name.clone(),
@@ -38,17 +38,17 @@ impl BodyKey {
     }
 }
 
-/// How the bodies of a scene differ from those of a checkpoint.
+/// A difference between the bodies of a scene and those of a checkpoint.
 #[derive(Clone, Debug)]
 pub(crate) enum BodiesChanged {
-    /// One has another mesh.
+    /// A body has another mesh.
     Mesh {
         /// The body now.
         now: BodyKey,
         /// The body in the checkpoint.
         then: BodyKey,
     },
-    /// There are more or fewer.
+    /// The numbers of bodies differ.
     Count {
         /// Bodies of the scene.
         now: usize,

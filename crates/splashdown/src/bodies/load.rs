@@ -1,4 +1,4 @@
-//! From a scene's bodies to solids with a mass.
+//! Loads the bodies of a scene: meshes, solids, masses, and boundary particles.
 
 use std::path::PathBuf;
 
@@ -16,31 +16,31 @@ use crate::state::Params;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BodyError {
-    /// Its file.
+    /// The file could not be read.
     #[error("{owner}: {source}")]
     File {
         /// What the mesh is for, such as `body "raft"`.
         owner: String,
-        /// What is wrong with the file.
+        /// What is solid_error with the file.
         source: IoError,
     },
-    /// A model that does not come with the program.
-    #[error("{owner}: there is no model {model:?}; there are {}. A file's name needs its ending", known())]
+    /// There is no built-in model of this name.
+    #[error("{owner}: there is no model {model:?}; there are {}. A file name needs its extension", known())]
     NoModel {
         /// What the mesh is for.
         owner: String,
-        /// The word given.
+        /// The name given.
         model: String,
     },
-    /// Its shape.
+    /// No solid can be made of the shape.
     #[error("{owner}: {source}")]
     Solid {
         /// What the mesh is for.
         owner: String,
-        /// What is wrong with the shape.
+        /// What is solid_error with the shape.
         source: SolidError,
     },
-    /// A size that can hardly be meant.
+    /// The size of the mesh is implausible in this domain.
     #[error("{owner} is {size:.4} m long, the domain is {domain:.4} m: {advice}")]
     Scale {
         /// What the mesh is for.
@@ -49,20 +49,20 @@ pub enum BodyError {
         size: f32,
         /// The domain's longest edge in m.
         domain: f32,
-        /// The scale that would fit, in words.
+        /// Which scale to use.
         advice: String,
     },
-    /// A sheet where an inside is needed.
+    /// The mesh is open where a closed one is required.
     #[error(
         "{owner}: its mesh is open ({open_edges} open edges) and encloses no volume; close it, or export the object as a solid"
     )]
     Open {
         /// What the mesh is for.
         owner: String,
-        /// Edges with one triangle only.
+        /// Number of edges with a single triangle.
         open_edges: u32,
     },
-    /// A dynamic body in a build without collisions.
+    /// This build does not support dynamic bodies.
     #[error(
         "{owner}: this build cannot compute dynamic bodies; build with the Cargo feature `rigid`, or make the body static or scripted"
     )]
@@ -70,7 +70,7 @@ pub enum BodyError {
         /// What the mesh is for.
         owner: String,
     },
-    /// An outlet too small for a particle.
+    /// The outlet is too small for a particle.
     #[error(
         "{owner}: the outline of its mesh across the direction holds no particle of {spacing} m, half a spacing inside; the mesh's \
          origin must lie inside it: enlarge it, check up and rotation, or refine particle_spacing"
@@ -83,7 +83,7 @@ pub enum BodyError {
     },
 }
 
-/// `body "raft" (raft.stl)`, as messages call what has a name and a mesh.
+/// How messages name an object with a mesh, for example `body "raft" (raft.stl)`.
 pub(crate) fn owner(kind: &str, name: &str, source: &MeshSource) -> String {
     match &source.shape {
         MeshShape::Model(_) => format!("{kind} {name:?}"),
@@ -103,35 +103,35 @@ pub struct LoadedBody {
     pub name: String,
     /// Its shape.
     pub solid: Solid,
-    /// Its state at t = 0, the places in the maps not yet filled in.
+    /// Its state at t = 0. The offsets into the maps are not set yet.
     pub state: Body,
-    /// Boundary particles in the mesh's frame with their volumes in m^3; empty where the map is used.
+    /// Boundary particles in the mesh's frame with their volumes in m^3; empty if the body uses a map.
     pub samples: Vec<Vec4>,
-    /// Its motion, if that is written.
+    /// Its script, if it is scripted.
     pub script: Option<Script>,
     /// Linear RGB.
     pub colour: Option<[f32; 3]>,
-    /// Density in kg/m^3 of what moves; 0 for what does not.
+    /// Density of a dynamic body in kg/m^3; 0 for other bodies.
     density: f32,
 }
 
 impl LoadedBody {
-    /// The mass of what moves, in kg; 1 for what does not.
+    /// The mass of a dynamic body in kg; 1 for other bodies.
     pub fn mass(&self) -> f32 {
         if self.density > 0.0 { self.density * self.solid.mass.volume } else { 1.0 }
     }
 
-    /// Where the mesh's origin is at t = 0, in m, and the mesh's rotation.
+    /// The position of the mesh's origin in m and the mesh's rotation, at t = 0.
     pub fn pose(&self) -> (Vec3, Quat) {
         let rotation = self.state.rotation();
         (self.state.position - rotation * self.state.center, rotation)
     }
 }
 
-/// A mesh in metres, y up, in its own frame; `owner` is what it is for, in messages.
+/// Reads a mesh in metres, y up, in its own frame. `owner` names its purpose in messages.
 ///
 /// # Errors
-/// [`BodyError`] of the file or the model's name.
+/// [`BodyError`] if the file cannot be read or the model does not exist.
 pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     #[cfg(test)]
     crate::work::count("mesh read");
@@ -153,11 +153,11 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     Ok(mesh)
 }
 
-/// Builds a scene's bodies from their meshes, which [`mesh_of`] read in the order of the scene. `progress` is called
-/// with the name of a body and the completed part of it, in [0, 1].
+/// Builds the bodies of a scene from their meshes, which [`mesh_of`] has read in the order of the scene. `progress`
+/// is called with the name of a body and the completed part of it in [0, 1].
 ///
 /// # Errors
-/// [`BodyError`], the first.
+/// The first [`BodyError`].
 pub fn load(
     scene: &scene::Scene,
     meshes: Vec<Result<Mesh, BodyError>>,
@@ -195,8 +195,8 @@ fn load_one(
         shell: body.shell,
         cache,
     };
-    let wrong = |source| BodyError::Solid { owner: owner.clone(), source };
-    let solid = Solid::build(&mesh, &settings, &|part| progress(&body.name, part)).map_err(wrong)?;
+    let solid_error = |source| BodyError::Solid { owner: owner.clone(), source };
+    let solid = Solid::build(&mesh, &settings, &|part| progress(&body.name, part)).map_err(solid_error)?;
     let mut state = Body {
         position: body.mesh.position,
         orientation: Vec4::from(body.mesh.rotation),
@@ -217,7 +217,7 @@ fn load_one(
             script = Some(written.clone());
         }
         Motion::Dynamic { density, velocity, angular_velocity, hinge } => {
-            solid.require_volume().map_err(wrong)?;
+            solid.require_volume().map_err(solid_error)?;
             let mass = solid.mass;
             state.kind = Body::DYNAMIC;
             state.center = mass.center;
@@ -228,7 +228,7 @@ fn load_one(
             (state.inverse_inertia, state.inverse_inertia_products) = parts(inertia.inverse());
             (state.velocity, state.angular_velocity) = (*velocity, *angular_velocity);
             if let Some(hinge) = hinge {
-                hang(&mut state, hinge, inertia);
+                attach_hinge(&mut state, hinge, inertia);
             }
         }
     }
@@ -243,9 +243,9 @@ fn load_one(
     Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour, density })
 }
 
-/// Puts a free body, with this inertia about its centre of mass, on a hinge: it turns about the hinge's point,
-/// and only about the axis, because its inverse inertia knows no other.
-fn hang(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
+/// Attaches a dynamic body, with this inertia about its centre of mass, to a hinge: the body rotates about the point
+/// of the hinge. Its inverse inertia is zero about all axes but the hinge's.
+fn attach_hinge(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
     let rotation = state.rotation();
     let arm = rotation.conjugate() * (state.position - hinge.point);
     let axis = rotation.conjugate() * hinge.axis;
@@ -262,13 +262,13 @@ fn hang(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
     state.angular_velocity = state.angular_velocity.dot(hinge.axis) * hinge.axis;
 }
 
-/// Diagonal, and xy, xz, yz.
+/// The diagonal of a symmetric matrix, and its elements xy, xz, yz.
 fn parts(m: Mat3) -> (Vec3, Vec3) {
     (Vec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z), Vec3::new(m.y_axis.x, m.z_axis.x, m.z_axis.y))
 }
 
-/// Bytes of the maps and contacts that a scene's bodies take on a device. `extents` are the corners of their meshes; a mesh
-/// that cannot be read has none, counts nothing here, and is refused when it is loaded.
+/// The size in bytes of the maps and contacts of a scene's bodies on a device. `extents` are the corners of their
+/// meshes; a mesh that cannot be read has `None` and is not counted, because loading it fails later.
 pub(crate) fn forecast(scene: &scene::Scene, extents: &[Option<(Vec3, Vec3)>], particles: u64) -> u64 {
     if scene.bodies.is_empty() {
         return 0;
@@ -289,12 +289,12 @@ pub(crate) fn forecast(scene: &scene::Scene, extents: &[Option<(Vec3, Vec3)>], p
     maps + particles * 2 * size_of::<Contact>() as u64
 }
 
-/// Half the thickness in m that a sheet gets.
+/// Half the thickness in m of an open mesh.
 fn half_thickness(body: &scene::Body, spacing: f32) -> f32 {
     body.half_thickness.unwrap_or(0.5 * spacing)
 }
 
-/// Half a particle spacing, or more where the grid would have more than this many nodes.
+/// The cell size of a body's grid: half a particle spacing, or more if the grid would exceed the limit of nodes.
 pub(super) fn cell_size((low, high): (Vec3, Vec3), spacing: f32, support: f32, half_thickness: f32) -> f32 {
     const MOST_NODES: f32 = 6e6;
     let volume = |cell: f32| ((high - low + 2.0 * (support + half_thickness)) / cell + 4.0).element_product();
@@ -305,7 +305,8 @@ pub(super) fn cell_size((low, high): (Vec3, Vec3), spacing: f32, support: f32, h
     cell
 }
 
-/// Refuses a mesh that is a hundred times as long as the domain, or a thousandth of it: its unit is another one.
+/// Rejects a mesh that is more than 100 times as long as the domain, or less than a thousandth of it: its unit is
+/// probably wrong.
 pub(crate) fn check_scale(
     owner: &str,
     source: &MeshSource,
@@ -331,16 +332,16 @@ pub(crate) fn check_scale(
     Err(BodyError::Scale { owner: owner.to_owned(), size, domain, advice })
 }
 
-/// What files with this scale are written in.
+/// The name of the unit that this scale converts to metres.
 fn unit_word(scale: f32) -> String {
     let known = [(0.001, "millimetres"), (0.01, "centimetres"), (0.0254, "inches")];
     let word = known.iter().find(|(unit, _)| (scale / unit - 1.0).abs() < 1e-4);
     word.map_or_else(|| format!("units of {scale} m"), |(_, word)| (*word).to_owned())
 }
 
-/// Boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W
-/// (Akinci et al. 2012), scaled once so that half a spacing off the surface the density is what a plane wall's
-/// is.
+/// Samples boundary particles half a spacing inside the surface (on the sheet of a shell) with volumes 1 / sum W
+/// (Akinci et al. 2012). The volumes are scaled once, so that the density half a spacing outside the surface is that
+/// of a plane wall.
 fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Vec<Vec4> {
     let (spacing, support) = (params.particle_spacing, params.support_radius);
     let shell = solid.kind == SolidKind::Shell;
@@ -370,7 +371,7 @@ fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Ve
     places.iter().zip(volumes).map(|(x, v)| x.extend(v * scale)).collect()
 }
 
-/// Points in cells of a hash map, for sums over neighbours while loading.
+/// Points in a hash map of cells, for sums over neighbours during loading.
 struct Neighbours<'a> {
     points: &'a [Vec3],
     cells: std::collections::HashMap<[i32; 3], Vec<u32>>,

@@ -1,10 +1,10 @@
-//! Bodies that the fluid meets: meshes that stand, move as written, or are carried.
+//! Bodies in the fluid: meshes that are static, scripted or dynamic.
 //!
-//! *How it works.* A body's solid ([`crate::solid`]) is a grid of distances in the frame of its mesh. In every
-//! step each particle near a body looks its place up (`contacts`), the body takes part in the density (`share`)
-//! and in the forces (`push`), the reactions are summed on the device, and the body moves (`motion`), all
-//! without asking the host. Between batches of steps the host lets bodies that touch one another or the box
-//! collide (`rigid`).
+//! *How it works.* The solid of a body ([`crate::solid`]) is a grid of distances in the frame of its mesh. Every step
+//! runs four passes on the device, without the host. `boundary_lookup` finds the bodies near each particle and the
+//! distances to them. `boundary_density` adds the bodies' contribution to the density. `boundary_force` adds their
+//! forces and sums the reactions. `motion` moves the bodies. Between batches of steps the host resolves collisions of
+//! bodies with one another and with the domain (`rigid`).
 
 mod boundary_density;
 mod boundary_force;
@@ -41,10 +41,10 @@ use crate::solid::{DistanceField, RepairReport};
 use crate::state::Params;
 use rigid::Rigid;
 
-/// Five vectors and a quaternion.
+/// Numbers per body in a checkpoint: five vectors and a quaternion.
 const MOTION_COLUMNS: usize = 19;
 
-/// A body's shape.
+/// The shape of a body.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct BodyMesh {
@@ -56,11 +56,11 @@ pub struct BodyMesh {
     pub colour: Option<[f32; 3]>,
 }
 
-/// Where a body is, and what the fluid does to it.
+/// The position and velocity of a body, and the force of the fluid on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BodyState {
-    /// Where the mesh's origin is, in m.
+    /// Position of the mesh's origin in m.
     pub position: Vec3,
     /// The mesh's rotation.
     pub orientation: Quat,
@@ -75,7 +75,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// From the mesh's frame into the world, in m.
+    /// Transforms a point in m from the mesh's frame into the world.
     pub fn world(&self, y: Vec3) -> Vec3 {
         self.position + self.orientation * y
     }
@@ -101,26 +101,26 @@ pub fn passes() -> Vec<&'static PassDesc> {
 /// The bodies of a simulation, on its device and on the host.
 pub struct Bodies {
     kernels: KernelPair,
-    /// One per body.
+    /// The states of the bodies, one per body.
     pub bodies: Buffer<Body>,
     /// Distances, effective distances and boundary particles of all bodies.
     pub maps: Buffer<Vec2>,
-    /// Two per particle.
+    /// The contacts of particles with bodies, two per particle.
     pub contacts: Buffer<Contact>,
-    /// Reactions; [`SUM_WORDS`] words per body.
+    /// The reactions to the boundary forces, [`SUM_WORDS`] words per body.
     pub sums: Buffer<u32>,
     scripts: Buffer<ScriptSample>,
-    /// One per scripted body.
-    written: Vec<Script>,
+    /// The scripts, one per scripted body.
+    host_scripts: Vec<Script>,
     meshes: Vec<BodyMesh>,
     reports: Vec<RepairReport>,
-    /// For the host's own count of particles inside.
+    /// The distance fields, for counting particles inside bodies on the host.
     fields: Vec<DistanceField>,
     rigid: Option<Rigid>,
 }
 
 impl Bodies {
-    /// Places bodies on a device.
+    /// Creates the buffers of the bodies on a device.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -133,18 +133,18 @@ impl Bodies {
     ) -> Result<Self, GpuError> {
         let mut maps = Vec::new();
         let mut states = Vec::new();
-        let mut written = Vec::new();
+        let mut host_scripts = Vec::new();
         for body in &loaded {
             let mut state = body.state;
             place_map(body, params, &mut state, &mut maps);
             if let Some(script) = &body.script {
-                state.script = written.len() as u32;
-                written.push(script.clone());
+                state.script = host_scripts.len() as u32;
+                host_scripts.push(script.clone());
             }
             states.push(state);
         }
         let rigid = Rigid::new(&loaded, &states, domain);
-        let scripts = vec![bytemuck::Zeroable::zeroed(); written.len().max(1) * SCRIPT_SAMPLES];
+        let scripts = vec![bytemuck::Zeroable::zeroed(); host_scripts.len().max(1) * SCRIPT_SAMPLES];
         Ok(Self {
             kernels,
             bodies: executor.create_from("bodies", &states)?,
@@ -152,7 +152,7 @@ impl Bodies {
             contacts: executor.create("contacts", 2 * params.particle_count.max(1) as usize)?,
             sums: executor.create_from("sums", &vec![0; SUM_WORDS * states.len()])?,
             scripts: executor.create_from("scripts", &scripts)?,
-            written,
+            host_scripts,
             meshes: loaded
                 .iter()
                 .map(|body| BodyMesh {
@@ -208,16 +208,16 @@ impl Bodies {
         }
     }
 
-    /// Writes down where the scripted bodies will be during a frame, in seconds.
+    /// Samples the motion of the scripted bodies during a frame for the device. `start` and `duration` in seconds.
     ///
     /// # Errors
     /// If the device was lost.
     pub fn begin_frame(&self, executor: &mut Executor, start: f64, duration: f64) -> Result<(), GpuError> {
-        if self.written.is_empty() {
+        if self.host_scripts.is_empty() {
             return Ok(());
         }
-        let mut samples = Vec::with_capacity(self.written.len() * SCRIPT_SAMPLES);
-        for script in &self.written {
+        let mut samples = Vec::with_capacity(self.host_scripts.len() * SCRIPT_SAMPLES);
+        for script in &self.host_scripts {
             for k in 0..SCRIPT_SAMPLES {
                 let time = start + duration * k as f64 / (SCRIPT_SAMPLES - 1) as f64;
                 let pose = script.pose(time);
@@ -233,12 +233,12 @@ impl Bodies {
         executor.write(self.scripts, &samples)
     }
 
-    /// True if bodies may touch one another: then the host looks at them between batches of steps.
+    /// True if bodies can collide, so that the host has to resolve collisions between batches of steps.
     pub fn collide(&self) -> bool {
         self.rigid.is_some()
     }
 
-    /// Lets the bodies collide with what happened in the last `seconds`.
+    /// Resolves the collisions of the last `seconds`.
     ///
     /// # Errors
     /// If the device was lost.
@@ -255,7 +255,7 @@ impl Bodies {
         Ok(())
     }
 
-    /// Puts bodies where they are said to be, with their velocities.
+    /// Sets the positions and velocities of bodies; `None` leaves a body unchanged.
     ///
     /// # Errors
     /// If the device was lost.
@@ -285,7 +285,7 @@ impl Bodies {
         self.meshes.iter().map(BodyKey::new).collect()
     }
 
-    /// Refuses bodies whose meshes differ from those of a checkpoint.
+    /// Returns an error if the meshes differ from those of a checkpoint.
     pub(crate) fn check_keys(&self, then: &[BodyKey]) -> Result<(), BodiesChanged> {
         let now = self.keys();
         match now.iter().zip(then).find(|(now, then)| now != then) {
@@ -309,12 +309,12 @@ impl Bodies {
         Ok(bodies.iter().flat_map(|b| row(b).collect::<Vec<f32>>()).collect())
     }
 
-    /// The world in which the bodies collide.
+    /// The state of the collisions.
     pub(crate) fn collisions(&self) -> &Option<Rigid> {
         &self.rigid
     }
 
-    /// Puts back what [`fetch_motion`](Self::fetch_motion) and [`collisions`](Self::collisions) told.
+    /// Restores the results of [`fetch_motion`](Self::fetch_motion) and [`collisions`](Self::collisions).
     pub(crate) async fn restore(
         &mut self,
         executor: &mut Executor,
@@ -332,7 +332,7 @@ impl Bodies {
         executor.write(self.bodies, &bodies)
     }
 
-    /// Pulls a free body by one of its points: see [`Body::pull`].
+    /// Pulls a dynamic body by one of its points: see [`Body::pull`].
     ///
     /// # Errors
     /// If the device was lost.
@@ -357,12 +357,12 @@ impl Bodies {
         &self.meshes
     }
 
-    /// What was found in the meshes, in the order of the scene.
+    /// The repairs of the meshes, in the order of the scene.
     pub fn reports(&self) -> &[RepairReport] {
         &self.reports
     }
 
-    /// Where the bodies are, in the order of the scene.
+    /// The states of the bodies, in the order of the scene.
     ///
     /// # Errors
     /// If the device was lost.
@@ -370,8 +370,8 @@ impl Bodies {
         Ok(executor.fetch(self.bodies).await?.iter().map(state_of).collect())
     }
 
-    /// How far a point is from the nearest body's surface in m, negative inside, and that body's name; by the
-    /// host's own look-up.
+    /// The distance in m from a point to the surface of the nearest body, negative inside, and the name of the body.
+    /// Computed on the host.
     pub fn nearest(&self, states: &[BodyState], x: Vec3) -> Option<(f32, &str)> {
         let distances = self.fields.iter().zip(states).zip(&self.meshes).map(|((field, state), mesh)| {
             (field.distance(state.orientation.conjugate() * (x - state.position)), mesh.name.as_str())
@@ -379,7 +379,7 @@ impl Bodies {
         distances.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// How many of these particles lie inside a body, by the host's own look-up.
+    /// The number of these particles that lie inside a body. Computed on the host.
     pub fn inside(&self, states: &[BodyState], particles: &Particles) -> u32 {
         let within = |x: Vec3| {
             self.fields.iter().zip(states).any(|(field, state)| {
@@ -424,7 +424,7 @@ fn state_of(body: &Body) -> BodyState {
     }
 }
 
-/// Appends a body's distances and, where it has them, its boundary particles.
+/// Appends the distances of a body and its boundary particles, if any.
 fn place_map(body: &LoadedBody, params: &Params, state: &mut Body, maps: &mut Vec<Vec2>) {
     let field = &body.solid.field;
     state.first_node = maps.len() as u32;
@@ -446,7 +446,7 @@ fn place_map(body: &LoadedBody, params: &Params, state: &mut Body, maps: &mut Ve
     sorted.sort_by_key(|(cell, _)| *cell);
     state.first_sample_cell = maps.len() as u32;
     let count = (cells.x * cells.y * cells.z) as usize;
-    // Samples lie behind the cells, two entries each, on an even place.
+    // The boundary particles follow the cells: two entries each, starting at an even index.
     let first = (maps.len() + count).div_ceil(2);
     for cell in 0..count as u32 {
         let [begin, end] = [cell, cell + 1].map(|c| first + sorted.partition_point(|(s, _)| *s < c));

@@ -1,5 +1,5 @@
-//! What stands in for `rigid` in a build without it. No value of [`Rigid`] exists, because a scene with a dynamic
-//! body is an error there.
+//! Replaces `rigid` in a build without the Cargo feature `rigid`. No value of [`Rigid`] exists, because a scene with
+//! a dynamic body is an error in such a build.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use super::load::LoadedBody;
 use super::types::Body;
 use crate::scene::Domain;
 
-/// Collisions, which this build leaves out.
+/// Collisions, which this build does not support.
 #[derive(Serialize, Deserialize)]
 pub(crate) enum Rigid {}
 

@@ -1,16 +1,16 @@
-//! Collisions of bodies with one another and with the box, by `rapier3d`.
+//! Collisions of bodies with one another and with the domain, by `rapier3d`.
 //!
-//! *How it works.* The device moves every body in every step, collisions left out. After a batch of steps the
-//! host makes rapier's bodies go the same way, from where they were before the batch with the mean velocity
-//! that leads to where the device has them. Without a contact rapier arrives at the same place and its answer
-//! is dropped, so that free bodies are untouched. With one, its places are taken, and what the contact changed
-//! of the mean velocity is added to the device's.
+//! *How it works.* The device moves every body in every step without collisions. After a batch of steps the host
+//! repeats the motion in rapier: each body starts at its position before the batch and has the mean velocity that
+//! leads to its position on the device. Without a contact rapier arrives at the same position, and its result is
+//! discarded, so that bodies without contacts are unchanged. With a contact the positions of rapier are used, and the
+//! change of the mean velocity is added to the velocity on the device.
 //!
-//! *Why not* rapier for all motion: the fluid's force changes in every step, and a host in every step is what
-//! the house avoids.
+//! *Why not* rapier for all motion: the force of the fluid changes in every step, and a round trip to the host in
+//! every step is too slow.
 //!
-//! Dynamic bodies collide as their convex hull where that is nearly their volume, else as a convex
-//! decomposition; what does not answer to forces as its triangles.
+//! A dynamic body collides as its convex hull if their volumes are nearly equal, and as a convex decomposition
+//! otherwise. Static and scripted bodies collide as triangle meshes.
 
 use glam::{Quat, Vec3, Vec4};
 use rapier3d::prelude::{
@@ -23,20 +23,20 @@ use super::load::LoadedBody;
 use super::types::Body;
 use crate::scene::Domain;
 
-/// Friction between solids: wood on wood, roughly.
+/// Coefficient of friction between solids: roughly that of wood on wood.
 const FRICTION: f32 = 0.4;
-/// Share of the approach speed that comes back.
+/// Coefficient of restitution.
 const RESTITUTION: f32 = 0.2;
-/// A hull this much larger than its body hides a hollow.
+/// The ratio of volumes above which a convex hull does not represent a body, because the body has a cavity.
 const HOLLOW: f32 = 1.1;
 
-/// The bodies' twins in rapier's world.
+/// The representation of the bodies in rapier.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Rigid {
     world: PhysicsWorld,
-    /// One per body, in their order.
+    /// The handles of the bodies, in the order of the scene.
     handles: Vec<RigidBodyHandle>,
-    /// Where they were after the last batch.
+    /// Their positions and rotations after the last batch.
     before: Vec<Place>,
 }
 
@@ -48,7 +48,7 @@ fn place(state: &Body) -> Place {
 }
 
 impl Rigid {
-    /// `None` where nothing can collide.
+    /// `None` if there is no dynamic body.
     pub fn new(loaded: &[LoadedBody], states: &[Body], domain: &Domain) -> Option<Self> {
         if !states.iter().any(|body| body.kind == Body::DYNAMIC) {
             return None;
@@ -64,7 +64,7 @@ impl Rigid {
         Some(Self { world, handles, before })
     }
 
-    /// Brings states up to date with the collisions of the last `seconds`; true if there were any.
+    /// Applies the collisions of the last `seconds` to the states. Returns true if there were any.
     pub fn resolve(&mut self, states: &mut [Body], seconds: f32) -> bool {
         if seconds.is_nan() || seconds <= 0.0 {
             return false;
@@ -79,8 +79,8 @@ impl Rigid {
             means.push((velocity, spin));
             if state.kind == Body::DYNAMIC {
                 body.set_position(pose(position, rotation), true);
-                body.set_linvel(there(velocity), true);
-                body.set_angvel(there(spin), true);
+                body.set_linvel(to_rapier(velocity), true);
+                body.set_angvel(to_rapier(spin), true);
             } else if state.kind == Body::SCRIPTED {
                 body.set_next_kinematic_position(pose(state.position, state.rotation()));
             }
@@ -96,12 +96,12 @@ impl Rigid {
                 let (velocity, spin) = means[b];
                 let axis = axis(state).map(|axis| state.rotation() * axis);
                 if axis.is_none() {
-                    state.position = here(body.position().translation);
-                    state.velocity += here(body.linvel()) - velocity;
+                    state.position = from_rapier(body.position().translation);
+                    state.velocity += from_rapier(body.linvel()) - velocity;
                 }
                 let [x, y, z, w] = body.position().rotation.to_array();
                 state.orientation = Vec4::new(x, y, z, w).normalize_or(state.orientation);
-                let turn = here(body.angvel()) - spin;
+                let turn = from_rapier(body.angvel()) - spin;
                 state.angular_velocity += axis.map_or(turn, |axis| axis.dot(turn) * axis);
             }
             self.before[b] = place(state);
@@ -109,7 +109,7 @@ impl Rigid {
         collided
     }
 
-    /// Bodies have been put elsewhere: what comes next begins there.
+    /// Sets the positions from which the next batch starts, after bodies were moved by other means.
     pub fn place(&mut self, states: &[Body]) {
         self.before = states.iter().map(place).collect();
     }
@@ -121,7 +121,7 @@ impl Rigid {
     }
 }
 
-/// The axis of a body on a hinge, in the mesh's frame: the only one about which its inertia lets it turn.
+/// The axis of a hinged body in the mesh's frame: the only axis about which its inertia allows rotation.
 fn axis(state: &Body) -> Option<Vec3> {
     let hangs = state.kind == Body::DYNAMIC && state.inverse_mass == 0.0;
     let inertia = state.inertia_matrix();
@@ -140,18 +140,18 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
     let handle = world.insert_body(builder);
     if let Some(axis) = axis(state) {
         let fixed = world.insert_body(RigidBodyBuilder::fixed().pose(pose(state.position, state.rotation())));
-        world.insert_impulse_joint(fixed, handle, RevoluteJointBuilder::new(there(axis)));
+        world.insert_impulse_joint(fixed, handle, RevoluteJointBuilder::new(to_rapier(axis)));
     }
     let points: Vec<Vector> =
-        body.solid.mesh.vertices.iter().map(|&v| there(Vec3::from(v) - state.center)).collect();
+        body.solid.mesh.vertices.iter().map(|&v| to_rapier(Vec3::from(v) - state.center)).collect();
     let shape = if state.kind == Body::DYNAMIC {
         convex(&points, &body.solid.mesh.triangles, body.solid.mass.volume)
     } else {
         SharedShape::trimesh(points.clone(), body.solid.mesh.triangles.clone()).ok()
     };
-    // A mesh of which no solid can be made, for rapier, is its ball; it has been accepted as a body before.
+    // If rapier cannot use the mesh, the body collides as its bounding ball.
     let shape = shape.unwrap_or_else(|| SharedShape::ball(state.reach));
-    // The mass is that of the shape for rapier, whatever its volume: contacts with equal masses look the same.
+    // The density is chosen so that the shape has the mass of the body, whatever the volume of the shape.
     let volume = shape.mass_properties(1.0).mass();
     let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { body.mass() };
     let density = if volume > 0.0 { mass / volume } else { 1.0 };
@@ -174,9 +174,9 @@ fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<Shar
     if parts.is_empty() { Some(hull) } else { Some(SharedShape::compound(parts)) }
 }
 
-/// The convex hull of the points that are farthest in some evenly spread directions. Of all points of a fine
-/// mesh parry makes hulls whose slivers its contacts trip over; and a contact need not know a ball from one
-/// with a hundred facets.
+/// The convex hull of the farthest points in evenly distributed directions. From all points of a fine mesh parry
+/// makes hulls with slivers, on which its contacts fail. A hull of a few hundred points is accurate enough for
+/// contacts.
 fn hull(points: &[Vector]) -> Option<SharedShape> {
     const DIRECTIONS: u32 = 256;
     let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
@@ -206,7 +206,7 @@ fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {
             if domain.closed[axis][side] {
                 let mut normal = Vec3::ZERO;
                 normal[axis] = 1.0 - 2.0 * side as f32;
-                let shape = SharedShape::halfspace(there(normal));
+                let shape = SharedShape::halfspace(to_rapier(normal));
                 let place = pose(corner, Quat::IDENTITY);
                 let collider = ColliderBuilder::new(shape).position(place);
                 world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
@@ -215,15 +215,15 @@ fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {
     }
 }
 
-/// Into rapier's vectors, which come from another release of the same crate.
-fn there(v: Vec3) -> Vector {
+/// Converts to the vectors of rapier, which come from another release of glam.
+fn to_rapier(v: Vec3) -> Vector {
     Vector::from_array(v.to_array())
 }
 
-fn here(v: Vector) -> Vec3 {
+fn from_rapier(v: Vector) -> Vec3 {
     Vec3::from_array(v.to_array())
 }
 
 fn pose(position: Vec3, rotation: Quat) -> Pose {
-    Pose::from_parts(there(position), Rotation::from_array(rotation.to_array()))
+    Pose::from_parts(to_rapier(position), Rotation::from_array(rotation.to_array()))
 }

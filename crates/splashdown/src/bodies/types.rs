@@ -1,4 +1,4 @@
-//! What lies in the buffers of bodies.
+//! The elements of the buffers of bodies.
 
 use glam::{Mat3, Quat, Vec3, Vec4};
 use splashdown_gpu::{WgslModule, gpu_struct};
@@ -7,11 +7,11 @@ use splashdown_gpu::{WgslModule, gpu_struct};
 pub const WGSL: WgslModule = WgslModule { name: "sph/body", source: include_str!("body.wgsl") };
 
 gpu_struct! {
-    /// A body on the device. Its own frame is that of its mesh, moved so that `center` is the origin of rotation.
+    /// A body on the device. It rotates about the point `center` of its mesh.
     pub struct Body {
-        /// Where `center` is, in m.
+        /// Position of `center` in the world in m.
         position: Vec3,
-        /// How it moves: [`Body::STATIC`], [`Body::SCRIPTED`] or [`Body::DYNAMIC`].
+        /// Kind of motion: [`Body::STATIC`], [`Body::SCRIPTED`] or [`Body::DYNAMIC`].
         kind: u32,
         /// The mesh's rotation, a quaternion.
         orientation: Vec4,
@@ -21,42 +21,42 @@ gpu_struct! {
         friction: f32,
         /// Angular velocity in rad/s.
         angular_velocity: Vec3,
-        /// Acceleration in m/s^2 by which the fluid clings to it.
+        /// Largest acceleration of the adhesion in m/s^2.
         adhesion: f32,
-        /// The point of the mesh about which it turns, in m: the centre of mass of a dynamic body.
+        /// The point of the mesh about which it rotates, in m: the centre of mass of a dynamic body.
         center: Vec3,
-        /// One over the mass in kg; 0 for what is moved by nothing, and on a hinge.
+        /// One over the mass in kg; 0 for static, scripted and hinged bodies.
         inverse_mass: f32,
         /// Diagonal of the inertia about `center` in the mesh's frame, in kg m^2.
         inertia: Vec3,
-        /// How the fluid feels it: [`Body::MAP`] or [`Body::PARTICLES`].
+        /// Representation of its boundary: [`Body::MAP`] or [`Body::PARTICLES`].
         way: u32,
-        /// The inertia's xy, xz, yz.
+        /// Elements xy, xz, yz of the inertia.
         inertia_products: Vec3,
-        /// Nothing farther from `position` than this, in m, feels it.
+        /// It has no effect on particles farther than this from `position`, in m.
         radius: f32,
         /// Diagonal of the inverse of the inertia.
         inverse_inertia: Vec3,
-        /// Where its distances begin in the maps.
+        /// Index of its first distance in the maps.
         first_node: u32,
-        /// The inverse's xy, xz, yz.
+        /// Elements xy, xz, yz of the inverse.
         inverse_inertia_products: Vec3,
         /// Nodes of its grid along x.
         nodes_x: u32,
         /// Lower corner of its grid in the mesh's frame, in m.
         field_min: Vec3,
-        /// Distance of its grid's nodes in m.
+        /// Distance between the nodes of its grid in m.
         cell_size: f32,
         /// Force of the fluid on it in the last step, in N.
         force: Vec3,
         /// Nodes of its grid along y.
         nodes_y: u32,
-        /// Torque of that about `center`, in N m.
+        /// Torque of this force about `center`, in N m.
         torque: Vec3,
         /// Nodes of its grid along z.
         nodes_z: u32,
-        /// Where its cells of boundary particles begin in the maps: as many as there are cells of the size of
-        /// the support radius over the grid, x fastest.
+        /// Index in the maps of its first cell of boundary particles. The cells have the size of the support radius
+        /// and cover the grid, x fastest.
         first_sample_cell: u32,
         /// Cells of boundary particles along x.
         samples_x: u32,
@@ -64,78 +64,78 @@ gpu_struct! {
         samples_y: u32,
         /// Cells of boundary particles along z.
         samples_z: u32,
-        /// Distance of the farthest point of the mesh from `center`, in m.
+        /// Largest distance of a point of the mesh from `center`, in m.
         reach: f32,
-        /// Its number among the scripted bodies.
+        /// Its index among the scripted bodies.
         script: u32,
-        /// Nothing; WGSL wants a multiple of sixteen bytes.
+        /// Padding to a multiple of 16 bytes.
         unused: [f32; 2],
-        /// Of a body on a hinge, where `center` is: its mass times the arm from there to the centre of mass, in
-        /// the mesh's frame, in kg m.
+        /// For a hinged body, whose hinge is at `center`: the mass times the arm from the hinge to the centre of
+        /// mass, in the mesh's frame, in kg m.
         moment: Vec3,
-        /// Nothing.
+        /// Padding.
         unused_2: f32,
     }
 }
 
 gpu_struct! {
-    /// What one body does to one particle; two of these per particle.
+    /// The contribution of a body at a particle; two per particle.
     pub struct Contact {
-        /// The gradient of the body's share of the kernel, pointing away from it, in 1/m.
+        /// Minus the gradient of the kernel fraction in 1/m: points away from the body.
         slope: Vec3,
-        /// Its share of the density, over the rest density.
+        /// Contribution to the density, over the rest density.
         density: f32,
         /// Unit normal of the nearest surface, pointing into the fluid.
         normal: Vec3,
         /// Distance from the surface in m, negative inside.
         distance: f32,
-        /// Its share of the kernel.
+        /// Kernel fraction: the part of the kernel's integral inside the body.
         kernel_fraction: f32,
-        /// Distance of the plane wall that would have this share, in m.
+        /// Effective distance in m: that of a plane wall with this kernel fraction.
         effective: f32,
-        /// Which body; [`Contact::NONE`] if there is none.
+        /// Index of the body; [`Contact::NONE`] if there is none.
         body: u32,
-        /// Nothing.
+        /// Padding.
         unused: u32,
     }
 }
 
 gpu_struct! {
-    /// Where a scripted body is at one of [`SCRIPT_SAMPLES`] moments of a frame.
+    /// The motion of a scripted body at one of [`SCRIPT_SAMPLES`] times of a frame.
     pub struct ScriptSample {
         /// Position in m.
         position: Vec3,
-        /// Nothing.
+        /// Padding.
         unused: f32,
         /// Rotation, a quaternion.
         orientation: Vec4,
         /// Velocity in m/s.
         velocity: Vec3,
-        /// Nothing.
+        /// Padding.
         unused_2: f32,
         /// Angular velocity in rad/s.
         angular_velocity: Vec3,
-        /// Nothing.
+        /// Padding.
         unused_3: f32,
     }
 }
 
-/// Moments of a frame at which the host says where a scripted body is; between them motion is a cubic.
+/// Times of a frame at which the host samples the motion of a scripted body; the motion between them is a cubic.
 pub const SCRIPT_SAMPLES: usize = 65;
 
 /// Words per body in the buffer of sums: force and torque, 64 bits each.
 pub const SUM_WORDS: usize = 12;
 
 impl Body {
-    /// Stands still.
+    /// Does not move.
     pub const STATIC: u32 = 0;
-    /// Moves as written.
+    /// Moves by a script.
     pub const SCRIPTED: u32 = 1;
-    /// Moves as it is driven.
+    /// Moves by forces.
     pub const DYNAMIC: u32 = 2;
-    /// Felt by its map.
+    /// Boundary represented by a map of distances.
     pub const MAP: u32 = 0;
-    /// Felt by its boundary particles.
+    /// Boundary represented by boundary particles.
     pub const PARTICLES: u32 = 1;
 
     /// Its rotation.
@@ -143,7 +143,7 @@ impl Body {
         Quat::from_vec4(self.orientation)
     }
 
-    /// From the world into the mesh's frame.
+    /// Transforms a point from the world into the mesh's frame.
     #[inline]
     pub fn local(&self, x: Vec3) -> Vec3 {
         self.rotation().conjugate() * (x - self.position) + self.center
@@ -155,8 +155,8 @@ impl Body {
         self.velocity + self.angular_velocity.cross(x - self.position)
     }
 
-    /// Takes the velocity that brings the point `anchor` of its own frame towards `target` (m) at `rate` times
-    /// its distance per second, by an impulse at that point.
+    /// Applies an impulse at the point `anchor` (m, in its own frame), after which the point approaches `target` (m)
+    /// at `rate` (1/s) times their distance.
     pub fn pull(&mut self, anchor: Vec3, target: Vec3, rate: f32) {
         let q = self.rotation();
         let arm = q * (anchor - self.center);
@@ -165,7 +165,8 @@ impl Body {
         // Change of the point's velocity per impulse there.
         let column = |axis: Vec3| self.inverse_mass * axis + turn(arm.cross(axis)).cross(arm);
         let response = Mat3::from_cols(column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
-        // On a hinge the point goes only one way, and nothing has an inverse; a small part of its size mends that.
+        // On a hinge the point has one degree of freedom and the response is singular: a small multiple of its trace
+        // on the diagonal makes it invertible.
         let size = response.x_axis.x + response.y_axis.y + response.z_axis.z;
         if size <= 0.0 {
             return;

@@ -8,16 +8,16 @@ use crate::state::Params;
 impl WallTerms {
     /// The acceleration in m/s^2 of a particle by its neighbours and the walls, without body forces.
     ///
-    /// `FORCES` selects the [`part`] that is computed; `fluid` is the same part of what the neighbours do. `v` is
-    /// the velocity of the particle, and `push` the acceleration of its pressure and its image's, 2 p / rho, per
-    /// unit of G in 1/m.
+    /// `FORCES` selects the [`part`] that is computed; `fluid` is the same part of the acceleration by the neighbours.
+    /// `v` is the velocity of the particle. `pressure_factor` is the acceleration by the pressure of the particle and
+    /// of its image, 2 p / rho, per unit of G in 1/m.
     ///
     /// All forces: neighbours fill only 1 - D of the kernel beside a wall, and the fluid continues unchanged along
     /// the wall. So the sum over the neighbours is divided by the 1 - D of the walls of the other axes. Without
     /// this the fluid at side walls sinks.
     ///
-    /// Pressure: -push G across the wall. A positive pressure continues to grow hydrostatically inside the solid:
-    /// -(D + A d / H) body, the half-space integral of a linear pressure.
+    /// Pressure: -pressure_factor G across the wall. A positive pressure continues to grow hydrostatically inside the
+    /// solid: -(D + A d / H) body, the half-space integral of a linear pressure.
     ///
     /// Other forces:
     ///
@@ -35,7 +35,7 @@ impl WallTerms {
         v: Vec3,
         body: Vec3,
         fluid: Vec3,
-        push: f32,
+        pressure_factor: f32,
         dt: f32,
     ) -> Vec3 {
         let scale = 1.0 / params.support_radius;
@@ -48,8 +48,8 @@ impl WallTerms {
                 continue;
             }
             if FORCES & part::PRESSURE != 0 {
-                let mut own = push * self.slope[axis] * scale * self.normal[axis];
-                if push > 0.0 {
+                let mut own = pressure_factor * self.slope[axis] * scale * self.normal[axis];
+                if pressure_factor > 0.0 {
                     own -= (self.plane[axis] + self.plane_slope[axis] * scale * distance) * body[axis];
                 }
                 a[axis] += own / others[axis];

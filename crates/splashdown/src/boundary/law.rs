@@ -4,8 +4,8 @@
 
 use crate::state::Params;
 
-/// The part of a spacing that a boundary keeps free: a particle that would come nearer within a step loses the
-/// velocity that would carry it there.
+/// The smallest distance of a particle from a boundary, in spacings. A particle that would come nearer within a step
+/// loses the part of its velocity that would carry it there.
 pub(crate) const CLEARANCE: f32 = 0.25;
 
 /// The rate in 1/s at which the velocity towards a boundary is damped, at a distance q in support radii:
@@ -26,7 +26,7 @@ pub(crate) fn friction(params: &Params, friction: f32, viscosity: f32, gradient:
     friction * 2.0 * viscosity * gradient / distance.max(CLEARANCE * params.particle_spacing)
 }
 
-/// A rate k in 1/s as an implicit step applies it, k / (1 + k dt): stable for any k.
+/// The effective rate of an implicit step for a damping rate k in 1/s: k / (1 + k dt). It is stable for any k.
 #[inline(always)]
 pub(crate) fn implicit_rate(k: f32, dt: f32) -> f32 {
     k / (1.0 + k * dt)

@@ -1,4 +1,4 @@
-//! The boundary of the fluid: the closed sides of the box, and what they share with [`bodies`](crate::bodies).
+//! The boundary of the fluid: the closed sides of the domain, and the code shared with [`bodies`](crate::bodies).
 //!
 //! Walls and bodies implement the same three operations, which a scheme calls separately:
 //!

@@ -1,11 +1,10 @@
-//! Asks only those particles about the walls that are near one.
+//! Evaluates the walls only for particles near one.
 
 use glam::{BVec3, Vec3, Vec4};
 
 use super::{WallTerms, Walls};
 
-/// The corners of a box, infinitely far where a side is open; `closed` has bit 2 * axis + side set for every
-/// closed one.
+/// The corners of a box, infinite where a side is open. `closed` has bit 2 * axis + side set for every closed side.
 pub(crate) fn closed_bounds(min: Vec3, max: Vec3, closed: u32) -> [Vec3; 2] {
     let closed =
         |side: u32| BVec3::from_array([0, 1, 2].map(|axis: u32| (closed >> (2 * axis + side)) & 1 == 1));
@@ -32,13 +31,13 @@ impl<'a> NearWalls<'a> {
         x.cmplt(self.low).any() || x.cmpgt(self.high).any()
     }
 
-    /// What the walls contribute at `x`, a point inside the box; `None` where none is within the support.
+    /// The contributions of the walls at `x`, a point inside the box; `None` if no wall is within the support.
     #[inline(always)]
     pub fn terms(&self, x: Vec3) -> Option<WallTerms> {
         self.is_near(x).then(|| self.walls.terms(self.table, x))
     }
 
-    /// Their density alone, over the rest density.
+    /// The density of the walls at `x`, over the rest density.
     #[inline(always)]
     pub fn density(&self, x: Vec3) -> f32 {
         if self.is_near(x) { self.walls.density_at(self.table, x) } else { 0.0 }

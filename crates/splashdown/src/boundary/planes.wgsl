@@ -1,4 +1,4 @@
-// One plane's integrals; see walls.rs. WALL_KERNEL chooses the kernels.
+// The integrals of one plane; see walls.rs. WALL_KERNEL selects the kernels.
 override WALL_KERNEL: u32 = 0u;
 
 // (D, A) of the density's kernel.

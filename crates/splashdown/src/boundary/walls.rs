@@ -5,24 +5,24 @@
 //! half-spaces overlap and the overlap is counted twice: D1 + D2 - D12, with D12 from a table integrated at start-up;
 //! in a corner D123 is added back.
 //!
-//! *Why not* boundary particles or volume maps: on a lattice they hold the water half a spacing to a whole one off the
-//! wall; the plain integral does not (table in physics, B5.3).
+//! *Why not* boundary particles or volume maps: on a lattice they leave a gap of half a spacing to a whole one between
+//! the fluid and the wall. The exact integral leaves none.
 //!
-//! D123 is taken as D12 D13 D23 / (D1 D2 D3), which is exact in the corner (1/8) and on the planes through it; the
-//! tests compare it with a quadrature.
+//! D123 is approximated by D12 D13 D23 / (D1 D2 D3), which is exact in the corner (1/8) and on the planes through it.
+//! The tests compare it with a quadrature.
 
 use glam::{Vec3, Vec4};
 
 use crate::kernel::{CubicSpline, Kernel, Poly6, Spiky, WendlandC2};
 use crate::state::Params;
 
-/// Steps of the table along each axis; it has one node more.
+/// Intervals of the table along each axis; there is one node more.
 pub const TABLE_STEPS: usize = 32;
 const NODES: usize = TABLE_STEPS + 1;
 /// Entries of the [`wall_table`].
 pub const TABLE_LEN: usize = NODES * NODES;
 
-/// Which kernels the density and the pressure gradient use.
+/// The kernels of the density and of the pressure gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KernelPair {
     /// Wendland C2 for both.
@@ -34,7 +34,7 @@ pub enum KernelPair {
 }
 
 impl KernelPair {
-    /// The number by which WGSL's `WALL_KERNEL` chooses it.
+    /// The value of WGSL's `WALL_KERNEL` that selects it.
     pub const fn id(self) -> u32 {
         match self {
             Self::WendlandC2 => 0,
@@ -83,9 +83,9 @@ impl KernelPair {
     }
 }
 
-/// The walls that go with a density's kernel.
+/// A kernel of the density for which walls are implemented.
 pub trait WallKernel {
-    /// Which.
+    /// The kernels of the walls.
     const WALLS: KernelPair;
 }
 impl WallKernel for WendlandC2 {
@@ -116,7 +116,7 @@ fn cubic_spline(q: f32) -> (f32, f32) {
 }
 
 fn poly6(q: f32) -> (f32, f32) {
-    // In t = 1 - q, so that D stays positive near q = 1, where corners divide by it.
+    // Expressed in t = 1 - q, so that D stays positive near q = 1, where corners divide by it.
     let (t, s) = (1.0 - q, 1.0 - q * q);
     let inner = 16.0 / 5.0 + t * (-16.0 / 3.0 + t * (24.0 / 7.0 + t * (t / 9.0 - 1.0)));
     (315.0 / 256.0 * t * t * t * t * t * inner, 315.0 / 256.0 * s * s * s * s)
@@ -128,12 +128,12 @@ fn spiky(q: f32) -> (f32, f32) {
     (t4 * t * (1.5 - t), 1.5 * t4 * (1.0 + 4.0 * q))
 }
 
-/// Integrates the overlap of two half-spaces at right angles; takes some milliseconds.
+/// Computes the table of integrals over the overlap of two half-spaces at right angles. Takes a few milliseconds.
 ///
-/// Nodes of (D12 of the density's kernel, D12 and E12 of the gradient's, 0), with E12 = -dD12/da, over (a, b)
-/// in [0, 1]^2; entry b * 33 + a.
+/// A node is (D12 of the density's kernel, D12 and E12 of the gradient's, 0), with E12 = -dD12/da, over (a, b) in
+/// [0, 1]^2. Its index is b * 33 + a.
 pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
-    // The kernel integrated along the edge leaves a function of the distance from the edge, once per kernel.
+    // The integral of each kernel along the edge is a function of the distance from the edge.
     const FINE: usize = 512;
     let line: Vec<[f64; 2]> = (0..=FINE)
         .map(|i| {
@@ -163,7 +163,7 @@ pub fn wall_table(kernels: KernelPair) -> Vec<Vec4> {
     (0..NODES * NODES).map(node).collect()
 }
 
-/// A node's values at (a, b), bilinear; zero where the planes do not meet inside the support.
+/// The bilinear interpolation of the table at (a, b); zero where the planes do not meet inside the support.
 #[inline]
 fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
     if a * a + b * b >= 1.0 {
@@ -178,15 +178,14 @@ fn look_up(table: &[Vec4], a: f32, b: f32) -> Vec4 {
     low * (1.0 - fy) + high * fy
 }
 
-/// How far behind a closed side its solid begins as far as the density is concerned, in spacings: so that a
-/// lattice that keeps half a spacing from the side has exactly the rest density.
+/// The distance in spacings between a closed side and the solid behind it, for the density only. With this offset a
+/// lattice half a spacing from the side has exactly the rest density.
 ///
-/// A lattice is not the continuum that the integral stands for: with the integral right at the side, the first
-/// layer is 5 % too dense (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at
-/// rest begins with a burst. With the offset, which solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the
-/// half-space) once, all three are right to within 0.3 %: the same wall as if the lattice went on behind it.
-/// The lattice's gradient, in turn, is that of the integral right at the side (within 3 %; with the offset it
-/// would be 16 % too weak), so slopes go without.
+/// The integral assumes a continuum, which a lattice is not. Without the offset the first layer is 5 % too dense
+/// (Wendland C2, two spacings of support), an edge 8 % and a corner 10 %, and a tank at rest begins with a burst. The
+/// offset solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the half-space). With it all three densities are
+/// correct within 0.3 %, as if the lattice continued behind the wall. The gradient of the lattice agrees with the
+/// integral without the offset (within 3 %; with the offset it would be 16 % too weak), so slopes do not use it.
 pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     let ratio = f64::from(support_ratio);
     let (mut whole, mut behind) = (0.0, 0.0);
@@ -207,7 +206,7 @@ pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     low * support_ratio - 0.5
 }
 
-/// The points of a cube of whole numbers.
+/// The integer points of a cube.
 fn cube(reach: i32) -> impl Iterator<Item = (i32, i32, i32)> {
     let side = move || -reach..=reach;
     side().flat_map(move |x| side().flat_map(move |y| side().map(move |z| (x, y, z))))
@@ -231,7 +230,7 @@ fn simpson(length: f64, f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     sum.map(|sum| sum * step / 3.0)
 }
 
-/// The closed sides of a box, ready to be asked at a point.
+/// The closed sides of a box.
 #[derive(Clone, Debug)]
 pub struct Walls {
     /// Lower corner in metres.
@@ -240,7 +239,7 @@ pub struct Walls {
     pub max: Vec3,
     /// Bit 2 * axis + side is set if that side is closed.
     pub closed: u32,
-    /// How far behind a closed side its solid begins, in metres, as far as the density is concerned.
+    /// The distance in metres between a closed side and the solid behind it, for the density: see [`wall_offset`].
     pub offset: f32,
     /// Support radius in metres.
     pub support_radius: f32,
@@ -262,21 +261,21 @@ impl Params {
     }
 }
 
-/// What the walls contribute at a point, per axis; the box is wider than two supports, so that at most one side per
-/// axis is near.
+/// The contributions of the walls at a point, per axis. The box is wider than two supports, so that at most one side
+/// per axis is near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallTerms {
     /// The density of the walls over the rest density.
     pub density: f32,
     /// Coefficients c with G = -sum_k c_k / H * n_k.
     pub slope: Vec3,
-    /// The plain half-space integrals D of each single plane.
+    /// The half-space integral D of each plane, without overlaps.
     pub plane: Vec3,
-    /// Their A = -dD/dq.
+    /// A = -dD/dq of each plane.
     pub plane_slope: Vec3,
-    /// Inward normals' sign per axis: +1 at the lower side, -1 at the upper.
+    /// Signs of the inward normals: +1 at the lower side, -1 at the upper.
     pub normal: Vec3,
-    /// Distances to the nearest closed sides in metres; infinite where there is none.
+    /// Distances to the nearest closed sides in metres; infinite if there is none.
     pub distance: Vec3,
 }
 
@@ -312,7 +311,7 @@ impl Walls {
         self.density(table, self.behind(distance))
     }
 
-    /// Distances of the solids, over the support.
+    /// Distances of the solids with the offset, over the support radius.
     fn behind(&self, distance: Vec3) -> [f32; 3] {
         ((distance + self.offset) / self.support_radius).max(Vec3::ZERO).to_array()
     }
@@ -322,7 +321,7 @@ impl Walls {
         if q < 1.0 { self.kernels.gradient(q) } else { (0.0, 0.0) }
     }
 
-    /// Inclusion and exclusion of the solids' densities.
+    /// The density of the union of the solids, by inclusion and exclusion.
     fn density(&self, table: &[Vec4], q: [f32; 3]) -> f32 {
         let d = q.map(|q| if q < 1.0 { self.kernels.density(q).0 } else { 0.0 });
         let pair = |a: usize, b: usize| look_up(table, q[a], q[b]).x;
@@ -330,9 +329,9 @@ impl Walls {
         d.iter().sum::<f32>() - pairs.iter().sum::<f32>() + corner(d, pairs)
     }
 
-    /// Its derivative by minus the distance over H, per axis.
+    /// The derivative of the density by minus the distance over H, per axis.
     fn slope(&self, table: &[Vec4], q: [f32; 3], planes: [(f32, f32); 3]) -> Vec3 {
-        // (D, E) of axis k with the two others: (a, b) gives the derivative by a.
+        // (D, E) of axis k with each of the two others; E at (a, b) is the derivative by a.
         let pair = |a: usize, b: usize| {
             let node = look_up(table, q[a], q[b]);
             (node.y, node.z)
@@ -350,10 +349,10 @@ impl Walls {
     }
 }
 
-/// D123, the overlap of three solids, from those of each plane and of the pairs 12, 13 and 23.
+/// D123, the overlap of three solids, from the integrals of the planes and of the pairs 12, 13 and 23.
 ///
-/// Where a plane or a pair hardly reaches in, there is none: there the closed forms are differences that may
-/// round to zero, and the table's straight lines may be above what they interpolate.
+/// It is set to zero if one of these is negligible: the closed forms are differences that may round to zero, and the
+/// linear interpolation of the table may exceed the true values.
 fn corner(d: [f32; 3], pairs: [f32; 3]) -> f32 {
     if d.iter().any(|&d| d <= 1e-5) || pairs.iter().any(|&d| d <= 1e-9) {
         return 0.0;

@@ -1,4 +1,4 @@
-// The closed sides of the box; see walls.rs. Needs `params` (Params) and `wall_table` (33 x 33 nodes).
+// The closed sides of the domain; see walls.rs. Needs `params` (Params) and `wall_table` (33 x 33 nodes).
 #import sph/planes
 #import sph/boundary_law
 const WALL_STEPS: u32 = 32u;
@@ -48,7 +48,7 @@ fn wall_corner(d: vec3<f32>, pairs: vec3<f32>) -> f32 {
     return bounded.x * bounded.y * bounded.z / (d.x * d.y * d.z);
 }
 
-// Derivative by minus the distance over H, per axis.
+// The derivative of the density by minus the distance over H, per axis.
 fn wall_slope(q: vec3<f32>, d: vec3<f32>, a: vec3<f32>) -> vec3<f32> {
     // (D, E) of each axis with the two others.
     let p01 = wall_pair(q.x, q.y).yz;
@@ -87,7 +87,14 @@ fn wall_terms(x: vec3<f32>) -> WallTerms {
 }
 
 // The selected part of the acceleration by neighbours and walls; see `WallTerms::acceleration`.
-fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, fluid: vec3<f32>, push: f32, dt: f32) -> vec3<f32> {
+fn wall_acceleration(
+    wall: WallTerms,
+    v: vec3<f32>,
+    body: vec3<f32>,
+    fluid: vec3<f32>,
+    pressure_factor: f32,
+    dt: f32,
+) -> vec3<f32> {
     let scale = 1.0 / params.support_radius;
     let open = vec3(1.0) - wall.plane;
     let others = vec3(open.y * open.z, open.z * open.x, open.x * open.y);
@@ -98,8 +105,8 @@ fn wall_acceleration(wall: WallTerms, v: vec3<f32>, body: vec3<f32>, fluid: vec3
             continue;
         }
         if ((FORCES & PRESSURE_FORCE) != 0u) {
-            var own = push * wall.slope[axis] * scale * wall.normal[axis];
-            if (push > 0.0) {
+            var own = pressure_factor * wall.slope[axis] * scale * wall.normal[axis];
+            if (pressure_factor > 0.0) {
                 own -= (wall.plane[axis] + wall.plane_slope[axis] * scale * distance) * body[axis];
             }
             a[axis] += own / others[axis];

@@ -10,14 +10,14 @@ pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityB
     let BoundaryDensityBindings {
         params,
         state,
-        cell_start: living,
+        cell_start,
         bodies,
         contacts,
         sorted_positions: positions,
         sorted_velocities: velocities,
         densities,
     } = buffers;
-    let n = living[living.len() - 2] as usize;
+    let n = cell_start[cell_start.len() - 2] as usize;
     let contacts = contacts.as_chunks::<2>().0;
     densities[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, densities)| {
         for (k, density) in densities.iter_mut().enumerate() {

@@ -1,8 +1,8 @@
-//! What bodies add to the density, and the pressure that follows.
+//! The contribution of bodies to the density, and the resulting pressure.
 //!
-//! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), the shares of the two bodies that matter most,
-//! whose overlap counts once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, twice for the reason
-//! given in [`continuity`](crate::passes::continuity).
+//! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), with the contributions delta of the two nearest bodies;
+//! the product counts their overlap once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, with the factor 2
+//! explained in [`continuity`](crate::passes::continuity).
 
 mod cpu;
 
@@ -26,7 +26,7 @@ bindings! {
     }
 }
 
-/// For densities that are summed.
+/// For density summation.
 pub static SUMMATION: PassDesc = PassDesc {
     label: "bodies.boundary_density.summation",
     wgsl: include_str!("boundary_density.wgsl"),
@@ -38,7 +38,7 @@ pub static SUMMATION: PassDesc = PassDesc {
     cpu: |_, slots| cpu::boundary_density::<false>(slots.into()),
 };
 
-/// For densities that are integrated.
+/// For the continuity equation.
 pub static CONTINUITY: PassDesc = PassDesc {
     label: "bodies.boundary_density.continuity",
     constants: &[("CONTINUITY", 1.0)],

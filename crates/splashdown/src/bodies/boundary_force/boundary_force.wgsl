@@ -26,7 +26,8 @@ fn react(b: u32, point: vec3<f32>, force: vec3<f32>) {
     }
 }
 
-// The open part of the kernel that the box leaves along a direction: its sides across it count.
+// The part of the kernel that the sides of the domain do not cover, for a force along `n`: only sides across this
+// direction count.
 fn open_beside(x: vec3<f32>, n: vec3<f32>) -> f32 {
     let low = x - params.domain_min;
     let high = params.domain_max - x;
@@ -46,7 +47,7 @@ fn open_beside(x: vec3<f32>, n: vec3<f32>) -> f32 {
 }
 
 struct Effect {
-    // By the body.
+    // The acceleration by the body.
     direct: vec3<f32>,
     normal: vec3<f32>,
 }
@@ -63,12 +64,12 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
 
     let rho = densities[i].x;
     let pressure = densities[i].y;
-    let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+    let pressure_factor = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
     let effective = max(contact.effective, 0.0);
     var a = vec3(0.0);
     if ((FORCES & PRESSURE_FORCE) != 0u) {
-        a = push * contact.slope;
-        if (push > 0.0) {
+        a = pressure_factor * contact.slope;
+        if (pressure_factor > 0.0) {
             a -= (contact.kernel_fraction + steep * effective) * dot(n, body) * n;
         }
         a = a / max(open, 0.1);
@@ -95,8 +96,8 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
     return Effect(a, n);
 }
 
-// The acceleration that keeps a particle with velocity `v` after this step out of the body.
-fn held_off(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
+// The contact acceleration that prevents a particle from entering the body, if `v` is its velocity after this step.
+fn contact_acceleration(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
     let contact = contacts[2u * i + k];
     let b = contact.body;
     let x = sorted_positions[i].xyz;
@@ -130,7 +131,7 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     }
     for (var k = 0u; k < 2u; k++) {
         if (k == 0u || both) {
-            // What acts along the surface goes on in the solid.
+            // The tangential acceleration continues unchanged into the solid.
             let kernel_fraction = clamp(contacts[2u * i + k].kernel_fraction, 0.0, 0.6);
             a += kernel_fraction / (1.0 - kernel_fraction) * (a - dot(a, normals[k]) * normals[k]);
         }
@@ -139,9 +140,9 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     let v = sorted_velocities[i].xyz;
     for (var k = 0u; k < 2u; k++) {
         if ((FORCES & OTHER_FORCES) != 0u && (k == 0u || both)) {
-            let hold = held_off(i, k, v + state.dt * a);
-            a += hold;
-            reaction[k] += hold;
+            let contact = contact_acceleration(i, k, v + state.dt * a);
+            a += contact;
+            reaction[k] += contact;
         }
     }
     accelerations[i] = vec4(a, 0.0);

@@ -34,7 +34,7 @@ pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: Boundary
                     continue;
                 }
                 totals.resize(bodies.len(), [0; 6]);
-                let pushed = Pushed {
+                let forces = ParticleForces {
                     params,
                     dt: state.dt,
                     wall_body,
@@ -45,7 +45,7 @@ pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: Boundary
                     contacts: &contacts[i],
                     bodies,
                 };
-                pushed.run::<FORCES>(a, &mut totals);
+                forces.apply::<FORCES>(a, &mut totals);
             }
             totals
         })
@@ -60,8 +60,8 @@ pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: Boundary
     }
 }
 
-/// One particle that feels bodies.
-struct Pushed<'a> {
+/// The boundary forces on one particle.
+struct ParticleForces<'a> {
     params: &'a Params,
     dt: f32,
     wall_body: Vec3,
@@ -73,8 +73,9 @@ struct Pushed<'a> {
     bodies: &'a [Body],
 }
 
-impl Pushed<'_> {
-    fn run<const FORCES: u32>(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
+impl ParticleForces<'_> {
+    /// Adds the forces to the acceleration, and their reactions to the sums.
+    fn apply<const FORCES: u32>(&self, acceleration: &mut Vec4, totals: &mut [[i64; 6]]) {
         let used = if self.contacts[1].body == Contact::NONE { 1 } else { 2 };
         // Body forces are among the other forces, and do not continue into the solid.
         let unchanged = if FORCES & part::OTHER != 0 { self.wall_body } else { Vec3::ZERO };
@@ -86,7 +87,7 @@ impl Pushed<'_> {
             ([first.0, second.0], [first.1, second.1])
         };
         for (contact, normal) in self.contacts.iter().zip(normals).take(used) {
-            // What acts along the surface goes on in the solid.
+            // The tangential acceleration continues unchanged into the solid.
             let kernel_fraction = contact.kernel_fraction.clamp(0.0, 0.6);
             a += kernel_fraction / (1.0 - kernel_fraction) * (a - a.dot(normal) * normal);
         }
@@ -95,9 +96,9 @@ impl Pushed<'_> {
             if FORCES & part::OTHER == 0 {
                 break;
             }
-            let hold = self.held_off(k, self.v + self.dt * a);
-            a += hold;
-            *reaction += hold;
+            let contact = self.contact_acceleration(k, self.v + self.dt * a);
+            a += contact;
+            *reaction += contact;
         }
         *acceleration = a.extend(0.0);
         for (contact, reaction) in self.contacts.iter().zip(reaction).take(used) {
@@ -118,7 +119,7 @@ impl Pushed<'_> {
         self.bodies[contact.body as usize].velocity_at(self.x)
     }
 
-    /// The acceleration by a body, and the direction in which its pressure acts.
+    /// The acceleration by a body, and the direction of its pressure force.
     fn effect<const FORCES: u32>(&self, k: usize, both: bool) -> (Vec3, Vec3) {
         let (params, contact) = (self.params, &self.contacts[k]);
         let other = &self.contacts[1 - k];
@@ -131,12 +132,12 @@ impl Pushed<'_> {
         let open = self.open_beside(n) * (1.0 - other_fraction * (1.0 - across * across));
 
         let [rho, pressure] = self.density.to_array();
-        let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+        let pressure_factor = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
         let effective = contact.effective.max(0.0);
         let mut a = Vec3::ZERO;
         if FORCES & part::PRESSURE != 0 {
-            a = push * contact.slope;
-            if push > 0.0 {
+            a = pressure_factor * contact.slope;
+            if pressure_factor > 0.0 {
                 a -= (contact.kernel_fraction + steep * effective) * n.dot(self.wall_body) * n;
             }
             a /= open.max(0.1);
@@ -162,7 +163,8 @@ impl Pushed<'_> {
         (a, n)
     }
 
-    /// The open part of the kernel that the box leaves along a direction: its sides across it count.
+    /// The part of the kernel that the sides of the domain do not cover, for a force along `n`: only sides across this
+    /// direction count.
     fn open_beside(&self, n: Vec3) -> f32 {
         let params = self.params;
         let (low, high) = (self.x - params.domain_min, params.domain_max - self.x);
@@ -178,8 +180,8 @@ impl Pushed<'_> {
             .product()
     }
 
-    /// The acceleration that keeps a particle with velocity `v` after this step out of a body.
-    fn held_off(&self, k: usize, v: Vec3) -> Vec3 {
+    /// The contact acceleration that prevents a particle from entering a body, if `v` is its velocity after this step.
+    fn contact_acceleration(&self, k: usize, v: Vec3) -> Vec3 {
         let contact = &self.contacts[k];
         let slowest = -law::contact_speed(self.params, contact.distance, self.dt);
         let toward = (v - self.wall_velocity(contact)).dot(contact.normal);
@@ -187,7 +189,7 @@ impl Pushed<'_> {
     }
 }
 
-/// Whole units of a sum; NaN counts as none.
+/// Rounds to whole units of a sum; NaN becomes zero.
 fn fixed(value: f32) -> i64 {
     // A million of the largest terms still fit into the sum.
     value.clamp(-1e12, 1e12).round_ties_even() as i64

@@ -1,15 +1,19 @@
-//! The forces of bodies on particles, and their reactions: all of them, or the pressure part, or the others.
+//! The forces of bodies on particles, and their reactions: all forces, the pressure part, or the others.
 //!
-//! A body acts as the box's closed sides do
-//! ([`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration) says why): its own pressure and its
-//! image's along the slope of the share; hydrostatic growth inside the solid; what acts along the surface
-//! divided by the open part of the kernel, 1 - D, of the other walls and bodies; damping of the approach;
-//! friction 2 nu A / (H d), with nu the material's and that of the artificial viscosity (alpha c0 H / 20,
-//! Monaghan 2005), so that no slip drags water at any resolution; adhesion by the spline of Akinci et al.
-//! (2013). A contact in the velocities keeps what has no pressure a quarter of a spacing away. All speeds are
-//! relative to the body's.
+//! A body acts like the closed sides of the domain; for the reasons see
+//! [`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration):
 //!
-//! The reaction is summed in fixed point, 64 bits, by integer atomics: the sum does not depend on the order.
+//! * the pressure of the particle and of its image acts along the gradient of the kernel fraction;
+//! * a positive pressure grows hydrostatically inside the solid;
+//! * tangential accelerations are divided by the part of the kernel, 1 - D, that other walls and bodies leave open;
+//! * the approach is damped;
+//! * friction is 2 nu A / (H d), where nu is the sum of the material's viscosity and the artificial one
+//!   (alpha c0 H / 20, Monaghan 2005), so that no slip drags water at any resolution;
+//! * adhesion follows the spline of Akinci et al. (2013);
+//! * a limit on the velocity (the contact) stops particles without pressure a quarter of a spacing away.
+//!
+//! All velocities are relative to the body's. The reaction is summed in 64-bit fixed point by integer atomics, so
+//! that the sum does not depend on the order.
 
 mod cpu;
 
@@ -82,8 +86,8 @@ pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
     ..WENDLAND_C2
 };
 
-/// The force in N that one unit of the sums stands for: a particle's mass times 1e-5 m/s^2. Torques have this
-/// times the support radius.
+/// The force in N of one unit of the sums: the particle mass times 1e-5 m/s^2. The unit of torques is this times the
+/// support radius.
 pub fn quantum(params: &Params) -> f32 {
     1e-5 * params.particle_mass
 }

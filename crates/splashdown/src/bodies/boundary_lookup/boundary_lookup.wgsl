@@ -15,11 +15,11 @@ struct Field {
     effective_gradient: vec3<f32>,
 }
 
-fn nothing() -> Contact {
+fn no_contact() -> Contact {
     return Contact(vec3(0.0), 0.0, vec3(0.0), 1e30, 0.0, 1e30, NO_BODY, 0u);
 }
 
-// (D, A) on both sides of the wall.
+// (D, A) of a plane wall; q is negative behind the wall.
 fn plane_through(q: f32) -> vec2<f32> {
     let plane = wall_plane_gradient(abs(q));
     return select(plane, vec2(1.0 - plane.x, plane.y), q < 0.0);
@@ -60,7 +60,7 @@ fn field_at(b: u32, y: vec3<f32>) -> Field {
     return Field(value.x, value.y, vec3(dx.x, dy.x, dz.x), vec3(dx.y, dy.y, dz.y));
 }
 
-// The q at which a plane wall has this share.
+// The q at which a plane wall has this kernel fraction.
 fn q_of_fraction(kernel_fraction: f32) -> f32 {
     var low = -1.0;
     var high = 1.0;
@@ -75,7 +75,8 @@ fn q_of_fraction(kernel_fraction: f32) -> f32 {
     return 0.5 * (low + high);
 }
 
-// The boundary particles round a point of the mesh's frame: minus the gradient of their share, and the share.
+// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction
+// (xyz), and the fraction (w).
 fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
     let scale = 1.0 / params.support_radius;
     let scale3 = scale * scale * scale;
@@ -107,21 +108,21 @@ fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
 fn contact_with(b: u32, x: vec3<f32>) -> Contact {
     let away = x - bodies[b].position;
     if (dot(away, away) >= bodies[b].radius * bodies[b].radius) {
-        return nothing();
+        return no_contact();
     }
     let orientation = bodies[b].orientation;
     let y = turned_back(orientation, away) + bodies[b].center;
     let size = vec3<f32>(vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z) - vec3(1u));
     let high = bodies[b].field_min + size * bodies[b].cell_size;
     if (any(y <= bodies[b].field_min) || any(y >= high)) {
-        return nothing();
+        return no_contact();
     }
     let field = field_at(b, y);
     let support = params.support_radius;
     if (min(field.distance, field.effective) >= support) {
-        return nothing();
+        return no_contact();
     }
-    var contact = nothing();
+    var contact = no_contact();
     contact.body = b;
     contact.distance = field.distance;
     contact.normal = turned(orientation, field.distance_gradient / max(length(field.distance_gradient), 1e-6));
@@ -148,8 +149,8 @@ fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
         return;
     }
     var x = sorted_positions[i].xyz;
-    var first = nothing();
-    var second = nothing();
+    var first = no_contact();
+    var second = no_contact();
     for (var b = 0u; b < arrayLength(&bodies); b++) {
         let contact = contact_with(b, x);
         let rank = min(contact.distance, contact.effective);

@@ -8,20 +8,20 @@ use crate::boundary::{KernelPair, WallKernel};
 use crate::kernel::Kernel;
 use crate::state::{Params, StepCounters};
 
-/// Particles of a chunk lie near one another, so that most bodies are far from all of them.
+/// Particles per task. The particles of a chunk lie near one another, so that most bodies are far from all of them.
 const CHUNK: usize = 128;
 
 pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBindings<'_>) {
     let BoundaryLookupBindings {
         params,
-        cell_start: living,
+        cell_start,
         bodies,
         maps,
         sorted_positions: positions,
         contacts,
         counters,
     } = buffers;
-    let n = living[living.len() - 2] as usize;
+    let n = cell_start[cell_start.len() - 2] as usize;
     let corrections: u32 = positions[..n]
         .par_chunks_mut(CHUNK)
         .zip(contacts.par_chunks_mut(2 * CHUNK))
@@ -31,11 +31,11 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
             let pairs = contacts.as_chunks_mut::<2>().0;
             let mut corrections = 0;
             for (p, contacts) in positions.iter_mut().zip(pairs) {
-                *contacts = [NOTHING; 2];
+                *contacts = [NO_CONTACT; 2];
                 for &b in near.iter() {
                     insert(contacts, contact_with::<K>(params, bodies, maps, b, p.xyz()));
                 }
-                corrections += u32::from(put_back(params, p, contacts));
+                corrections += u32::from(move_outside(params, p, contacts));
             }
             corrections
         })
@@ -43,7 +43,7 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
     counters[StepCounters::CORRECTIONS] += corrections;
 }
 
-const NOTHING: Contact = Contact {
+const NO_CONTACT: Contact = Contact {
     slope: Vec3::ZERO,
     density: 0.0,
     normal: Vec3::ZERO,
@@ -54,7 +54,7 @@ const NOTHING: Contact = Contact {
     unused: 0,
 };
 
-/// The bodies that any of these particles may feel, in their order.
+/// Collects the bodies in whose reach any of these particles may be, in their order.
 fn find_near(bodies: &[Body], positions: &[Vec4], near: &mut Vec<usize>) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for p in positions {
@@ -68,7 +68,7 @@ fn find_near(bodies: &[Body], positions: &[Vec4], near: &mut Vec<usize>) {
     }));
 }
 
-/// Keeps the two that matter most.
+/// Inserts a contact if it is one of the two nearest.
 #[inline]
 fn insert(contacts: &mut [Contact; 2], contact: Contact) {
     let rank = |contact: &Contact| contact.distance.min(contact.effective);
@@ -82,7 +82,7 @@ fn insert(contacts: &mut [Contact; 2], contact: Contact) {
 
 /// Moves a particle that is inside a body towards its surface; true if it was inside.
 #[inline]
-fn put_back(params: &Params, p: &mut Vec4, contacts: &[Contact; 2]) -> bool {
+fn move_outside(params: &Params, p: &mut Vec4, contacts: &[Contact; 2]) -> bool {
     let inside = contacts[0].distance.min(contacts[1].distance);
     if inside >= 0.0 {
         return false;
@@ -104,18 +104,18 @@ fn contact_with<K: Kernel + WallKernel>(
     let body = &bodies[b];
     let away = x - body.position;
     if away.length_squared() >= body.radius * body.radius {
-        return NOTHING;
+        return NO_CONTACT;
     }
     let rotation = body.rotation();
     let y = rotation.conjugate() * away + body.center;
     let support = params.support_radius;
-    let Some(field) = field::at(body, maps, y, support) else { return NOTHING };
+    let Some(field) = field::at(body, maps, y, support) else { return NO_CONTACT };
     let length = field.distance_gradient.length().max(1e-6);
     let mut contact = Contact {
         body: b as u32,
         distance: field.distance,
         normal: rotation * (field.distance_gradient / length),
-        ..NOTHING
+        ..NO_CONTACT
     };
     if body.way == Body::PARTICLES {
         let sum = field::sampled::<K>(body, maps, y, support);
@@ -133,7 +133,7 @@ fn contact_with<K: Kernel + WallKernel>(
     contact
 }
 
-/// (D, A) on both sides of the wall.
+/// (D, A) of a plane wall; q is negative behind the wall.
 fn plane_through(kernels: KernelPair, q: f32) -> (f32, f32) {
     let (d, a) = if q.abs() < 1.0 { kernels.gradient(q.abs()) } else { (0.0, 0.0) };
     if q < 0.0 { (1.0 - d, a) } else { (d, a) }
@@ -144,7 +144,7 @@ fn density_through(kernels: KernelPair, q: f32) -> f32 {
     if q < 0.0 { 1.0 - d } else { d }
 }
 
-/// The q at which a plane wall has this share.
+/// The q at which a plane wall has this kernel fraction.
 fn q_of_fraction(kernels: KernelPair, kernel_fraction: f32) -> f32 {
     let (mut low, mut high) = (-1.0, 1.0);
     for _ in 0..16 {

@@ -1,17 +1,16 @@
-//! Which bodies a particle feels, and how: one look-up in the map of each body that is near.
+//! Finds the bodies near each particle, with one look-up in the map of each near body.
 //!
-//! A body's map holds at every node of a grid the signed distance from its surface and the *effective*
-//! distance: that of the plane wall whose share of the kernel, D(q), is the body's (Koschier & Bender 2017
-//! store the integral itself). For a plane both are the same straight line, so that interpolation is exact; for
-//! anything else the chain rule gives the gradient of the share, -A(q)/H grad(effective), at the cost of eight
-//! reads.
+//! The map of a body is a grid. Each node stores the signed distance from the surface and the *effective* distance:
+//! the distance of a plane wall with the same kernel fraction D(q) (Koschier & Bender 2017 store the integral
+//! itself). For a plane both distances are linear and interpolation is exact. For other shapes the chain rule gives
+//! the gradient of the kernel fraction, -A(q)/H grad(effective), from the same eight reads.
 //!
-//! A body may instead be felt by particles on its surface (Akinci et al. 2012): share = sum V_b W, slope = -sum
-//! V_b grad W. They lie in cells in the body's own frame, so that a moving body needs no sort. The effective
-//! distance then follows from the share.
+//! Alternatively, boundary particles represent the body (Akinci et al. 2012): the kernel fraction is sum V_b W, and
+//! the slope, minus its gradient, is -sum V_b grad W. The boundary particles are sorted into cells in the frame of the
+//! body, so that a moving body needs no sort. The effective distance follows from the kernel fraction.
 //!
-//! The two bodies that matter most are kept per particle. A particle inside a body is put back by at most a tenth of a
-//! spacing along the normal, and counted.
+//! The two nearest bodies are stored per particle. A particle inside a body is moved along the normal towards the
+//! surface by at most a tenth of a spacing, and counted.
 
 mod cpu;
 

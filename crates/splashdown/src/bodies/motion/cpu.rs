@@ -31,7 +31,7 @@ pub(super) fn motion(buffers: MotionBindings<'_>) {
     }
 }
 
-/// A 64-bit sum in its units, rounded as the GPU rounds it: the two halves one after the other. The sign first:
+/// Converts a 64-bit sum to a float, with the rounding of the GPU: half by half. The sign is separated first, because
 /// the halves of a small negative number are large.
 fn value(words: &[u32], first: usize) -> f32 {
     let sum = (u64::from(words[first]) | u64::from(words[first + 1]) << 32).cast_signed();
@@ -44,7 +44,7 @@ fn by_force(params: &Params, state: &StepState, body: &mut Body) {
     let dt = state.dt;
     let q = body.rotation();
     let gravity = params.body_acceleration(state.time);
-    // A hinge holds its body: no mass that a force could move.
+    // A hinged body has no inverse mass, and its hinge does not move.
     if body.inverse_mass > 0.0 {
         body.velocity += dt * (body.force * body.inverse_mass + gravity);
     }
@@ -59,7 +59,7 @@ fn by_force(params: &Params, state: &StepState, body: &mut Body) {
 }
 
 fn by_script(state: &StepState, samples: &[ScriptSample], body: &mut Body) {
-    // Where the frame is at the end of this step, in samples.
+    // The time at the end of this step, in samples since the start of the frame.
     let done = 1.0 - (state.remaining - state.dt) / state.frame_duration;
     let at = done.clamp(0.0, 1.0) * (SCRIPT_SAMPLES - 1) as f32;
     let k = (at as usize).min(SCRIPT_SAMPLES - 2);

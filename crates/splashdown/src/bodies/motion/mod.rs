@@ -1,8 +1,8 @@
-//! Moves the bodies by a step: the dynamic ones by the fluid's force and gravity, the scripted ones as written.
+//! Moves the bodies by a step: dynamic bodies by the force of the fluid and gravity, scripted bodies by their scripts.
 //!
-//! Rigid body motion by symplectic Euler: v += dt (F/M + g); omega += dt I^-1 (torque - omega x I omega); the
-//! orientation by the exponential of the rotation vector omega dt, so that it stays a unit quaternion. A
-//! scripted body follows a cubic between the moments that the host wrote down for the frame.
+//! Rigid body motion by symplectic Euler: v += dt (F/M + g); omega += dt I^-1 (torque - omega x I omega). The
+//! orientation changes by the exponential of the rotation vector omega dt, so that it remains a unit quaternion. A
+//! scripted body follows a cubic between the samples that the host has written for the frame.
 
 mod cpu;
 

@@ -4,7 +4,8 @@
 
 #bindings
 
-// A sum in its units, and back to zero. The sign first: the halves of a small negative number are large.
+// Converts a 64-bit sum to a float, and resets it. The sign is separated first, because the halves of a small negative
+// number are large.
 fn taken(word: u32) -> f32 {
     var low = sums[word];
     var high = sums[word + 1u];
@@ -31,7 +32,7 @@ fn by_force(b: u32) {
     let dt = state.dt;
     let q = bodies[b].orientation;
     let gravity = body_acceleration(state.time);
-    // A hinge holds its body: no mass that a force could move.
+    // A hinged body has no inverse mass, and its hinge does not move.
     if (bodies[b].inverse_mass > 0.0) {
         bodies[b].velocity += dt * (bodies[b].force * bodies[b].inverse_mass + gravity);
     }
@@ -50,7 +51,7 @@ fn by_force(b: u32) {
 }
 
 fn by_script(b: u32) {
-    // Where the frame is at the end of this step, in samples.
+    // The time at the end of this step, in samples since the start of the frame.
     let done = 1.0 - (state.remaining - state.dt) / state.frame_duration;
     let at = clamp(done, 0.0, 1.0) * f32(SCRIPT_SAMPLES - 1u);
     let k = min(u32(at), SCRIPT_SAMPLES - 2u);

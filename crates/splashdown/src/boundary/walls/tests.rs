@@ -3,7 +3,7 @@ use crate::boundary::NearWalls;
 
 const ALL: [KernelPair; 3] = [KernelPair::WendlandC2, KernelPair::CubicSpline, KernelPair::Mueller];
 
-/// The integral of the kernels over the part of the ball that lies behind the planes at `q`, by brute force.
+/// The integral of the kernels over the part of the ball behind the planes at `q`, by the midpoint rule.
 fn solid_integral(kernels: KernelPair, q: [f64; 3]) -> [f64; 2] {
     const N: i32 = 80;
     let mut sum = [0.0; 2];
@@ -42,13 +42,13 @@ fn the_density_of_planes_edges_and_corners_is_the_integral_over_the_solid() {
         for x in [[0.3, 2.0, 2.0], [0.3, 0.4, 2.0], [0.1, 2.0, 0.2], [0.25, 0.25, 0.25], [0.05, 0.4, 0.15]] {
             let terms = corner_box(kernels).terms(&table, Vec3::from_array(x.map(|v| v as f32)));
             let exact = solid_integral(kernels, x)[0];
-            // The brute force is good to 3e-3 (steps of 1/80 across a surface), the corner's product to 5e-3.
+            // The midpoint rule is accurate to 3e-3 (steps of 1/80 across a surface), the product in corners to 5e-3.
             assert!(
                 (f64::from(terms.density) - exact).abs() < 6e-3,
                 "{kernels:?} {x:?}: {} {exact}",
                 terms.density
             );
-            // Control: without the overlaps an edge's sum is off by more than the tolerance allows.
+            // Control: without the overlaps the error at an edge exceeds the tolerance.
             if x.iter().filter(|&&v| v < 0.5).count() >= 2 {
                 let bare: f32 =
                     x.iter().map(|&v| if v < 1.0 { kernels.density(v as f32).0 } else { 0.0 }).sum();
@@ -71,7 +71,7 @@ fn slopes_are_the_derivatives_of_the_density() {
                 let step = 0.02 * Vec3::AXES[axis];
                 let numerical =
                     (walls.terms(&table, x + step).density - walls.terms(&table, x - step).density) / 0.04;
-                // G = -c n / H, and n = +axis here; bilinear tables have slopes good to about a hundredth.
+                // G = -c n / H, and n = +axis here; the slopes of a bilinear table are accurate to about 0.01.
                 assert!(
                     (numerical + terms.slope[axis]).abs() < 0.02,
                     "{kernels:?} {x} {axis}: {numerical} {}",
@@ -139,7 +139,7 @@ fn a_lattice_half_a_spacing_from_the_sides_has_the_rest_density() {
             let fluid = lattice(x, true) / lattice(x, false);
             let error = |walls: &Walls| (fluid + f64::from(walls.terms(&table, x).density) - 1.0).abs();
             assert!(error(&walls) < 1e-2, "{kernels:?} {ratio} {x}: off by {}", error(&walls));
-            // Control: right at the sides the integral is too much by far more.
+            // Control: without the offset the error is larger.
             assert!(
                 error(&Walls { offset: 0.0, ..walls.clone() }) > error(&walls),
                 "{kernels:?} {ratio} {x}"
@@ -156,7 +156,7 @@ fn where_a_third_side_hardly_reaches_in_all_terms_stay_small() {
             let beside = walls.terms(&table, Vec3::new(near, near, 2.0));
             for far in (0..4000).map(|i| 0.9 + 3e-5 * i as f32) {
                 let terms = walls.terms(&table, Vec3::new(near, near, far));
-                // The third side's share of the ball is below 1e-3 here.
+                // The kernel fraction of the third side is below 1e-3 here.
                 let change = (terms.density - beside.density)
                     .abs()
                     .max((terms.slope - beside.slope).truncate().length());

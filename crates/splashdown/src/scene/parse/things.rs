@@ -114,8 +114,8 @@ pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
         if !names.contains(&text.as_str()) {
             let message = format!("{} names no model: {text:?}", section.key_path("mesh"));
             let hint = suggest::closest(&text, &names).map_or_else(
-                || "a file's name needs its ending".to_owned(),
-                |name| format!("did you mean {name:?}? A file's name needs its ending"),
+                || "a file name needs its extension".to_owned(),
+                |name| format!("did you mean {name:?}? A file name needs its extension"),
             );
             return Err(section.complain("mesh", message, &names.join(", "), &hint));
         }
