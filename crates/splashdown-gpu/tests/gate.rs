@@ -12,7 +12,7 @@ use splashdown_gpu::{
 const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
 
 #[test]
-fn every_pass_agrees_with_its_wgsl_and_every_wgsl_has_a_pass() {
+fn every_pass_agrees_with_its_wgsl_and_every_wgsl_file_has_a_pass() {
     let wrong = testing::gate(Path::new(SOURCES), &passes());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -1,4 +1,4 @@
-//! Going on from a checkpoint gives the same bits as not stopping.
+//! A run that is resumed from a checkpoint is bit-identical to an uninterrupted run.
 
 use splashdown::scene::Scene;
 use splashdown::{Checkpoint, CheckpointError, Device, Simulation, SimulationError};
@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Free bodies that bounce off one another and the box, a turning one, a tap, a sink and probes: all that
-/// remembers something.
+/// Everything with a state: free bodies that collide with each other and the domain, a scripted body, an emitter,
+/// a sink and probes.
 const EVERYTHING: &str = r#"
 [scene]
 name = "everything"
@@ -80,8 +80,8 @@ fn cpu() -> Result<Executor, SimulationError> {
     Ok(Device::Cpu.executor()?)
 }
 
-/// Runs twelve frames, eight of them after a checkpoint, with and without the stop.
-fn same_bits(scene: &Scene, executor: &dyn Fn() -> Result<Executor, SimulationError>) -> Outcome {
+/// Runs twelve frames, eight of them after a checkpoint, with and without resuming from it.
+fn assert_bit_identical(scene: &Scene, executor: &dyn Fn() -> Result<Executor, SimulationError>) -> Outcome {
     let mut straight = Simulation::with_executor(scene, executor()?)?;
     let mut stopped = Simulation::with_executor(scene, executor()?)?;
     for _ in 0..4 {
@@ -106,11 +106,11 @@ fn same_bits(scene: &Scene, executor: &dyn Fn() -> Result<Executor, SimulationEr
 }
 
 #[test]
-fn going_on_gives_the_same_bits_on_the_cpu() -> Outcome {
+fn a_resumed_run_is_bit_identical_on_the_cpu() -> Outcome {
     let scene = Scene::parse(EVERYTHING, "everything")?;
-    same_bits(&scene, &cpu)?;
+    assert_bit_identical(&scene, &cpu)?;
 
-    // The control: speeds that differ in their last bits are seen after a frame.
+    // Control: velocities that differ in their last bit change the result of a frame.
     let mut simulation = Simulation::new(&scene, &Device::Cpu)?;
     step(&mut simulation)?;
     let mut bytes = simulation.checkpoint(&scene.text)?.to_bytes()?;
@@ -126,30 +126,30 @@ fn going_on_gives_the_same_bits_on_the_cpu() -> Outcome {
     bytes = other.to_bytes()?;
     let (nudged, _) =
         step(&mut Simulation::resume(&Checkpoint::from_bytes(&bytes)?, Device::Cpu.executor()?)?)?;
-    assert!(plain != nudged, "a change of the last bit was lost");
+    assert!(plain != nudged, "a change of the last bit has no effect");
     Ok(())
 }
 
 #[test]
-fn going_on_gives_the_same_bits_on_an_adapter() -> Outcome {
+fn a_resumed_run_is_bit_identical_on_an_adapter() -> Outcome {
     let scene = Scene::parse(EVERYTHING, "everything")?;
-    match gpu_or_skip("going_on_gives_the_same_bits_on_an_adapter") {
-        Some(gpu) => same_bits(&scene, &|| Ok(GpuExecutor::new(Arc::clone(&gpu)).into())),
+    match gpu_or_skip("a_resumed_run_is_bit_identical_on_an_adapter") {
+        Some(gpu) => assert_bit_identical(&scene, &|| Ok(GpuExecutor::new(Arc::clone(&gpu)).into())),
         None => Ok(()),
     }
 }
 
 #[test]
-fn a_checkpoint_of_the_other_method_and_density_goes_on_too() -> Outcome {
+fn a_resumed_run_is_bit_identical_with_other_solvers() -> Outcome {
     for extra in ["[solver]\nmethod = \"mueller2003\"\n", "[solver]\ndensity = \"summation\"\n"] {
         let scene = Scene::parse(&format!("{EVERYTHING}\n{extra}"), "everything")?;
-        same_bits(&scene, &cpu)?;
+        assert_bit_identical(&scene, &cpu)?;
     }
     Ok(())
 }
 
 #[test]
-fn what_is_no_checkpoint_is_refused_with_a_reason() -> Outcome {
+fn invalid_checkpoints_are_rejected_with_a_reason() -> Outcome {
     let scene = Scene::parse(EVERYTHING, "everything")?;
     let mut simulation = Simulation::new(&scene, &Device::Cpu)?;
     let checkpoint = simulation.checkpoint(&scene.text)?;
@@ -164,7 +164,7 @@ fn what_is_no_checkpoint_is_refused_with_a_reason() -> Outcome {
     foreign.set_array("positions", &[0.0_f32; 12], 4);
     assert!(refused(&foreign.to_bytes()?).contains("about.json"));
 
-    // Files that are checkpoints, of something else.
+    // Checkpoints of another version or another scene.
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
     other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 2", "\"version\": 7"));
     assert!(refused(&other.to_bytes()?).contains("format 7"));
@@ -182,7 +182,7 @@ fn what_is_no_checkpoint_is_refused_with_a_reason() -> Outcome {
     let message = Simulation::resume(&short, Device::Cpu.executor()?).err().map(|error| error.to_string());
     assert!(message.is_some_and(|message| message.contains("ids")));
 
-    // What is no file is none of these.
+    // A folder is an I/O error.
     let folder = std::env::temp_dir();
     assert!(matches!(Checkpoint::read(&folder), Err(CheckpointError::Io(_))));
     Ok(())

@@ -1,4 +1,4 @@
-//! The same scene gives the same bits; what goes wrong with a particle is counted, told, and kept from the others.
+//! Runs are bit-identical; invalid particles are counted, reported and removed before they affect others.
 
 use splashdown::scene::{Scene, Sort};
 use splashdown::{Device, Simulation, SimulationError, Stats, sample};
@@ -40,7 +40,7 @@ const SOLVERS: [&str; 4] = [
     "method = \"mueller2003\"\nsurface_tension = \"mueller2003\"",
 ];
 
-/// Everything a run gives, by its bits.
+/// The results of a run, as bits.
 fn run(scene: &Scene, executor: Executor, frames: u32, frame: f32) -> (Vec<u32>, Stats) {
     let mut simulation = Simulation::with_executor(scene, executor).unwrap();
     for _ in 0..frames {
@@ -52,9 +52,9 @@ fn run(scene: &Scene, executor: Executor, frames: u32, frame: f32) -> (Vec<u32>,
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn results_are_bit_identical_for_any_number_of_threads() {
     for solver in SOLVERS {
-        // 8,000 particles: more than one chunk of every parallel loop.
+        // 8,000 particles are more than one chunk of every parallel loop.
         let scene = scene(0.025, "", solver);
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -63,38 +63,35 @@ fn any_number_of_threads_gives_the_same_bits() {
         let first = on_threads(1);
         assert!(first.1.steps > 20 && first.1.particles == 8000, "{:?}", first.1);
         for threads in [1, 2, 8] {
-            assert!(on_threads(threads) == first, "{solver}: {threads} threads give other bits than one");
+            assert!(on_threads(threads) == first, "{solver}: {threads} threads differ from one thread");
         }
     }
 }
 
 #[test]
-fn a_device_gives_the_same_bits_twice_and_with_both_sorts() {
+fn a_device_is_bit_identical_when_repeated_and_with_both_sorts() {
     for solver in SOLVERS {
         let scene = scene(0.0625, "\"y_max\"", solver);
         let mut other_sort = scene.clone();
         other_sort.solver.sort = Sort::Bitonic;
-        for (name, executor) in testing::executors("a_device_gives_the_same_bits_twice") {
+        for (name, executor) in testing::executors("a_device_is_bit_identical_when_repeated") {
             let fresh = || match executor.gpu() {
                 Some(gpu) => splashdown_gpu::GpuExecutor::new(gpu.clone()).into(),
                 None => cpu(),
             };
             let first = run(&scene, fresh(), 3, 0.01);
             assert!(first.1.steps > 20, "{:?}", first.1);
-            assert!(run(&scene, fresh(), 3, 0.01) == first, "{name}, {solver}: other bits the second time");
+            assert!(run(&scene, fresh(), 3, 0.01) == first, "{name}, {solver}: the second run differs");
             assert!(run(&other_sort, fresh(), 3, 0.01) == first, "{name}, {solver}: the sorts differ");
-            // Control: the last bit of gravity shows.
+            // Control: a change of the last bit of gravity changes the result.
             let mut heavier = scene.clone();
             heavier.gravity.y = heavier.gravity.y.next_up();
-            assert!(
-                run(&heavier, fresh(), 3, 0.01).0 != first.0,
-                "{name}, {solver}: gravity does not matter"
-            );
+            assert!(run(&heavier, fresh(), 3, 0.01).0 != first.0, "{name}, {solver}: gravity has no effect");
         }
     }
 }
 
-/// Spoils particles 40 and 7 of a block and advances it.
+/// Makes particles 40 and 7 of a block invalid and advances the block.
 fn spoiled(
     executor: Executor,
     solver: &str,
@@ -112,7 +109,7 @@ fn spoiled(
 }
 
 #[test]
-fn a_particle_that_is_not_finite_is_counted_told_and_taken_out() {
+fn a_non_finite_particle_is_counted_reported_and_removed() {
     type Spoil = fn(&mut [f32; 3], &mut [f32; 3]);
     let ways: [(&str, Spoil, bool); 6] = [
         ("a NaN position", |x, _| x[1] = f32::NAN, false),
@@ -124,32 +121,32 @@ fn a_particle_that_is_not_finite_is_counted_told_and_taken_out() {
     ];
     for solver in SOLVERS {
         for (what, spoil, has_place) in ways {
-            for (name, executor) in testing::executors("a_particle_that_is_not_finite") {
+            for (name, executor) in testing::executors("a_non_finite_particle") {
                 let (stats, after, before) = spoiled(executor, solver, spoil);
-                let said = format!("{what}, {solver}, {name}: {stats:?}");
+                let case = format!("{what}, {solver}, {name}: {stats:?}");
                 let n = before.positions.len() as u32;
-                assert_eq!((stats.non_finite, stats.particles, stats.escaped), (2, n - 2, 0), "{said}");
-                assert_eq!(stats.non_finite_id, 7, "{said}");
+                assert_eq!((stats.non_finite, stats.particles, stats.escaped), (2, n - 2, 0), "{case}");
+                assert_eq!(stats.non_finite_id, 7, "{case}");
                 if has_place {
-                    assert_eq!(stats.non_finite_place, before.positions[7], "{said}");
+                    assert_eq!(stats.non_finite_place, before.positions[7], "{case}");
                 }
-                assert!(stats.non_finite_place.iter().all(|x| x.is_finite()), "{said}");
-                // The rest goes on as if nothing had happened.
-                assert_eq!(after.positions.len() as u32, n - 2, "{said}");
-                assert!(!after.ids.contains(&7) && !after.ids.contains(&40), "{said}");
+                assert!(stats.non_finite_place.iter().all(|x| x.is_finite()), "{case}");
+                // The other particles are unaffected.
+                assert_eq!(after.positions.len() as u32, n - 2, "{case}");
+                assert!(!after.ids.contains(&7) && !after.ids.contains(&40), "{case}");
                 let all = [after.positions.as_flattened(), after.velocities.as_flattened()].concat();
-                assert!(all.iter().all(|x| x.is_finite()), "{said}");
-                assert!(stats.max_speed < 5.0 && stats.speed_limits == 0, "{said}");
+                assert!(all.iter().all(|x| x.is_finite()), "{case}");
+                assert!(stats.max_speed < 5.0 && stats.speed_limits == 0, "{case}");
             }
         }
     }
 }
 
 #[test]
-fn a_finite_speed_beyond_reason_is_limited_and_counted() {
-    for (name, executor) in testing::executors("a_finite_speed_beyond_reason") {
+fn an_excessive_speed_is_limited_and_counted() {
+    for (name, executor) in testing::executors("an_excessive_speed") {
         let scene = scene(0.0625, "\"y_max\"", SOLVERS[0]);
-        // Thousands of spacings in a step; alone in the tank, so that it drags nobody along.
+        // Thousands of spacings per step; alone in the tank, so that it does not accelerate other particles.
         let (positions, velocities) = (vec![[0.8, 0.3, 0.3]], vec![[0.0, 1e6, 0.0]]);
         let particles = Particles::from_positions(positions).with_velocities(velocities);
         let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
@@ -159,8 +156,8 @@ fn a_finite_speed_beyond_reason_is_limited_and_counted() {
 }
 
 #[test]
-fn particles_outside_are_counted_and_the_rest_goes_on() {
-    for (name, executor) in testing::executors("particles_outside_are_counted") {
+fn particles_outside_the_domain_are_counted_and_removed() {
+    for (name, executor) in testing::executors("particles_outside_the_domain") {
         let spoil = |x: &mut [f32; 3], _: &mut [f32; 3]| x[0] = -3.0;
         let (stats, after, before) = spoiled(executor, SOLVERS[0], spoil);
         assert_eq!((stats.escaped, stats.non_finite), (2, 0), "{name}: {stats:?}");
@@ -175,7 +172,7 @@ fn particles_leave_through_open_sides_and_are_counted() {
         let n = sample::particles(&scene).unwrap().positions.len() as u32;
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         assert_eq!(simulation.stats().escaped, 0);
-        // Half a metre of fluid falls through the floor that is not there: 0.28 m in 0.24 s.
+        // Half a metre of fluid falls through the open floor: 0.28 m in 0.24 s.
         let mut last = simulation.stats();
         for _ in 0..4 {
             let stats = simulation.advance(0.06).unwrap();
@@ -189,7 +186,7 @@ fn particles_leave_through_open_sides_and_are_counted() {
         let left = simulation.particles().unwrap();
         assert_eq!(left.positions.len() as u32, last.particles);
         assert!(left.positions.iter().all(|x| x[1] >= 0.0));
-        // In the end nothing is left, and that is an error which says where everything went.
+        // Once no particle is left, the error states why they were removed.
         let error = (0..50).find_map(|_| simulation.advance(0.06).err()).unwrap();
         let SimulationError::NothingLeft { reason, .. } = &error else { panic!("{name}: {error}") };
         assert!(reason.contains(&format!("{n} left through open sides")), "{name}: {error}");
@@ -197,27 +194,27 @@ fn particles_leave_through_open_sides_and_are_counted() {
 }
 
 #[test]
-fn a_time_step_below_the_smallest_is_an_error() {
-    for (name, executor) in testing::executors("a_time_step_below_the_smallest") {
+fn a_time_step_below_min_dt_is_an_error() {
+    for (name, executor) in testing::executors("a_time_step_below_min_dt") {
         let mut scene = scene(0.0625, "", SOLVERS[0]);
-        // Stability asks for about 2e-4 s.
+        // Stability requires about 2e-4 s.
         (scene.solver.min_dt, scene.solver.max_dt) = (0.002, 0.005);
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         let error = (0..20).find_map(|_| simulation.advance(0.01).err());
         let Some(SimulationError::StepTooSmall { min_dt, .. }) = error else { panic!("{name}: {error:?}") };
         assert_eq!(min_dt, 0.002);
-        // The next frame is judged by itself.
+        // The next frame is checked independently.
         let error = simulation.advance(0.01).err();
         assert!(matches!(error, Some(SimulationError::StepTooSmall { .. })), "{name}: {error:?}");
-        // Control: the same scene with a sensible smallest step runs.
+        // Control: the same scene with a reasonable smallest step runs.
         scene.solver.min_dt = 1e-7;
         Simulation::new(&scene, &Device::Cpu).unwrap().advance(0.01).unwrap();
     }
 }
 
 #[test]
-fn a_frame_has_a_length() {
-    for (name, executor) in testing::executors("a_frame_has_a_length") {
+fn an_invalid_frame_duration_is_an_error() {
+    for (name, executor) in testing::executors("an_invalid_frame_duration_is_an_error") {
         let mut simulation = Simulation::with_executor(&scene(0.0625, "", SOLVERS[0]), executor).unwrap();
         for seconds in [-0.01, f32::NAN, f32::INFINITY] {
             let error = simulation.advance(seconds).unwrap_err();
@@ -227,39 +224,39 @@ fn a_frame_has_a_length() {
         let stats = simulation.advance(0.0).unwrap();
         assert_eq!((stats.steps, stats.steps_in_frame, stats.time), (0, 0, 0.0), "{name}");
         assert_eq!(simulation.particles().unwrap().positions, before.positions, "{name}");
-        // Control: the refusals and the empty frame leave a simulation that goes on.
+        // Control: the simulation still runs after the rejected and the empty frame.
         let stats = simulation.advance(0.01).unwrap();
         assert!(stats.steps > 0 && (stats.time - 0.01).abs() < 1e-6, "{name}: {stats:?}");
     }
 }
 
 #[test]
-fn no_particle_and_one_particle_are_simulations_too() {
-    for (name, executor) in testing::executors("no_particle_and_one_particle") {
+fn zero_and_one_particle_can_be_simulated() {
+    for (name, executor) in testing::executors("zero_and_one_particle") {
         let scene = scene(0.0625, "", SOLVERS[0]);
         let mut nothing = Simulation::with_particles(&scene, executor, &Particles::default()).unwrap();
         let stats = nothing.advance(0.01).unwrap();
         assert_eq!((stats.particles, nothing.particles().unwrap().positions.len()), (0, 0), "{name}");
         assert!((stats.time - 0.01).abs() < 1e-6, "{name}: {stats:?}");
     }
-    for (name, executor) in testing::executors("no_particle_and_one_particle") {
+    for (name, executor) in testing::executors("zero_and_one_particle") {
         let scene = scene(0.0625, "", SOLVERS[0]);
         let one = Particles::from_positions(vec![[0.7, 0.5, 0.3]]);
         let mut simulation = Simulation::with_particles(&scene, executor, &one).unwrap();
         let stats = simulation.advance(0.1).unwrap();
         let fallen = 0.5 - simulation.particles().unwrap().positions[0][1];
-        // Free fall, and what symplectic steps of the length dt add: g t dt / 2.
+        // Free fall plus the error of symplectic steps of length dt: g t dt / 2.
         assert!((fallen - 0.5 * 9.81 * 0.01).abs() < 9.81 * 0.1 * stats.dt, "{name}: {fallen}");
     }
 }
 
 #[test]
-fn a_crowd_of_dead_disturbs_neither_the_living_nor_the_device() {
-    for (name, executor) in testing::executors("a_crowd_of_dead") {
+fn many_dead_particles_do_not_affect_the_living() {
+    for (name, executor) in testing::executors("many_dead_particles") {
         let scene = scene(0.0625, "", SOLVERS[0]);
         let mut particles = sample::particles(&scene).unwrap();
         let living = particles.positions.len();
-        // More than the GPU puts into order: comparing each with each would take 10^10 comparisons a step.
+        // More than the GPU sorts within a cell: comparing all pairs would take 10^10 comparisons per step.
         particles.positions.extend(vec![[0.0, 9.0, 0.0]; 100_000]);
         particles.ids = (0..particles.positions.len() as u32).collect();
         particles.velocities.resize(particles.positions.len(), [0.0; 3]);
@@ -271,8 +268,8 @@ fn a_crowd_of_dead_disturbs_neither_the_living_nor_the_device() {
 }
 
 #[test]
-fn a_density_that_divides_nothing_is_taken_out_before_it_spreads() {
-    for (name, executor) in testing::executors("a_density_that_divides_nothing") {
+fn a_non_positive_density_is_removed_before_it_spreads() {
+    for (name, executor) in testing::executors("a_non_positive_density") {
         let scene = scene(0.0625, "", SOLVERS[1]);
         let mut particles = sample::particles(&scene).unwrap();
         particles.densities = vec![1000.0; particles.positions.len()];

@@ -17,7 +17,7 @@ fn tank(size: [f32; 3], water: [f32; 3]) -> Scene {
     Scene::parse(&text, "tank.toml").unwrap()
 }
 
-/// An empty metre without gravity.
+/// An empty cubic metre without gravity.
 fn empty() -> Scene {
     let mut scene = tank([1.0, 1.0, 1.0], [0.02; 3]);
     scene.fluid.blocks.clear();
@@ -54,14 +54,14 @@ fn born(particles: &Particles) -> impl Iterator<Item = (Vec3, Vec3)> {
 }
 
 #[test]
-fn a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere() {
+fn a_free_jet_has_a_constant_flux_and_density() {
     let scene = {
         let mut changed = empty();
         changed.emitters = vec![emitter()];
         changed
     };
     let layer = splashdown::flow::outlet::disc_layer(0.1, SPACING).len() as f32;
-    for (name, executor) in testing::executors("a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere") {
+    for (name, executor) in testing::executors("a_free_jet_has_a_constant_flux_and_density") {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         assert_eq!(simulation.stats().particles, 0, "{name}");
         let (stats, highest) = run(&mut simulation, 4, 0.1);
@@ -84,13 +84,13 @@ fn a_jet_in_free_space_keeps_its_flux_and_bursts_nowhere() {
 }
 
 #[test]
-fn a_submerged_inlet_does_not_burst() {
+fn a_submerged_inlet_is_stable() {
     let mut scene = {
         let mut changed = tank([0.8, 1.0, 0.4], [0.8, 0.4, 0.4]);
         changed.emitters = vec![emitter()];
         changed
     };
-    // In the wall, under water.
+    // In the wall, below the water level.
     scene.emitters[0].position = Vec3::new(0.0, 0.2, 0.2);
     scene.emitters[0].outlet = Outlet::Rectangle { size: [0.12, 0.12] };
     let executor = Executor::from(CpuExecutor::new());
@@ -106,7 +106,7 @@ fn a_submerged_inlet_does_not_burst() {
 }
 
 #[test]
-fn emission_is_the_same_to_the_last_bit_every_time() {
+fn emission_is_bit_identical_when_repeated() {
     let scene = {
         let mut changed = empty();
         changed.emitters = vec![emitter()];
@@ -122,7 +122,7 @@ fn emission_is_the_same_to_the_last_bit_every_time() {
 }
 
 #[test]
-fn a_sink_drains_everything_inside_and_its_places_are_used_again() {
+fn a_sink_removes_all_particles_inside_and_frees_their_slots() {
     let sink = Sink {
         name: "outlet".into(),
         region: SinkRegion::Box { min: Vec3::new(0.3, 0.0, 0.0), max: Vec3::ONE },
@@ -133,11 +133,9 @@ fn a_sink_drains_everything_inside_and_its_places_are_used_again() {
         changed.sinks = vec![sink];
         changed
     };
-    // A third of the room that the emitter needs.
+    // The capacity is a third of what the emitter needs without the sink.
     scene.duration = 0.15;
-    for (name, executor) in
-        testing::executors("a_sink_drains_everything_inside_and_its_places_are_used_again")
-    {
+    for (name, executor) in testing::executors("a_sink_removes_all_particles_inside_and_frees_their_slots") {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         let capacity = simulation.params().particle_count;
         let (stats, highest) = run(&mut simulation, 5, 0.1);
@@ -147,13 +145,13 @@ fn a_sink_drains_everything_inside_and_its_places_are_used_again() {
         assert!(highest < 0.1, "{name}: density {highest}");
         let particles = simulation.particles().unwrap();
         assert_eq!(particles.positions.len() as u32, stats.particles, "{name}");
-        // What crossed the plane within the last step is still to be seen.
+        // Particles that crossed the plane in the last step are still present.
         assert!(born(&particles).all(|(x, _)| x.x < 0.3 + 0.5 * SPACING), "{name}");
     }
 }
 
 #[test]
-fn a_limit_is_kept_and_a_lack_of_room_is_told_once() {
+fn the_particle_limit_is_respected_and_a_full_buffer_is_reported_once() {
     let few = Emitter { max_particles: Some(300), ..emitter() };
     let scene = {
         let mut changed = empty();
@@ -173,9 +171,9 @@ fn a_limit_is_kept_and_a_lack_of_room_is_told_once() {
     scene.duration = 0.1;
     let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(12), ..RunOptions::new(&scene) };
     let events: Vec<Event> = Run::new(&scene, options).unwrap().map(Result::unwrap).collect();
-    let told =
+    let warnings =
         events.iter().filter(|event| matches!(event, Event::Warning(text) if text.contains("\"inlet\"")));
-    assert_eq!(told.count(), 1);
-    let Some(Event::Finished(summary)) = events.last() else { panic!("no end") };
+    assert_eq!(warnings.count(), 1);
+    let Some(Event::Finished(summary)) = events.last() else { panic!("no final event") };
     assert!(summary.stats.refused > 0);
 }

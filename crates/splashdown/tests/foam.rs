@@ -239,14 +239,14 @@ fn a_full_pool_accepts_candidates_evenly_and_reports_it() {
     assert!(few.len() <= 200 && few.len() > 150, "{}", few.len());
     let state = state(&mut simulation, &foam);
     assert!(state.refused > 100 && free.len() > 600, "{state:?}, {}", free.len());
-    let told = simulation.take_warnings();
-    assert!(told.len() == 1 && told[0].contains("pool of 200"), "{told:?}");
+    let warnings = simulation.take_warnings();
+    assert!(warnings.len() == 1 && warnings[0].contains("pool of 200"), "{warnings:?}");
     simulation.diffuse(&mut foam).unwrap();
-    assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "it is told once");
+    assert_eq!(simulation.take_warnings(), Vec::<String>::new(), "the warning is reported once");
     // Saved foam, for example in a checkpoint, includes that the warning was reported.
-    let kept = block_on(simulation.keep_foam_async(&foam)).unwrap();
+    let saved = block_on(simulation.keep_foam_async(&foam)).unwrap();
     let mut again = simulation.foam(&scene.foam).unwrap();
-    simulation.restore_foam(&mut again, &kept).unwrap();
+    simulation.restore_foam(&mut again, &saved).unwrap();
     simulation.diffuse(&mut again).unwrap();
     assert_eq!(simulation.take_warnings(), Vec::<String>::new());
 }

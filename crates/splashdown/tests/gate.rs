@@ -1,4 +1,4 @@
-//! The gate: every pass agrees with its WGSL, every WGSL file belongs to a pass, and every label is given once.
+//! The gate: every pass agrees with its WGSL, every WGSL file belongs to a pass, and every label is unique.
 
 use std::path::Path;
 
@@ -7,14 +7,14 @@ use splashdown_gpu::testing;
 const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
 
 #[test]
-fn every_pass_agrees_with_its_wgsl_and_every_wgsl_has_a_pass() {
+fn every_pass_agrees_with_its_wgsl_and_every_wgsl_file_has_a_pass() {
     let wrong = testing::gate(Path::new(SOURCES), &splashdown::passes());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Control: what each pass needs is in the list, so a list without one pass leaves its file without an owner.
+/// Negative control: if a pass is missing from the list, its WGSL file belongs to no pass.
 #[test]
-fn a_pass_left_out_is_noticed() {
+fn a_missing_pass_is_detected() {
     let passes = splashdown::passes();
     let alone: Vec<_> = passes
         .iter()
@@ -28,9 +28,9 @@ fn a_pass_left_out_is_noticed() {
     }
 }
 
-/// Control: variants share their file with other passes, and are noticed too.
+/// Negative control: a missing variant is detected too, although it shares its file with other passes.
 #[test]
-fn a_variant_left_out_is_noticed() {
+fn a_missing_variant_is_detected() {
     let passes = splashdown::passes();
     for left_out in &passes {
         let rest: Vec<_> = passes.iter().copied().filter(|pass| pass.label != left_out.label).collect();

@@ -1,4 +1,4 @@
-//! A simulation that is changed while it runs.
+//! Changes of a running simulation.
 
 use glam::Vec3;
 use splashdown::scene::{Body, BoundaryKind, MeshSource, Motion, Scene};
@@ -18,7 +18,7 @@ fn mean_velocity(simulation: &mut Simulation) -> Vec3 {
 }
 
 #[test]
-fn a_hand_carries_water_along_and_leaves_it_when_taken_out() {
+fn the_mouse_force_accelerates_water_only_while_it_is_active() {
     let mut scene = scene();
     scene.gravity = Vec3::ZERO;
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
@@ -32,12 +32,12 @@ fn a_hand_carries_water_along_and_leaves_it_when_taken_out() {
     simulation.set_mouse_force(None).unwrap();
     simulation.advance(0.02).unwrap();
     let after = mean_velocity(&mut simulation);
-    // Control: nothing pulls any more.
+    // Control: without the mouse force the water is not accelerated.
     assert!((after.x - carried.x).abs() < 0.2 * carried.x, "{carried} then {after}");
 }
 
 #[test]
-fn other_numbers_are_adopted_and_other_things_are_not() {
+fn update_parameters_accepts_constants_and_rejects_structural_changes() {
     let mut scene = scene();
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
     scene.gravity = Vec3::new(3.0, 0.0, 0.0);
@@ -77,7 +77,7 @@ fn ball(name: &str, position: Vec3) -> Body {
 }
 
 #[test]
-fn a_ball_is_thrown_in_and_the_water_goes_on() {
+fn a_body_added_to_a_running_simulation_displaces_water() {
     let mut scene = scene();
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
     simulation.advance(0.05).unwrap();
@@ -92,7 +92,7 @@ fn a_ball_is_thrown_in_and_the_water_goes_on() {
     let fallen = second.body_states().unwrap()[0];
     assert!(fallen.velocity.y < -0.3, "{fallen:?}");
 
-    // Another one: the first keeps its place and speed; a ball inside the water displaces some of it.
+    // A second ball: the first keeps its position and velocity; a ball inside the water replaces particles.
     let inside = Vec3::from(second.particles().unwrap().positions[before.ids.len() / 2]);
     scene.bodies.push(ball("second", inside));
     let mut third = second.rebuild_with(&scene).unwrap();
@@ -106,7 +106,7 @@ fn a_ball_is_thrown_in_and_the_water_goes_on() {
 }
 
 #[test]
-fn a_held_body_comes_along_and_its_water_stays_outside() {
+fn a_dragged_body_follows_and_does_not_leak() {
     let mut scene = scene();
     let top = scene.domain.max;
     scene.bodies.push(ball("held", Vec3::new(0.7 * top.x, 0.3 * top.y, 0.5 * top.z)));
@@ -118,11 +118,11 @@ fn a_held_body_comes_along_and_its_water_stays_outside() {
     }
     let state = simulation.body_states().unwrap()[0];
     let held = state.position + state.orientation * anchor;
-    // It sags by what it falls between two pulls.
+    // It sags by the distance that it falls between two updates.
     assert!(held.distance(target) < 0.02, "{held} is not near {target}");
     let particles = simulation.particles().unwrap();
     assert_eq!(simulation.inside_bodies(&particles).unwrap(), 0);
-    // Control: let go, it falls.
+    // Control: after release it falls.
     simulation.advance(0.2).unwrap();
     let fallen = simulation.body_states().unwrap()[0];
     assert!(fallen.position.y < state.position.y - 0.05, "{fallen:?}");

@@ -1,4 +1,4 @@
-//! Neighbour search: the sorted arrays against brute force, both ways of sorting on both executors.
+//! Neighbour search compared with brute force, for both sorting methods on both executors.
 
 use std::collections::HashSet;
 
@@ -37,12 +37,12 @@ fn grid() -> Grid {
     Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap()
 }
 
-/// What a sort leaves.
+/// The result of a sort.
 #[derive(Debug, Clone, PartialEq)]
 struct Sorted {
     cell_start: Vec<u32>,
     ids: Vec<u32>,
-    /// Positions and velocities by their bits: a NaN equals itself.
+    /// Positions and velocities as bits, so that a NaN equals itself.
     positions: Vec<[u32; 4]>,
     velocities: Vec<[u32; 4]>,
     counters: Vec<u32>,
@@ -66,7 +66,7 @@ impl Sorted {
     }
 }
 
-/// Ids that are no permutation of the places and have gaps.
+/// Ids with gaps, which are not a permutation of the indices.
 fn id(i: usize, n: usize) -> u32 {
     // Odd multiples are invertible modulo a power of two, so all are different.
     (i as u32).wrapping_mul(2_654_435_761) % (4 * n.next_power_of_two() as u32)
@@ -103,7 +103,7 @@ fn cpu() -> Executor {
     executor
 }
 
-/// The places within a support of place `k`, by the nine row ranges of `cell_start`.
+/// The indices within the support of particle `k`, from the nine row ranges of `cell_start`.
 fn walk(sorted: &Sorted, k: usize) -> HashSet<usize> {
     let grid = grid();
     let (width, plane) = (grid.size_x as usize, (grid.size_x * grid.size_y) as usize);
@@ -114,7 +114,7 @@ fn walk(sorted: &Sorted, k: usize) -> HashSet<usize> {
         let first = cell + (row / 3) * plane + (row % 3) * width - plane - width - 1;
         for j in sorted.cell_start[first] as usize..sorted.cell_start[first + 3] as usize {
             if sorted.position(j).distance_squared(x) < SUPPORT * SUPPORT {
-                assert!(near.insert(j), "place {j} is in two of the nine ranges");
+                assert!(near.insert(j), "index {j} is in two of the nine ranges");
             }
         }
     }
@@ -126,36 +126,45 @@ fn brute_force(sorted: &Sorted, k: usize) -> HashSet<usize> {
     (0..sorted.living()).filter(|&j| sorted.position(j).distance_squared(x) < SUPPORT * SUPPORT).collect()
 }
 
-/// Everything that must hold of a sort of these points; neighbours are compared for about `sample` of them.
+/// Checks all properties of a sort of these points; neighbours are compared for about `sample` of them.
 fn check(sorted: &Sorted, points: &[Vec3], sample: usize) -> Result<(), String> {
     let (n, grid, params) = (points.len(), grid(), params(points.len() as u32));
     let inside =
         |p: &Vec3| p.is_finite() && p.cmpge(params.domain_min).all() && p.cmple(params.domain_max).all();
     let expect = |good: bool, what: &str| if good { Ok(()) } else { Err(what.to_owned()) };
     expect(sorted.cell_start.len() == grid.cell_count as usize + 2, "starts")?;
-    expect(sorted.cell_start[0] == 0 && sorted.cell_start.is_sorted(), "starts do not rise from 0")?;
+    expect(
+        sorted.cell_start[0] == 0 && sorted.cell_start.is_sorted(),
+        "`cell_start` does not increase from 0",
+    )?;
     expect(
         sorted.cell_start[grid.cell_count as usize + 1] as usize == n,
-        "the last start is not the number",
+        "the last entry of `cell_start` is not the number of particles",
     )?;
     let living = points.iter().filter(|p| inside(p)).count();
-    expect(sorted.living() == living, "the number of the living")?;
+    expect(sorted.living() == living, "the number of living particles")?;
     let finite = points.iter().filter(|p| p.is_finite()).count();
-    expect(sorted.counters[StepCounters::ESCAPED] as usize == finite - living, "escaped are miscounted")?;
-    expect(sorted.counters[StepCounters::NON_FINITE] as usize == n - finite, "not finite are miscounted")?;
-    // A permutation that carries every particle's data with it.
+    expect(
+        sorted.counters[StepCounters::ESCAPED] as usize == finite - living,
+        "the number of escaped particles",
+    )?;
+    expect(
+        sorted.counters[StepCounters::NON_FINITE] as usize == n - finite,
+        "the number of non-finite particles",
+    )?;
+    // The sort is a permutation that moves all data of a particle together.
     let mut place = vec![usize::MAX; n];
     let by_id: std::collections::HashMap<u32, usize> = (0..n).map(|i| (id(i, n), i)).collect();
     for (k, id) in sorted.ids.iter().enumerate() {
-        let i = *by_id.get(id).ok_or("an id that nobody has")?;
-        expect(place[i] == usize::MAX, "an id twice")?;
+        let i = *by_id.get(id).ok_or("an unknown id")?;
+        expect(place[i] == usize::MAX, "a duplicate id")?;
         place[i] = k;
-        expect(f32::from_bits(sorted.velocities[k][0]) == i as f32, "the velocity of another")?;
+        expect(f32::from_bits(sorted.velocities[k][0]) == i as f32, "the velocity of another particle")?;
         let x = sorted.position(k);
         if !points[i].is_finite() {
             expect(
                 sorted.mark(k) == DEAD_NON_FINITE && x == params.domain_min,
-                "the mark of the not finite",
+                "the mark of non-finite particles",
             )?;
         } else {
             let mark = if inside(&points[i]) { 0.0 } else { DEAD_ESCAPED };
@@ -164,9 +173,9 @@ fn check(sorted: &Sorted, points: &[Vec3], sample: usize) -> Result<(), String> 
     }
     for cell in 0..=grid.cell_count as usize {
         let places = sorted.cell_start[cell] as usize..sorted.cell_start[cell + 1] as usize;
-        expect(sorted.ids[places.clone()].is_sorted(), "ids fall inside a cell")?;
+        expect(sorted.ids[places.clone()].is_sorted(), "ids are not in order inside a cell")?;
         for k in places.filter(|_| cell < grid.cell_count as usize) {
-            expect(grid.cell_of(sorted.position(k)) as usize == cell, "a particle in a wrong cell")?;
+            expect(grid.cell_of(sorted.position(k)) as usize == cell, "a particle in the wrong cell")?;
         }
     }
     for k in (0..living).step_by((living / sample.max(1)).max(1)) {
@@ -184,12 +193,12 @@ fn random(n: usize) -> Vec<Vec3> {
         .collect()
 }
 
-/// Clouds that a sort may stumble over, by name.
+/// Distributions that are difficult for a sort, by name.
 fn clouds() -> Vec<(String, Vec<Vec3>)> {
     let mut clouds: Vec<(String, Vec<Vec3>)> =
         [1, 2, 63, 64, 65, 255, 256, 257, 4097, 70_000].map(|n| (format!("{n} at random"), random(n))).into();
     let (grid, params) = (grid(), params(0));
-    // On the borders of cells, on the domain's faces, edges and corners, and where rounding may go either way.
+    // On cell borders, on the domain's faces, edges and corners, and where rounding may go either way.
     let border =
         |i: u32, j: u32, k: u32| grid.origin + grid.cell_size * Vec3::new(i as f32, j as f32, k as f32);
     let mut borders = Vec::new();
@@ -207,16 +216,16 @@ fn clouds() -> Vec<(String, Vec<Vec3>)> {
     clouds.push(("corners, edges and faces".into(), corners.collect()));
     let spot = Vec3::new(0.1, 0.2, 0.7);
     clouds.push(("all in one cell".into(), random(300).iter().map(|x| spot + 0.02 * x).collect()));
-    clouds.push(("all in one place".into(), vec![spot; 130]));
+    clouds.push(("all at one position".into(), vec![spot; 130]));
     let mut lost = random(500);
     for (i, x) in lost.iter_mut().enumerate().step_by(3) {
         let away = [1e-6, 0.5, 30.0, 1e9, 1e30, f32::INFINITY, f32::NAN];
         x[i % 3] = (if i % 2 == 0 { max } else { -min })[i % 3] + away[i % 7];
         x[i % 3] *= if i % 2 == 0 { 1.0 } else { -1.0 };
     }
-    clouds.push(("outside and not finite".into(), lost));
+    clouds.push(("outside and non-finite".into(), lost));
     clouds.push(("all outside".into(), vec![Vec3::splat(7.0), Vec3::splat(-7.0), Vec3::NAN]));
-    // One support apart, to the last bit, along all axes: rounding may not put them two cells apart.
+    // Exactly one support radius apart along all axes: rounding must not put them two cells apart.
     let chain = (0..120).map(|i| {
         let step = Vec3::AXES[i % 3] * SUPPORT * (i / 3 % 7) as f32;
         min + Vec3::splat(0.013 * (i / 21) as f32) + step.min(max - min)
@@ -226,7 +235,7 @@ fn clouds() -> Vec<(String, Vec<Vec3>)> {
 }
 
 #[test]
-fn both_ways_of_sorting_on_both_executors_agree_with_brute_force() {
+fn both_sorting_methods_on_both_executors_agree_with_brute_force() {
     for (name, points) in clouds() {
         let sample = if points.len() > 5000 { 300 } else { points.len() };
         let mut reference: Option<Sorted> = None;
@@ -234,7 +243,7 @@ fn both_ways_of_sorting_on_both_executors_agree_with_brute_force() {
             for way in [Sort::Counting, Sort::Bitonic] {
                 let sorted = sort(&mut executor, &points, way);
                 if let Some(reference) = &reference {
-                    assert!(&sorted == reference, "{name}, {device}, {way:?}: other bits than the first way");
+                    assert!(&sorted == reference, "{name}, {device}, {way:?}: differs from the first method");
                 } else {
                     check(&sorted, &points, sample).unwrap_or_else(|what| panic!("{name}: {what}"));
                     reference = Some(sorted);
@@ -245,8 +254,8 @@ fn both_ways_of_sorting_on_both_executors_agree_with_brute_force() {
 }
 
 #[test]
-fn nothing_to_sort_is_no_error() {
-    for (device, mut executor) in testing::executors("nothing_to_sort_is_no_error") {
+fn sorting_without_particles_succeeds() {
+    for (device, mut executor) in testing::executors("sorting_without_particles_succeeds") {
         for way in [Sort::Counting, Sort::Bitonic] {
             let sorted = sort(&mut executor, &[], way);
             assert!(sorted.cell_start.iter().all(|&start| start == 0), "{device}, {way:?}");
@@ -255,9 +264,9 @@ fn nothing_to_sort_is_no_error() {
     }
 }
 
-/// Controls: one wrong thing each, which the checks must notice.
+/// Negative controls: the checks must detect each of these errors.
 #[test]
-fn wrong_sorts_are_noticed() {
+fn incorrect_sorts_are_detected() {
     let points = random(4097);
     let sound = sort(&mut cpu(), &points, Sort::Counting);
     check(&sound, &points, 4097).unwrap();
@@ -266,7 +275,7 @@ fn wrong_sorts_are_noticed() {
     let notice = |what: &str, change: fn(&mut Sorted, usize, usize)| {
         let mut wrong = sound.clone();
         change(&mut wrong, crowded, k);
-        assert!(check(&wrong, &points, 4097).is_err(), "{what} is not noticed");
+        assert!(check(&wrong, &points, 4097).is_err(), "{what} is not detected");
     };
     notice("two particles of a cell in the wrong order", |s, _, k| {
         s.ids.swap(k, k + 1);
@@ -277,7 +286,7 @@ fn wrong_sorts_are_noticed() {
     notice("a border moved by one", |s, cell, _| s.cell_start[cell + 1] -= 1);
     notice("a particle counted as escaped", |s, _, _| s.counters[StepCounters::ESCAPED] += 1);
     notice("a position changed in its last bit", |s, _, k| s.positions[k][1] ^= 1);
-    // The walk itself: without its last row it misses neighbours.
+    // The traversal itself: without its last row it misses neighbours.
     let missed = (0..4097).any(|k| {
         let x = sound.position(k);
         let lower: HashSet<usize> = walk(&sound, k)
@@ -286,13 +295,13 @@ fn wrong_sorts_are_noticed() {
             .collect();
         lower != brute_force(&sound, k)
     });
-    assert!(missed, "the last rows hold no neighbours in this cloud");
+    assert!(missed, "the last rows contain no neighbours in this cloud");
 }
 
 fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![
         8 => -0.3_f32..1.4,
-        // On a lattice of half supports, where cells, supports and faces meet.
+        // On a lattice of half support radii, where cells, supports and faces meet.
         4 => (-6_i32..28).prop_map(|i| i as f32 * 0.05),
         1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(-1e30_f32), Just(f32::MIN_POSITIVE), Just(-0.0)],
     ]
@@ -301,7 +310,7 @@ fn coordinate() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
-    fn any_cloud_has_the_neighbours_of_brute_force(
+    fn neighbours_of_any_cloud_agree_with_brute_force(
         points in prop::collection::vec((coordinate(), coordinate(), coordinate()), 1..400),
         repeat in 1_usize..3,
     ) {

@@ -58,9 +58,10 @@ fn mean(rows: &ProbeRows, column: usize, from: f64) -> f64 {
 }
 
 #[test]
-fn gauges_in_still_water_read_its_weight_and_its_level() {
+fn probes_in_still_water_measure_hydrostatic_pressure_and_level() {
     let scene = Scene::parse(TANK, "tank.toml").unwrap();
-    for (name, executor) in testing::executors("gauges_in_still_water_read_its_weight_and_its_level") {
+    for (name, executor) in testing::executors("probes_in_still_water_measure_hydrostatic_pressure_and_level")
+    {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         let mut taken: Vec<ProbeRows> = vec![Vec::new(); 5];
         for frame in 0..3 {
@@ -141,11 +142,11 @@ const JET: &str = r#"
     "#;
 
 #[test]
-fn what_flows_through_a_rectangle_is_what_was_poured() {
+fn the_measured_flow_equals_the_emitted_flow() {
     let scene = Scene::parse(JET, "jet.toml").unwrap();
     let layer = splashdown::flow::outlet::disc_layer(0.1, 0.02).len() as f64;
     let poured = layer * 0.02_f64.powi(2) * 2.0;
-    for (name, executor) in testing::executors("what_flows_through_a_rectangle_is_what_was_poured") {
+    for (name, executor) in testing::executors("the_measured_flow_equals_the_emitted_flow") {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         let mut taken: Vec<ProbeRows> = vec![Vec::new(); 3];
         for _ in 0..5 {
@@ -165,7 +166,7 @@ fn what_flows_through_a_rectangle_is_what_was_poured() {
 }
 
 #[test]
-fn a_run_hands_the_rows_out_with_its_frames() {
+fn a_run_returns_probe_rows_with_its_frames() {
     let mut scene = Scene::parse(JET, "jet.toml").unwrap();
     scene.probes.truncate(1);
     let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(2), ..RunOptions::new(&scene) };
@@ -180,7 +181,7 @@ fn a_run_hands_the_rows_out_with_its_frames() {
 }
 
 #[test]
-fn a_gauge_inside_a_body_is_told() {
+fn a_probe_inside_a_body_is_reported() {
     let text = TANK.replace("position = [0, 0.2, 0.34]", "position = [0.2, 0.2, 0.2]");
     let scene = Scene::parse(&text, "tank.toml").unwrap();
     let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(0), ..RunOptions::new(&scene) };

@@ -138,7 +138,7 @@ fn no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted() {
 }
 
 #[test]
-fn invalid_parameters_and_too_large_regions_are_refused() {
+fn invalid_parameters_and_too_large_regions_are_rejected() {
     let good = SurfaceParams::new(SPACING);
     let refused =
         |params: &SurfaceParams, points: &[[f32; 3]]| reconstruct(points, params, &mut cpu()).unwrap_err();
@@ -335,7 +335,7 @@ fn extraction_without_blocking_writes_the_draw_arguments() {
 }
 
 #[test]
-fn a_grid_finer_than_the_kernel_is_refused() {
+fn a_grid_finer_than_the_kernel_is_rejected() {
     let mut executor = cpu();
     let input = simulation_input(&mut executor, 20);
     let params = {

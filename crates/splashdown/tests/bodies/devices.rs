@@ -24,8 +24,8 @@ fn run(
     if density == DensityMode::Continuity {
         scene.solver.negative_pressure = NegativePressure::Keep;
     }
-    // Nothing lies on a line of a body's grid, where the slope of its map jumps and rounding decides on which
-    // side one is.
+    // No particle lies on a line of a body's grid: the slope of the body's map is discontinuous there, and
+    // rounding would select the side.
     let mut standing = body("standing", "cube", 0.1, Vec3::new(0.1213, 0.0517, 0.1391), Motion::Static);
     standing.mesh.rotation = Quat::from_rotation_y(0.4);
     standing.friction = 0.7;
@@ -40,7 +40,7 @@ fn run(
         Script { keyframes: vec![keyframe(0.0, 0.3031), keyframe(1.0, 0.4)], shift: None, turn: None };
     let scripted = body("scripted", "cube", 0.08, Vec3::ZERO, Motion::Scripted(script));
     let carried = body("carried", "cube", 0.09, Vec3::new(0.2023, 0.2219, 0.1987), free(300.0));
-    // On a hinge beside its middle: the fluid and its own weight turn it.
+    // On a hinge beside its centre, so that the fluid and its weight rotate it.
     let mut hung = body("hung", "cube", 0.07, Vec3::new(0.3217, 0.2093, 0.2179), free(700.0));
     let axis = Vec3::new(0.48, -0.36, 0.8);
     if let Motion::Dynamic { hinge, .. } = &mut hung.motion {
@@ -48,7 +48,7 @@ fn run(
     }
     scene.bodies = vec![standing, scripted, carried, hung];
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
-    // Enough steps for bodies to have moved, few enough for rounding not to have grown.
+    // Enough steps for the bodies to move, but too few for rounding errors to grow.
     let dt = simulation.dt();
     let stats = simulation.advance(6.0 * dt).unwrap();
     (simulation.particles().unwrap(), simulation.body_states().unwrap(), stats.steps)
@@ -59,8 +59,8 @@ fn distance(a: &[f32; 3], b: &[f32; 3]) -> f32 {
 }
 
 #[test]
-fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
-    let Some(gpu) = testing::gpu_or_skip("gpu_and_cpu_do_the_same_to_particles_and_bodies") else { return };
+fn gpu_and_cpu_agree_on_particles_and_bodies() {
+    let Some(gpu) = testing::gpu_or_skip("gpu_and_cpu_agree_on_particles_and_bodies") else { return };
     for (method, density, boundary) in [
         (Method::Wcsph, DensityMode::Summation, BoundaryKind::Map),
         (Method::Wcsph, DensityMode::Continuity, BoundaryKind::Map),
@@ -74,15 +74,15 @@ fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
         let (two, bodies_two, steps_two) = run(poisoned, method, density, boundary);
         assert_eq!((steps, one.ids.len()), (steps_two, two.ids.len()), "{what}");
         assert!(steps >= 6, "{what}: {steps}");
-        // Speeds are a few hundredths of a metre per second by now; rounding is a ten-thousandth of that.
+        // Speeds are a few hundredths of a metre per second here; rounding is a ten-thousandth of that.
         let moved = one.velocities.iter().map(|&v| Vec3::from(v).length()).fold(0.0, f32::max);
         assert!(moved > 0.01, "{what}: {moved}");
         let mut apart: Vec<f32> =
             one.velocities.iter().zip(&two.velocities).map(|(a, b)| distance(a, b)).collect();
         apart.sort_by(f32::total_cmp);
-        // Where a clamped pressure just becomes positive, its hydrostatic part in a wall begins with a jump,
-        // and rounding decides in which step: that is a few particles of the lowest layer, and a hundredth of
-        // the speed.
+        // Where a clamped pressure becomes positive, its hydrostatic part in a wall starts with a jump, and
+        // rounding determines the step in which this happens. It affects a few particles of the lowest layer,
+        // by a hundredth of the speed.
         let most = apart[apart.len() * 19 / 20];
         assert!(most < 2e-3 * moved, "{what}: {most} of {moved} m/s");
         assert!(apart[apart.len() - 1] < 0.03 * moved, "{what}: {:?} of {moved} m/s", apart.last());
@@ -94,7 +94,7 @@ fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
             // A torque is the small difference of large ones: a hundredth of the force at an arm of half an edge.
             assert!(a.torque.distance(b.torque) < 5e-4 * a.force.length() + 1e-4, "{what}: {a:?} {b:?}");
         }
-        // Control: the fluid does push, and the bodies do differ from one another.
+        // Control: the fluid exerts a force, and the states of the bodies differ.
         assert!(bodies_one[0].force.length() > 0.1, "{what}: {:?}", bodies_one[0]);
         let axis = Vec3::new(0.48, -0.36, 0.8);
         let spin = bodies_one[3].angular_velocity;
@@ -104,7 +104,7 @@ fn gpu_and_cpu_do_the_same_to_particles_and_bodies() {
 }
 
 #[test]
-fn the_same_scene_gives_the_same_bits_twice() {
+fn repeated_runs_are_bit_identical() {
     let once = || run(CpuExecutor::new().into(), Method::Wcsph, DensityMode::Summation, BoundaryKind::Map);
     let ((one, bodies_one, _), (two, bodies_two, _)) = (once(), once());
     assert_eq!((one, bodies_one), (two, bodies_two));

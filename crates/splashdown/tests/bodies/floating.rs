@@ -3,11 +3,11 @@ use splashdown::{Device, Simulation};
 
 use crate::{body, free, tank};
 
-/// Mean over the last third of two seconds of: how deep a cube of this density floats, over its edge; its tilt.
+/// The draft of a floating cube of this density over its edge, and its tilt; means over the last third of two seconds.
 fn draft(density: f32) -> (f32, f32) {
     let (spacing, edge) = (0.02, 0.2);
     let mut scene = tank(spacing, [0.5, 0.5, 0.5], 0.24);
-    // Near where it will float, so that it rests soon.
+    // Starts near its floating position, so that it comes to rest quickly.
     let bottom = 0.24 - edge * density / 1000.0;
     scene.bodies.push(body(
         "float",
@@ -23,7 +23,7 @@ fn draft(density: f32) -> (f32, f32) {
         simulation.advance(0.05).unwrap();
         let state = simulation.body_states().unwrap()[0];
         let particles = simulation.particles().unwrap();
-        // The level beside the cube, a spacing above the middle of the highest layer's particles' lower half.
+        // The water level beside the cube, from the particles of the highest layer.
         let mut heights: Vec<f32> = particles
             .positions
             .iter()
@@ -42,18 +42,18 @@ fn draft(density: f32) -> (f32, f32) {
 }
 
 #[test]
-fn light_and_heavy_cubes_float_as_deep_as_archimedes_says() {
+fn the_draft_of_floating_cubes_follows_archimedes() {
     let depths = [100.0, 300.0, 700.0].map(|density| (density, draft(density)));
     eprintln!("{depths:?}");
     for (density, (depth, tilt)) in depths {
-        // The water keeps half a spacing off the cube's bottom and sides, a twentieth of its edge at this resolution.
+        // The water stays half a spacing away from the cube's faces, a twentieth of its edge at this resolution.
         assert!((depth - density / 1000.0).abs() < 0.08, "{density}: {depth}");
         assert!(tilt < 0.6, "{density}: {tilt}");
     }
 }
 
 #[test]
-fn a_heavy_body_sinks_to_the_floor_and_stays_there() {
+fn a_heavy_body_sinks_to_the_floor_and_comes_to_rest() {
     let mut scene = tank(0.025, [0.4, 0.4, 0.4], 0.2);
     scene.bodies.push(body("stone", "cube", 0.1, Vec3::new(0.2, 0.3, 0.2), free(2500.0)));
     scene.bodies[0].mesh.rotation = Quat::from_rotation_y(0.3);

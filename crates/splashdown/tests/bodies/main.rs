@@ -1,4 +1,4 @@
-//! Bodies and fluid: both executors agree, walls of all kinds agree, water carries and stays outside.
+//! Bodies and fluid: agreement of both executors and of all boundary kinds, buoyancy, no leaks.
 
 mod devices;
 mod floating;

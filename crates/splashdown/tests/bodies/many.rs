@@ -4,7 +4,7 @@ use splashdown::{Device, Event, Run, RunOptions, Simulation};
 
 use crate::{body, free, tank};
 
-/// Runs a scene for a while; nothing may get into a body, or have to be put back.
+/// Runs a scene; no particle may enter a body or need a wall correction.
 fn run_tight(scene: &Scene, tenths: u32) -> Simulation {
     let mut simulation = Simulation::new(scene, &Device::Cpu).unwrap();
     for _ in 0..tenths {
@@ -18,7 +18,7 @@ fn run_tight(scene: &Scene, tenths: u32) -> Simulation {
 
 #[test]
 fn sixty_four_bodies_float_at_once() {
-    // Far enough from one another that no two close over a particle between them.
+    // Far enough apart that no two bodies enclose a particle between them.
     let mut scene = tank(0.03, [1.2, 0.45, 1.2], 0.15);
     for k in 0..64 {
         let place = Vec3::new(0.075 + 0.15 * (k % 8) as f32, 0.2, 0.075 + 0.15 * (k / 8) as f32);
@@ -29,15 +29,15 @@ fn sixty_four_bodies_float_at_once() {
     let mut simulation = run_tight(&scene, 3);
     let states = simulation.body_states().unwrap();
     assert_eq!(states.len(), 64);
-    // Control: all have moved, and nobody has left the tank.
+    // Control: all bodies have moved, and none has left the tank.
     assert!(states.iter().all(|state| (state.position.y - 0.2).abs() > 1e-3), "{states:?}");
     let inside = |x: Vec3| x.cmpgt(Vec3::ZERO).all() && x.cmplt(Vec3::new(1.2, 0.45, 1.2)).all();
     assert!(states.iter().all(|state| inside(state.position)), "{states:?}");
 }
 
 #[test]
-fn bodies_that_overlap_hold_water_together() {
-    // A dam of two cubes that stand in one another, askew, across the tank; water on one side only.
+fn overlapping_bodies_are_watertight() {
+    // A dam of two rotated, intersecting cubes across the tank, with water on one side.
     let mut scene = tank(0.025, [0.8, 0.4, 0.3], 0.2);
     if let Shape::Box { size, .. } = &mut scene.fluid.blocks[0].shape {
         size.x = 0.3;
@@ -55,8 +55,8 @@ fn bodies_that_overlap_hold_water_together() {
     assert!(beside > 50, "the water never reached the dam");
 }
 
-/// A beaker without thickness, its mouth on the floor, full of water.
-fn turned_over(scene: &mut Scene) -> Body {
+/// A beaker of zero thickness, full of water, with its opening on the floor.
+fn upside_down_beaker(scene: &mut Scene) -> Body {
     let mut cup = body("beaker", "thin-cup", 4.0, Vec3::new(0.3, 0.4, 0.3), Motion::Static);
     cup.mesh.rotation = Quat::from_rotation_x(std::f32::consts::PI);
     if let Shape::Box { min, size } = &mut scene.fluid.blocks[0].shape {
@@ -66,7 +66,7 @@ fn turned_over(scene: &mut Scene) -> Body {
 }
 
 #[test]
-fn a_beaker_without_thickness_holds_water_upside_down() {
+fn an_upside_down_beaker_of_zero_thickness_holds_water() {
     let mut scene = tank(0.02, [0.6, 0.5, 0.6], 0.36);
     let cup = turned_over(&mut scene);
     scene.bodies.push(cup);
@@ -74,7 +74,7 @@ fn a_beaker_without_thickness_holds_water_upside_down() {
     let particles = simulation.particles().unwrap();
     let out = |x: &&[f32; 3]| Vec3::from(**x).with_y(0.0).distance(Vec3::new(0.3, 0.0, 0.3)) > 0.18;
     assert_eq!(particles.positions.iter().filter(out).count(), 0, "particles outside the beaker");
-    // Control: without it the water would be everywhere.
+    // Control: without the beaker the water spreads.
     scene.bodies.clear();
     let mut free = Simulation::new(&scene, &Device::Cpu).unwrap();
     free.advance(0.4).unwrap();
@@ -82,7 +82,7 @@ fn a_beaker_without_thickness_holds_water_upside_down() {
 }
 
 #[test]
-fn a_race_turns_a_wheel_on_its_axle() {
+fn a_water_jet_turns_a_paddle_wheel() {
     let mut scene = tank(0.025, [1.2, 0.6, 0.3], 0.15);
     scene.fluid.blocks[0].velocity = Vec3::new(1.0, 0.0, 0.0);
     let mut wheel = body("wheel", "paddle-wheel", 1.0, Vec3::new(0.6, 0.32, 0.15), free(600.0));
@@ -93,12 +93,12 @@ fn a_race_turns_a_wheel_on_its_axle() {
     let mut simulation = run_tight(&scene, 3);
     let state = simulation.body_states().unwrap()[0];
     assert!(state.position.distance(Vec3::new(0.6, 0.32, 0.15)) < 1e-4, "{state:?}");
-    // Water that runs along +x under the axle turns it counter-clockwise, as seen from +z.
+    // Water that flows along +x under the axle turns the wheel counter-clockwise, seen from +z.
     assert!(state.angular_velocity.z > 0.5, "{state:?}");
 }
 
 #[test]
-fn a_body_that_flies_out_of_the_tank_is_told_of_once() {
+fn a_body_that_leaves_the_domain_is_reported_once() {
     let mut scene = tank(0.05, [0.4, 0.4, 0.4], 0.1);
     scene.domain.closed[1][1] = false;
     scene.duration = 0.4;
@@ -110,9 +110,9 @@ fn a_body_that_flies_out_of_the_tank_is_told_of_once() {
     };
     scene.bodies.push(body("stone", "cube", 0.1, Vec3::new(0.2, 0.3, 0.2), up));
     let options = RunOptions { device: Device::Cpu, surface: false, ..RunOptions::new(&scene) };
-    let told = Run::new(&scene, options).unwrap().filter_map(|event| match event.unwrap() {
+    let warnings = Run::new(&scene, options).unwrap().filter_map(|event| match event.unwrap() {
         Event::Warning(text) if text.contains("body \"stone\" has left the domain") => Some(text),
         _ => None,
     });
-    assert_eq!(told.count(), 1);
+    assert_eq!(warnings.count(), 1);
 }

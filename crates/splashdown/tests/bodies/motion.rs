@@ -5,14 +5,14 @@ use splashdown::{Device, Simulation};
 use crate::{body, free, tank};
 
 fn dry(scene: &mut Scene) {
-    // A drop far from everything: a scene needs some fluid.
+    // A small block far from the bodies: a scene needs some fluid.
     if let splashdown::scene::Shape::Box { min, size } = &mut scene.fluid.blocks[0].shape {
         (*min, *size) = (Vec3::ZERO, Vec3::splat(0.05));
     }
 }
 
 #[test]
-fn a_scripted_body_is_where_its_script_says() {
+fn a_scripted_body_follows_its_script() {
     let mut scene = tank(0.025, [0.6, 0.6, 0.6], 0.1);
     dry(&mut scene);
     let formulas = |texts: [&str; 3]| Some(Box::new(texts.map(|text| Formula::parse(text).unwrap())));
@@ -34,7 +34,7 @@ fn a_scripted_body_is_where_its_script_says() {
 }
 
 #[test]
-fn a_free_body_falls_as_bodies_fall_and_bounces_off_the_floor_and_others() {
+fn a_free_body_falls_and_collides_with_the_floor_and_other_bodies() {
     let mut scene = tank(0.025, [0.8, 1.0, 0.8], 0.1);
     dry(&mut scene);
     scene.bodies = vec![
@@ -50,7 +50,7 @@ fn a_free_body_falls_as_bodies_fall_and_bounces_off_the_floor_and_others() {
     for _ in 0..10 {
         simulation.advance(0.1).unwrap();
         for state in simulation.body_states().unwrap() {
-            // Whatever its turn, the middle of a cube is at least half an edge above the floor.
+            // In any orientation, the centre of a cube is at least half an edge above the floor.
             assert!(state.position.y > 0.05 - 0.004, "{state:?}");
             assert!(state.position.min_element() > 0.04 && state.position.max_element() < 1.0, "{state:?}");
         }
@@ -61,7 +61,7 @@ fn a_free_body_falls_as_bodies_fall_and_bounces_off_the_floor_and_others() {
 }
 
 #[test]
-fn fine_and_hollow_bodies_collide_too() {
+fn detailed_and_hollow_bodies_collide() {
     let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
     dry(&mut scene);
     scene.bodies = vec![
@@ -80,7 +80,7 @@ fn fine_and_hollow_bodies_collide_too() {
 }
 
 #[test]
-fn a_body_on_a_hinge_swings_like_a_pendulum_and_nowhere_else() {
+fn a_hinged_body_swings_like_a_physical_pendulum_in_one_plane() {
     let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
     dry(&mut scene);
     let (edge, arm) = (0.1, 0.2);
@@ -92,7 +92,7 @@ fn a_body_on_a_hinge_swings_like_a_pendulum_and_nowhere_else() {
     let length = swing.mesh.position.distance(hinge_point);
     scene.bodies.push(swing);
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
-    // Physical pendulum: T = 2 pi sqrt((I + m l^2) / (m g l)), I = m edge^2 / 6, plus 0.06 % for its swing of 0.1.
+    // Physical pendulum: T = 2 pi sqrt((I + m l^2) / (m g l)), I = m edge^2 / 6, plus 0.06 % for the amplitude of 0.1.
     let exact = std::f32::consts::TAU * ((edge * edge / 6.0 + length * length) / (9.81 * length)).sqrt();
     let mut before = 1.0;
     let mut passes = Vec::new();

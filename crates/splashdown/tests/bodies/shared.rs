@@ -1,4 +1,4 @@
-//! Whole runs with the meshes that the project does not ship: solids, open sheets, and one as damaged as any.
+//! Whole runs with meshes that are not part of the project: closed, open and severely damaged ones.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use splashdown::{Device, Simulation};
 use crate::{body, tank};
 
 #[test]
-fn water_runs_round_every_shared_mesh() {
+fn water_flows_around_every_shared_mesh() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes");
     for name in [
         "spot.obj",
@@ -21,13 +21,13 @@ fn water_runs_round_every_shared_mesh() {
     ] {
         let path = folder.join(name);
         if !path.exists() {
-            eprintln!("SKIPPED: {name} is not there");
+            eprintln!("SKIPPED: {name} does not exist");
             continue;
         }
         let mesh = splashdown_io::read_mesh(&path).unwrap();
         let corners = mesh.vertices.iter().map(|v| Vec3::from(*v));
         let (low, high) = corners.fold((Vec3::MAX, Vec3::MIN), |(low, high), v| (low.min(v), high.max(v)));
-        // A third of a metre across, on the floor, in the way of a dam break.
+        // A third of a metre wide, on the floor in front of a dam break.
         let scale = 0.3 / (high - low).max_element();
         let mut scene = tank(0.03, [1.2, 0.6, 0.45], 0.3);
         if let Shape::Box { size, .. } = &mut scene.fluid.blocks[0].shape {
@@ -47,7 +47,7 @@ fn water_runs_round_every_shared_mesh() {
             assert_eq!((stats.wall_corrections, stats.non_finite), (0, 0), "{name}: {stats:?}");
             pushed = pushed.max(simulation.body_states().unwrap()[0].force.length());
         }
-        // Control: the water did meet it.
+        // Control: the water reached the obstacle.
         assert!(pushed > 1.0, "{name}: {pushed} N");
     }
 }

@@ -4,20 +4,20 @@ use splashdown::{Device, Simulation};
 
 use crate::{body, tank};
 
-/// A tank whose floor is the box's, or a slab of this kind.
+/// A tank whose floor is the side of the domain, or a slab with this boundary.
 fn settled(slab: Option<BoundaryKind>) -> (f32, f32) {
     let spacing = 0.025;
     let mut scene = tank(spacing, [0.3, 0.6, 0.3], 0.25);
     if let Some(kind) = slab {
         lift(&mut scene, 0.2);
-        // A slab larger than the box: its rims lie outside.
+        // A slab larger than the tank, so that its edges lie outside.
         let mut floor: Body = body("floor", "cube", 0.4, Vec3::new(0.15, 0.0, 0.15), Motion::Static);
         floor.boundary = kind;
         scene.bodies.push(floor);
     }
     let bottom = if slab.is_some() { 0.2 } else { 0.0 };
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
-    // From here on the water only rests.
+    // The measurement begins when the water is at rest.
     simulation.advance(1.0).unwrap();
     let (mut densities, mut load, mut count) = (0.0, 0.0, 0);
     let mut layer = 0;
@@ -50,14 +50,14 @@ fn lift(scene: &mut Scene, height: f32) {
 }
 
 #[test]
-fn a_wall_is_the_same_as_a_plane_a_mesh_and_as_particles() {
+fn plane_mesh_and_particle_boundaries_agree() {
     let (plane, _) = settled(None);
     let (map, map_load) = settled(Some(BoundaryKind::Map));
     let (particles, particles_load) = settled(Some(BoundaryKind::Particles));
     eprintln!("density {plane:.1} {map:.1} {particles:.1}, load {map_load:.2} {particles_load:.2} N");
-    // The gates of issue 3: density within 2 per cent, force within 5 per cent of each other.
+    // Gates: densities agree within 2 %, forces within 5 %.
     for other in [map, particles] {
-        assert!((other / plane - 1.0).abs() < 0.02, "density {other} beside a plane's {plane}");
+        assert!((other / plane - 1.0).abs() < 0.02, "density {other} instead of {plane} at a plane");
     }
     let scene = tank(0.025, [0.3, 0.6, 0.3], 0.25);
     let derived = splashdown::scene::Derived::new(&scene);
@@ -68,7 +68,7 @@ fn a_wall_is_the_same_as_a_plane_a_mesh_and_as_particles() {
 }
 
 #[test]
-fn a_dam_break_on_a_turned_block_leaks_nowhere() {
+fn a_dam_break_against_a_rotated_block_does_not_leak() {
     let mut scene = tank(0.025, [1.2, 0.6, 0.4], 0.3);
     if let splashdown::scene::Shape::Box { size, .. } = &mut scene.fluid.blocks[0].shape {
         size.x = 0.4;
@@ -90,6 +90,6 @@ fn a_dam_break_on_a_turned_block_leaks_nowhere() {
         );
         pushed = pushed.max(simulation.body_states().unwrap()[0].force.x);
     }
-    // Control: the wave did reach the block.
+    // Control: the wave reached the block.
     assert!(pushed > 5.0, "{pushed} N");
 }

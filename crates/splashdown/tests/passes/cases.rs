@@ -1,4 +1,4 @@
-//! The passes without neighbours: the frame's begin and end, the equation of state, the motion.
+//! The passes without neighbours: begin of a frame, end of a step, equation of state, time integration.
 
 use glam::{DVec3, Vec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
@@ -7,7 +7,7 @@ use splashdown_gpu::{DispatchSize, testing};
 
 use super::harness::{Case, Check, Compare, Data, close, exact, wide};
 use super::oracle;
-use super::sort_cases::{cell, empty_census, pass};
+use super::sort_cases::{cell, pass, zero_cell_counts};
 use super::world::{SPACING, World, params, state};
 
 pub fn cases() -> Vec<Case> {
@@ -17,7 +17,7 @@ pub fn cases() -> Vec<Case> {
         begin("a little longer than a step", 5.1e-4),
         begin("of length zero", 0.0),
     ];
-    cases.extend(settle_cases());
+    cases.extend(end_step_cases());
     for (name, exponent, clamp_pressure) in [
         ("exponent 7", 7.0, 0),
         ("exponent 7, clamped", 7.0, 1),
@@ -39,7 +39,7 @@ pub fn state_of(data: &Data) -> StepState {
     *state
 }
 
-/// Times, limits and maxima to some roundings each; counters to the last bit.
+/// Times, limits and maxima within a few roundings; counters exactly.
 pub fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
     let counters = |s: &StepState| [s.done, s.run_count, s.steps, s.too_small];
     exact("done, run_count, steps, too_small", &counters(a), &counters(b))?;
@@ -56,7 +56,7 @@ pub fn same_state(a: &StepState, b: &StepState) -> Result<(), String> {
         ]
     };
     let expected = wide(&floats(b));
-    // Five roundings, and square root and division that a GPU may take less strictly.
+    // Five roundings; a GPU may compute square root and division less accurately.
     let tolerance: Vec<f64> = expected.iter().map(|v| 2e-6 * v.abs() + 1e-12).collect();
     close("dt, stable_dt, time, remaining, maxima, duration", &floats(a), &expected, &tolerance)
 }
@@ -99,7 +99,7 @@ fn begin(name: &str, length: f32) -> Case {
     }
 }
 
-fn settle_cases() -> Vec<Case> {
+fn end_step_cases() -> Vec<Case> {
     let state = state(100);
     let calm = [0.5, 10.0, 0.002];
     let ways: [(&str, StepState, [f32; 3], Params); 9] = [
@@ -109,13 +109,13 @@ fn settle_cases() -> Vec<Case> {
         ("limited by speed", state, [300.0, 10.0, 0.2], Params { sound_speed: 0.1, ..params(2.0) }),
         ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
         ("below the smallest", state, [0.5, 1e9, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
-        ("before the last but one", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
+        ("two steps before the last", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
         ("before the last", StepState { remaining: 7e-4, ..state }, calm, params(2.0)),
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
     ];
     let mut cases: Vec<Case> =
         ways.map(|(name, state, maxima, params)| end_step(name, state, maxima, params)).into();
-    // A frame that is complete, or a step that has been settled: nothing changes. The control has one that has not.
+    // After a complete frame, or a step that has already ended, nothing changes. The control is a step that has not ended.
     let mut complete = end_step("complete", StepState { run_count: 0, done: 1, ..state }, calm, params(2.0));
     complete.control = |input| {
         let Data::U32(counters) = &mut input[2] else { panic!("no counters") };
@@ -147,7 +147,7 @@ fn end_step(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> C
         input: vec![Data::Params(params), Data::State(state), Data::U32(counters)],
         compare: compare_states(),
         oracle,
-        // A step longer or shorter by a hundred-thousandth.
+        // A step that is longer or shorter by 1e-5.
         control: |input| {
             let Data::State(state) = &mut input[1] else { panic!("no state") };
             state.dt *= 1.00001;
@@ -170,7 +170,7 @@ pub fn next_state(params: &Params, state: &StepState, [speed, acceleration, exce
     ];
     let least = limits.into_iter().fold(f64::INFINITY, f64::min);
     let stable = least.max(p(params.min_dt));
-    // As the pass does it: what is left is a difference, and would not survive another rounding.
+    // In the same order as the pass: the remaining time is a difference, and another rounding would change it.
     let complete = state.dt >= state.remaining;
     let remaining = if complete { 0.0 } else { state.remaining - state.dt };
     let dt = match p(remaining) {
@@ -198,7 +198,7 @@ pub fn next_state(params: &Params, state: &StepState, [speed, acceleration, exce
 fn state_equation(name: &str, params: Params) -> Case {
     let world = World::new(params, 500);
     let n = world.len();
-    // (rho / rho0)^exponent rounds a few times, and rho0 c0^2 / exponent turns that into Pa.
+    // (rho / rho0)^exponent has a few roundings, and rho0 c0^2 / exponent scales them to Pa.
     let stiffness = f64::from(params.rest_density * params.sound_speed * params.sound_speed);
     let expected: Vec<f64> = world
         .velocities
@@ -223,7 +223,7 @@ fn state_equation(name: &str, params: Params) -> Case {
     }
 }
 
-/// Positions to two roundings; velocities to what these are worth in a step, as contacts divide by it.
+/// Positions within two roundings; velocities within these divided by the step, because contacts divide by it.
 fn motion_tolerance(dt: f64, velocities: &[f64]) -> (f64, Vec<f64>) {
     let position = 1.3e-7;
     (position, velocities.iter().map(|v| position / dt + 1e-5 * v.abs()).collect())
@@ -246,7 +246,7 @@ fn same_motion(
     close("maxima", &floats(maxima), &expected, &tolerance)
 }
 
-/// `counts`: whether the particles are to be counted for the next step.
+/// `counts`: whether the pass counts the particles for the next step.
 fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bool) -> Case {
     let mut world = World::new(params, 1500);
     let (living, n) = (world.living(), world.len());
@@ -255,20 +255,20 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         (0..n).map(|i| 50.0 * Vec4::new(signed(3 * i), signed(3 * i + 1), signed(3 * i + 2), 0.0)).collect();
     for (i, a) in accelerations.iter_mut().enumerate().take(living) {
         match i % 50 {
-            // Faster than half a spacing per step, some of them by far.
+            // Faster than half a spacing per step, some by orders of magnitude.
             7 => world.velocities[i].x = 80.0 * signed(i),
             8 => a.y = 1e7 * signed(i),
-            // What must be taken out.
+            // Particles that must be removed.
             21 if i % 100 < 50 => a.z = f32::NAN,
             21 => a.x = f32::INFINITY,
-            // Behind a closed wall by a little, or through an open side.
+            // Slightly behind a closed wall, or through an open side.
             33 => world.positions[i].x = params.domain_min.x - 1e-3,
             34 => world.positions[i].y = params.domain_max.y + 2e-3,
             _ => {}
         }
     }
     let grid = world.grid;
-    let cell_counts = empty_census(&grid, n);
+    let cell_counts = zero_cell_counts(&grid, n);
     let input = vec![
         Data::Params(params),
         Data::Grid(grid),
@@ -292,10 +292,10 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         compare: Box::new(|a, b| same_motion(a, &wide(b[0].floats()), &wide(b[1].floats()), b[2].words())),
         oracle: Box::new(move |out| {
             same_motion(out, &positions, &velocities, &counters)?;
-            let expected = if counts { census_of(&grid, &out[0]) } else { cell_counts.clone() };
+            let expected = if counts { cell_counts_of(&grid, &out[0]) } else { cell_counts.clone() };
             exact("cell_counts", out[3].words(), &expected)
         }),
-        // One particle is pushed a little harder.
+        // One particle has a slightly larger acceleration.
         control: |input| {
             let Data::Vec4(accelerations) = &mut input[6] else { panic!("no accelerations") };
             accelerations[100].y += 4.0;
@@ -304,8 +304,8 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
     }
 }
 
-/// The cell_counts of particles that are where a pass says.
-pub fn census_of(grid: &Grid, positions: &Data) -> Vec<u32> {
+/// The cell counts of particles at the positions that a pass wrote.
+pub fn cell_counts_of(grid: &Grid, positions: &Data) -> Vec<u32> {
     let Data::Vec4(positions) = positions else { panic!("no positions") };
     let mut counts = vec![0; grid.cell_count as usize + 1];
     let mut cells = Vec::new();
@@ -318,7 +318,7 @@ pub fn census_of(grid: &Grid, positions: &Data) -> Vec<u32> {
     counts
 }
 
-/// Symplectic Euler with its limits, particle by particle in f64.
+/// Symplectic Euler with its limits, for each particle in f64.
 fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>) {
     let (params, dt) = (&world.params, f64::from(world.state.dt));
     let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
@@ -347,7 +347,7 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
             velocities.extend([0.0, 0.0, 0.0, f64::from(params.rest_density)]);
             continue;
         }
-        // No nearer to a closed side than a quarter of a spacing, and nearer not at all for who is.
+        // Not closer to a closed side than a quarter of a spacing; particles that are closer may not approach it.
         let near = 0.25 * f64::from(SPACING);
         for axis in 0..3 {
             if closed(axis, 0) {

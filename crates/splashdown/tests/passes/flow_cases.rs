@@ -13,7 +13,7 @@ pub fn cases() -> Vec<Case> {
     vec![plan(), emit(), drive(), drain()]
 }
 
-/// Two nozzles that overlap the cloud, a disc and a rectangle; one that has not begun, one that has ended.
+/// Two emitters that overlap the cloud, a disc and a rectangle; one before its start, one after its end.
 fn nozzles() -> Vec<Nozzle> {
     let direction = Vec3::new(0.6, 0.0, 0.8);
     let disc = Nozzle {
@@ -57,7 +57,7 @@ fn points() -> Vec<Vec4> {
 fn plan() -> Case {
     let mut world = World::new(params(2.0), 500);
     let due = nozzles();
-    // Room for the first and the second, not for another one like the first; the last has made all that it may.
+    // Room for the first and the second, but not for another one like the first; the last has reached its limit.
     let mut nozzles = due.clone();
     nozzles.extend([due[0], Nozzle { most: 100, ..due[1] }]);
     let living = world.living() as u32;
@@ -135,7 +135,7 @@ fn emit() -> Case {
         plan[EmissionSchedule::ID] = id;
         plan[EmissionSchedule::DISTANCE] = 0.004_f32.to_bits();
     }
-    // Behind the living: the dead, and the unborn.
+    // After the living particles: dead ones and unused slots.
     let n = living + 25;
     let mut positions = world.positions.clone();
     positions.resize(n, Vec4::new(0.0, 0.0, 0.0, DEAD_UNBORN));
@@ -169,7 +169,7 @@ fn emit() -> Case {
             expected.4[slot] = Vec2::new(1000.0, 0.0);
         }
     }
-    assert!((3..18).contains(&blocked), "{blocked} of 20 blocked: the case shows one side only");
+    assert!((3..18).contains(&blocked), "{blocked} of 20 blocked: the case must contain both");
     let near = |what: &str, a: &Data, b: &Data| {
         let b = wide(b.floats());
         close(what, a.floats(), &b, &vec![1e-6; b.len()])
@@ -190,7 +190,7 @@ fn emit() -> Case {
     ];
     Case {
         pass: pass("flow.emit"),
-        name: "two layers, some places taken".into(),
+        name: "two layers, some positions occupied".into(),
         size: DispatchSize::Items(points.len() as u32),
         input: vec![
             Data::Params(world.params),
@@ -217,7 +217,7 @@ fn drive() -> Case {
     let world = World::new(params(2.0), 1500);
     let nozzles = nozzles();
     let mut plans = vec![0; 5 * EmissionSchedule::WORDS + 1];
-    // The last would drive, but for its limit.
+    // The last is inactive only because of its limit.
     let mut all = nozzles.clone();
     all.push(Nozzle { back: Vec3::new(0.0, 0.1, 0.2), most: 10, points: 5, first_point: 25, ..nozzles[0] });
     plans[4 * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] = 6;
@@ -282,7 +282,7 @@ fn drain() -> Case {
     let normal = Vec3::new(0.6, 0.8, 0.0);
     let below =
         SinkShape { kind: SinkShape::BELOW, low: Vec3::new(-0.203, 0.0511, 0.0), high: normal, ..none };
-    // A ball of a tenth of a metre, behind five words that belong to nobody.
+    // A ball of a tenth of a metre, after five unused words.
     let (center, nodes, cell_size) = (Vec3::new(0.1, 0.3, 0.45), UVec3::new(12, 13, 14), 0.02);
     let low = center - 0.12;
     let ball = SinkShape {

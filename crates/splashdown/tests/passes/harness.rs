@@ -1,4 +1,4 @@
-//! Runs one pass from given buffers on an executor, and compares what it leaves.
+//! Runs one pass with given buffers on an executor, and compares its output.
 
 use glam::{UVec2, Vec2, Vec4};
 use splashdown::MouseForce;
@@ -95,13 +95,13 @@ impl Data {
     }
 }
 
-/// What is compared with what the pass leaves, per written binding in order.
+/// Compares the output of the pass, one entry per written binding in order.
 pub type Check = Box<dyn Fn(&[Data]) -> Result<(), String>>;
 
-/// Compares what two executors left.
+/// Compares the outputs of two executors.
 pub type Compare = Box<dyn Fn(&[Data], &[Data]) -> Result<(), String>>;
 
-/// One pass with its input, and what to expect of it.
+/// One pass with its input and the expected output.
 pub struct Case {
     pub pass: &'static PassDesc,
     /// What is special about the input.
@@ -113,7 +113,7 @@ pub struct Case {
     pub compare: Compare,
     /// Against brute force in f64.
     pub oracle: Check,
-    /// The smallest wrong change to the input: both comparisons must notice it.
+    /// The smallest wrong change to the input that both comparisons must detect.
     pub control: fn(&mut [Data]),
 }
 
@@ -122,12 +122,12 @@ impl Case {
         format!("{}, {}", self.pass.label, self.name)
     }
 
-    /// What the pass leaves in the bindings that it writes.
+    /// The contents of the written bindings after the pass.
     pub fn run(&self, executor: &mut Executor) -> Vec<Data> {
         self.run_with(executor, &self.input)
     }
 
-    /// What it leaves from the spoiled input.
+    /// The same after the input has been changed by the negative control.
     pub fn run_control(&self, executor: &mut Executor) -> Vec<Data> {
         let mut input = self.input.clone();
         (self.control)(&mut input);
@@ -209,7 +209,7 @@ impl Target<'_> {
     }
 }
 
-/// Equal to the last bit.
+/// Bit-identical.
 pub fn exact(what: &str, a: &[u32], b: &[u32]) -> Result<(), String> {
     match a.iter().zip(b).position(|(a, b)| a != b) {
         Some(k) => Err(format!("{what}: word {k} is {:#x} and {:#x}", a[k], b[k])),
@@ -218,7 +218,7 @@ pub fn exact(what: &str, a: &[u32], b: &[u32]) -> Result<(), String> {
     }
 }
 
-/// |a - b| <= tolerance, entry by entry; poison (the same NaN) equals itself.
+/// |a - b| <= tolerance for each entry; poison (the same NaN) equals itself.
 pub fn close(what: &str, a: &[f32], b: &[f64], tolerance: &[f64]) -> Result<(), String> {
     assert!(
         a.len() == b.len() && a.len() == tolerance.len(),

@@ -1,8 +1,8 @@
 //! Every pass: on the GPU against the CPU from equal input, and both against brute force in f64.
 //!
-//! SPH is chaotic, so whole runs are never compared; single passes are, from equal buffers with poisoned
-//! output. Each comparison has a control: one input changed by as little as must be noticed. The passes of the
-//! surface and of bodies have their own tests.
+//! SPH is chaotic, so whole runs are never compared. Single passes are compared, from equal buffers with poisoned
+//! output. Each comparison has a negative control: the smallest change of the input that must be detected. The
+//! passes of the surface and of bodies have separate tests.
 
 mod cases;
 mod flow_cases;
@@ -42,7 +42,7 @@ fn cpu() -> Executor {
 }
 
 #[test]
-fn no_pass_is_forgotten() {
+fn every_pass_has_a_case() {
     let passes = splashdown::passes();
     let elsewhere = |label: &str| label.starts_with("surface") || label.starts_with("bodies");
     let expected: BTreeSet<&str> =
@@ -60,7 +60,7 @@ fn every_pass_agrees_with_brute_force() {
             wrong.push(format!("{}: {what}", case.title()));
         }
         if (case.oracle)(&case.run_control(&mut cpu())).is_ok() {
-            wrong.push(format!("{}: the control is not noticed", case.title()));
+            wrong.push(format!("{}: the control is not detected", case.title()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -83,7 +83,7 @@ fn every_pass_on_the_gpu_agrees_with_the_cpu() {
             }
         }
         if (case.compare)(&on_gpu, &case.run_control(&mut cpu())).is_ok() {
-            wrong.push(format!("{}: the control is not noticed", case.title()));
+            wrong.push(format!("{}: the control is not detected", case.title()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -7,10 +7,10 @@ use super::sort_cases::pass;
 use super::world::{World, params};
 
 pub fn cases() -> Vec<Case> {
-    vec![stir()]
+    vec![mouse_force()]
 }
 
-fn stir() -> Case {
+fn mouse_force() -> Case {
     let world = World::new(params(2.0), 1500);
     let mouse_force = MouseForce::new(
         Vec3::new(-0.05, 0.2, 0.3),
@@ -23,7 +23,7 @@ fn stir() -> Case {
     let mut expected: Vec<f64> = wide(Data::Vec4(accelerations.clone()).floats());
     let mut stirred = 0;
     for i in 0..world.living() {
-        // The component of what is left of v across the axis, by the cross product twice.
+        // The component of the remaining velocity perpendicular to the axis, by two cross products.
         let (x, v): (DVec3, DVec3) =
             (world.positions[i].xyz().as_dvec3(), world.velocities[i].xyz().as_dvec3());
         let axis = mouse_force.direction.as_dvec3();

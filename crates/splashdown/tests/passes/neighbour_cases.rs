@@ -1,23 +1,23 @@
-//! The sums over neighbours, on random clouds with particles at walls, in edges and corners, twice in one
-//! place, and dead.
+//! The sums over neighbours, on random clouds that include particles at walls, in edges and corners, at the same
+//! position, and dead ones.
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::state::{Params, StepCounters};
 use splashdown_gpu::{CpuExecutor, DispatchSize};
 
-use super::cases::census_of;
+use super::cases::cell_counts_of;
 use super::harness::{Case, Data, close, exact, wide};
 use super::oracle::{self, Kernel, Parts, Sum};
-use super::sort_cases::{empty_census, pass};
+use super::sort_cases::{pass, zero_cell_counts};
 use super::walls::{Kernels, Wall};
 use super::world::{World, params};
 
-/// A term of a sum is good to a dozen roundings, of which the steep flanks of the kernels make ten times as much; a
-/// hundred terms add up like a random walk. GPUs may divide and take roots to 2.5 units in the last place.
+/// A term of a sum has a dozen roundings, amplified tenfold by the steep slopes of the kernels; the errors of a hundred
+/// terms add up like a random walk. Divisions and square roots on a GPU may be off by 2.5 units in the last place.
 const ROUNDING: f64 = 2e-5;
-/// The tables of edges interpolate linearly over a thirty-second of the support; in corners the overlap of
-/// three solids is a product formula, tested beside it to 6e-3.
+/// The tables of edges interpolate linearly over 1/32 of the support; in corners the overlap of three solids is a
+/// product formula, which its unit test checks to 6e-3.
 const WALL_TABLE: [f64; 4] = [2e-6, 2e-6, 3e-3, 1e-2];
 
 const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
@@ -94,7 +94,7 @@ fn table(kernels: Kernels) -> Data {
     Data::Vec4(wall_table(pair(kernels)))
 }
 
-/// Expected values with what they may miss, for the executors against each other and against the oracle.
+/// Expected values with tolerances for the comparison of the executors and with the oracle.
 struct Expected {
     values: Vec<f64>,
     rounding: Vec<f64>,
@@ -102,12 +102,12 @@ struct Expected {
 }
 
 impl Expected {
-    /// `poison` entries behind the living stay as they were.
+    /// The `poison` entries after the living particles stay unchanged.
     fn new() -> Self {
         Self { values: Vec::new(), rounding: Vec::new(), tables: Vec::new() }
     }
 
-    /// One component: its value, the size of its terms, and of what the walls' tables give.
+    /// One component: its value, the magnitude of its terms, and that of the contribution of the wall tables.
     fn push(&mut self, value: f64, size: f64, by_walls: f64) {
         self.values.push(value);
         self.rounding.push(ROUNDING * size);
@@ -148,7 +148,7 @@ impl Expected {
     }
 }
 
-/// A mass that is wrong by one in five hundred.
+/// A mass that is wrong by 1/500.
 fn heavier(input: &mut [Data]) {
     input[0].params().particle_mass *= 1.002;
 }
@@ -205,7 +205,7 @@ fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
         table(kernels),
     ]);
     let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
-    // A step moves the density by little: the mass must be wrong by more than elsewhere to show.
+    // A step changes the density only slightly, so a larger error of the mass is needed than elsewhere.
     let control = |input: &mut [Data]| input[0].params().particle_mass *= 1.2;
     expected.case(format!("continuity.{}", word(kernels)), name, &world, input, output, control)
 }
@@ -226,12 +226,13 @@ fn normals(name: &str, kernels: Kernels, params: Params) -> Case {
     expected.case(format!("normals.{}", word(kernels)), name, &world, input, output, heavier)
 }
 
-/// What an error of the walls' tables is worth in an acceleration.
+/// The error of an acceleration that corresponds to the error of the wall tables.
 fn push_error(world: &World, wall: &Wall, i: usize) -> f64 {
     let (p, density) = (&world.params, world.densities[i].as_dvec2());
     let support = f64::from(p.support_radius);
     let push = density.y.abs() * (1.0 / density.x + density.x / 1e6) / 500.0;
-    // Push by the slope's error over H; body forces by the density's and by slope times distance over H.
+    // The pressure force depends on the slope's error over H; body forces on the density's error and on slope times
+    // distance over H.
     let body = 2.0 * f64::from(p.gravity.length() + p.shake.length());
     WALL_TABLE[wall.near] * (push * 500.0 / support + body)
 }
@@ -253,7 +254,7 @@ fn part_of_acceleration(suffix: &str, name: &str, kernels: Kernels, params: Para
     input.push(if params.surface_tension > 0.0 {
         Data::Vec4(world.normals.clone())
     } else {
-        // As a simulation without surface tension has it.
+        // As in a simulation without surface tension.
         Data::Vec4(vec![Vec4::NAN])
     });
     input.push(table(kernels));
@@ -261,7 +262,7 @@ fn part_of_acceleration(suffix: &str, name: &str, kernels: Kernels, params: Para
     expected.case(format!("acceleration.{}{suffix}", word(kernels)), name, &world, input, output, heavier)
 }
 
-/// What forces and motion leave in two passes on the CPU, each of which is compared with the oracle by itself.
+/// The output of the separate passes for forces and integration on the CPU; each is compared with the oracle elsewhere.
 fn two_passes(world: &World, kernels: Kernels) -> Vec<Data> {
     let case = acceleration("", kernels, world.params);
     let accelerations = case.run(&mut CpuExecutor::new().into()).remove(0);
@@ -279,7 +280,7 @@ fn two_passes(world: &World, kernels: Kernels) -> Vec<Data> {
             positions.poison(),
             velocities.poison(),
             Data::U32(vec![0; StepCounters::WORDS]),
-            Data::U32(empty_census(&world.grid, world.len())),
+            Data::U32(zero_cell_counts(&world.grid, world.len())),
         ],
         ..case
     };
@@ -294,12 +295,12 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     let dt = f64::from(world.state.dt);
     let mut tolerances = [Vec::new(), Vec::new()];
     for sum in oracle::acceleration(&world, kernels.gradient, &walls, Parts::ALL) {
-        // Contacts divide a place's rounding by the step.
+        // Contacts divide the rounding error of a position by the step.
         let velocity = 2.0 * dt * ROUNDING * sum.size + 1.3e-7 / dt;
         tolerances[0].extend([2e-7 + dt * velocity; 4]);
         tolerances[1].extend([velocity; 4]);
     }
-    // The dead behind the living stay as they are.
+    // The dead particles after the living ones stay unchanged.
     tolerances.iter_mut().for_each(|list| list.resize(4 * world.len(), 0.0));
     let grid = world.grid;
     let is_last = world.state.is_last_step();
@@ -317,8 +318,11 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
         let wanted = wide(&expected[2].floats()[maxima.clone()]);
         let tolerance: Vec<f64> = wanted.iter().map(|v| 1e-4 * v).collect();
         close("maxima", &out[2].floats()[maxima], &wanted, &tolerance)?;
-        let cell_counts =
-            if is_last { empty_census(&grid, out[0].words().len() / 4) } else { census_of(&grid, &out[0]) };
+        let cell_counts = if is_last {
+            zero_cell_counts(&grid, out[0].words().len() / 4)
+        } else {
+            cell_counts_of(&grid, &out[0])
+        };
         exact("cell_counts", out[3].words(), &cell_counts)
     };
     let same = std::rc::Rc::new(same);
@@ -340,7 +344,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
             positions.poison(),
             velocities.poison(),
             Data::U32(vec![0; StepCounters::WORDS]),
-            Data::U32(empty_census(&grid, world.len())),
+            Data::U32(zero_cell_counts(&grid, world.len())),
         ],
         compare: Box::new(move |a, b| same(a, b)),
         oracle: Box::new(move |out| oracle(out, &expected)),
@@ -348,9 +352,9 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     }
 }
 
-/// Joining two passes changes no bit on the CPU.
+/// Fusing two passes does not change the result on the CPU.
 #[test]
-fn forces_and_motion_in_one_pass_are_what_two_passes_make() {
+fn the_fused_pass_agrees_with_separate_force_and_integration_passes() {
     for kernels in [C2, CUBIC] {
         let case = motion("", kernels, params(2.0), 0.01);
         let mut executor = CpuExecutor::new().into();
@@ -359,7 +363,7 @@ fn forces_and_motion_in_one_pass_are_what_two_passes_make() {
             assert_eq!(exact(&format!("output {k}"), one.words(), two.words()), Ok(()));
         }
         let spoiled = case.run_control(&mut executor);
-        assert_ne!(spoiled[0].words(), expected[0].words(), "a control that shows nothing");
+        assert_ne!(spoiled[0].words(), expected[0].words(), "the control has no effect");
     }
 }
 
@@ -381,7 +385,7 @@ fn mueller(name: &str, params: Params) -> Case {
     let sums = oracle::mueller(&world, &walls);
     for (i, (sum, steepness)) in sums.iter().enumerate() {
         if params.surface_tension > 0.0 && (steepness.0 - 1.0).abs() < 1e-4 {
-            // On the threshold rounding decides; such a particle says nothing.
+            // At the threshold the result depends on rounding, so such a particle is skipped.
             undecided += 1;
             expected.vector(&Sum { size: f64::INFINITY, ..*sum }, 0.0);
         } else {

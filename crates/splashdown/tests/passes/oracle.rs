@@ -1,6 +1,7 @@
-//! Sums over neighbours by brute force: every pair, in f64, with formulas written down afresh from the papers.
+//! Sums over neighbours by brute force: every pair, in f64, with formulas taken independently from the papers.
 //!
-//! Every result comes with the sum of its terms' sizes: rounding is relative to that, not to what cancellation leaves.
+//! Every result includes the sum of the magnitudes of its terms: rounding errors are relative to that sum, not to the
+//! difference that remains after cancellation.
 
 use std::f64::consts::PI;
 
@@ -9,7 +10,7 @@ use glam::{DVec3, Vec4Swizzles};
 use super::walls::{Kernels, Wall};
 use super::world::World;
 
-/// (W H^3, dW/dq H^3) of the kernels of the physics, over q = r / H.
+/// The kernels (W H^3, dW/dq H^3) as functions of q = r / H.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     WendlandC2,
@@ -45,15 +46,14 @@ impl Kernel {
         }
     }
 
-    /// The gradient with respect to x_i for d = x_i - x_j; nothing at the centre, where no direction is better
-    /// than another.
+    /// The gradient with respect to x_i for d = x_i - x_j; zero at the centre, where it has no direction.
     fn gradient(self, d: DVec3, support: f64) -> DVec3 {
         let r = d.length();
         if r == 0.0 { DVec3::ZERO } else { d / r * self.dw(r / support) / support.powi(4) }
     }
 }
 
-/// A value and the sum of the sizes of what it was added up from.
+/// A value and the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sum {
     pub value: DVec3,
@@ -159,20 +159,20 @@ pub fn continuity(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
         neighbours(world, i, |j, d| {
             let (g, volume) = (kernel.gradient(d, c.support), c.mass / rho(j));
             add(c.dt * rho(i) * volume * (speed(world, i) - speed(world, j)).dot(g));
-            // What hydrostatics alone makes of the difference: rho0 / c0^2 body.(x_j - x_i).
+            // The hydrostatic density difference: rho0 / c0^2 body.(x_j - x_i).
             let still = c.rest / c.sound.powi(2) * c.body.dot(-d);
             let psi = rho(j) - rho(i) - still;
             let softened = d.length_squared() + 0.01 * c.support.powi(2);
             add(c.dt * 2.0 * delta * (0.5 * c.support) * c.sound * volume * psi * (-d).dot(g) / softened);
         });
-        // The walls' velocity is the particle's, mirrored: twice v.G.
+        // The velocity of the walls is the mirrored velocity of the particle: twice v.G.
         add(c.dt * 2.0 * rho(i) * speed(world, i).dot(walls[i].gradient));
         sum
     };
     (0..world.living()).map(step).collect()
 }
 
-/// What neighbours (`pairs`) and walls do together; the walls push with `push` = 2 p / rho, or what stands for it.
+/// The sum of the neighbours (`pairs`) and of the walls, whose pressure force has the factor `push` = 2 p / rho.
 fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64, parts: Parts) -> Sum {
     let p = &world.params;
     let v = speed(world, i);
@@ -182,7 +182,7 @@ fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64, p
     }
     for axis in 0..3 {
         let e = DVec3::AXES[axis];
-        // Along the walls of the other axes all goes on as in the fluid, of which the kernel sees only this part.
+        // Along the walls of the other axes the state is that of the fluid, of which the kernel covers only this part.
         let seen = (1.0 - wall.plane[(axis + 1) % 3]) * (1.0 - wall.plane[(axis + 2) % 3]);
         sum.value += pairs.value[axis] / seen * e;
         sum.size += pairs.size / seen;
@@ -276,7 +276,8 @@ pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts)
     (0..world.living()).map(sum).collect()
 }
 
-/// The colour field's gradient over its threshold, per particle: near one, rounding decides whether there is tension.
+/// The gradient of the colour field over its threshold, per particle: near one, rounding determines whether there is
+/// surface tension.
 pub struct Steepness(pub f64);
 
 /// Accelerations of Mueller 2003.
@@ -303,7 +304,7 @@ pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
         if steepness > 0.5 / h {
             let per = sigma / own.x / steepness;
             sum.value -= per * laplacian.value.x * normal.value;
-            // The direction of a nearly cancelled sum is as uncertain as its terms are large.
+            // The uncertainty of the direction of a nearly cancelled sum is that of its terms.
             sum.size += per * (laplacian.size * steepness + laplacian.value.x.abs() * normal.size);
         }
         (contact(world, &c, i, &walls[i], sum, own.y / own.x, Parts::ALL), Steepness(steepness * 2.0 * h))

@@ -12,11 +12,11 @@ use super::sort_cases::pass;
 use super::world::{SPACING, World, params};
 
 pub fn cases() -> Vec<Case> {
-    vec![gather(), crossings(), log()]
+    vec![sample(), flux(), accumulate()]
 }
 
-/// A point in the fluid, one in a corner, one far above the fluid's reach; an upright and a leaning column; a
-/// body; two rectangles.
+/// A point in the fluid, one in a corner, one far above the fluid; a vertical and a tilted column; a body; two
+/// rectangles.
 fn probes() -> Vec<ProbePoint> {
     let none: ProbePoint = bytemuck::Zeroable::zeroed();
     let lean = Vec3::new(0.48, 0.8, -0.36);
@@ -44,7 +44,7 @@ fn probes() -> Vec<ProbePoint> {
     ]
 }
 
-fn gather() -> Case {
+fn sample() -> Case {
     let world = World::new(params(2.0), 2500);
     let noise = |i: usize| testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5;
     let accelerations: Vec<Vec4> = (0..world.len())
@@ -97,7 +97,7 @@ fn gather() -> Case {
     };
     Case {
         pass: pass("probes.sample"),
-        name: "points in, in a corner of and outside the fluid, columns upright and leaning".into(),
+        name: "points in the fluid, in a corner and outside, vertical and tilted columns".into(),
         size: DispatchSize::Groups(probes.len() as u32),
         input: vec![
             Data::Params(world.params),
@@ -119,7 +119,7 @@ fn gather() -> Case {
     }
 }
 
-fn crossings() -> Case {
+fn flux() -> Case {
     let world = World::new(params(2.0), 6000);
     let noise = |i: usize| testing::noise(i as u32 + 900) as f32 / u32::MAX as f32 - 0.5;
     let moved: Vec<Vec4> = (0..world.len())
@@ -172,13 +172,13 @@ fn crossings() -> Case {
     }
 }
 
-fn log() -> Case {
+fn accumulate() -> Case {
     let world = World::new(params(2.0), 500);
     let state = world.state;
     let elapsed = state.frame_duration - state.remaining + state.dt;
     let mut probes = probes();
-    // Due: the first, one by less than half a step, the force, a flow. Not due: by more than half a step. Full:
-    // the fourth.
+    // Due: the first, one within half a step, the force, a flow. Not due: one by more than half a step. Full: the
+    // fourth.
     let next =
         [elapsed - 0.001, elapsed + 0.4 * state.dt, elapsed + 0.6 * state.dt, 0.0, 1.0, 0.0, elapsed, 1.0];
     let none: Body = bytemuck::Zeroable::zeroed();
@@ -243,7 +243,7 @@ fn log() -> Case {
     let counted = new_counts.clone();
     Case {
         pass: pass("probes.accumulate"),
-        name: "due, nearly due, not due, without room".into(),
+        name: "due, nearly due, not due, full".into(),
         size: DispatchSize::Items(probes.len() as u32),
         input: vec![
             Data::Params(world.params),

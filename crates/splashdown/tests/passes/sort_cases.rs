@@ -1,4 +1,4 @@
-//! The passes of the sort by cells: whole numbers, so all that they leave is compared to the last bit.
+//! The passes of the sort by cells. They work with integers, so all outputs are compared exactly.
 
 use glam::{UVec2, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
@@ -9,13 +9,16 @@ use super::cases::{next_state, same_state, state_of};
 use super::harness::{Case, Check, Compare, Data, exact};
 use super::world::{World, params, points, state};
 
-/// The pass of this label.
+/// The pass with this label.
 pub fn pass(label: &str) -> &'static PassDesc {
     let passes = splashdown::passes();
-    passes.into_iter().find(|pass| pass.label == label).unwrap_or_else(|| panic!("there is no pass {label}"))
+    passes
+        .into_iter()
+        .find(|pass| pass.label == label)
+        .unwrap_or_else(|| panic!("no pass has the label {label}"))
 }
 
-/// All outputs equal to the last bit.
+/// All outputs are bit-identical.
 fn exact_all() -> Compare {
     Box::new(|a, b| {
         a.iter()
@@ -56,7 +59,7 @@ pub fn cases() -> Vec<Case> {
         count("after a step", 0.01, 1),
         count("after the last step", 4e-4, 1),
     ];
-    for (name, run) in [("all", n), ("only some", n - 700), ("a frame that is complete", 0)] {
+    for (name, run) in [("all", n), ("some", n - 700), ("a complete frame", 0)] {
         cases.push(keys(&world, name, run));
     }
     cases.extend([scatter(&world, "all", 0), scatter(&world, "after a step", 1)]);
@@ -64,7 +67,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// What the definition of cells says of a point, in f64.
+/// The cell of a point by definition, in f64.
 pub fn cell(grid: &Grid, x: glam::Vec3) -> u32 {
     let at = (x.as_dvec3() - grid.origin.as_dvec3()) / f64::from(grid.cell_size);
     let index = |axis: usize, size: u32| (at[axis].floor().max(1.0) as u32).min(size - 2);
@@ -77,7 +80,7 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
     let mut positions: Vec<Vec4> = points(&params, 1300).iter().map(|x| x.extend(0.0)).collect();
     let mut velocities = vec![Vec4::new(1.0, -2.0, 0.5, 1000.0); positions.len()];
-    // Everything that can be wrong with a particle, in the middle of the others.
+    // Particles with every kind of error, among the others.
     let (inf, nan) = (f32::INFINITY, f32::NAN);
     for (i, wrong) in [nan, inf, -inf, 1e30, -1e30, 3.4e38, 0.71, -0.31].into_iter().enumerate() {
         for axis in 0..3 {
@@ -93,7 +96,7 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     }
     let n = positions.len();
     let state = StepState { remaining, ..state(n) };
-    let cell_counts = empty_census(&grid, n);
+    let cell_counts = zero_cell_counts(&grid, n);
     let mut counters = vec![0; StepCounters::WORDS];
     counters[StepCounters::MOVED] = moved;
     let input = vec![
@@ -106,7 +109,7 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
         Data::U32(counters.clone()),
     ];
     let mut expected = judge(&params, &grid, &positions, &velocities, counters);
-    // There is nothing to count for behind the last step of a frame.
+    // After the last step of a frame nothing is counted.
     let counts_for_none = moved == 1 && state.is_last_step();
     if counts_for_none {
         expected[1] = Data::U32(cell_counts);
@@ -127,14 +130,14 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     }
 }
 
-/// A cell_counts without a count, its cells poisoned.
-pub fn empty_census(grid: &Grid, particles: usize) -> Vec<u32> {
+/// Cell counts of zero, with poisoned particle cells.
+pub fn zero_cell_counts(grid: &Grid, particles: usize) -> Vec<u32> {
     let mut cell_counts = vec![0; grid.cell_count as usize + 1];
     cell_counts.extend(vec![u32::MAX; particles]);
     cell_counts
 }
 
-/// Positions, cell_counts and counters, particle by particle.
+/// Positions, cell counts and counters, for each particle.
 fn judge(
     params: &Params,
     grid: &Grid,
@@ -148,7 +151,7 @@ fn judge(
     for (p, v) in positions.iter_mut().zip(velocities) {
         let x = p.xyz();
         let v = v.to_array().map(f64::from);
-        // The square of a speed must have a value in f32.
+        // The square of a speed must be finite in f32.
         let speed = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         let moderate = speed <= f64::from(f32::MAX) && v[3].is_finite();
         let within = |a: usize| x[a] >= params.domain_min[a] && x[a] <= params.domain_max[a];
@@ -174,7 +177,7 @@ fn judge(
     vec![Data::Vec4(positions), Data::U32(counts), Data::U32(counters)]
 }
 
-/// The first `run` entries of `all`, and poison behind.
+/// The first `run` entries of `all`, followed by poison.
 fn only(all: &Data, run: usize) -> Data {
     let words = all.words().len();
     let mut some = all.clone();
@@ -197,7 +200,7 @@ fn keys(world: &World, name: &str, run: usize) -> Case {
         let first = grid.cell_count as usize + 1;
         let Data::U32(cell_counts) = &mut input[2] else { panic!("no cell_counts") };
         cell_counts[first] ^= 1;
-        // In a frame that is complete nothing may be written at all: what must be noticed there is one entry more.
+        // In a complete frame nothing may be written, so the control adds one entry.
         let Data::State(state) = &mut input[1] else { panic!("no state") };
         state.run_count = state.run_count.max(1);
     };
@@ -230,10 +233,10 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
         Data::U32(ids.clone()),
         slots.poison(),
     ];
-    // All have been taken off the cell_counts; where each is stays known.
+    // All particles have been subtracted from the cell counts; their cells are still stored.
     let mut taken = vec![0; world.grid.cell_count as usize + 1];
     taken.extend(&cells);
-    // The order of arrival is nobody's business: every cell's slots hold its particles.
+    // The order of arrival is irrelevant: each cell's entries contain its particles.
     let starts = world.cell_start.clone();
     let mut expected: Vec<[u32; 3]> =
         cells.iter().zip(&ids).enumerate().map(|(i, (&cell, &id))| [cell, id, i as u32]).collect();
@@ -242,7 +245,7 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
         same_state(&state_of(&out[0]), &after)?;
         exact("counters", out[1].words(), &[0; StepCounters::WORDS])?;
         exact("cell_counts", out[2].words(), &taken)?;
-        exact("slots", &in_cells(&starts, &out[3]), &expected.concat())
+        exact("entries", &in_cells(&starts, &out[3]), &expected.concat())
     });
     let starts = world.cell_start.clone();
     Case {
@@ -253,7 +256,7 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
         compare: Box::new(move |a, b| {
             same_state(&state_of(&a[0]), &state_of(&b[0]))?;
             exact_all()(&a[1..3], &b[1..3])?;
-            exact("slots", &in_cells(&starts, &a[3]), &in_cells(&starts, &b[3]))
+            exact("entries", &in_cells(&starts, &a[3]), &in_cells(&starts, &b[3]))
         }),
         oracle,
         control: |input| {
@@ -263,9 +266,9 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
     }
 }
 
-/// Cell, id and number of every slot, in order.
+/// Cell, id and index of every entry, in order.
 fn in_cells(starts: &[u32], slots: &Data) -> Vec<u32> {
-    let Data::UVec2(slots) = slots else { panic!("no slots") };
+    let Data::UVec2(slots) = slots else { panic!("no entries") };
     let cell = |k: usize| starts.partition_point(|&start| start as usize <= k) as u32 - 1;
     let mut all: Vec<[u32; 3]> =
         slots.iter().enumerate().map(|(k, entry)| [cell(k), entry.x, entry.y]).collect();
@@ -273,7 +276,7 @@ fn in_cells(starts: &[u32], slots: &Data) -> Vec<u32> {
     all.concat()
 }
 
-/// Where each sorted particle stands among the unsorted.
+/// The unsorted index of each sorted particle.
 fn places(order: &[u32]) -> Vec<u32> {
     let mut places = vec![0; order.len()];
     for (i, &k) in order.iter().enumerate() {
@@ -309,7 +312,7 @@ fn reorder(world: &World) -> Case {
     let shuffled = world.shuffled();
     let (cell_counts, cells) = shuffled.cell_counts(world);
     let ids = shuffled.of(&world.ids);
-    // Slots in the order of arrival, which is not that of ids.
+    // Entries in the order of arrival, which is not that of the ids.
     let mut slots = vec![UVec2::ZERO; world.len()];
     let mut next = world.cell_start.clone();
     for (i, &cell) in cells.iter().enumerate() {
@@ -335,7 +338,7 @@ fn reorder(world: &World) -> Case {
         let Data::U32(starts) = &input[2] else { panic!("no starts") };
         let crowded = starts.windows(2).position(|bounds| bounds[1] - bounds[0] >= 2).unwrap();
         let k = starts[crowded] as usize;
-        let Data::UVec2(slots) = &mut input[3] else { panic!("no slots") };
+        let Data::UVec2(slots) = &mut input[3] else { panic!("no entries") };
         (slots[k].x, slots[k + 1].x) = (slots[k + 1].x, slots[k].x);
     })
 }

@@ -1,4 +1,4 @@
-//! The walls' integrals by quadrature, from their definition: the kernel over all that lies behind a closed side.
+//! The wall integrals by quadrature, from their definition: the kernel integrated over everything behind a closed side.
 
 use std::f64::consts::PI;
 
@@ -7,29 +7,30 @@ use splashdown::state::Params;
 
 use super::oracle::Kernel;
 
-/// The kernel of the density and that of the gradient.
+/// The kernels of the density and of the gradient.
 #[derive(Clone, Copy, Debug)]
 pub struct Kernels {
     pub density: Kernel,
     pub gradient: Kernel,
 }
 
-/// What the walls are to one particle.
+/// The wall integrals at one particle.
 #[derive(Clone, Debug)]
 pub struct Wall {
-    /// The integral of W over the solids, which begin `wall_offset` behind the closed sides.
+    /// The integral of W over the solids, which start `wall_offset` behind the closed sides.
     pub density: f64,
-    /// G: the gradient of the integral over solids that begin at the sides, in 1/m.
+    /// G: the gradient of the integral over solids that start at the sides, in 1/m.
     pub gradient: DVec3,
-    /// The integral of the gradient's kernel over the half-space behind each side alone, which begins at the side.
+    /// The integral of the gradient's kernel over the half-space behind each single side.
     pub plane: [f64; 3],
-    /// H times the size of its gradient.
+    /// H times the magnitude of its gradient.
     pub single: [f64; 3],
-    /// Towards the inside, per axis.
+    /// Direction towards the inside, per axis.
     pub normal: DVec3,
     /// The distance to the nearest closed side of each axis, if it is less than the support.
     pub distance: [Option<f64>; 3],
-    /// Sides within reach: one is exact; at edges the table's interpolation shows, in corners the product formula.
+    /// Number of sides within the support: one is exact, edges have the interpolation error of the table, corners that of
+    /// the product formula.
     pub near: usize,
 }
 
@@ -42,7 +43,7 @@ struct Solid {
 
 const FINE: usize = 4000;
 
-/// Gauss-Legendre with 16 points on [-1, 1]: (place, weight) of the positive half.
+/// Gauss-Legendre with 16 points on [-1, 1]: (node, weight) of the positive half.
 const GAUSS: [(f64, f64); 8] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
     (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
@@ -119,7 +120,7 @@ impl Solid {
         integrate(a, (1.0 - b * b - c * c).max(0.0).sqrt(), |s| self.quarter_plane(s, b, c))
     }
 
-    /// All that lies behind any of three sides; those out of reach have q >= 1.
+    /// The kernel over the union of the solids behind three sides; sides beyond the support have q >= 1.
     fn union(&self, q: [f64; 3]) -> f64 {
         let single: f64 = q.iter().filter(|&&q| q < 1.0).map(|&q| self.half_space(q)).sum();
         let pair = |a: usize, b: usize| {
@@ -174,7 +175,7 @@ impl Solids {
         }
         let q = distance.map(|d| d / h);
         let behind = distance.map(|d| (d + f64::from(params.wall_offset)) / h);
-        // G points into the solid: the kernel's share of it grows that way.
+        // G points into the solid, the direction in which the integral increases.
         let gradient = |k: usize| -self.gradient.slope(q, k) / h * normal[k];
         Wall {
             density: self.density.union(behind),
@@ -188,9 +189,9 @@ impl Solids {
     }
 }
 
-/// The quadratures themselves, against what is known without them.
+/// Tests the quadratures against analytic values.
 #[test]
-fn quadratures_are_right() {
+fn quadratures_agree_with_analytic_values() {
     for kernel in [Kernel::WendlandC2, Kernel::CubicSpline, Kernel::Poly6, Kernel::Spiky] {
         let solid = Solid::new(kernel);
         assert!((solid.half_space(0.0) - 0.5).abs() < 1e-7, "{kernel:?}");

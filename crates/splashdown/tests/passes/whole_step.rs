@@ -1,4 +1,4 @@
-//! One whole step: the CPU up to a pass, the GPU from there, and the CPU to the end, compared once.
+//! One whole step: the CPU runs it up to a pass, the GPU from there, and the result is compared with the CPU's.
 
 use glam::{Vec2, Vec4};
 use splashdown::boundary::{KernelPair, wall_table};
@@ -32,7 +32,7 @@ fn scene(solver: &str) -> Scene {
     Scene::parse(&text, "block.toml").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// The buffers of one executor, and the step over them.
+/// The buffers of one executor, and the step that uses them.
 struct Rig {
     executor: Executor,
     fields: Fields,
@@ -87,7 +87,7 @@ impl Rig {
         self.executor.run(&recording).unwrap();
     }
 
-    /// Takes over what another rig has come to.
+    /// Copies the buffers of another rig.
     fn take_from(&mut self, other: &mut Self) {
         fn carry<T: GpuElement>(
             from: &mut Executor,
@@ -116,7 +116,7 @@ impl Rig {
         }
     }
 
-    /// Positions, velocities, densities, and state with the counters's counters, as floats.
+    /// Positions, velocities, densities, and state with counters, as floats.
     fn result(&mut self) -> [Vec<f32>; 4] {
         let (fields, executor) = (self.fields, &mut self.executor);
         let positions: Vec<Vec4> = executor.read(fields.positions).unwrap();
@@ -138,18 +138,18 @@ impl Rig {
     }
 }
 
-/// The largest difference over the largest size, of each of the four.
+/// The largest difference over the largest magnitude, of each of the four.
 fn difference(a: &[Vec<f32>; 4], b: &[Vec<f32>; 4]) -> [f32; 4] {
     std::array::from_fn(|k| {
         let size = b[k].iter().fold(0.0_f32, |most, v| most.max(v.abs()));
-        // A NaN is as different as can be; `max` would pass over it.
+        // A NaN counts as the largest difference; `max` would ignore it.
         let gap = |a: &f32, b: &f32| if (a - b).is_nan() { f32::INFINITY } else { (a - b).abs() };
         a[k].iter().zip(&b[k]).fold(0.0_f32, |most, (a, b)| most.max(gap(a, b))) / size
     })
 }
 
-/// Positions round once; a step changes velocities by accelerations that are differences of large pushes, pressures are
-/// differences of densities times c0^2, and both have a few hundred roundings behind them.
+/// Positions have one rounding. Velocities change by accelerations that are differences of large forces, pressures are
+/// differences of densities times c0^2, and both have a few hundred roundings.
 const TOLERANCE: [f32; 4] = [1e-6, 1e-4, 1e-3, 1e-4];
 
 fn holds(difference: [f32; 4]) -> bool {
@@ -157,8 +157,8 @@ fn holds(difference: [f32; 4]) -> bool {
 }
 
 #[test]
-fn the_gpu_may_take_over_at_any_pass() {
-    let Some(gpu) = testing::gpu_or_skip("the_gpu_may_take_over_at_any_pass") else { return };
+fn the_gpu_can_continue_from_any_pass() {
+    let Some(gpu) = testing::gpu_or_skip("the_gpu_can_continue_from_any_pass") else { return };
     for solver in [
         "method = \"wcsph\"",
         "method = \"wcsph\"\ndensity = \"continuity\"",
@@ -174,7 +174,7 @@ fn the_gpu_may_take_over_at_any_pass() {
         let expected = reference.result();
         assert_eq!(expected[3][5..], [0.0; 4], "{solver}: particles are lost, corrected or limited");
         let commands = reference.step.commands.len();
-        // Not between the passes of the sort: its buffers are its own.
+        // Not between the passes of the sort, whose buffers are private.
         let sorted = reference
             .step
             .commands
@@ -192,11 +192,11 @@ fn the_gpu_may_take_over_at_any_pass() {
             let measured = difference(&second.result(), &expected);
             assert!(holds(measured), "{solver}: the GPU from command {from} of {commands} on: {measured:?}");
         }
-        // Control: without any one pass of the step the result is another.
+        // Control: omitting any single pass of the step changes the result.
         for left_out in sorted + 1..commands {
             let mut rig = cpu();
             let mut step = rig.step.commands.clone();
-            // The normals' part in a first step is too small: the pass's own tests see it.
+            // The contribution of the normals in a first step is too small; the tests of the pass cover it.
             let small = |command: &Command| match command {
                 Command::Dispatch { pass, .. } => pass.label.starts_with("normals"),
                 _ => true,
@@ -209,7 +209,7 @@ fn the_gpu_may_take_over_at_any_pass() {
             let measured = difference(&rig.result(), &expected);
             assert!(
                 !holds(measured),
-                "{solver}: command {left_out} of {commands} is not missed: {measured:?}"
+                "{solver}: omitting command {left_out} of {commands} is not detected: {measured:?}"
             );
         }
     }

@@ -1,4 +1,4 @@
-//! Random clouds of particles in a box, sorted the plain way, with everything the passes read.
+//! Random clouds of particles in a box, sorted on the host, with all inputs of the passes.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::cells::Grid;
@@ -7,7 +7,7 @@ use splashdown_gpu::{bytemuck, testing};
 
 pub const SPACING: f32 = 0.05;
 
-/// A cloud with constants. The arrays are as after a sort: by cell, then by id, the dead behind.
+/// A cloud with constants. The arrays are ordered as after a sort: by cell, then by id, dead particles last.
 #[derive(Clone)]
 pub struct World {
     pub params: Params,
@@ -73,13 +73,13 @@ pub fn state(particles: usize) -> StepState {
     }
 }
 
-/// Points of a box: everywhere, crowded at walls, edges and corners, on them, and twice in one place.
+/// Points in a box: everywhere, concentrated at walls, edges and corners, exactly on them, and duplicates.
 pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
     let (min, max) = (params.domain_min, params.domain_max);
     let inside = |i: usize| Vec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2));
     let mut points: Vec<Vec3> = (0..n).map(|i| min + (max - min) * inside(i)).collect();
     for (i, x) in points.iter_mut().enumerate().take(n / 6) {
-        // Pulled towards one, two or three sides, to less than a spacing and a half.
+        // Moved towards one, two or three sides, to less than one and a half spacings.
         for axis in (0..3).filter(|axis| i >> axis & 1 == 1 || i % 3 == *axis) {
             let away = 1.5 * SPACING * unit(7 * i + axis + 100_000);
             x[axis] = if i & 8 == 0 { min[axis] + away } else { max[axis] - away };
@@ -88,7 +88,7 @@ pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
     let corners =
         [min, max, min.with_x(max.x), min.with_x(0.0), max.with_y(0.2), min.with_z(0.4).with_y(0.25)];
     points.splice(0..6, corners);
-    // In a corner, where the third side's solid just begins to reach in: its integral there is a difference near zero.
+    // In a corner where the solid of the third side barely reaches the support: its integral is a difference near zero.
     for i in 0..60 {
         let depth = (params.support_radius - if i % 2 == 0 { 0.0 } else { params.wall_offset })
             * (1.0 - 1e-7 * (1 << (i / 3)) as f32);
@@ -115,7 +115,7 @@ impl World {
         positions.splice(n / 2..n / 2, dead);
         let n = positions.len();
         let mut ids: Vec<u32> = (0..n as u32).map(|i| 3 * i + 1).collect();
-        // Ids in no relation to the places.
+        // Ids unrelated to the indices.
         for i in 0..n {
             ids.swap(i, testing::noise(i as u32 + 77) as usize % n);
         }
@@ -144,7 +144,7 @@ impl World {
         }
     }
 
-    /// Number of the living.
+    /// Number of living particles.
     pub fn living(&self) -> usize {
         self.cell_start[self.grid.cell_count as usize] as usize
     }
@@ -166,12 +166,12 @@ impl World {
 
 /// The particles before the sort.
 pub struct Shuffled {
-    /// Which sorted particle stands at each place.
+    /// The sorted index of each particle.
     pub order: Vec<u32>,
 }
 
 impl Shuffled {
-    /// The cell_counts that counting leaves, and the cells of the particles alone.
+    /// The cell counts after counting, and the cells of the particles.
     pub fn cell_counts(&self, world: &World) -> (Vec<u32>, Vec<u32>) {
         let starts = &world.cell_start;
         let cell = |&k: &u32| starts.partition_point(|&start| start <= k) as u32 - 1;

@@ -84,13 +84,13 @@ const MUELLER: &str = "method = \"mueller2003\"";
 const MUELLER_TENSION: &str = "method = \"mueller2003\"\nsurface_tension = \"mueller2003\"";
 
 #[test]
-fn an_isolated_blob_keeps_its_momentum_and_its_particles() {
+fn an_isolated_blob_conserves_momentum_and_particles() {
     let fluid = "viscosity = 0.001\nsurface_tension = 1.0";
     // With a = f / rho_i and equal masses the pressure and viscosity of Mueller 2003 are antisymmetric too.
     let ways =
         [("summation", SUMMATION), ("continuity", CONTINUITY), ("akinci", TENSION), ("mueller", MUELLER)];
     for (word, solver) in ways {
-        for (name, executor) in testing::executors("an_isolated_blob_keeps_its_momentum") {
+        for (name, executor) in testing::executors("an_isolated_blob_conserves_momentum") {
             let scene = blob(0.0, fluid, solver);
             let start = stirred(&scene);
             let end = run(&scene, executor, &start);
@@ -112,7 +112,7 @@ fn an_isolated_blob_keeps_its_momentum_and_its_particles() {
 }
 
 #[test]
-fn a_spinning_blob_keeps_its_angular_momentum() {
+fn a_spinning_blob_conserves_angular_momentum() {
     let drift = |solver: &str, fluid: &str, executor: Executor| {
         let scene = blob(0.0, fluid, solver);
         let mut start = stirred(&scene);
@@ -125,7 +125,7 @@ fn a_spinning_blob_keeps_its_angular_momentum() {
         (angular_sum(&end) - angular_sum(&start)).length() / angular_sum(&start).length()
     };
     for (word, solver) in [("summation", SUMMATION), ("continuity", CONTINUITY)] {
-        for (name, executor) in testing::executors("a_spinning_blob_keeps_its_angular_momentum") {
+        for (name, executor) in testing::executors("a_spinning_blob_conserves_angular_momentum") {
             let mut figures = Figures::new(format!("angular momentum, {word}, {name}"));
             let measured = drift(solver, "viscosity = 0.001", executor);
             figures.at_most("change over its size in 1000 steps", measured, ANGULAR_MOMENTUM);
@@ -139,7 +139,7 @@ fn a_spinning_blob_keeps_its_angular_momentum() {
 }
 
 #[test]
-fn viscosity_only_takes_energy() {
+fn viscosity_only_dissipates_energy() {
     // Next to no pressure, so that all that happens is friction; a step may round up by what one rounding is worth.
     let rise = |solver: &str, viscosity: f32| {
         let mut scene = blob(0.0, "", solver);

@@ -167,7 +167,7 @@ fn compare(figures: &mut Figures, column: &Column) -> Collapse {
 }
 
 #[test]
-fn the_column_collapses_as_martin_and_moyce_measured() {
+fn a_collapsing_column_agrees_with_martin_and_moyce() {
     let (across, until) = if full() { (20, 4.2) } else { (16, 2.5) };
     for (word, solver) in [("summation", SUMMATION), ("continuity", CONTINUITY)] {
         let column = Column { across, solver, gravity: GRAVITY, until };
@@ -191,7 +191,7 @@ fn the_column_collapses_as_martin_and_moyce_measured() {
 }
 
 #[test]
-fn half_of_gravity_is_noticed() {
+fn half_the_gravity_is_detected() {
     let column = Column { across: 10, solver: SUMMATION, gravity: 0.5 * GRAVITY, until: 2.5 };
     let collapse = column.simulate();
     let (front, height) = (measured("front"), measured("height"));

@@ -59,7 +59,7 @@ fn archimedes(density: f64) -> f64 {
 }
 
 #[test]
-fn balls_float_as_deep_as_archimedes_says() {
+fn the_draft_of_floating_balls_follows_archimedes() {
     if !full() {
         eprintln!(
             "SKIPPED: balls need 12 spacings of diameter (tests/bodies floats cubes): cargo xtask validate"

@@ -36,7 +36,7 @@ fn text(method: &str) -> String {
 }
 
 #[test]
-fn lone_particles_and_a_block_fall_as_symplectic_euler_says() {
+fn free_fall_of_particles_and_a_block_follows_symplectic_euler() {
     for method in ["mueller2003", "wcsph"] {
         for (name, executor) in testing::executors("free_fall") {
             let scene = scene(&text(method));

@@ -214,12 +214,12 @@ fn a_tank_with_summed_densities_comes_to_rest() {
 /// A tank small enough for software Vulkan: seven particles from wall to wall, eight deep. It has half a second
 /// to come to rest instead of two, and a gate of 5 % instead of 1 %.
 #[test]
-fn a_small_tank_rests_on_every_executor() {
-    for (name, executor) in testing::executors("a_small_tank_rests_on_every_executor") {
+fn a_small_tank_comes_to_rest_on_every_executor() {
+    for (name, executor) in testing::executors("a_small_tank_comes_to_rest_on_every_executor") {
         let tank = Tank { size: [7, 8, 7], ..tank(CONTINUITY) };
         tank.settle(executor, 0.5).judged(&format!("small tank, continuity, {name}"), 0.05).close();
     }
-    for (name, executor) in testing::executors("a_small_tank_rests_on_every_executor") {
+    for (name, executor) in testing::executors("a_small_tank_comes_to_rest_on_every_executor") {
         let tank = Tank { size: [7, 8, 7], ..tank(MUELLER) };
         tank.settle(executor, 0.5).told_of_mueller(&format!("small tank, mueller, {name}"), 0.05);
     }

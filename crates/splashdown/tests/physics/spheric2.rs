@@ -149,7 +149,7 @@ fn compare_pressures(figures: &mut Figures, case: &Case) {
 }
 
 #[test]
-fn the_dam_breaks_on_the_box_as_kleefsman_measured() {
+fn heights_and_arrivals_agree_with_kleefsman() {
     let (spacing, seconds) = if full() { (0.0275, 6.0) } else { (0.05, 1.2) };
     let mut figures = Figures::new("SPHERIC 2, heights, CPU");
     compare_heights(&mut figures, &Case { spacing, seconds, gravity: 9.81 });
@@ -157,7 +157,7 @@ fn the_dam_breaks_on_the_box_as_kleefsman_measured() {
 }
 
 #[test]
-fn the_box_is_pushed_as_kleefsman_measured() {
+fn pressures_on_the_box_agree_with_kleefsman() {
     if !full() {
         eprintln!("SKIPPED: the pressures on the box need a spacing of 18 mm: cargo xtask validate");
         return;
@@ -168,7 +168,7 @@ fn the_box_is_pushed_as_kleefsman_measured() {
 }
 
 #[test]
-fn a_dam_break_on_the_moon_is_not_taken_for_it() {
+fn lunar_gravity_is_detected() {
     let case = Case { spacing: 0.05, seconds: 1.2, gravity: 1.62 };
     let readings = case.simulate();
     let mut figures = Figures::new("SPHERIC 2, controls, CPU");

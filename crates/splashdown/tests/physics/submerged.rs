@@ -57,14 +57,14 @@ fn judge(name: &str, shape: MeshShape, scale: f32, volume: f64) {
 }
 
 #[test]
-fn a_ball_is_lifted_by_what_it_displaces() {
+fn buoyancy_of_a_submerged_ball() {
     let mesh = splashdown::models::build("sphere").unwrap();
     let scale = 1.5_f32;
     judge("ball", MeshShape::Model("sphere".into()), scale, mesh.volume() * f64::from(scale).powi(3));
 }
 
 #[test]
-fn spot_is_lifted_by_what_she_displaces() {
+fn buoyancy_of_submerged_spot() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes/spot.obj");
     if !path.exists() {
         eprintln!("SKIPPED: spot.obj is not there");

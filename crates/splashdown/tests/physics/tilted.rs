@@ -106,13 +106,13 @@ impl Tank {
 }
 
 #[test]
-fn water_rests_in_a_tilted_domain() {
+fn water_is_at_rest_in_a_tilted_domain() {
     let tank = Tank::new(Quat::IDENTITY);
     tank.judge("tilted tank, domain, CPU", &tank.scene(Vec3::ZERO, tank.inner()));
 }
 
 #[test]
-fn water_rests_in_a_tilted_mesh() {
+fn water_is_at_rest_in_a_tilted_mesh() {
     let tank = Tank::new(Quat::from_rotation_z(TILT));
     let folder = tempfile::tempdir().unwrap();
     let mesh = tub(Vec3::ZERO, tank.inner(), 3.0 * SPACING);

@@ -34,7 +34,7 @@ fn line(points: &Series) -> (f64, f64) {
 }
 
 #[test]
-fn a_tank_empties_as_torricelli_says() {
+fn a_draining_tank_follows_torricelli() {
     let tank = if full() {
         Tank { spacing: 0.005, width: 0.48, depth: 0.3, seconds: 0.8 }
     } else {

@@ -43,7 +43,7 @@ fn a_body_has_the_defaults_of_the_reference() {
 }
 
 #[test]
-fn a_hinge_is_read_and_its_point_is_the_bodys_place() {
+fn a_hinge_is_read_and_its_default_point_is_the_position_of_the_body() {
     let wheel = body(
         "name = \"wheel\"\nmesh = \"gear\"\nmotion = \"dynamic\"\nposition = [0.1, 0.2, 0.3]\nhinge = [0, 0, 2]",
     );
@@ -102,7 +102,7 @@ fn rotations_are_about_x_then_y_then_z() {
 }
 
 #[test]
-fn keyframes_and_formulas_make_a_script() {
+fn keyframes_and_formulas_define_a_scripted_motion() {
     let Motion::Scripted(script) = body(&format!(
         "{PLAIN}\nposition = [0.5, 0, 0]\nmove = [\"0.1*sin(2*pi*t)\", \"0\", \"0\"]\nturn = [\"0\", \"0\", \"90*t\"]"
     ))
@@ -122,7 +122,7 @@ fn keyframes_and_formulas_make_a_script() {
 }
 
 #[test]
-fn mistakes_in_bodies_are_named_with_what_is_allowed() {
+fn errors_in_bodies_name_the_allowed_values() {
     for (text, parts) in [
         ("mesh = \"cube\"", &["body[0].name is missing"][..]),
         ("name = \"a\"\nmesh = \"cub\"", &["\"cub\"", "did you mean \"cube\"?"]),
@@ -170,14 +170,14 @@ fn mistakes_in_bodies_are_named_with_what_is_allowed() {
 }
 
 #[test]
-fn a_density_of_a_static_body_is_doubted() {
+fn a_density_of_a_static_body_gives_a_warning() {
     let scene = parse(&with_body(&format!("{PLAIN}\ndensity = 300"))).expect("legal");
     let warnings = scene.warnings.iter().map(ToString::to_string).collect::<String>();
     assert!(warnings.contains("only to a dynamic body"), "{warnings}");
 }
 
 #[test]
-fn files_are_named_from_the_scene_file_s_folder() {
+fn paths_are_relative_to_the_folder_of_the_scene_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, with_body("name = \"a\"\nmesh = \"models/a.obj\"")).expect("written");

@@ -15,7 +15,7 @@ fn near(value: f32, by_hand: f64) -> bool {
 }
 
 #[test]
-fn the_cube_by_hand() {
+fn derived_values_of_the_cube() {
     let cube = derived(CUBE);
     assert_eq!((cube.particles, cube.frames), (1000, 25));
     assert!(near(cube.volume, 0.125));
@@ -35,7 +35,7 @@ fn the_cube_by_hand() {
 }
 
 #[test]
-fn stiffness_and_speed_of_sound_say_the_same() {
+fn stiffness_and_sound_speed_are_equivalent() {
     let wcsph = derived(&format!("{CUBE}stiffness = 279783\n"));
     assert!(near(wcsph.sound_speed, 44.2945), "{}", wcsph.sound_speed);
     let mueller = derived(&changed("\"wcsph\"", "\"mueller2003\"\nstiffness = 900"));
@@ -45,7 +45,7 @@ fn stiffness_and_speed_of_sound_say_the_same() {
 }
 
 #[test]
-fn what_drives_the_fluid_sets_the_reference_speed() {
+fn the_reference_speed_follows_from_the_driving_forces() {
     let speed = |text: &str| derived(text).reference_speed;
     // A block in the air: its top is 1 m above the floor. sqrt(4 * 9.81 * 1).
     assert!(near(speed(&changed("position = [0, 0, 0]", "position = [0, 0.5, 0]")), 6.26418));
@@ -68,7 +68,7 @@ fn what_drives_the_fluid_sets_the_reference_speed() {
 }
 
 #[test]
-fn each_limit_of_the_time_step_can_be_the_least() {
+fn each_time_step_limit_can_be_the_smallest() {
     let thick = derived(&changed("particle_spacing = 0.05", "particle_spacing = 0.05\nviscosity = 10"));
     assert_eq!(thick.dt_limit, "viscosity");
     assert!(near(thick.dt_estimate, 0.125 * 0.05 * 0.05 / 10.0));
@@ -77,7 +77,7 @@ fn each_limit_of_the_time_step_can_be_the_least() {
 }
 
 #[test]
-fn frames_are_counted_without_the_noise_of_single_precision() {
+fn the_frame_count_is_free_of_rounding_errors() {
     let frames = |duration: &str, rate: &str| {
         parse(&changed("duration = 1.0", &format!("duration = {duration}")).replace("25", rate))
             .expect("legal")
@@ -90,7 +90,7 @@ fn frames_are_counted_without_the_noise_of_single_precision() {
 }
 
 #[test]
-fn the_shaken_frame_feels_minus_the_tanks_acceleration() {
+fn an_oscillating_domain_adds_the_opposite_acceleration() {
     let text = changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]");
     let scene: Scene = parse(&text).expect("legal");
     let shake = scene.domain.shake.expect("the tank is shaken");

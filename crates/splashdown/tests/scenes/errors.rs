@@ -161,7 +161,7 @@ fn files_that_are_no_scenes() {
 }
 
 #[test]
-fn a_missing_file_and_a_folder_are_told_apart() {
+fn a_missing_file_and_a_folder_have_different_messages() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let missing =
         Scene::load(folder.path().join("none.toml")).expect_err("there is no such file").to_string();
@@ -174,7 +174,7 @@ fn a_missing_file_and_a_folder_are_told_apart() {
 }
 
 #[test]
-fn a_file_remembers_where_it_came_from() {
+fn a_loaded_scene_stores_its_folder_and_text() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("cube.toml");
     fs::write(&path, format!("\u{feff}{}", CUBE.replace('\n', "\r\n")))
@@ -196,7 +196,7 @@ fn a_file_remembers_where_it_came_from() {
 }
 
 #[test]
-fn every_error_has_its_line_and_comes_in_the_order_of_lines() {
+fn errors_have_line_numbers_and_are_sorted_by_them() {
     let text = changed("0.05", "-1").replace("duration = 1.0", "duration = 0").replace("\"wcsph\"", "\"x\"");
     let errors = parse(&text).expect_err("three values are wrong").errors;
     let places: Vec<_> = errors.iter().map(|error| (error.line, error.column, error.key.as_str())).collect();

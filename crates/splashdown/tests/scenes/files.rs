@@ -34,7 +34,7 @@ fn write_cube(path: &Path, edge: f32) {
 }
 
 #[test]
-fn broken_files_are_told_with_file_line_and_name() {
+fn broken_files_are_reported_with_file_line_and_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
     write("empty.obj", "");
@@ -77,7 +77,7 @@ fn broken_files_are_told_with_file_line_and_name() {
 }
 
 #[test]
-fn sizes_that_can_hardly_be_meant_are_refused_with_the_unit_to_try() {
+fn implausible_sizes_are_rejected_with_a_suggested_unit() {
     let folder = tempfile::tempdir().expect("a folder");
     write_cube(&folder.path().join("cube.stl"), 300.0);
     let message = load(folder.path(), &body("cube.stl")).map(drop).expect_err("300 m");
@@ -99,7 +99,7 @@ fn sizes_that_can_hardly_be_meant_are_refused_with_the_unit_to_try() {
 }
 
 #[test]
-fn fluid_outside_the_domain_is_refused() {
+fn fluid_outside_the_domain_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "[[fluid.mesh]]\nmesh = \"sphere\"\nposition = [0.95, 0.7, 0.7]";
     let message = load(folder.path(), text).map(drop).expect_err("partly outside");
@@ -108,7 +108,7 @@ fn fluid_outside_the_domain_is_refused() {
 }
 
 #[test]
-fn bodies_beyond_the_domain_are_doubted() {
+fn bodies_outside_the_domain_give_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = body("block").replace("0.5,", "2.5,");
     let found = warnings(&load(folder.path(), &text).expect("legal"));
@@ -125,7 +125,7 @@ fn bodies_beyond_the_domain_are_doubted() {
 }
 
 #[test]
-fn an_outlet_inside_a_body_is_refused() {
+fn an_outlet_inside_a_body_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let tap = |y: f32| {
         format!(

@@ -76,7 +76,7 @@ fn a_filled_cube_is_the_block_of_its_size() {
 }
 
 #[test]
-fn what_was_there_first_keeps_the_room() {
+fn overlapping_fluid_is_removed_from_the_later_piece() {
     let ball = "[[fluid.mesh]]\nmesh = \"sphere\"\nscale = 2\nposition = [0.5, 0.5, 0.5]\n";
     let alone = sample::count(&legal(&tank(0.02, ball)));
     let folder = tempfile::tempdir().expect("a folder");
@@ -111,7 +111,7 @@ fn some_particles(velocities: bool) -> Particles {
 }
 
 #[test]
-fn particles_of_a_file_are_scaled_turned_and_keep_their_velocities() {
+fn particles_of_a_file_are_scaled_and_rotated_with_their_velocities() {
     let folder = tempfile::tempdir().expect("a folder");
     for has_velocities in [true, false] {
         write_particles(&folder.path().join("drop.ply"), &some_particles(has_velocities)).expect("written");
@@ -132,7 +132,7 @@ fn particles_of_a_file_are_scaled_turned_and_keep_their_velocities() {
 }
 
 #[test]
-fn a_file_of_another_spacing_or_place_is_doubted() {
+fn a_file_with_another_spacing_or_position_gives_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
     write_particles(&folder.path().join("drop.ply"), &some_particles(false)).expect("written");
     let warnings = |text: &str| {
@@ -180,7 +180,7 @@ fn a_scene_with_a_mesh_and_a_file_runs() {
 }
 
 #[test]
-fn what_emitters_will_bring_is_counted_ahead() {
+fn particles_of_emitters_are_counted_in_advance() {
     let scene = legal(&tank(
         0.05,
         "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.2, 0.1]\nposition = [0.5, 0.8, 0.5]\ndirection = [0, -1, 0]\nspeed = 2\n\
@@ -200,7 +200,7 @@ fn what_emitters_will_bring_is_counted_ahead() {
 
 /// The shared particles of two runs of another program, if they are there.
 #[test]
-fn particles_of_another_program_are_taken_in() {
+fn particles_of_another_program_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/particles");
     let file = folder.join("mid64k.npy");
     if !file.exists() {

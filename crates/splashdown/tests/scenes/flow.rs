@@ -43,7 +43,7 @@ fn outlets_and_sinks_may_be_meshes() {
 }
 
 #[test]
-fn an_emitter_may_stand_for_the_blocks() {
+fn an_emitter_can_replace_the_blocks() {
     let block = "[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n";
     let dry = CUBE.replace(block, "");
     assert!(parse(&format!("{dry}\n{TAP}\n")).is_ok());
@@ -51,7 +51,7 @@ fn an_emitter_may_stand_for_the_blocks() {
 }
 
 #[test]
-fn mistakes_in_emitters_and_sinks_are_named() {
+fn errors_in_emitters_and_sinks_are_reported() {
     for (text, part) in [
         (TAP.replace("radius = 0.1\n", ""), "emitter[0].radius is missing: a disc needs it"),
         (TAP.replace("0.9", "1.9"), "outside the domain"),

@@ -76,7 +76,7 @@ fn every_scene_of_the_guide_is_valid() {
 
 /// Control: a wrong key in an example is found.
 #[test]
-fn a_wrong_example_is_refused() {
+fn an_invalid_example_is_rejected() {
     let page = "Text\n\n```toml\n[solver]\nmethd = \"wcsph\"\n```\n";
     let [(line, block)] = &blocks(page)[..] else { panic!("one block") };
     assert_eq!(*line, 3);

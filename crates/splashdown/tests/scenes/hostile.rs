@@ -61,7 +61,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_in_a_scene_are_read_or_refused(at in 0..CUBE.len(), junk in proptest::collection::vec(any::<u8>(), 0..8)) {
+    fn any_bytes_in_a_scene_are_accepted_or_rejected(at in 0..CUBE.len(), junk in proptest::collection::vec(any::<u8>(), 0..8)) {
         let mut bytes = CUBE.as_bytes().to_vec();
         bytes.splice(at..(at + junk.len()).min(CUBE.len()), junk);
         if let Err(errors) = parse(&String::from_utf8_lossy(&bytes)) {
@@ -71,7 +71,7 @@ proptest! {
     }
 
     #[test]
-    fn any_value_of_any_key_is_read_or_refused(line in 0..CUBE.lines().count(), value in value()) {
+    fn any_value_of_any_key_is_accepted_or_rejected(line in 0..CUBE.lines().count(), value in value()) {
         let text: String = CUBE
             .lines()
             .enumerate()
@@ -95,13 +95,13 @@ proptest! {
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deep_nesting_is_rejected() {
     let text = format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000));
     assert!(parse(&text).is_err());
 }
 
 #[test]
-fn thousands_of_mistakes_cost_little_and_are_cut_short() {
+fn thousands_of_errors_are_truncated_quickly() {
     let keys: String = (0..200_000).map(|i| format!("k{i}=1\n")).collect();
     let errors = parse(&format!("{keys}{CUBE}")).expect_err("none of these keys exist");
     assert!(errors.errors.len() <= 200, "{}", errors.errors.len());
@@ -112,14 +112,14 @@ fn thousands_of_mistakes_cost_little_and_are_cut_short() {
 }
 
 #[test]
-fn thousands_of_blocks_are_refused() {
+fn thousands_of_blocks_are_rejected() {
     let block = "[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n";
     let errors = parse(&changed(block, &block.repeat(300))).expect_err("too many blocks").to_string();
     assert!(errors.contains("300 entries") && errors.contains("1 to 256"), "{errors}");
 }
 
 #[test]
-fn a_scene_built_in_code_with_absurd_values_is_refused_by_the_sampler() {
+fn the_sampler_rejects_invalid_scenes_built_in_code() {
     let scene = parse(CUBE).expect("the cube is legal");
     for spacing in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-30, 1e30] {
         let mut scene = scene.clone();

@@ -29,7 +29,7 @@ fn probes_are_read() {
 }
 
 #[test]
-fn mistakes_in_probes_are_named() {
+fn errors_in_probes_are_reported() {
     let probe = |rest: &str| format!("{CUBE}\n{BODY}[[probe]]\nname = \"a\"\n{rest}\n");
     for (text, part) in [
         (probe("quantity = \"pressure\""), "probe[0].position is missing: pressure needs it"),
@@ -64,7 +64,7 @@ fn mistakes_in_probes_are_named() {
 }
 
 #[test]
-fn a_pressure_where_densities_are_summed_is_doubted() {
+fn a_pressure_probe_with_summed_densities_gives_a_warning() {
     let probe = "[[probe]]\nname = \"a\"\nquantity = \"pressure\"\nposition = [0, 0, 0]\n";
     let warnings = |text: &str| parse(text).unwrap_or_else(|errors| panic!("{errors}")).warnings;
     let found = warnings(&format!("{CUBE}\n{probe}"));

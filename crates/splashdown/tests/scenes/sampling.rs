@@ -108,7 +108,7 @@ fn overlapping_blocks_are_sampled_once() {
 }
 
 #[test]
-fn touching_blocks_lose_nothing() {
+fn touching_blocks_keep_all_particles() {
     let scene = parse(&format!("{CUBE}[[fluid.block]]\nposition = [0.5, 0, 0]\nsize = [0.5, 0.5, 0.5]\n"))
         .expect("legal");
     assert!(scene.warnings.is_empty(), "{}", scene.warnings[0]);
@@ -118,7 +118,7 @@ fn touching_blocks_lose_nothing() {
 }
 
 #[test]
-fn a_block_of_broken_spacings_stands_on_the_wall_it_touches() {
+fn a_block_of_fractional_spacings_touches_its_wall() {
     let low = |text: &str, axis: usize| {
         positions(&parse(text).expect("legal")).iter().map(|p| p[axis]).fold(f32::INFINITY, f32::min)
     };
@@ -143,7 +143,7 @@ fn a_block_of_broken_spacings_stands_on_the_wall_it_touches() {
 }
 
 #[test]
-fn counting_does_not_need_the_particles() {
+fn counting_does_not_create_particles() {
     let mut scene = parse(CUBE).expect("legal");
     scene.fluid.particle_spacing = 0.5e-4;
     assert_eq!(sample::count(&scene), 1_000_000_000_000);

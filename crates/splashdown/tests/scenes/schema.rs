@@ -107,7 +107,7 @@ fn every_scene_satisfies_the_schema() {
 /// Controls of the checker above, and at once the accord of schema and parser: both refuse each of these, and
 /// accept the cube.
 #[test]
-fn schema_and_parser_refuse_the_same_mistakes() {
+fn schema_and_parser_reject_the_same_errors() {
     let schema = schema();
     let mistakes = [
         ("duration = 1.0", "duration = \"1.0\""),
@@ -140,7 +140,7 @@ fn schema_and_parser_refuse_the_same_mistakes() {
 /// Every key of the schema, with its default or an allowed value, one at a time: the parser knows it, and the
 /// defaults it names are the defaults it takes.
 #[test]
-fn the_parser_knows_every_key_of_the_schema_and_takes_its_defaults() {
+fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
     let schema = schema();
     let plain = parse(CUBE).expect("the cube is legal");
     let mut seen = 0;

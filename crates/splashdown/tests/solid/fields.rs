@@ -30,7 +30,7 @@ fn nodes(solid: &Solid) -> impl Iterator<Item = (Vec3, f32, f32)> + '_ {
 }
 
 #[test]
-fn distances_and_masses_of_a_cube_are_those_of_the_formula() {
+fn distances_and_masses_of_a_cube_match_closed_forms() {
     let solid = build(&models::build("cube").unwrap(), &settings(0.05, 0.2));
     assert_eq!(solid.kind, SolidKind::Volume);
     let mut near = 0;
@@ -51,7 +51,7 @@ fn distances_and_masses_of_a_cube_are_those_of_the_formula() {
 }
 
 #[test]
-fn a_face_of_a_cube_is_felt_as_a_plane_and_its_edge_as_less() {
+fn the_kernel_integral_of_a_cube_is_a_plane_at_faces_and_smaller_at_edges() {
     let solid = build(&models::build("cube").unwrap(), &settings(0.05, 0.2));
     let (mut faces, mut edges) = (0, 0);
     for (x, phi, effective) in nodes(&solid) {
@@ -71,7 +71,7 @@ fn a_face_of_a_cube_is_felt_as_a_plane_and_its_edge_as_less() {
 }
 
 #[test]
-fn the_edge_of_a_cube_fills_the_share_that_the_table_of_edges_says() {
+fn the_kernel_integral_at_an_edge_matches_the_edge_table() {
     let solid = build(&models::build("cube").unwrap(), &settings(0.025, 0.2));
     let table = splashdown::boundary::wall_table(KernelPair::WendlandC2);
     let mut checked = 0;
@@ -100,7 +100,7 @@ fn the_edge_of_a_cube_fills_the_share_that_the_table_of_edges_says() {
 }
 
 #[test]
-fn a_damaged_mesh_is_refused_with_a_reason() {
+fn a_damaged_mesh_is_rejected_with_a_reason() {
     let cube = models::build("cube").unwrap();
     let settings = settings(0.1, 0.2);
     let refused = |change: &dyn Fn(&mut Mesh)| {
@@ -117,7 +117,7 @@ fn a_damaged_mesh_is_refused_with_a_reason() {
 }
 
 #[test]
-fn a_second_build_comes_from_the_disk_and_a_damaged_file_does_not() {
+fn a_second_build_is_cached_and_a_damaged_file_is_rebuilt() {
     let folder = tempfile::tempdir().unwrap();
     let settings = SolidSettings { cache: Some(folder.path().to_owned()), ..settings(0.05, 0.2) };
     let cube = models::build("cube").unwrap();
@@ -143,7 +143,7 @@ fn a_second_build_comes_from_the_disk_and_a_damaged_file_does_not() {
 }
 
 #[test]
-fn a_lattice_fills_a_cube_and_surface_samples_keep_their_distance() {
+fn lattice_and_surface_samples_of_a_cube() {
     let solid = build(&models::build("cube").unwrap(), &settings(0.05, 0.2));
     let points =
         solid.fill(Vec3::new(2.0, 0.0, 0.0), glam::Quat::IDENTITY, 0.1, Vec3::new(2.05, 0.05, 0.05), 0.045);

@@ -74,13 +74,13 @@ fn compare_with_layers(mesh: &Mesh, solid: &[[f32; 2]]) -> u32 {
 }
 
 #[test]
-fn a_thin_wall_is_felt_right_in_its_middle_too() {
+fn kernel_integrals_inside_a_thin_wall_are_correct() {
     let plate = block(Vec3::new(-1.0, -CELL, -1.0), Vec3::new(1.0, CELL, 1.0));
     assert!(compare_with_layers(&plate, &[[CELL, -CELL].map(|y| -y)]) >= LAYER);
 }
 
 #[test]
-fn both_sides_of_a_narrow_slot_are_felt_in_its_middle() {
+fn kernel_integrals_inside_a_narrow_slot_include_both_sides() {
     let side = |low: f32, high: f32| block(Vec3::new(-1.0, low, -1.0), Vec3::new(1.0, high, 1.0));
     let walls = [[-0.5, -CELL], [CELL, 0.5]];
     let mesh = joined(&side(walls[0][0], walls[0][1]), &side(walls[1][0], walls[1][1]));
@@ -88,7 +88,7 @@ fn both_sides_of_a_narrow_slot_are_felt_in_its_middle() {
 }
 
 #[test]
-fn a_sheet_on_the_nodes_is_as_solid_as_its_thickness() {
+fn a_sheet_on_grid_nodes_has_its_given_thickness() {
     let sheet = Mesh::new(
         vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]],
         vec![[0, 2, 1], [0, 3, 2]],
@@ -97,7 +97,7 @@ fn a_sheet_on_the_nodes_is_as_solid_as_its_thickness() {
 }
 
 #[test]
-fn a_file_damaged_anywhere_is_made_again() {
+fn a_damaged_cache_file_is_rebuilt() {
     let folder = tempfile::tempdir().unwrap();
     let settings = SolidSettings { cell_size: 0.25, cache: Some(folder.path().to_owned()), ..settings() };
     let cube = models::build("cube").unwrap();
@@ -128,7 +128,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_triangles_make_finite_numbers_or_a_reason(
+    fn random_triangles_give_finite_values_or_an_error(
         places in prop::collection::vec(prop::array::uniform3(prop_oneof![-1.0f32..1.0, Just(0.0), Just(0.5)]), 3..24),
         corners in prop::collection::vec(prop::array::uniform3(0u32..24), 1..40),
         shell in prop::option::of(any::<bool>()),

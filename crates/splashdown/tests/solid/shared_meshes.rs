@@ -38,7 +38,7 @@ fn build(mesh: &Mesh, cells: f32) -> Solid {
 }
 
 #[test]
-fn open_meshes_are_shells_and_closed_ones_solids() {
+fn open_meshes_become_shells_and_closed_meshes_volumes() {
     for (name, kind) in [
         ("spot.obj", SolidKind::Volume),
         ("spot_ugly.obj", SolidKind::Volume),
@@ -75,7 +75,7 @@ fn differing(good: &Solid, bad: &Solid) -> (u32, u32) {
 }
 
 #[test]
-fn spot_damaged_has_the_distances_of_spot() {
+fn distances_of_the_damaged_spot_agree_with_spot() {
     let (Some(spot), Some(ugly)) = (shared("spot.obj"), shared("spot_ugly.obj")) else { return };
     let (differing, all) = differing(&build(&spot, 60.0), &build(&ugly, 60.0));
     eprintln!("{differing} of {all} nodes near the surface differ by more than a cell");
@@ -84,7 +84,7 @@ fn spot_damaged_has_the_distances_of_spot() {
 }
 
 #[test]
-fn a_model_made_ugly_keeps_its_distances() {
+fn distances_of_a_damaged_model_agree_with_the_model() {
     let figure = models::build("figure").unwrap();
     let good = build(&figure, 60.0);
     for seed in [1, 2] {
