@@ -268,8 +268,8 @@ fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
     // Space for inactive particles with arbitrary contents.
     particles.resize(capacity as usize, glam::Vec4::NAN);
     SurfaceInput {
-        positions: executor.create_from("positions", &particles).unwrap(),
-        cell_start: executor.create_from("cell start", &cell_start).unwrap(),
+        sorted_positions: executor.create_from("sorted_positions", &particles).unwrap(),
+        cell_start: executor.create_from("cell_start", &cell_start).unwrap(),
         grid: executor.create_uniform("grid", &grid).unwrap(),
         grid_host: grid,
         particle_capacity: capacity,

@@ -109,7 +109,7 @@ impl Simulation {
     pub fn surface(&mut self, settings: &SurfaceSettings) -> Result<Surface, SimulationError> {
         let params = SurfaceParams::of_scene(settings, self.params.particle_spacing);
         let input = SurfaceInput {
-            positions: self.fields.sorted_positions,
+            sorted_positions: self.fields.sorted_positions,
             cell_start: self.cells.cell_start,
             grid: self.cells.grid_uniform,
             grid_host: self.cells.grid,

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
-use splashdown_gpu::{Buffer, Executor, Grid as Work, Recording, block_on};
+use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
 use splashdown_io::Mesh;
 
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
@@ -10,11 +10,12 @@ use super::{SurfaceError, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
 use crate::marching_cubes;
 
-/// The particles of a surface, in the buffers of the simulation.
+/// The particles of a surface, in the buffers of the simulation. The label of each buffer is the
+/// name of its field.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInput {
     /// Positions in m, sorted by cell; w is ignored.
-    pub positions: Buffer<Vec4>,
+    pub sorted_positions: Buffer<Vec4>,
     /// First particle of every cell, followed by the number of living particles.
     pub cell_start: Buffer<u32>,
     /// The neighbour grid on the device.
@@ -23,6 +24,13 @@ pub struct SurfaceInput {
     pub grid_host: Grid,
     /// Largest number of particles.
     pub particle_capacity: u32,
+}
+
+impl SurfaceInput {
+    /// The buffers by name, for recordings.
+    pub(super) fn buffers(&self) -> BufferSet {
+        buffer_set!(self => sorted_positions, cell_start, grid)
+    }
 }
 
 /// Size of a mesh, and statistics of its extraction.
@@ -70,7 +78,7 @@ pub(super) struct Buffers {
     pub mark_starts: Buffer<u32>,
     pub block_slot: Buffer<u32>,
     pub block_list: Buffer<u32>,
-    pub values: Buffer<f32>,
+    pub field_values: Buffer<f32>,
     pub signs: Buffer<u32>,
     pub rows: Buffer<UVec2>,
     pub vertex_counts: Buffer<u32>,
@@ -82,7 +90,7 @@ pub(super) struct Buffers {
     pub block_groups: Buffer<u32>,
     pub vertex_groups: Buffer<u32>,
     pub triangle_groups: Buffer<u32>,
-    pub vertices: Buffer<Vec4>,
+    pub vertex_positions: Buffer<Vec4>,
     pub normals: Buffer<Vec4>,
     pub indices: Buffer<u32>,
     pub valences: Buffer<u32>,
@@ -96,34 +104,44 @@ impl Buffers {
     fn new(executor: &mut Executor, lattice: &Lattice) -> Result<Self, SurfaceError> {
         let e = executor;
         Ok(Self {
-            lattice: e.create_uniform("surface lattice", lattice)?,
-            cases: e.create_from("surface cases", &marching_cubes::packed())?,
-            samples: e.create("surface samples", 0)?,
-            local_density: e.create("surface local densities", 0)?,
-            marks: e.create("surface marks", 0)?,
-            mark_starts: e.create("surface mark starts", 0)?,
-            block_slot: e.create("surface block slots", 0)?,
-            block_list: e.create("surface block list", 0)?,
-            values: e.create("surface field", 0)?,
-            signs: e.create("surface signs", 0)?,
-            rows: e.create("surface rows", 0)?,
-            vertex_counts: e.create("surface vertex counts", 0)?,
-            triangle_counts: e.create("surface triangle counts", 0)?,
-            vertex_starts: e.create("surface vertex starts", 0)?,
-            triangle_starts: e.create("surface triangle starts", 0)?,
-            status: e.create("surface status", 1)?,
-            draw_args: e.create("surface draw arguments", 5)?,
-            block_groups: e.create("surface block groups", 3)?,
-            vertex_groups: e.create("surface vertex groups", 3)?,
-            triangle_groups: e.create("surface triangle groups", 3)?,
-            vertices: e.create("surface vertices", 0)?,
-            normals: e.create("surface normals", 0)?,
-            indices: e.create("surface indices", 0)?,
-            valences: e.create("surface valences", 0)?,
-            one_ring_starts: e.create("surface one-ring starts", 0)?,
-            one_rings: e.create("surface one-rings", 0)?,
-            relaxed: e.create("surface relaxed vertices", 0)?,
+            lattice: e.create_uniform("lattice", lattice)?,
+            cases: e.create_from("cases", &marching_cubes::packed())?,
+            samples: e.create("samples", 0)?,
+            local_density: e.create("local_density", 0)?,
+            marks: e.create("marks", 0)?,
+            mark_starts: e.create("mark_starts", 0)?,
+            block_slot: e.create("block_slot", 0)?,
+            block_list: e.create("block_list", 0)?,
+            field_values: e.create("field_values", 0)?,
+            signs: e.create("signs", 0)?,
+            rows: e.create("rows", 0)?,
+            vertex_counts: e.create("vertex_counts", 0)?,
+            triangle_counts: e.create("triangle_counts", 0)?,
+            vertex_starts: e.create("vertex_starts", 0)?,
+            triangle_starts: e.create("triangle_starts", 0)?,
+            status: e.create("status", 1)?,
+            draw_args: e.create("draw_args", 5)?,
+            block_groups: e.create("block_groups", 3)?,
+            vertex_groups: e.create("vertex_groups", 3)?,
+            triangle_groups: e.create("triangle_groups", 3)?,
+            vertex_positions: e.create("vertex_positions", 0)?,
+            normals: e.create("normals", 0)?,
+            indices: e.create("indices", 0)?,
+            valences: e.create("valences", 0)?,
+            one_ring_starts: e.create("one_ring_starts", 0)?,
+            one_rings: e.create("one_rings", 0)?,
+            relaxed: e.create("relaxed", 0)?,
         })
+    }
+
+    /// The buffers by name, for recordings.
+    fn by_name(&self) -> BufferSet {
+        buffer_set!(self =>
+            lattice, cases, samples, local_density, marks, mark_starts, block_slot, block_list, field_values, signs, rows,
+            vertex_counts, triangle_counts, vertex_starts, triangle_starts, status, draw_args, block_groups,
+            vertex_groups, triangle_groups, vertex_positions, normals, indices, valences, one_ring_starts, one_rings,
+            relaxed,
+        )
     }
 
     /// Resizes every buffer to the capacities of the lattice.
@@ -139,9 +157,9 @@ impl Buffers {
         resize! {
             samples: particles, local_density: particles,
             marks: table, mark_starts: table + 1, block_slot: table,
-            block_list: blocks, values: blocks * NODES, signs: blocks * ROWS, rows: blocks * ROWS,
+            block_list: blocks, field_values: blocks * NODES, signs: blocks * ROWS, rows: blocks * ROWS,
             vertex_counts: blocks, triangle_counts: blocks, vertex_starts: blocks + 1, triangle_starts: blocks + 1,
-            vertices: vertices, normals: vertices, indices: 3 * triangles,
+            vertex_positions: vertices, normals: vertices, indices: 3 * triangles,
         }
         let (vertices, triangles) = if smoothed { (vertices, triangles) } else { (0, 0) };
         resize! { valences: vertices, one_ring_starts: vertices + 1, one_rings: 3 * triangles, relaxed: vertices }
@@ -174,7 +192,7 @@ impl Surface {
     /// The largest value of the field at the nodes of the last extraction.
     pub(super) fn highest(&self, executor: &mut Executor, stats: &SurfaceStats) -> Result<f32, SurfaceError> {
         let nodes = stats.blocks as usize * NODES;
-        let values = block_on(executor.fetch_first(self.b.values, nodes))?;
+        let values = block_on(executor.fetch_first(self.b.field_values, nodes))?;
         Ok(values.into_iter().fold(0.0, f32::max))
     }
 
@@ -253,127 +271,62 @@ impl Surface {
     /// Appends the extraction to a recording. It is valid until [`grow`](Self::grow) enlarges the
     /// buffers.
     pub fn record(&self, recording: &mut Recording) {
-        self.record_field(recording);
-        self.record_march(recording);
+        let buffers = self.b.by_name().and(&self.input.buffers());
+        self.record_field(recording, &buffers);
+        self.record_march(recording, &buffers);
         if let Some(scan) = &self.vertex_scan {
-            self.record_smoothing(recording, scan);
+            self.record_smoothing(recording, &buffers, scan);
         }
     }
 
-    fn record_field(&self, recording: &mut Recording) {
-        let (b, input) = (&self.b, &self.input);
-        let (lattice, grid) = (b.lattice.id(), input.grid.id());
-        let (cell_start, positions) = (input.cell_start.id(), input.positions.id());
-        let particles = Work::Items(input.particle_capacity);
-        let (samples, local_density) = (b.samples.id(), b.local_density.id());
-        recording.dispatch(
-            &volume::VOLUME,
-            particles,
-            &[lattice, grid, cell_start, positions, samples, local_density],
-        );
-        recording.clear(b.marks);
-        recording.dispatch(&blocks::MARK, particles, &[lattice, grid, cell_start, positions, b.marks.id()]);
-        self.mark_scan.record(recording, b.marks, b.mark_starts);
-        recording.dispatch(
-            &blocks::COMPACT,
-            Work::Items(self.lattice.block_count),
-            &[lattice, b.marks.id(), b.mark_starts.id(), b.block_list.id(), b.block_slot.id()],
-        );
-        recording.dispatch(
-            &blocks::PLAN,
-            Work::Groups(1),
-            &[lattice, b.mark_starts.id(), b.status.id(), b.block_groups.id()],
-        );
-        let (status, list) = (b.status.id(), b.block_list.id());
-        recording.dispatch(
-            &field::FIELD,
-            self.per_block(),
-            &[lattice, grid, status, list, cell_start, samples, b.values.id(), b.signs.id()],
-        );
+    fn record_field(&self, recording: &mut Recording, buffers: &BufferSet) {
+        let particles = DispatchSize::Items(self.input.particle_capacity);
+        recording.dispatch(&volume::VOLUME, particles, buffers);
+        recording.clear(self.b.marks);
+        recording.dispatch(&blocks::MARK, particles, buffers);
+        self.mark_scan.record(recording, self.b.marks, self.b.mark_starts);
+        recording.dispatch(&blocks::COMPACT, DispatchSize::Items(self.lattice.block_count), buffers);
+        recording.dispatch(&blocks::PLAN, DispatchSize::Groups(1), buffers);
+        recording.dispatch(&field::FIELD, self.per_block(), buffers);
     }
 
-    fn record_march(&self, recording: &mut Recording) {
+    fn record_march(&self, recording: &mut Recording, buffers: &BufferSet) {
         let b = &self.b;
-        let (lattice, status, list, slot) =
-            (b.lattice.id(), b.status.id(), b.block_list.id(), b.block_slot.id());
-        let (cases, rows) = (b.cases.id(), b.rows.id());
-        let (vertex_starts, triangle_starts) = (b.vertex_starts.id(), b.triangle_starts.id());
         // The scans include all slots; slots without a block have zero counts.
         recording.clear(b.vertex_counts);
         recording.clear(b.triangle_counts);
-        let counts = [b.vertex_counts.id(), b.triangle_counts.id()];
-        recording.dispatch(
-            &march::COUNT,
-            self.per_block(),
-            &[lattice, status, list, slot, b.signs.id(), cases, rows, counts[0], counts[1]],
-        );
+        recording.dispatch(&march::COUNT, self.per_block(), buffers);
         self.block_scan.record(recording, b.vertex_counts, b.vertex_starts);
         self.block_scan.record(recording, b.triangle_counts, b.triangle_starts);
-        let groups = [b.vertex_groups.id(), b.triangle_groups.id()];
-        recording.dispatch(
-            &march::FINISH,
-            Work::Groups(1),
-            &[lattice, vertex_starts, triangle_starts, status, b.draw_args.id(), groups[0], groups[1]],
-        );
-        let mesh = [b.vertices.id(), b.normals.id()];
-        recording.dispatch(
-            &march::VERTICES,
-            self.per_block(),
-            &[lattice, status, list, slot, b.values.id(), rows, vertex_starts, mesh[0], mesh[1]],
-        );
-        recording.dispatch(
-            &march::TRIANGLES,
-            self.per_block(),
-            &[lattice, status, list, slot, rows, cases, vertex_starts, triangle_starts, b.indices.id()],
-        );
+        recording.dispatch(&march::FINISH, DispatchSize::Groups(1), buffers);
+        recording.dispatch(&march::VERTICES, self.per_block(), buffers);
+        recording.dispatch(&march::TRIANGLES, self.per_block(), buffers);
     }
 
-    fn record_smoothing(&self, recording: &mut Recording, scan: &Scan) {
-        let (b, input) = (&self.b, &self.input);
-        let (status, vertices) = (b.status.id(), b.vertices.id());
-        let (starts, one_rings, valences) = (b.one_ring_starts.id(), b.one_rings.id(), b.valences.id());
-        let per_vertex = Work::Indirect { buffer: b.vertex_groups.id(), word: 0 };
-        let per_triangle = Work::Indirect { buffer: b.triangle_groups.id(), word: 0 };
-        recording.dispatch(
-            &smooth::SMOOTHING_WEIGHTS,
-            self.per_block(),
-            &[
-                b.lattice.id(),
-                input.grid.id(),
-                status,
-                b.vertex_starts.id(),
-                input.cell_start.id(),
-                b.samples.id(),
-                b.local_density.id(),
-                vertices,
-            ],
-        );
+    fn record_smoothing(&self, recording: &mut Recording, buffers: &BufferSet, scan: &Scan) {
+        let b = &self.b;
+        let per_vertex = DispatchSize::indirect(b.vertex_groups);
+        let per_triangle = DispatchSize::indirect(b.triangle_groups);
+        recording.dispatch(&smooth::SMOOTHING_WEIGHTS, self.per_block(), buffers);
         recording.clear(b.valences);
-        recording.dispatch(&smooth::VALENCE, per_triangle, &[status, b.indices.id(), valences]);
+        recording.dispatch(&smooth::VALENCE, per_triangle, buffers);
         scan.record(recording, b.valences, b.one_ring_starts);
-        recording.dispatch(
-            &smooth::ONE_RING,
-            per_triangle,
-            &[status, b.indices.id(), starts, valences, one_rings],
-        );
-        recording.dispatch(&smooth::ONE_RING_ORDER, per_vertex, &[status, starts, one_rings]);
-        let (mut from, mut to) = (b.vertices, b.relaxed);
-        for _ in 0..self.params.smoothing_iterations {
-            recording.dispatch(&smooth::RELAX, per_vertex, &[status, starts, one_rings, from.id(), to.id()]);
-            std::mem::swap(&mut from, &mut to);
+        recording.dispatch(&smooth::ONE_RING, per_triangle, buffers);
+        recording.dispatch(&smooth::ONE_RING_ORDER, per_vertex, buffers);
+        let there = buffers.clone().with("before", b.vertex_positions).with("after", b.relaxed);
+        let back = buffers.clone().with("before", b.relaxed).with("after", b.vertex_positions);
+        for iteration in 0..self.params.smoothing_iterations {
+            let buffers = if iteration % 2 == 0 { &there } else { &back };
+            recording.dispatch(&smooth::RELAX, per_vertex, buffers);
         }
         if self.params.smoothing_iterations % 2 == 1 {
-            recording.copy(b.relaxed, b.vertices);
+            recording.copy(b.relaxed, b.vertex_positions);
         }
-        recording.dispatch(
-            &smooth::VERTEX_NORMALS,
-            per_vertex,
-            &[status, starts, one_rings, vertices, b.normals.id()],
-        );
+        recording.dispatch(&smooth::VERTEX_NORMALS, per_vertex, buffers);
     }
 
-    fn per_block(&self) -> Work {
-        Work::Indirect { buffer: self.b.block_groups.id(), word: 0 }
+    fn per_block(&self) -> DispatchSize {
+        DispatchSize::indirect(self.b.block_groups)
     }
 
     /// Extracts the surface and waits until its size is known. If the capacity is too small,
@@ -442,7 +395,7 @@ impl Surface {
     pub async fn mesh_async(&self, executor: &mut Executor) -> Result<Mesh, SurfaceError> {
         let status = self.read_status(executor).await?;
         let xyz = |values: Vec<Vec4>| values.into_iter().map(|v| v.truncate().to_array()).collect();
-        let vertices = executor.fetch_first(self.b.vertices, status.vertices as usize).await?;
+        let vertices = executor.fetch_first(self.b.vertex_positions, status.vertices as usize).await?;
         let normals = executor.fetch_first(self.b.normals, status.vertices as usize).await?;
         let indices = executor.fetch_first(self.b.indices, 3 * status.triangles as usize).await?;
         let triangles = indices.as_chunks::<3>().0.to_vec();
@@ -469,7 +422,7 @@ impl Surface {
 
     /// Positions of the vertices in m; w is internal. The first [`Status::vertices`] are valid.
     pub fn vertices(&self) -> Buffer<Vec4> {
-        self.b.vertices
+        self.b.vertex_positions
     }
 
     /// Unit normals of the vertices, pointing out of the fluid; w is 0.

@@ -44,7 +44,7 @@ pub fn reconstruct(
     let highest = if stats.triangles == 0 { Some(surface.highest(executor, &stats)?) } else { None };
     // Before the mesh is copied, because the field takes most of the memory.
     surface.release_field(executor)?;
-    executor.resize(&mut input.positions, 0)?;
+    executor.resize(&mut input.sorted_positions, 0)?;
     executor.resize(&mut input.cell_start, 0)?;
     let mesh = surface.mesh(executor)?;
     surface.release(executor)?;
@@ -63,9 +63,9 @@ pub(super) fn upload(
     let grid = grid_over(points, params)?;
     let (sorted, cell_start) = sort_by_cell(&grid, points);
     Ok(SurfaceInput {
-        positions: executor.create_from("surface particles", &sorted)?,
-        cell_start: executor.create_from("surface cell starts", &cell_start)?,
-        grid: executor.create_uniform("surface grid", &grid)?,
+        sorted_positions: executor.create_from("sorted_positions", &sorted)?,
+        cell_start: executor.create_from("cell_start", &cell_start)?,
+        grid: executor.create_uniform("grid", &grid)?,
         grid_host: grid,
         particle_capacity: sorted.len() as u32,
     })

@@ -42,8 +42,8 @@ fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<St
 macro_rules! for_each_buffer {
     ($a:expr, $b:expr, $one:ident, $two:ident, $name:ident => $body:block) => {
         for_each_buffer!(@ $a, $b, $one, $two, $name, $body;
-            samples local_density marks mark_starts block_slot block_list values signs rows vertex_counts triangle_counts
-            vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertices normals
+            samples local_density marks mark_starts block_slot block_list field_values signs rows vertex_counts triangle_counts
+            vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertex_positions normals
             indices valences one_ring_starts one_rings relaxed)
     };
     (@ $a:expr, $b:expr, $one:ident, $two:ident, $name:ident, $body:block; $($field:ident)*) => {
@@ -73,13 +73,13 @@ fn sort_one_rings(starts: &[u32], one_rings: &mut [UVec2]) {
 fn compare(buffers: [&Buffers; 2], iso: f32, cpu: &mut Executor, gpu: &mut Executor) -> Vec<String> {
     let [a, b] = buffers;
     let mut wrong = Vec::new();
-    let values = cpu.read(a.values).unwrap();
+    let values = cpu.read(a.field_values).unwrap();
     for_each_buffer!(a, b, one, two, name => {
         let (mut here, mut there) = (cpu.read(one).unwrap(), gpu.read(two).unwrap());
         match name {
             // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8,
             // and the hardware's square root.
-            "samples" | "local_density" | "values" | "vertices" | "relaxed" | "normals" => {
+            "samples" | "local_density" | "field_values" | "vertex_positions" | "relaxed" | "normals" => {
                 // A normal is a difference of such values divided by its length, which can be a
                 // hundred times smaller.
                 let tolerance = if name == "normals" { 5e-4 } else { 1e-5 };
@@ -189,11 +189,11 @@ fn the_comparison_detects_a_wrong_bit_and_a_wrong_digit() {
     copy_all(buffers, &mut a, &mut b);
     assert!(compare(buffers, params.iso_level, &mut a, &mut b).is_empty());
 
-    let values = a.read(surface.b.values).unwrap();
+    let values = a.read(surface.b.field_values).unwrap();
     let mut changed = values.clone();
     changed[values.iter().position(|&value| value > 0.1).unwrap()] *= 1.0001;
-    b.write(twin.b.values, &changed).unwrap();
-    b.write(twin.b.vertices, &[Vec4::splat(0.001)]).unwrap();
+    b.write(twin.b.field_values, &changed).unwrap();
+    b.write(twin.b.vertex_positions, &[Vec4::splat(0.001)]).unwrap();
     let mut one_rings = a.read(surface.b.one_rings).unwrap();
     one_rings[0].y += 1;
     b.write(twin.b.one_rings, &one_rings).unwrap();

@@ -1,11 +1,11 @@
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::FieldBindings;
 use crate::kernel::{CubicSpline, Kernel};
 use crate::pairs::{self, BoxPass, Sorted};
 use crate::simd::Register;
-use crate::surface::params::{Lattice, NODES, ROWS, SIDE, Status};
+use crate::surface::params::{Lattice, NODES, ROWS, SIDE};
 
 const N: usize = SIDE as usize;
 /// Nodes of a layer of a block.
@@ -14,20 +14,19 @@ const LAYER: usize = N * N;
 /// zero, so that the result does not depend on the number of rows per register.
 const MARGIN: f32 = 1.0001;
 
-pub(super) fn field(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, grid, status, list, cell_start, samples, values, signs] = slots else { unreachable!() };
-    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get());
-    let blocks = status.get::<Status>().blocks as usize;
-    let samples = samples.read();
-    let values = values.write::<f32>().as_chunks_mut::<NODES>().0;
-    let signs = signs.write::<u32>().as_chunks_mut::<ROWS>().0;
+pub(super) fn field(buffers: FieldBindings<'_>) {
+    let FieldBindings { lattice, grid, status, block_list, cell_start, samples, field_values, signs } =
+        buffers;
+    let blocks = status.blocks as usize;
+    let values = field_values.as_chunks_mut::<NODES>().0;
+    let signs = signs.as_chunks_mut::<ROWS>().0;
     let outputs = values[..blocks].par_iter_mut().zip(&mut signs[..blocks]);
-    let sorted = Sorted::new(lattice.support_radius, &grid, cell_start.read(), samples);
-    pairs::for_each_box(sorted, outputs, &Field { lattice, blocks: list.read(), samples });
+    let sorted = Sorted::new(lattice.support_radius, grid, cell_start, samples);
+    pairs::for_each_box(sorted, outputs, &Field { lattice, blocks: block_list, samples });
 }
 
 struct Field<'a> {
-    lattice: Lattice,
+    lattice: &'a Lattice,
     blocks: &'a [u32],
     samples: &'a [Vec4],
 }
@@ -58,7 +57,7 @@ impl<'a> BoxPass<4> for Field<'a> {
     #[inline(always)]
     fn visit<V: Register>(&self, i: usize, near: [&[f32]; 4], (values, signs): &mut Self::Output) {
         values.fill(0.0);
-        add::<V>(near, &self.axes(i), &self.lattice, values);
+        add::<V>(near, &self.axes(i), self.lattice, values);
         for (signs, row) in signs.iter_mut().zip(values.as_chunks::<N>().0) {
             *signs = (0..N).fold(0, |bits, n| bits | (u32::from(row[n] >= self.lattice.iso_level) << n));
         }

@@ -4,14 +4,7 @@
 #import sph/kernel
 #import surface/candidates
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> status: Status;
-@group(0) @binding(3) var<storage, read> block_list: array<u32>;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> samples: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> values: array<f32>;
-@group(0) @binding(7) var<storage, read_write> signs: array<u32>;
+#bindings
 
 fn kernel_w4(q: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(kernel_w(q.x), kernel_w(q.y), kernel_w(q.z), kernel_w(q.w));
@@ -58,8 +51,8 @@ fn field(
     let first = (slot * 64u + row) * 8u;
     var inside = 0u;
     for (var i = 0u; i < 4u; i++) {
-        values[first + i] = low[i];
-        values[first + 4u + i] = high[i];
+        field_values[first + i] = low[i];
+        field_values[first + 4u + i] = high[i];
         inside |= select(0u, 1u << i, low[i] >= lattice.iso_level);
         inside |= select(0u, 16u << i, high[i] >= lattice.iso_level);
     }

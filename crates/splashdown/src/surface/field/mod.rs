@@ -20,12 +20,26 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::modules::{CANDIDATES, GRID, LATTICE, STATUS};
 use super::params::{Lattice, Status};
 use crate::cells::Grid;
 use crate::kernel::{self, CubicSpline, Kernel};
+
+bindings! {
+    /// The buffers of `field.wgsl`.
+    pub(super) struct FieldBindings {
+        lattice: uniform Lattice,
+        grid: uniform Grid,
+        status: read Status,
+        block_list: read [u32],
+        cell_start: read [u32],
+        samples: read [Vec4],
+        field_values: write [f32],
+        signs: write [u32],
+    }
+}
 
 pub(crate) static FIELD: PassDesc = PassDesc {
     label: "surface.field",
@@ -34,15 +48,6 @@ pub(crate) static FIELD: PassDesc = PassDesc {
     entry: "field",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        uniform::<Grid>("grid"),
-        read::<Status>("status"),
-        read::<u32>("block_list"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("samples"),
-        write::<f32>("values"),
-        write::<u32>("signs"),
-    ],
-    cpu: cpu::field,
+    bindings: FieldBindings::LIST,
+    cpu: |_, slots| cpu::field(slots.into()),
 };

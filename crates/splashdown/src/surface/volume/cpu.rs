@@ -1,24 +1,23 @@
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use glam::{Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
+use splashdown_gpu::as_atomic;
 
+use super::VolumeBindings;
 use crate::kernel::{CubicSpline, Kernel};
 use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
-use crate::surface::params::Lattice;
 
-pub(super) fn volume(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, grid, cell_start, positions, samples, local_density] = slots else { unreachable!() };
-    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get());
-    let positions = positions.read();
+pub(super) fn volume(buffers: VolumeBindings<'_>) {
+    let VolumeBindings { lattice, grid, cell_start, sorted_positions: positions, samples, local_density } =
+        buffers;
     let pass = Volume {
         positions,
         inverse_support: lattice.inverse_support,
-        local_density: local_density.atomics(),
+        local_density: as_atomic(local_density),
     };
-    let sorted = Sorted::new(lattice.support_radius, &grid, cell_start.read(), positions);
-    pairs::for_each(sorted, samples.write(), &pass);
+    let sorted = Sorted::new(lattice.support_radius, grid, cell_start, positions);
+    pairs::for_each(sorted, samples, &pass);
 }
 
 struct Volume<'a> {

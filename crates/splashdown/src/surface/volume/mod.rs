@@ -10,12 +10,24 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::modules::{CANDIDATES, GRID, LATTICE, STATUS};
 use super::params::Lattice;
 use crate::cells::Grid;
 use crate::kernel::{self, CubicSpline, Kernel};
+
+bindings! {
+    /// The buffers of `volume.wgsl`.
+    pub(super) struct VolumeBindings {
+        lattice: uniform Lattice,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        samples: write [Vec4],
+        local_density: write [f32],
+    }
+}
 
 pub(crate) static VOLUME: PassDesc = PassDesc {
     label: "surface.volume",
@@ -24,13 +36,6 @@ pub(crate) static VOLUME: PassDesc = PassDesc {
     entry: "volume",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("positions"),
-        write::<Vec4>("samples"),
-        write::<f32>("local_density"),
-    ],
-    cpu: cpu::volume,
+    bindings: VolumeBindings::LIST,
+    cpu: |_, slots| cpu::volume(slots.into()),
 };

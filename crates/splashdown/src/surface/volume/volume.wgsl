@@ -4,12 +4,7 @@
 #import sph/kernel
 #import surface/candidates
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read_write> samples: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> local_density: array<f32>;
+#bindings
 
 @compute @workgroup_size(64)
 fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -17,7 +12,7 @@ fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     if i >= min(cell_start[grid.cell_count], lattice.particle_capacity) {
         return;
     }
-    let p = positions[i].xyz;
+    let p = sorted_positions[i].xyz;
     let reach = vec3<f32>(lattice.support_radius);
     let support2 = lattice.support_radius * lattice.support_radius;
     let cells = cell_range(p - reach, p + reach);
@@ -28,7 +23,7 @@ fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
             let row = (z * grid.size_y + y) * grid.size_x;
             let end = cell_start[row + cells.last.x];
             for (var j = cell_start[row + cells.first.x]; j < end; j++) {
-                let d = positions[j].xyz - p;
+                let d = sorted_positions[j].xyz - p;
                 let r2 = dot(d, d);
                 if r2 < support2 {
                     sum += kernel_w(sqrt(r2) * lattice.inverse_support);

@@ -1,11 +1,7 @@
 #import gpu/index
 #import surface/lattice
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<storage, read> marks: array<u32>;
-@group(0) @binding(2) var<storage, read> mark_starts: array<u32>;
-@group(0) @binding(3) var<storage, read_write> block_list: array<u32>;
-@group(0) @binding(4) var<storage, read_write> block_slot: array<u32>;
+#bindings
 
 @compute @workgroup_size(64)
 fn compact(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

@@ -1,17 +1,14 @@
-use splashdown_gpu::{CpuWork, Slot};
-
-use crate::surface::params::{Lattice, NONE};
+use super::CompactBindings;
+use crate::surface::params::NONE;
 
 /// Serial: cheaper than starting threads up to millions of blocks.
-pub(super) fn compact(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, marks, starts, list, slot_of] = slots else { unreachable!() };
-    let lattice = lattice.get::<Lattice>();
-    let (list, slot_of) = (list.write::<u32>(), slot_of.write::<u32>());
-    let blocks = marks.read::<u32>().iter().zip(starts.read::<u32>()).zip(slot_of);
+pub(super) fn compact(buffers: CompactBindings<'_>) {
+    let CompactBindings { lattice, marks, mark_starts, block_list, block_slot } = buffers;
+    let blocks = marks.iter().zip(mark_starts).zip(block_slot);
     for (block, ((&mark, &slot), slot_of)) in (0..lattice.block_count).zip(blocks) {
         *slot_of = NONE;
         if mark != 0 && slot < lattice.block_capacity {
-            list[slot as usize] = block;
+            block_list[slot as usize] = block;
             *slot_of = slot;
         }
     }

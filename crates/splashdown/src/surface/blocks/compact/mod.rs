@@ -2,10 +2,21 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, STATUS};
 use crate::surface::params::Lattice;
+
+bindings! {
+    /// The buffers of `compact.wgsl`.
+    pub(super) struct CompactBindings {
+        lattice: uniform Lattice,
+        marks: read [u32],
+        mark_starts: read [u32],
+        block_list: write [u32],
+        block_slot: write [u32],
+    }
+}
 
 pub(crate) static COMPACT: PassDesc = PassDesc {
     label: "surface.compact",
@@ -14,12 +25,6 @@ pub(crate) static COMPACT: PassDesc = PassDesc {
     entry: "compact",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<u32>("marks"),
-        read::<u32>("mark_starts"),
-        write::<u32>("block_list"),
-        write::<u32>("block_slot"),
-    ],
-    cpu: cpu::compact,
+    bindings: CompactBindings::LIST,
+    cpu: |_, slots| cpu::compact(slots.into()),
 };

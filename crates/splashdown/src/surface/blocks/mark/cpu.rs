@@ -1,20 +1,19 @@
 use std::sync::atomic::Ordering;
 
-use glam::{UVec3, Vec3, Vec4};
+use glam::{UVec3, Vec3};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
+use splashdown_gpu::as_atomic;
 
-use crate::cells::Grid;
-use crate::surface::params::{Lattice, SIDE};
+use super::MarkBindings;
+use crate::surface::params::SIDE;
 
-pub(super) fn mark(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, grid, cell_start, positions, marks] = slots else { unreachable!() };
-    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get::<Grid>());
-    let living = cell_start.read::<u32>()[grid.cell_count as usize].min(lattice.particle_capacity) as usize;
+pub(super) fn mark(buffers: MarkBindings<'_>) {
+    let MarkBindings { lattice, grid, cell_start, sorted_positions, marks } = buffers;
+    let living = cell_start[grid.cell_count as usize].min(lattice.particle_capacity) as usize;
     let blocks = UVec3::new(lattice.blocks_x, lattice.blocks_y, lattice.blocks_z);
     let most = (blocks * SIDE - 1).as_vec3();
-    let marks = marks.atomics();
-    positions.read::<Vec4>()[..living].par_iter().with_min_len(1024).for_each(|position| {
+    let marks = as_atomic(marks);
+    sorted_positions[..living].par_iter().with_min_len(1024).for_each(|position| {
         let p = position.truncate() - lattice.origin;
         let low = ((p - lattice.support_radius) * lattice.inverse_cell).floor() - 1.0;
         let high = ((p + lattice.support_radius) * lattice.inverse_cell).floor();

@@ -2,11 +2,7 @@
 #import sph/grid
 #import surface/lattice
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(3) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read_write> marks: array<atomic<u32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn mark(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -14,7 +10,7 @@ fn mark(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
     if i >= min(cell_start[grid.cell_count], lattice.particle_capacity) {
         return;
     }
-    let p = positions[i].xyz - lattice.origin;
+    let p = sorted_positions[i].xyz - lattice.origin;
     let blocks = vec3<u32>(lattice.blocks_x, lattice.blocks_y, lattice.blocks_z);
     let most = vec3<f32>(blocks * 8u - 1u);
     let low = floor((p - lattice.support_radius) * lattice.inverse_cell) - 1.0;

@@ -3,11 +3,22 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::cells::Grid;
 use crate::surface::modules::{GRID, LATTICE, STATUS};
 use crate::surface::params::Lattice;
+
+bindings! {
+    /// The buffers of `mark.wgsl`.
+    pub(super) struct MarkBindings {
+        lattice: uniform Lattice,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        marks: atomic [u32],
+    }
+}
 
 pub(crate) static MARK: PassDesc = PassDesc {
     label: "surface.mark",
@@ -16,12 +27,6 @@ pub(crate) static MARK: PassDesc = PassDesc {
     entry: "mark",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        uniform::<Grid>("grid"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("positions"),
-        write::<u32>("marks"),
-    ],
-    cpu: cpu::mark,
+    bindings: MarkBindings::LIST,
+    cpu: |_, slots| cpu::mark(slots.into()),
 };

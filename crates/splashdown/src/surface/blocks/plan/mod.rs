@@ -2,10 +2,20 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `plan.wgsl`.
+    pub(super) struct PlanBindings {
+        lattice: uniform Lattice,
+        mark_starts: read [u32],
+        status: write Status,
+        block_groups: write [u32],
+    }
+}
 
 pub(crate) static PLAN: PassDesc = PassDesc {
     label: "surface.plan",
@@ -14,11 +24,6 @@ pub(crate) static PLAN: PassDesc = PassDesc {
     entry: "plan",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<u32>("mark_starts"),
-        write::<Status>("status"),
-        write::<u32>("block_groups"),
-    ],
-    cpu: cpu::plan,
+    bindings: PlanBindings::LIST,
+    cpu: |_, slots| cpu::plan(slots.into()),
 };

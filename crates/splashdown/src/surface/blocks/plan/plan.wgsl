@@ -1,10 +1,7 @@
 #import gpu/index
 #import surface/lattice
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<storage, read> mark_starts: array<u32>;
-@group(0) @binding(2) var<storage, read_write> status: Status;
-@group(0) @binding(3) var<storage, read_write> block_groups: array<u32>;
+#bindings
 
 @compute @workgroup_size(1)
 fn plan() {

@@ -3,15 +3,7 @@
 #import surface/slots
 #import surface/signs
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> block_list: array<u32>;
-@group(0) @binding(3) var<storage, read> block_slot: array<u32>;
-@group(0) @binding(4) var<storage, read> signs: array<u32>;
-@group(0) @binding(5) var<storage, read> cases: array<vec2<u32>>;
-@group(0) @binding(6) var<storage, read_write> rows: array<vec2<u32>>;
-@group(0) @binding(7) var<storage, read_write> vertex_counts: array<u32>;
-@group(0) @binding(8) var<storage, read_write> triangle_counts: array<u32>;
+#bindings
 
 // Per row: vertices in the low half, triangles in the high half. A block has at most 1,536 vertices
 // and 2,560 triangles.

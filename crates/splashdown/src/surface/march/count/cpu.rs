@@ -1,25 +1,21 @@
 use glam::UVec2;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use super::super::halo::{cell_case, is_uniform, signs, upper_slots};
+use super::super::halo;
+use super::CountBindings;
 use crate::marching_cubes::COUNTS;
-use crate::surface::params::{Lattice, ROWS, Status};
+use crate::surface::params::ROWS;
 
-pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, status, list, slot_of, sign_bits, _, rows, vertex_counts, triangle_counts] = slots else {
-        unreachable!()
-    };
-    let (lattice, status) = (lattice.get::<Lattice>(), status.get::<Status>());
-    let (slot_of, sign_bits) = (slot_of.read::<u32>(), sign_bits.read::<u32>());
-    let counts = vertex_counts.write::<u32>().par_iter_mut().zip(triangle_counts.write::<u32>());
-    let outputs = rows.write::<UVec2>().par_chunks_exact_mut(ROWS).zip(counts);
-    let blocks = list.read::<u32>()[..status.blocks as usize].par_iter().zip(outputs).with_min_len(16);
+pub(super) fn count(buffers: CountBindings<'_>) {
+    let CountBindings { lattice, status, block_list, block_slot, signs: sign_bits, rows, .. } = buffers;
+    let counts = buffers.vertex_counts.par_iter_mut().zip(buffers.triangle_counts);
+    let outputs = rows.par_chunks_exact_mut(ROWS).zip(counts);
+    let blocks = block_list[..status.blocks as usize].par_iter().zip(outputs).with_min_len(16);
     blocks.for_each(|(&block, (rows, (vertex_count, triangle_count)))| {
-        let slots = upper_slots(&lattice, slot_of, lattice.block_place(block));
-        let signs = signs(&slots, |row| sign_bits[row]);
+        let slots = halo::upper_slots(lattice, block_slot, lattice.block_place(block));
+        let signs = halo::signs(&slots, |row| sign_bits[row]);
         (*vertex_count, *triangle_count) = (0, 0);
-        if is_uniform(&signs) {
+        if halo::is_uniform(&signs) {
             rows.fill(UVec2::new(signs[0][0] << 24, 0));
             return;
         }
@@ -35,7 +31,8 @@ pub(super) fn count(_: CpuWork, slots: &mut [Slot<'_>]) {
             // A row of cells whose four lines of nodes have equal signs has no triangles.
             let others = [signs[z][y + 1], signs[z + 1][y], signs[z + 1][y + 1]];
             if (here != 0 && here != 0x1ff) || others.iter().any(|&other| other != here) {
-                *triangle_count += (0..8).map(|x| u32::from(COUNTS[cell_case(&signs, x, y, z)])).sum::<u32>();
+                *triangle_count +=
+                    (0..8).map(|x| u32::from(COUNTS[halo::cell_case(&signs, x, y, z)])).sum::<u32>();
             }
         }
     });

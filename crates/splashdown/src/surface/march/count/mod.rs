@@ -7,10 +7,25 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, SIGNS, SLOTS, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `count.wgsl`.
+    pub(super) struct CountBindings {
+        lattice: uniform Lattice,
+        status: read Status,
+        block_list: read [u32],
+        block_slot: read [u32],
+        signs: read [u32],
+        cases: read [UVec2],
+        rows: write [UVec2],
+        vertex_counts: write [u32],
+        triangle_counts: write [u32],
+    }
+}
 
 pub(crate) static COUNT: PassDesc = PassDesc {
     label: "surface.count",
@@ -19,16 +34,6 @@ pub(crate) static COUNT: PassDesc = PassDesc {
     entry: "count",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<Status>("status"),
-        read::<u32>("block_list"),
-        read::<u32>("block_slot"),
-        read::<u32>("signs"),
-        read::<UVec2>("cases"),
-        write::<UVec2>("rows"),
-        write::<u32>("vertex_counts"),
-        write::<u32>("triangle_counts"),
-    ],
-    cpu: cpu::count,
+    bindings: CountBindings::LIST,
+    cpu: |_, slots| cpu::count(slots.into()),
 };

@@ -1,20 +1,14 @@
-use splashdown_gpu::{CpuWork, Slot, dispatch_groups};
+use splashdown_gpu::dispatch_groups;
 
-use crate::surface::params::{Lattice, Status};
+use super::FinishBindings;
 
-pub(super) fn finish(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, vertex_starts, triangle_starts, status, draw_args, vertex_groups, triangle_groups] = slots
-    else {
-        unreachable!()
-    };
-    let lattice = lattice.get::<Lattice>();
-    let total = |starts: &Slot<'_>| starts.read::<u32>()[lattice.block_capacity as usize];
-    let status = &mut status.write::<Status>()[0];
-    status.vertices_needed = total(vertex_starts);
-    status.triangles_needed = total(triangle_starts);
+pub(super) fn finish(buffers: FinishBindings<'_>) {
+    let FinishBindings { lattice, vertex_starts, triangle_starts, status, .. } = buffers;
+    status.vertices_needed = vertex_starts[lattice.block_capacity as usize];
+    status.triangles_needed = triangle_starts[lattice.block_capacity as usize];
     status.vertices = status.vertices_needed.min(lattice.vertex_capacity);
     status.triangles = status.triangles_needed.min(lattice.triangle_capacity);
-    draw_args.write::<u32>()[..5].copy_from_slice(&[3 * status.triangles, 1, 0, 0, 0]);
-    vertex_groups.write::<u32>()[..3].copy_from_slice(&dispatch_groups(status.vertices.div_ceil(64)));
-    triangle_groups.write::<u32>()[..3].copy_from_slice(&dispatch_groups(status.triangles.div_ceil(64)));
+    buffers.draw_args[..5].copy_from_slice(&[3 * status.triangles, 1, 0, 0, 0]);
+    buffers.vertex_groups[..3].copy_from_slice(&dispatch_groups(status.vertices.div_ceil(64)));
+    buffers.triangle_groups[..3].copy_from_slice(&dispatch_groups(status.triangles.div_ceil(64)));
 }

@@ -1,13 +1,7 @@
 #import gpu/index
 #import surface/lattice
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<storage, read> vertex_starts: array<u32>;
-@group(0) @binding(2) var<storage, read> triangle_starts: array<u32>;
-@group(0) @binding(3) var<storage, read_write> status: Status;
-@group(0) @binding(4) var<storage, read_write> draw_args: array<u32>;
-@group(0) @binding(5) var<storage, read_write> vertex_groups: array<u32>;
-@group(0) @binding(6) var<storage, read_write> triangle_groups: array<u32>;
+#bindings
 
 @compute @workgroup_size(1)
 fn finish() {

@@ -3,10 +3,23 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `finish.wgsl`.
+    pub(super) struct FinishBindings {
+        lattice: uniform Lattice,
+        vertex_starts: read [u32],
+        triangle_starts: read [u32],
+        status: write Status,
+        draw_args: write [u32],
+        vertex_groups: write [u32],
+        triangle_groups: write [u32],
+    }
+}
 
 pub(crate) static FINISH: PassDesc = PassDesc {
     label: "surface.finish",
@@ -15,14 +28,6 @@ pub(crate) static FINISH: PassDesc = PassDesc {
     entry: "finish",
     workgroup_size: [1, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<u32>("vertex_starts"),
-        read::<u32>("triangle_starts"),
-        write::<Status>("status"),
-        write::<u32>("draw_args"),
-        write::<u32>("vertex_groups"),
-        write::<u32>("triangle_groups"),
-    ],
-    cpu: cpu::finish,
+    bindings: FinishBindings::LIST,
+    cpu: |_, slots| cpu::finish(slots.into()),
 };

@@ -1,32 +1,26 @@
 use glam::UVec2;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use super::super::halo::{cell_case, signs, upper_slots};
+use super::super::halo;
+use super::TrianglesBindings;
 use crate::marching_cubes;
-use crate::surface::params::{Lattice, NONE, Status};
+use crate::surface::params::NONE;
 use crate::surface::parts::by_starts;
 
-pub(super) fn triangles(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, status, list, slot_of, rows, _, vertex_starts, triangle_starts, indices] = slots else {
-        unreachable!()
-    };
-    let (lattice, status) = (lattice.get::<Lattice>(), status.get::<Status>());
-    let blocks = status.blocks as usize;
-    let (list, slot_of) = (list.read::<u32>(), slot_of.read::<u32>());
-    let (rows, vertex_starts) = (rows.read::<UVec2>(), vertex_starts.read::<u32>());
-    let triangles = indices.write::<u32>().as_chunks_mut::<3>().0;
-    let outputs = by_starts(triangles, &triangle_starts.read::<u32>()[..=blocks]);
+pub(super) fn triangles(buffers: TrianglesBindings<'_>) {
+    let TrianglesBindings { lattice, status, block_list, block_slot, rows, vertex_starts, .. } = buffers;
+    let triangles = buffers.indices.as_chunks_mut::<3>().0;
+    let outputs = by_starts(triangles, &buffers.triangle_starts[..=status.blocks as usize]);
     let outputs: Vec<_> =
         outputs.into_iter().enumerate().filter(|(_, triangles)| !triangles.is_empty()).collect();
     outputs.into_par_iter().for_each(|(slot, triangles)| {
-        let slots = upper_slots(&lattice, slot_of, lattice.block_place(list[slot]));
-        let signs = signs(&slots, |row| rows[row].x >> 24);
+        let slots = halo::upper_slots(lattice, block_slot, lattice.block_place(block_list[slot]));
+        let signs = halo::signs(&slots, |row| rows[row].x >> 24);
         let vertices = Vertices { slots, rows, starts: vertex_starts };
         let mut triangles = triangles.iter_mut();
         for cell in 0..512 {
             let (x, y, z) = (cell & 7, cell >> 3 & 7, cell >> 6);
-            for edges in &marching_cubes::TRIANGLES[cell_case(&signs, x, y, z)] {
+            for edges in &marching_cubes::TRIANGLES[halo::cell_case(&signs, x, y, z)] {
                 let corners = edges.map(|edge| vertices.number([x, y, z], edge));
                 // The capacity is too small: the remaining triangles are omitted, which the status
                 // reports.

@@ -6,10 +6,25 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, SIGNS, SLOTS, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `triangles.wgsl`.
+    pub(super) struct TrianglesBindings {
+        lattice: uniform Lattice,
+        status: read Status,
+        block_list: read [u32],
+        block_slot: read [u32],
+        rows: read [UVec2],
+        cases: read [UVec2],
+        vertex_starts: read [u32],
+        triangle_starts: read [u32],
+        indices: write [u32],
+    }
+}
 
 pub(crate) static TRIANGLES: PassDesc = PassDesc {
     label: "surface.triangles",
@@ -18,16 +33,6 @@ pub(crate) static TRIANGLES: PassDesc = PassDesc {
     entry: "triangles",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<Status>("status"),
-        read::<u32>("block_list"),
-        read::<u32>("block_slot"),
-        read::<UVec2>("rows"),
-        read::<UVec2>("cases"),
-        read::<u32>("vertex_starts"),
-        read::<u32>("triangle_starts"),
-        write::<u32>("indices"),
-    ],
-    cpu: cpu::triangles,
+    bindings: TrianglesBindings::LIST,
+    cpu: |_, slots| cpu::triangles(slots.into()),
 };

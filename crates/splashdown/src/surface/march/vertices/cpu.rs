@@ -1,8 +1,8 @@
-use glam::{UVec2, Vec3, Vec4};
+use glam::Vec3;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use crate::surface::params::{Lattice, NODES, NONE, SIDE, Status};
+use super::VerticesBindings;
+use crate::surface::params::{Lattice, NODES, NONE, SIDE};
 use crate::surface::parts::by_starts;
 
 const N: usize = SIDE as usize;
@@ -10,31 +10,25 @@ const N: usize = SIDE as usize;
 /// edges.
 const WIDE: usize = N + 3;
 
-pub(super) fn vertices(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, status, list, slot_of, values, rows, starts, positions, normals] = slots else {
-        unreachable!()
-    };
-    let (lattice, status) = (lattice.get::<Lattice>(), status.get::<Status>());
-    let blocks = status.blocks as usize;
-    let (slot_of, values, rows) = (slot_of.read::<u32>(), values.read::<f32>(), rows.read::<UVec2>());
-    let starts = &starts.read::<u32>()[..=blocks];
-    let positions = by_starts(positions.write::<Vec4>(), starts);
-    let normals = by_starts(normals.write::<Vec4>(), starts);
+pub(super) fn vertices(buffers: VerticesBindings<'_>) {
+    let VerticesBindings { lattice, block_list, block_slot, field_values, rows, .. } = buffers;
+    let starts = &buffers.vertex_starts[..=buffers.status.blocks as usize];
+    let positions = by_starts(buffers.vertex_positions, starts);
+    let normals = by_starts(buffers.normals, starts);
     let outputs =
         positions.into_iter().zip(normals).enumerate().filter(|(_, (positions, _))| !positions.is_empty());
     let outputs: Vec<_> = outputs.collect();
-    let list = list.read::<u32>();
     outputs.into_par_iter().for_each_init(
         || vec![0.0; WIDE * WIDE * WIDE],
         |wide, (slot, (positions, normals))| {
-            let place = lattice.block_place(list[slot]);
-            widen(&lattice, slot_of, values, place, wide);
+            let place = lattice.block_place(block_list[slot]);
+            widen(lattice, block_slot, field_values, place, wide);
             let edges = rows[slot * N * N..][..N * N].iter().enumerate().flat_map(|(row, data)| {
                 (0..24).filter(move |edge| data.x >> edge & 1 == 1).map(move |edge| (row, edge))
             });
             for (((row, edge), position), normal) in edges.zip(positions).zip(normals) {
                 let local = [edge & 7, row & 7, row >> 3];
-                let (at, outwards) = vertex(&lattice, wide, place, local, edge >> 3);
+                let (at, outwards) = vertex(lattice, wide, place, local, edge >> 3);
                 *position = at.extend(0.0);
                 *normal = outwards.extend(0.0);
             }

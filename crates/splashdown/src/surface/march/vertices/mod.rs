@@ -8,10 +8,25 @@
 mod cpu;
 
 use glam::{UVec2, Vec4};
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::{LATTICE, SLOTS, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `vertices.wgsl`.
+    pub(super) struct VerticesBindings {
+        lattice: uniform Lattice,
+        status: read Status,
+        block_list: read [u32],
+        block_slot: read [u32],
+        field_values: read [f32],
+        rows: read [UVec2],
+        vertex_starts: read [u32],
+        vertex_positions: write [Vec4],
+        normals: write [Vec4],
+    }
+}
 
 pub(crate) static VERTICES: PassDesc = PassDesc {
     label: "surface.vertices",
@@ -20,16 +35,6 @@ pub(crate) static VERTICES: PassDesc = PassDesc {
     entry: "vertices",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        read::<Status>("status"),
-        read::<u32>("block_list"),
-        read::<u32>("block_slot"),
-        read::<f32>("values"),
-        read::<UVec2>("rows"),
-        read::<u32>("vertex_starts"),
-        write::<Vec4>("positions"),
-        write::<Vec4>("normals"),
-    ],
-    cpu: cpu::vertices,
+    bindings: VerticesBindings::LIST,
+    cpu: |_, slots| cpu::vertices(slots.into()),
 };

@@ -2,15 +2,7 @@
 #import surface/lattice
 #import surface/slots
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> block_list: array<u32>;
-@group(0) @binding(3) var<storage, read> block_slot: array<u32>;
-@group(0) @binding(4) var<storage, read> values: array<f32>;
-@group(0) @binding(5) var<storage, read> rows: array<vec2<u32>>;
-@group(0) @binding(6) var<storage, read> vertex_starts: array<u32>;
-@group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
-@group(0) @binding(8) var<storage, read_write> normals: array<vec4<f32>>;
+#bindings
 
 // The value at a node of the lattice; zero in blocks that are not marked.
 fn value(node: vec3<i32>) -> f32 {
@@ -19,7 +11,7 @@ fn value(node: vec3<i32>) -> f32 {
         return 0.0;
     }
     let local = vec3<u32>(node & vec3<i32>(7));
-    return values[(slot * 64u + local.z * 8u + local.y) * 8u + local.x];
+    return field_values[(slot * 64u + local.z * 8u + local.y) * 8u + local.x];
 }
 
 // A loop instead of six terms: browsers that inline every call took minutes to compile the latter.
@@ -64,7 +56,7 @@ fn vertices(
             // The gradient is zero: use the direction from the inside end to the outside end.
             outwards = select(-along, along, a > b);
         }
-        positions[number] = vec4<f32>(node_position(node) + along * (t * lattice.cell_size), 0.0);
+        vertex_positions[number] = vec4<f32>(node_position(node) + along * (t * lattice.cell_size), 0.0);
         normals[number] = vec4<f32>(outwards, 0.0);
         number++;
     }

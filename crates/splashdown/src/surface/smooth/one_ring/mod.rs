@@ -4,10 +4,21 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::STATUS;
 use crate::surface::params::Status;
+
+bindings! {
+    /// The buffers of `one_ring.wgsl`.
+    pub(super) struct OneRingBindings {
+        status: read Status,
+        indices: read [u32],
+        one_ring_starts: read [u32],
+        valences: atomic [u32],
+        one_rings: write [UVec2],
+    }
+}
 
 pub(crate) static ONE_RING: PassDesc = PassDesc {
     label: "surface.one_ring",
@@ -16,12 +27,6 @@ pub(crate) static ONE_RING: PassDesc = PassDesc {
     entry: "one_ring",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        read::<Status>("status"),
-        read::<u32>("indices"),
-        read::<u32>("one_ring_starts"),
-        write::<u32>("valences"),
-        write::<UVec2>("one_rings"),
-    ],
-    cpu: cpu::one_ring,
+    bindings: OneRingBindings::LIST,
+    cpu: |_, slots| cpu::one_ring(slots.into()),
 };

@@ -1,11 +1,7 @@
 #import gpu/index
 #import surface/status
 
-@group(0) @binding(0) var<storage, read> status: Status;
-@group(0) @binding(1) var<storage, read> indices: array<u32>;
-@group(0) @binding(2) var<storage, read> one_ring_starts: array<u32>;
-@group(0) @binding(3) var<storage, read_write> valences: array<atomic<u32>>;
-@group(0) @binding(4) var<storage, read_write> one_rings: array<vec2<u32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn one_ring(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {

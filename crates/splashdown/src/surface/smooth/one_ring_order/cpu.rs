@@ -1,19 +1,17 @@
-use glam::UVec2;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use crate::surface::params::Status;
+use super::OneRingOrderBindings;
 use crate::surface::parts::by_starts;
 
 /// Vertices per task.
 const CHUNK: usize = 4096;
 
-pub(super) fn one_ring_order(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [status, starts, one_rings] = slots else { unreachable!() };
-    let starts = &starts.read::<u32>()[..=status.get::<Status>().vertices as usize];
+pub(super) fn one_ring_order(buffers: OneRingOrderBindings<'_>) {
+    let OneRingOrderBindings { status, one_ring_starts, one_rings } = buffers;
+    let starts = &one_ring_starts[..=status.vertices as usize];
     let mut borders: Vec<u32> = starts.iter().step_by(CHUNK).copied().collect();
     borders.push(starts[starts.len() - 1]);
-    let pieces = by_starts(one_rings.write::<UVec2>(), &borders);
+    let pieces = by_starts(one_rings, &borders);
     pieces.into_par_iter().enumerate().for_each(|(chunk, one_rings)| {
         let first = chunk * CHUNK;
         let starts = &starts[first.min(starts.len() - 1)..=(first + CHUNK).min(starts.len() - 1)];

@@ -3,10 +3,19 @@
 mod cpu;
 
 use glam::UVec2;
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::STATUS;
 use crate::surface::params::Status;
+
+bindings! {
+    /// The buffers of `one_ring_order.wgsl`.
+    pub(super) struct OneRingOrderBindings {
+        status: read Status,
+        one_ring_starts: read [u32],
+        one_rings: write [UVec2],
+    }
+}
 
 pub(crate) static ONE_RING_ORDER: PassDesc = PassDesc {
     label: "surface.one_ring_order",
@@ -15,6 +24,6 @@ pub(crate) static ONE_RING_ORDER: PassDesc = PassDesc {
     entry: "one_ring_order",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[read::<Status>("status"), read::<u32>("one_ring_starts"), write::<UVec2>("one_rings")],
-    cpu: cpu::one_ring_order,
+    bindings: OneRingOrderBindings::LIST,
+    cpu: |_, slots| cpu::one_ring_order(slots.into()),
 };

@@ -1,15 +1,13 @@
-use glam::{UVec2, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use crate::surface::params::Status;
+use super::RelaxBindings;
 
-pub(super) fn relax(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [status, starts, one_rings, before, after] = slots else { unreachable!() };
-    let vertices = status.get::<Status>().vertices as usize;
-    let (starts, one_rings) = (&starts.read::<u32>()[..=vertices], one_rings.read::<UVec2>());
-    let before = before.read::<Vec4>();
-    let after = &mut after.write::<Vec4>()[..vertices];
+pub(super) fn relax(buffers: RelaxBindings<'_>) {
+    let RelaxBindings { status, one_ring_starts, one_rings, before, after } = buffers;
+    let vertices = status.vertices as usize;
+    let starts = &one_ring_starts[..=vertices];
+    let after = &mut after[..vertices];
     after.par_iter_mut().zip(starts.par_windows(2)).with_min_len(2048).enumerate().for_each(
         |(vertex, (after, range))| {
             let own = before[vertex];

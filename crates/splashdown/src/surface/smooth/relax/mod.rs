@@ -3,10 +3,21 @@
 mod cpu;
 
 use glam::{UVec2, Vec4};
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::STATUS;
 use crate::surface::params::Status;
+
+bindings! {
+    /// The buffers of `relax.wgsl`.
+    pub(super) struct RelaxBindings {
+        status: read Status,
+        one_ring_starts: read [u32],
+        one_rings: read [UVec2],
+        before: read [Vec4],
+        after: write [Vec4],
+    }
+}
 
 pub(crate) static RELAX: PassDesc = PassDesc {
     label: "surface.relax",
@@ -15,12 +26,6 @@ pub(crate) static RELAX: PassDesc = PassDesc {
     entry: "relax",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        read::<Status>("status"),
-        read::<u32>("one_ring_starts"),
-        read::<UVec2>("one_rings"),
-        read::<Vec4>("before"),
-        write::<Vec4>("after"),
-    ],
-    cpu: cpu::relax,
+    bindings: RelaxBindings::LIST,
+    cpu: |_, slots| cpu::relax(slots.into()),
 };

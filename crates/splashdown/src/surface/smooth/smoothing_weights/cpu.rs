@@ -1,24 +1,18 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use splashdown_gpu::{CpuWork, Slot};
 
+use super::SmoothingWeightsBindings;
 use crate::kernel::{CubicSpline, Kernel};
 use crate::pairs::{self, PointSum, Sorted, difference, dot};
 use crate::simd::Register;
-use crate::surface::params::{Lattice, Status};
 
-pub(super) fn smoothing_weights(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [lattice, grid, status, starts, cell_start, samples, local_density, positions] = slots else {
-        unreachable!()
-    };
-    let (lattice, grid) = (lattice.get::<Lattice>(), grid.get());
-    let blocks = status.get::<Status>().blocks as usize;
-    let positions = positions.write::<Vec4>();
-    let vertices = (starts.read::<u32>()[blocks] as usize).min(positions.len());
+pub(super) fn smoothing_weights(buffers: SmoothingWeightsBindings<'_>) {
+    let SmoothingWeightsBindings { lattice, samples, local_density, vertex_positions: positions, .. } =
+        buffers;
+    let vertices = buffers.vertex_starts[buffers.status.blocks as usize] as usize;
+    let vertices = vertices.min(positions.len());
     let points: Vec<Vec3> = positions[..vertices].iter().map(|vertex| vertex.xyz()).collect();
-    let samples = samples.read();
-    let sorted = Sorted::new(lattice.support_radius, &grid, cell_start.read(), samples);
-    let pass =
-        Density { samples, local_density: local_density.read(), inverse_support: lattice.inverse_support };
+    let sorted = Sorted::new(lattice.support_radius, buffers.grid, buffers.cell_start, samples);
+    let pass = Density { samples, local_density, inverse_support: lattice.inverse_support };
     let sums = pairs::sums_at(sorted, &points, &pass);
     for (vertex, [sum, total]) in positions.iter_mut().zip(sums) {
         // Total is zero at a vertex beyond the reach of all particles, on a very long edge: it does

@@ -4,12 +4,26 @@
 mod cpu;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, read, uniform, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::cells::Grid;
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::surface::modules::{CANDIDATES, GRID, LATTICE, STATUS};
 use crate::surface::params::{Lattice, Status};
+
+bindings! {
+    /// The buffers of `smoothing_weights.wgsl`.
+    pub(super) struct SmoothingWeightsBindings {
+        lattice: uniform Lattice,
+        grid: uniform Grid,
+        status: read Status,
+        vertex_starts: read [u32],
+        cell_start: read [u32],
+        samples: read [Vec4],
+        local_density: read [f32],
+        vertex_positions: write [Vec4],
+    }
+}
 
 pub(crate) static SMOOTHING_WEIGHTS: PassDesc = PassDesc {
     label: "surface.smoothing_weights",
@@ -18,15 +32,6 @@ pub(crate) static SMOOTHING_WEIGHTS: PassDesc = PassDesc {
     entry: "smoothing_weights",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    bindings: &[
-        uniform::<Lattice>("lattice"),
-        uniform::<Grid>("grid"),
-        read::<Status>("status"),
-        read::<u32>("vertex_starts"),
-        read::<u32>("cell_start"),
-        read::<Vec4>("samples"),
-        read::<f32>("local_density"),
-        write::<Vec4>("positions"),
-    ],
-    cpu: cpu::smoothing_weights,
+    bindings: SmoothingWeightsBindings::LIST,
+    cpu: |_, slots| cpu::smoothing_weights(slots.into()),
 };

@@ -4,14 +4,7 @@
 #import sph/kernel
 #import surface/candidates
 
-@group(0) @binding(0) var<uniform> lattice: Lattice;
-@group(0) @binding(1) var<uniform> grid: Grid;
-@group(0) @binding(2) var<storage, read> status: Status;
-@group(0) @binding(3) var<storage, read> vertex_starts: array<u32>;
-@group(0) @binding(4) var<storage, read> cell_start: array<u32>;
-@group(0) @binding(5) var<storage, read> samples: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> local_density: array<f32>;
-@group(0) @binding(7) var<storage, read_write> positions: array<vec4<f32>>;
+#bindings
 
 fn smoothing_weight(p: vec3<f32>, cells: CellRange) -> f32 {
     let support2 = lattice.support_radius * lattice.support_radius;
@@ -52,7 +45,7 @@ fn smoothing_weights(
     let end = min(vertex_starts[slot + 1u], lattice.vertex_capacity);
     let reach = vec3<f32>(lattice.support_radius);
     for (var v = vertex_starts[slot] + local; v < end; v += 64u) {
-        let p = positions[v].xyz;
-        positions[v].w = smoothing_weight(p, cell_range(p - reach, p + reach));
+        let p = vertex_positions[v].xyz;
+        vertex_positions[v].w = smoothing_weight(p, cell_range(p - reach, p + reach));
     }
 }

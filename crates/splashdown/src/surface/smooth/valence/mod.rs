@@ -2,10 +2,19 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::STATUS;
 use crate::surface::params::Status;
+
+bindings! {
+    /// The buffers of `valence.wgsl`.
+    pub(super) struct ValenceBindings {
+        status: read Status,
+        indices: read [u32],
+        valences: atomic [u32],
+    }
+}
 
 pub(crate) static VALENCE: PassDesc = PassDesc {
     label: "surface.valence",
@@ -14,6 +23,6 @@ pub(crate) static VALENCE: PassDesc = PassDesc {
     entry: "valence",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[read::<Status>("status"), read::<u32>("indices"), write::<u32>("valences")],
-    cpu: cpu::valence,
+    bindings: ValenceBindings::LIST,
+    cpu: |_, slots| cpu::valence(slots.into()),
 };

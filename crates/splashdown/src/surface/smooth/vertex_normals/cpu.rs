@@ -1,15 +1,14 @@
-use glam::{UVec2, Vec3, Vec4};
+use glam::Vec3;
 use rayon::prelude::*;
-use splashdown_gpu::{CpuWork, Slot};
 
-use crate::surface::params::Status;
+use super::VertexNormalsBindings;
 
-pub(super) fn vertex_normals(_: CpuWork, slots: &mut [Slot<'_>]) {
-    let [status, starts, one_rings, positions, normals] = slots else { unreachable!() };
-    let vertices = status.get::<Status>().vertices as usize;
-    let (starts, one_rings) = (&starts.read::<u32>()[..=vertices], one_rings.read::<UVec2>());
-    let positions = positions.read::<Vec4>();
-    let normals = normals.write::<Vec4>()[..vertices].par_iter_mut();
+pub(super) fn vertex_normals(buffers: VertexNormalsBindings<'_>) {
+    let VertexNormalsBindings { status, one_ring_starts, one_rings, vertex_positions: positions, normals } =
+        buffers;
+    let vertices = status.vertices as usize;
+    let starts = &one_ring_starts[..=vertices];
+    let normals = normals[..vertices].par_iter_mut();
     normals.zip(starts.par_windows(2)).with_min_len(2048).enumerate().for_each(
         |(vertex, (normal, range))| {
             let own = positions[vertex].truncate();

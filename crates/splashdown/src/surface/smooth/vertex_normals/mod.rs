@@ -3,10 +3,21 @@
 mod cpu;
 
 use glam::{UVec2, Vec4};
-use splashdown_gpu::{PassDesc, read, wgsl, write};
+use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::surface::modules::STATUS;
 use crate::surface::params::Status;
+
+bindings! {
+    /// The buffers of `vertex_normals.wgsl`.
+    pub(super) struct VertexNormalsBindings {
+        status: read Status,
+        one_ring_starts: read [u32],
+        one_rings: read [UVec2],
+        vertex_positions: read [Vec4],
+        normals: write [Vec4],
+    }
+}
 
 pub(crate) static VERTEX_NORMALS: PassDesc = PassDesc {
     label: "surface.vertex_normals",
@@ -15,12 +26,6 @@ pub(crate) static VERTEX_NORMALS: PassDesc = PassDesc {
     entry: "vertex_normals",
     workgroup_size: [64, 1, 1],
     constants: &[],
-    bindings: &[
-        read::<Status>("status"),
-        read::<u32>("one_ring_starts"),
-        read::<UVec2>("one_rings"),
-        read::<Vec4>("positions"),
-        write::<Vec4>("normals"),
-    ],
-    cpu: cpu::vertex_normals,
+    bindings: VertexNormalsBindings::LIST,
+    cpu: |_, slots| cpu::vertex_normals(slots.into()),
 };

@@ -1,11 +1,7 @@
 #import gpu/index
 #import surface/status
 
-@group(0) @binding(0) var<storage, read> status: Status;
-@group(0) @binding(1) var<storage, read> one_ring_starts: array<u32>;
-@group(0) @binding(2) var<storage, read> one_rings: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read_write> normals: array<vec4<f32>>;
+#bindings
 
 @compute @workgroup_size(64)
 fn vertex_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -13,11 +9,11 @@ fn vertex_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     if vertex >= status.vertices {
         return;
     }
-    let own = positions[vertex].xyz;
+    let own = vertex_positions[vertex].xyz;
     var sum = vec3<f32>(0.0);
     for (var i = one_ring_starts[vertex]; i < one_ring_starts[vertex + 1u]; i++) {
         let pair = one_rings[i];
-        sum += cross(positions[pair.x].xyz - own, positions[pair.y].xyz - own);
+        sum += cross(vertex_positions[pair.x].xyz - own, vertex_positions[pair.y].xyz - own);
     }
     // If the triangles have no area, the normal from the field remains.
     let scale = max(abs(sum.x), max(abs(sum.y), abs(sum.z)));
