@@ -1,8 +1,8 @@
 #import sph/step_counters
-// Who is in which cell: `cell_counts` holds the number of particles of every cell, the dead's behind the last one,
-// and then the cell of every particle. Needs `params`, `grid`, `cell_counts` and `counters`, both atomic.
+// `cell_counts` holds the number of particles of every cell, then the number of removed particles, then the cell of
+// every particle. Needs `params`, `grid`, and `cell_counts` and `counters`, both atomic.
 
-// The numbers of all cells are zero where counting begins: the sort before has taken every particle off them again.
+// All counts are zero before counting: the previous sort has decremented them.
 fn count_particle(i: u32, cell: u32) {
     atomicStore(&cell_counts[grid.cell_count + 1u + i], cell);
     atomicAdd(&cell_counts[cell], 1u);

@@ -7,12 +7,12 @@ use splashdown_gpu::{WgslModule, gpu_struct};
 pub const WGSL: WgslModule = WgslModule { name: "sph/grid", source: include_str!("grid.wgsl") };
 
 gpu_struct! {
-    /// Cells of equal edges over the domain, with one ghost cell on every side that holds no particle, so that all 27
-    /// cells round any particle exist. Cell number = (z * size_y + y) * size_x + x, x fastest.
+    /// Cubic cells over the domain, with a layer of empty ghost cells on every side, so that all 27 cells around any
+    /// particle exist. Cell number = (z * size_y + y) * size_x + x, x fastest.
     pub struct Grid {
         /// Lower corner of the first ghost cell in metres.
         origin: Vec3,
-        /// Edge of a cell in metres, a little more than the support radius.
+        /// Edge of a cell in metres, slightly larger than the support radius.
         cell_size: f32,
         /// Cells along x, ghosts included.
         size_x: u32,
@@ -25,7 +25,8 @@ gpu_struct! {
     }
 }
 
-/// Rounding may put two particles that are one support apart two cells apart; a slightly larger cell forbids it.
+/// Rounding may place two particles that are one support radius apart two cells apart; a slightly larger cell prevents
+/// it.
 const SLACK: f32 = 1.0001;
 
 impl Grid {
@@ -44,7 +45,7 @@ impl Grid {
         })
     }
 
-    /// The cell of a point; points outside are put into the nearest cell that is no ghost.
+    /// The cell of a point; for points outside, the nearest cell that is not a ghost.
     #[inline]
     pub fn cell_of(&self, x: Vec3) -> u32 {
         let at = (x - self.origin) / self.cell_size;

@@ -8,7 +8,7 @@ struct Grid {
     cell_count: u32,
 }
 
-// Points outside are put into the nearest cell that is no ghost.
+// The cell of a point; for points outside, the nearest cell that is not a ghost.
 fn cell_of(x: vec3<f32>) -> u32 {
     let at = vec3<i32>((x - grid.origin) / grid.cell_size);
     let c = vec3<u32>(clamp(at, vec3(1), vec3(i32(grid.size_x), i32(grid.size_y), i32(grid.size_z)) - 2));

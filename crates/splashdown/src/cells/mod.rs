@@ -1,14 +1,14 @@
 //! Neighbour search: particles sorted by the cells of a uniform grid.
 //!
-//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, prefix sum, scatter their
-//! numbers; then copy them, each cell's few in order of id, so that the result does not depend on the order of
-//! the invocations. The pass that moves particles counts them for the next step's sort; only where nothing
-//! moved before does a pass of its own. x runs fastest in the numbers of the cells, so that the 27 cells round
-//! a particle are nine contiguous runs of particles (Dominguez et al. 2011). The thesis's bitonic sort is there
-//! as a second way with the same result.
+//! *How it works.* Counting sort (Hoetzlein 2014): count the particles of every cell, compute the prefix sum, scatter
+//! the indices of the particles. Then the particles are copied, within a cell in the order of their ids, so that the
+//! result does not depend on the order of the invocations. The integration counts the particles for the sort of the
+//! next step; a separate pass counts them where no integration precedes. x is the fastest index of the cells, so that
+//! the 27 cells around a particle form nine contiguous ranges of particles (Dominguez et al. 2011). The bitonic sort of
+//! the thesis is an alternative with the same result.
 //!
-//! *Why not* a hash: the domain is a box, and its dense grid is one look-up. *Why not* a radix sort: a counting sort is
-//! one, of a single digit.
+//! *Why not* a hash: the domain is a box, and a dense grid needs one look-up. *Why not* a radix sort: a counting sort is
+//! a radix sort of a single digit.
 
 mod bounds;
 pub(crate) mod cell_counts;
@@ -30,13 +30,13 @@ use splashdown_gpu::{
 
 use crate::state::{Fields, end_step};
 
-/// `row_range`: how the GPU visits neighbours.
+/// `row_range`: traversal of neighbours on the GPU.
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
 
-/// How particles are sorted into cells. The results are the same.
+/// The algorithm that sorts particles into cells. All give the same result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {
-    /// Counting sort: a histogram, a scan, a scatter.
+    /// Counting sort: histogram, scan, scatter.
     Counting,
     /// Bitonic sort.
     Bitonic,
@@ -53,30 +53,30 @@ pub struct Cells {
     pub grid: Grid,
     /// The grid as a uniform.
     pub grid_uniform: Buffer<Grid>,
-    /// Where every cell's particles begin in the sorted arrays: one entry per cell; then one for the dead, which is the
-    /// number of the living; then the number of all.
+    /// The begin of every cell's particles in the sorted arrays, one entry per cell. Then the begin of the removed
+    /// particles, which is the number of active ones; then the number of all particles.
     pub cell_start: Buffer<u32>,
-    /// How many particles every cell has, one entry per cell and one for the dead; then the cell of every particle.
+    /// The number of particles of every cell and of removed particles; then the cell of every particle.
     pub cell_counts: Buffer<u32>,
     particles: u32,
-    /// Id and number of the particles of every cell, in the order of their arrival.
+    /// Id and index of the particles of every cell, in the order of arrival.
     entries: Buffer<UVec2>,
-    way: Way,
+    sorter: Sorter,
 }
 
-enum Way {
+enum Sorter {
     Counting(Scan),
     Bitonic { sort: BitonicSort, pairs: Buffer<UVec2> },
 }
 
 impl Cells {
-    /// Makes the buffers for a grid and a number of particles.
+    /// Creates the buffers for a grid and a number of particles.
     ///
     /// # Errors
     /// As [`Executor::create`].
     pub fn new(executor: &mut Executor, grid: Grid, particles: u32, sort: Sort) -> Result<Self, GpuError> {
         let n = particles as usize;
-        // The dead have a cell behind the last.
+        // Removed particles have a cell behind the last.
         let cells = grid.cell_count + 1;
         Ok(Self {
             grid,
@@ -85,9 +85,9 @@ impl Cells {
             particles,
             cell_counts: executor.create("cell_counts", cells as usize + n)?,
             entries: executor.create("entries", n)?,
-            way: match sort {
-                Sort::Counting => Way::Counting(Scan::new(executor, cells)?),
-                Sort::Bitonic => Way::Bitonic {
+            sorter: match sort {
+                Sort::Counting => Sorter::Counting(Scan::new(executor, cells)?),
+                Sort::Bitonic => Sorter::Bitonic {
                     sort: BitonicSort::new(executor, particles)?,
                     pairs: executor.create("pairs", n)?,
                 },
@@ -99,7 +99,7 @@ impl Cells {
     pub fn buffers(&self) -> BufferSet {
         let mut buffers = buffer_set!(self => cell_start, cell_counts, entries);
         buffers.add("grid", self.grid_uniform);
-        if let Way::Bitonic { pairs, .. } = self.way {
+        if let Sorter::Bitonic { pairs, .. } = self.sorter {
             buffers.add("pairs", pairs);
         }
         buffers
@@ -112,22 +112,22 @@ impl Cells {
         self.record_count(recording, fields);
     }
 
-    /// Appends the count for the next step where the pass that moves particles does not count.
+    /// Appends the count for the next step, if the integration does not count.
     pub fn record_count(&self, recording: &mut Recording, fields: &Fields) {
         let buffers = fields.buffers().and(&self.buffers());
         recording.dispatch(&count::COUNT, self.all(), &buffers);
     }
 
-    /// Appends the sort of the persistent arrays, whose particles have been counted, into the sorted ones, ids
-    /// into `sorted_ids`; and ends the step before, if there is one.
+    /// Appends the sort of the persistent arrays, whose particles have been counted, into the sorted arrays, with the
+    /// ids into `sorted_ids`. It also ends the previous step, if that has not ended.
     pub fn record_sort(&self, recording: &mut Recording, fields: &Fields, sorted_ids: Buffer<u32>) {
         let buffers = fields.buffers().and(&self.buffers());
-        match &self.way {
-            Way::Counting(scan) => {
+        match &self.sorter {
+            Sorter::Counting(scan) => {
                 scan.record(recording, self.cell_counts, self.cell_start);
                 recording.dispatch(&scatter::SCATTER, self.all(), &buffers);
             }
-            Way::Bitonic { sort, pairs } => {
+            Sorter::Bitonic { sort, pairs } => {
                 recording.append(&end_step::record(fields));
                 recording.dispatch(&keys::KEYS, self.all(), &buffers);
                 sort.record(recording, *pairs);
@@ -137,7 +137,7 @@ impl Cells {
         recording.dispatch(&reorder::REORDER, self.all(), &buffers.with("sorted_ids", sorted_ids));
     }
 
-    /// An invocation per particle; one where there is none, so that steps end and time advances.
+    /// An invocation per particle, but at least one, so that steps end and time advances.
     fn all(&self) -> DispatchSize {
         DispatchSize::Items(self.particles.max(1))
     }

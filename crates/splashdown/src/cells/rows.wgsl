@@ -1,5 +1,5 @@
-// How the GPU visits neighbours: the 27 cells round a particle are nine rows (dy, dz) of three x-cells each, and a row
-// is contiguous in the sorted arrays. Needs `grid` and `cell_start`.
+// Traversal of neighbours on the GPU: the 27 cells around a particle form nine rows (dy, dz) of three cells along x, and
+// a row is contiguous in the sorted arrays. Needs `grid` and `cell_start`.
 fn row_range(cell: u32, row: u32) -> vec2<u32> {
     let dy = row % 3u;
     let dz = row / 3u;
@@ -7,6 +7,7 @@ fn row_range(cell: u32, row: u32) -> vec2<u32> {
     return vec2(cell_start[first], cell_start[first + 3u]);
 }
 
+// The number of active particles.
 fn living() -> u32 {
     return cell_start[grid.cell_count];
 }

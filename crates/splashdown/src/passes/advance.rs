@@ -1,4 +1,4 @@
-//! The motion of particles on the CPU, for all passes that move some.
+//! The integration of particles on the CPU, for all passes that integrate.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ pub const WGSL: WgslModule = WgslModule { name: "sph/advance", source: include_s
 /// Particles per task.
 const CHUNK: usize = 4096;
 
-/// The particles as a step's sort left them: positions, velocities, densities.
+/// The particles before the integration, in sorted order.
 #[derive(Clone, Copy)]
 pub(crate) struct Before<'a> {
     pub positions: &'a [Vec4],
@@ -23,7 +23,7 @@ pub(crate) struct Before<'a> {
     pub densities: &'a [Vec2],
 }
 
-/// Where they go.
+/// The output of the integration.
 pub(crate) struct Persistent<'a> {
     pub positions: &'a mut [Vec4],
     pub velocities: &'a mut [Vec4],
@@ -31,8 +31,8 @@ pub(crate) struct Persistent<'a> {
     pub cell_counts: &'a mut [u32],
 }
 
-/// Moves all particles, and counts them for the next step if `counts`. The acceleration of a particle is that
-/// of its number, and of what stands at its place in the persistent velocities.
+/// Integrates all particles, and counts them for the next step if `counts`. `acceleration` is called with the index of a
+/// particle and the value at this index of the persistent velocities.
 pub(crate) fn advance_all(
     (params, grid, state): (&Params, &Grid, &StepState),
     sorted: Before<'_>,
@@ -42,10 +42,10 @@ pub(crate) fn advance_all(
 ) {
     let n = state.run_count as usize;
     let mover = Mover::new(params, grid, state.dt);
-    // After the last step of a frame there is no next one to count for.
+    // After the last step of a frame no step follows that needs the count.
     let counting = counts && !state.is_last_step();
     let (counts, cells) = cell_counts::split(grid, persistent.cell_counts);
-    let found: Vec<Found> = sorted.positions[..n]
+    let found: Vec<ChunkCounters> = sorted.positions[..n]
         .par_chunks(CHUNK)
         .zip(sorted.velocities[..n].par_chunks(CHUNK))
         .zip(sorted.densities[..n].par_chunks(CHUNK))
@@ -54,7 +54,7 @@ pub(crate) fn advance_all(
         .zip(cells[..n].par_chunks_mut(CHUNK))
         .enumerate()
         .map(|(chunk, (((((p, v), density), new_p), new_v), cells))| {
-            let mut found = Found::default();
+            let mut found = ChunkCounters::default();
             let mut counter = CellCounter::new(counts);
             for k in 0..p.len() {
                 let a = acceleration(chunk * CHUNK + k, new_v[k]);
@@ -69,29 +69,29 @@ pub(crate) fn advance_all(
             found
         })
         .collect();
-    Found::tell(&found, params, persistent.counters);
+    ChunkCounters::add_all(&found, params, persistent.counters);
 }
 
-/// What a group of particles adds to the counters.
+/// The contribution of a chunk of particles to the counters.
 #[derive(Default)]
-struct Found {
+struct ChunkCounters {
     escaped: u32,
     non_finite: u32,
     corrections: u32,
     limited: u32,
-    /// Squares of speed and acceleration; density.
+    /// Maxima of the squares of speed and acceleration, and of the density.
     highest: [f32; 3],
 }
 
-impl Found {
-    /// Puts what all groups found into the counters, and that particles have moved.
-    fn tell(all: &[Self], params: &Params, counters: &mut [u32]) {
+impl ChunkCounters {
+    /// Adds the contributions of all chunks to the counters, and marks that particles have moved.
+    fn add_all(all: &[Self], params: &Params, counters: &mut [u32]) {
         for found in all {
             counters[StepCounters::ESCAPED] += found.escaped;
             counters[StepCounters::NON_FINITE] += found.non_finite;
             counters[StepCounters::CORRECTIONS] += found.corrections;
             counters[StepCounters::LIMITED] += found.limited;
-            // Roots and quotients rise with what is under them, so that they are taken of the highest alone.
+            // Roots and quotients are monotonic, so that they are computed of the maxima only.
             let [speed2, acceleration2, density] = found.highest;
             let excess = (density / params.rest_density - 1.0).max(0.0);
             for (k, value) in [speed2.sqrt(), acceleration2.sqrt(), excess].into_iter().enumerate() {
@@ -103,25 +103,25 @@ impl Found {
     }
 }
 
-/// What a particle is after a step.
+/// The state of a particle after a step.
 struct Moved {
     position: Vec4,
     velocity: Vec4,
     cell: u32,
 }
 
-/// The part of a spacing that a step covers at most.
+/// The largest distance that a particle moves per step, in spacings.
 const LONGEST: f32 = 0.5;
 
-/// Moves particles by one step.
+/// Integrates particles over one step.
 struct Mover<'a> {
     params: &'a Params,
     grid: &'a Grid,
     dt: f32,
-    /// The domain, without bounds where it is open.
+    /// The corners of the domain, infinite where it is open.
     low: Vec3,
     high: Vec3,
-    /// The box from which no side is met in one step.
+    /// The corners of the box from which no side can be reached in one step.
     inner: [Vec3; 2],
 }
 
@@ -133,9 +133,9 @@ impl<'a> Mover<'a> {
         Self { params, grid, dt, low, high, inner }
     }
 
-    /// Moves a particle, given its position, velocity, density in kg/m^3 and acceleration.
+    /// Integrates a particle, given its position, velocity, density in kg/m^3 and acceleration.
     #[inline]
-    fn advance(&self, (p, old, rho, a): (Vec4, Vec4, f32, Vec3), found: &mut Found) -> Moved {
+    fn advance(&self, (p, old, rho, a): (Vec4, Vec4, f32, Vec3), found: &mut ChunkCounters) -> Moved {
         let Self { params, grid, dt, low, high, inner } = *self;
         if p.w != 0.0 {
             return Moved { position: p, velocity: old, cell: grid.cell_count };
@@ -153,7 +153,7 @@ impl<'a> Mover<'a> {
             v = v.max(-(p - low - free).max(Vec3::ZERO) / dt).min((high - p - free).max(Vec3::ZERO) / dt);
         }
         let mut x = p + dt * v;
-        // `max` and `min` take the other operand of a NaN, so the sum of everything is asked, not only the result.
+        // `max` and `min` ignore a NaN operand, so the acceleration and the density are tested in addition to the result.
         if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
             found.non_finite += 1;
             return Moved {

@@ -1,9 +1,9 @@
 #import sph/cell_counts
 #import sph/boundary_law
-// The motion of one particle; needs `params`, `grid`, `state`, `positions`, `velocities`, `cell_counts` and `counters`,
+// The integration of one particle; needs `params`, `grid`, `state`, `positions`, `velocities`, `cell_counts` and `counters`,
 // the last two atomic. See passes/integrate.
 
-// Maxima of the workgroup by their bits: speed, acceleration, excess of density.
+// Maxima of the workgroup, as bits of floats: speed, acceleration, excess of density.
 var<workgroup> highest: array<atomic<u32>, 3>;
 
 fn begin_advance(local: u32) {
@@ -31,7 +31,7 @@ fn raise(k: u32, value: f32) {
     atomicMax(&highest[k], bitcast<u32>(value));
 }
 
-// Moves particle `i` and returns the cell where it is then.
+// Integrates particle `i` and returns its new cell.
 fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, rho: f32, a: vec3<f32>) -> u32 {
     if (p.w != 0.0) {
         positions[i] = p;
@@ -55,7 +55,7 @@ fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, rho: f32, a: vec3<f32>) -> u32 
         }
     }
     var x = p.xyz + dt * v;
-    // `max` and `min` may take the other operand of a NaN, so the acceleration is asked too.
+    // `max` and `min` may ignore a NaN operand, so the acceleration and the density are tested too.
     if (!is_finite(x) || !is_finite(a) || !is_finite(vec3(rho))) {
         positions[i] = vec4(p.xyz, DEAD_NON_FINITE);
         velocities[i] = vec4(0.0, 0.0, 0.0, params.rest_density);

@@ -1,7 +1,7 @@
 // The part FORCES of the acceleration of a particle by its neighbours, the walls and body forces; see
 // passes/acceleration. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
-// `densities`; a constant `HAS_TENSION`; and a function `tension_between`: what surface tension does between
-// particles i and j, d apart.
+// `densities`; a constant `HAS_TENSION`; and a function `tension_between`: the acceleration of particle i by surface
+// tension with particle j, where d is x_i - x_j.
 fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f32> {
     let rho = own.x;
     let pressure = own.y;
@@ -33,16 +33,17 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
             let g = kernel_g(q) * scale5;
             let other = densities[j];
             let vx = dot(v - sorted_velocities[j].xyz, d);
-            let rub = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-            let squeeze = mass * (specific + other.y / (other.x * other.x));
-            a += (g * (select(0.0, rub, (FORCES & OTHER_FORCES) != 0u) - select(0.0, squeeze, (FORCES & PRESSURE_FORCE) != 0u))) * d;
+            let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
+            let pressure_sum = mass * (specific + other.y / (other.x * other.x));
+            a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
+                - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
             if (tension) {
                 a += tension_between(i, j, d, q, rho, other.x);
             }
         }
     }
 
-    let push = params.rest_density * specific + pressure / params.rest_density;
-    a = wall_acceleration(wall_terms(x), v, body, a, push, state.dt);
+    let pressure_factor = params.rest_density * specific + pressure / params.rest_density;
+    a = wall_acceleration(wall_terms(x), v, body, a, pressure_factor, state.dt);
     return a + select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
 }

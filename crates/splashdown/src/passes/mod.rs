@@ -1,9 +1,10 @@
-//! The passes of a step, one folder each: equation and declaration (`mod.rs`), WGSL, and the CPU's way (`cpu.rs`).
+//! The passes of a step, one folder each: equation and declaration (`mod.rs`), WGSL, and the CPU implementation
+//! (`cpu.rs`).
 //!
-//! Particles rest in arrays "A" (`positions`, `velocities`, `ids`). A step sorts them by cell into arrays "B"
-//! (`sorted_*`), computes from B, and integrates back into A, so that a step needs no swap of buffers and one
-//! that has nothing to do leaves A untouched. The pass that moves particles counts them for the next step's
-//! sort, and that sort ends the step before it.
+//! Between steps the particles are stored in the persistent arrays (`positions`, `velocities`, `ids`). A step sorts them
+//! by cell into the sorted arrays (`sorted_*`), computes from these, and integrates back into the persistent arrays.
+//! So a step needs no swap of buffers, and a step after the end of a frame does not change the persistent arrays. The
+//! integration counts the particles for the sort of the next step, and that sort ends the step before it.
 
 pub mod acceleration;
 pub mod continuity;
@@ -20,7 +21,7 @@ pub use advance::WGSL as ADVANCE;
 
 use splashdown_gpu::{PassDesc, WgslModule};
 
-/// `acceleration_of`: all forces in one visit of the neighbours.
+/// `acceleration_of`: all forces in one loop over the neighbours.
 pub const FORCES: WgslModule = WgslModule { name: "sph/forces", source: include_str!("forces.wgsl") };
 
 /// The passes of this module.

@@ -1,4 +1,4 @@
-//! Counters of a step and the marks of dead particles.
+//! Counters of a step, and the marks of particles that are not active.
 
 use splashdown_gpu::WgslModule;
 
@@ -6,10 +6,10 @@ use splashdown_gpu::WgslModule;
 pub const WGSL: WgslModule =
     WgslModule { name: "sph/step_counters", source: include_str!("step_counters.wgsl") };
 
-/// Counters and maxima that passes raise atomically: the places of the words.
+/// The indices of the counters and maxima that passes update atomically.
 ///
-/// Maxima are of non-negative floats by their bits, whose order is that of the numbers, so the result does not depend
-/// on the order of the invocations.
+/// A maximum is stored as the bits of a non-negative float, whose order as integers is that of the numbers. So the
+/// result does not depend on the order of the invocations.
 pub struct StepCounters;
 
 impl StepCounters {
@@ -17,7 +17,7 @@ impl StepCounters {
     pub const ESCAPED: usize = 0;
     /// Particles that became NaN or infinite.
     pub const NON_FINITE: usize = 1;
-    /// Particles put back through a closed wall.
+    /// Particles moved back from behind a closed wall.
     pub const CORRECTIONS: usize = 2;
     /// Velocities limited to half a spacing per step.
     pub const LIMITED: usize = 3;
@@ -27,7 +27,7 @@ impl StepCounters {
     pub const MAX_ACCELERATION: usize = 5;
     /// Largest relative excess of density.
     pub const MAX_EXCESS: usize = 6;
-    /// Particles that went into sinks.
+    /// Particles removed by sinks.
     pub const DRAINED: usize = 7;
     /// 1 if particles have moved since the last step was [ended](super::end_step).
     pub const MOVED: usize = 8;
@@ -35,11 +35,11 @@ impl StepCounters {
     pub const WORDS: usize = 9;
 }
 
-/// Mark of a particle that left, in the fourth component of its position.
+/// Mark of a particle that left through an open side, in the fourth component of its position.
 pub const DEAD_ESCAPED: f32 = 1.0;
 /// Mark of a particle that became NaN or infinite.
 pub const DEAD_NON_FINITE: f32 = 2.0;
-/// Mark of a place that waits for a particle to be born.
+/// Mark of a particle that is not yet emitted.
 pub const DEAD_UNBORN: f32 = 3.0;
-/// Mark of a particle that went into a sink.
+/// Mark of a particle that a sink has removed.
 pub const DEAD_DRAINED: f32 = 4.0;

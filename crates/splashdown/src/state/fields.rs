@@ -6,43 +6,43 @@ use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
 use super::{Params, StepCounters, StepState};
 
-/// Every buffer that passes share, but for those of the sort. One entry per particle unless said otherwise.
+/// The buffers shared by all passes, except those of the sort. One entry per particle unless noted otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Fields {
     /// Constants; a uniform.
     pub params: Buffer<Params>,
-    /// What changes from step to step; one.
+    /// The state of the step; one entry.
     pub state: Buffer<StepState>,
-    /// Length of the frame to begin, in seconds; one.
+    /// Duration of the frame to begin, in seconds; one entry.
     pub duration: Buffer<f32>,
     /// Counters and maxima, [`StepCounters::WORDS`] words.
     pub counters: Buffer<u32>,
     /// Overlap of half-spaces; see [`boundary::wall_table`](crate::boundary::wall_table).
     pub wall_table: Buffer<Vec4>,
-    /// Persistent: position in metres, and 0 or why the particle is dead.
+    /// Persistent: position in metres; the fourth component is 0 for an active particle, else why it is not active.
     pub positions: Buffer<Vec4>,
     /// Persistent: velocity in m/s, and density in kg/m^3.
     pub velocities: Buffer<Vec4>,
-    /// Persistent: number of the particle since the start.
+    /// Persistent: the unique id of the particle.
     pub ids: Buffer<u32>,
     /// Sorted by cell: as `positions`.
     pub sorted_positions: Buffer<Vec4>,
     /// Sorted by cell: as `velocities`.
     pub sorted_velocities: Buffer<Vec4>,
-    /// Sorted by cell: as `ids`, after a sort without a step. A step puts them straight to the persistent ones.
+    /// Sorted by cell: as `ids`, after a sort without a step. A step writes the sorted ids to `ids`.
     pub sorted_ids: Buffer<u32>,
-    /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is that of the persistent arrays
-    /// once the step is done.
+    /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is also the order of the
+    /// persistent arrays after the step.
     pub densities: Buffer<Vec2>,
-    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`. One entry where forces and motion are
-    /// one pass.
+    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`. A single entry if forces and
+    /// integration are one pass.
     pub accelerations: Buffer<Vec4>,
-    /// Normals for surface tension; order as `densities`. One entry where there is none.
+    /// Normals for surface tension; order as `densities`. A single entry without surface tension.
     pub normals: Buffer<Vec4>,
 }
 
 impl Fields {
-    /// Makes the buffers; `wall_table` is the table of the [overlaps](crate::boundary::wall_table).
+    /// Creates the buffers; `wall_table` is the table of the [overlaps](crate::boundary::wall_table).
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -79,7 +79,7 @@ impl Fields {
         )
     }
 
-    /// Makes room for the accelerations, which a step in one pass less does without.
+    /// Resizes the buffer of accelerations to all particles; a fused step does not need it.
     ///
     /// # Errors
     /// As [`Executor::create`].

@@ -1,7 +1,7 @@
-//! What every pass shares: the constants, the state of a step, its counters, and the buffers.
+//! The data shared by all passes: the constants, the state of a step, its counters, and the buffers.
 //!
-//! This is the lowest module of the solver: it knows nothing of cells, walls or schemes. The two passes that
-//! only read and write the state are part of it: [`begin`] begins a frame, [`end_step`] ends a step.
+//! This is the lowest module of the solver and does not depend on cells, walls or schemes. It contains the two passes
+//! that only read and write the state: [`begin`] begins a frame, [`end_step`] ends a step.
 
 pub mod begin;
 mod counters;

@@ -7,11 +7,11 @@ use splashdown_gpu::{WgslModule, gpu_struct};
 pub const WGSL: WgslModule = WgslModule { name: "sph/params", source: include_str!("params.wgsl") };
 
 gpu_struct! {
-    /// What does not change while a simulation runs. SI units.
+    /// The constants of a simulation, in SI units.
     pub struct Params {
         /// Gravity in m/s^2.
         gravity: Vec3,
-        /// Where the kernel becomes zero, in metres.
+        /// The distance at which the kernel becomes zero, in metres.
         support_radius: f32,
         /// Lower corner of the domain in metres.
         domain_min: Vec3,
@@ -21,15 +21,16 @@ gpu_struct! {
         domain_max: Vec3,
         /// Mass of a particle in kg.
         particle_mass: f32,
-        /// Amplitude of the tank's acceleration, as felt in the tank, in m/s^2.
+        /// Amplitude of the inertial acceleration in a shaken tank, in m/s^2.
         shake: Vec3,
-        /// Its angular frequency in rad/s.
+        /// Angular frequency of the shaking in rad/s.
         shake_rate: f32,
         /// Density at rest in kg/m^3.
         rest_density: f32,
         /// Numerical speed of sound in m/s.
         sound_speed: f32,
-        /// How far behind a closed side its solid begins, in metres: see [`wall_offset`](crate::boundary::wall_offset).
+        /// Distance between a closed side and the solid behind it in metres: see
+        /// [`wall_offset`](crate::boundary::wall_offset).
         wall_offset: f32,
         /// Exponent of the equation of state.
         exponent: f32,
@@ -41,7 +42,7 @@ gpu_struct! {
         density_diffusion: f32,
         /// Akinci's gamma in m^4/(kg s^2), or Mueller's sigma in N/m; 0 for none.
         surface_tension: f32,
-        /// 0 for free slip at closed sides, 1 for no slip.
+        /// Friction of closed sides: 0 for free slip, 1 for no slip.
         wall_friction: f32,
         /// Factor of the time step's limits by sound and speed.
         cfl_factor: f32,
@@ -51,11 +52,11 @@ gpu_struct! {
         min_dt: f32,
         /// Bit 2 * axis + side is set if that side of the domain is closed.
         closed: u32,
-        /// 1 if negative pressures count as zero.
+        /// 1 if negative pressures are set to zero.
         clamp_pressure: u32,
-        /// Number of particles, dead ones included.
+        /// Number of particles, including removed ones and those not yet emitted.
         particle_count: u32,
-        /// Damping of the speed towards closed sides: 1 where the density is summed, 0 where it is integrated.
+        /// Damping of the velocity towards closed sides: 1 if the density is summed, 0 if it is integrated.
         wall_damping: f32,
     }
 }
@@ -77,13 +78,13 @@ impl Params {
         if self.clamp_pressure == 1 { p.max(0.0) } else { p }
     }
 
-    /// True of a finite point outside the domain.
+    /// True if a finite point lies outside the domain.
     #[inline]
     pub fn is_outside(&self, x: Vec3) -> bool {
         x.cmplt(self.domain_min).any() || x.cmpgt(self.domain_max).any()
     }
 
-    /// Gravity and the tank's own motion, in m/s^2, at a time in seconds.
+    /// Gravity and the inertial acceleration of the shaken tank, in m/s^2, at a time in seconds.
     pub fn body_acceleration(&self, time: f32) -> Vec3 {
         self.gravity + self.shake * (self.shake_rate * time).sin()
     }

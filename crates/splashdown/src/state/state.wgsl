@@ -14,7 +14,7 @@ struct StepState {
     frame_duration: f32,
 }
 
-// The length of a step: what is left of the frame is split evenly, so that no tiny step is left over.
+// The length of a step. Near the end of a frame the remaining time is split evenly, so that the last step is not tiny.
 fn step_length(stable: f32, remaining: f32) -> f32 {
     if (remaining >= 2.0 * stable) {
         return stable;
@@ -22,7 +22,7 @@ fn step_length(stable: f32, remaining: f32) -> f32 {
     return select(0.5 * remaining, remaining, remaining <= stable);
 }
 
-// True of the step that completes its frame. Both numbers are stored, so all passes decide alike.
+// True if the step completes its frame. Both numbers are stored, so that all passes agree.
 fn is_last_step(dt: f32, remaining: f32) -> bool {
     return dt >= remaining;
 }

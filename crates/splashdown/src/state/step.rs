@@ -1,4 +1,4 @@
-//! What changes from step to step.
+//! The state of a step.
 
 use splashdown_gpu::{WgslModule, gpu_struct};
 
@@ -8,23 +8,23 @@ pub const WGSL: WgslModule = WgslModule { name: "sph/state", source: include_str
 pub const STEPS: WgslModule = WgslModule { name: "sph/steps", source: include_str!("steps.wgsl") };
 
 gpu_struct! {
-    /// What changes from step to step; decided on the device.
+    /// The state that changes from step to step. It is computed on the device.
     pub struct StepState {
         /// The current time step in seconds.
         dt: f32,
-        /// The time step that stability asks for; `dt` may be shorter to meet the end of a frame.
+        /// The largest stable time step; `dt` may be shorter to reach the end of a frame.
         stable_dt: f32,
         /// Simulated time in seconds.
         time: f32,
-        /// What is left of the frame in seconds.
+        /// The remaining time of the frame in seconds.
         remaining: f32,
-        /// 1 once the frame is complete: the passes do nothing then.
+        /// 1 once the frame is complete: passes have no effect then.
         done: u32,
         /// Particles to process: all, or none once the frame is complete.
         run_count: u32,
         /// Steps of this frame.
         steps: u32,
-        /// 1 if stability asked for less than `min_dt` in this frame; `min_dt` was taken then.
+        /// 1 if a step of this frame required less than `min_dt` for stability, and used `min_dt`.
         too_small: u32,
         /// Largest speed of the last step in m/s.
         max_speed: f32,
@@ -38,7 +38,8 @@ gpu_struct! {
 }
 
 impl StepState {
-    /// The length of a step: what is left of the frame is split evenly, so that no tiny step is left over.
+    /// The length of a step. Near the end of a frame the remaining time is split evenly, so that the last step is not
+    /// tiny.
     pub fn step_length(stable: f32, remaining: f32) -> f32 {
         if remaining >= 2.0 * stable {
             stable
@@ -49,7 +50,7 @@ impl StepState {
         }
     }
 
-    /// True of the step that completes its frame. Both numbers are stored, so all passes decide alike.
+    /// True if the step completes its frame. Both numbers are stored, so that all passes agree.
     pub fn is_last_step(&self) -> bool {
         self.dt >= self.remaining
     }

@@ -9,12 +9,12 @@ const COUNTER_MAX_EXCESS: u32 = 6u;
 const COUNTER_DRAINED: u32 = 7u;
 const COUNTER_MOVED: u32 = 8u;
 
-// Marks in the fourth component of a position.
+// Marks of removed particles in the fourth component of a position.
 const DEAD_ESCAPED: f32 = 1.0;
 const DEAD_NON_FINITE: f32 = 2.0;
 const DEAD_DRAINED: f32 = 4.0;
 
-// By its bits: shaders may assume that comparisons meet no NaN.
+// Tests the bits, because shader compilers may assume that comparisons see no NaN.
 fn is_finite(v: vec3<f32>) -> bool {
     let exponents = bitcast<vec3<u32>>(v) & vec3(0x7f800000u);
     return all(exponents != vec3(0x7f800000u));

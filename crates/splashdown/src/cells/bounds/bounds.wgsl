@@ -4,7 +4,7 @@
 
 #bindings
 
-// One invocation more than particles: the last one closes the cells behind the last particle.
+// One invocation more than particles: the last one writes the begins of the cells behind the last particle.
 @compute @workgroup_size(64)
 fn bounds(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let k = linear_index(gid, groups, 64u);
@@ -12,7 +12,7 @@ fn bounds(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     if (k > n) {
         return;
     }
-    // Cells are numbered up to that of the dead; one start more closes it.
+    // The last cell is that of removed particles; one more begin marks its end.
     var here = grid.cell_count + 1u;
     if (k < n) {
         here = pairs[k].x;

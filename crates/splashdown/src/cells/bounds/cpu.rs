@@ -2,7 +2,7 @@ use glam::UVec2;
 
 use super::BoundsBindings;
 
-/// Serial: a baseline, and a small part of it.
+/// Serial, because the bitonic sort is a baseline only, and this pass is a small part of it.
 pub(super) fn bounds(buffers: BoundsBindings<'_>) {
     let BoundsBindings { grid, state, pairs, ids, cell_start, entries: out } = buffers;
     let n = state.run_count as usize;

@@ -1,5 +1,5 @@
-//! After the bitonic sort: takes the particles' numbers out of the pairs, and finds where every cell begins (the
-//! thesis's grid indices).
+//! After the bitonic sort: extracts the indices of the particles from the pairs, and finds the begin of every cell (the
+//! grid indices of the thesis).
 
 mod cpu;
 

@@ -5,7 +5,7 @@
 
 #bindings
 
-// A velocity (xyz) whose square has a value, and a density (w) that has one.
+// True if the square of the velocity (xyz) and the density (w) are finite.
 fn is_moderate(v: vec4<f32>) -> bool {
     return is_finite(vec3(dot(v.xyz, v.xyz), v.w, 0.0));
 }
@@ -32,7 +32,7 @@ fn count(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
             cell = cell_of(p.xyz);
         }
     }
-    // After the last step of a frame there is no next one to count for.
+    // After the last step of a frame no step follows that needs the count.
     if (atomicLoad(&counters[COUNTER_MOVED]) == 0u || !is_last_step(state.dt, state.remaining)) {
         count_particle(i, cell);
     }

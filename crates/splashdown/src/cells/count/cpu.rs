@@ -14,8 +14,8 @@ pub(super) fn count(buffers: CountBindings<'_>) {
     let CountBindings { params, grid, state, positions, velocities, cell_counts, counters } = buffers;
     let n = state.run_count as usize;
     let counters = as_atomic(counters);
-    // After the last step of a frame there is no next one to count for.
-    let counts_for_none = counters[StepCounters::MOVED].load(Relaxed) != 0 && state.is_last_step();
+    // After the last step of a frame no step follows that needs the count.
+    let is_count_unused = counters[StepCounters::MOVED].load(Relaxed) != 0 && state.is_last_step();
     let (counts, cells) = cell_counts::split(grid, cell_counts);
     let classify = |p: &mut Vec4, v: Vec4| {
         let x = p.xyz();
@@ -43,7 +43,7 @@ pub(super) fn count(buffers: CountBindings<'_>) {
         let mut counter = CellCounter::new(counts);
         for ((p, &v), out) in positions.iter_mut().zip(velocities).zip(cells) {
             let cell = classify(p, v);
-            if !counts_for_none {
+            if !is_count_unused {
                 *out = cell;
                 counter.add(cell);
             }

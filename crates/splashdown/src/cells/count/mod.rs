@@ -1,9 +1,9 @@
-//! Counts the particles of every cell, and notes each one's cell, where the pass that moves them does not:
-//! before the first step of a frame, and after emitters.
+//! Counts the particles of every cell and stores the cell of each particle, before the first step of a frame and after
+//! emission. In all other steps the integration counts.
 //!
-//! Dead particles go to one more cell behind the last, so that sorting puts them behind the living. Particles that are
-//! outside the domain, or whose position, velocity or density is not finite, are marked dead here, and counted: before
-//! their neighbours see them.
+//! Removed particles are counted in one more cell behind the last, so that the sort places them behind the active ones.
+//! Particles that are outside the domain, or whose position, velocity or density is not finite, are marked as removed
+//! and counted here, before they affect neighbours.
 
 mod cpu;
 

@@ -1,4 +1,4 @@
-//! Writes (cell, number) pairs for the bitonic sort: the thesis's way, kept as a baseline.
+//! Writes (cell, index) pairs for the bitonic sort, the baseline from the thesis.
 
 mod cpu;
 

@@ -6,16 +6,16 @@ use super::ReorderBindings;
 /// Cells per task.
 const CHUNK: usize = 2048;
 
-/// What a task writes: the places of a run of cells are contiguous, so the tasks own disjoint pieces.
+/// The output of a task. The places of consecutive cells are contiguous, so that the tasks own disjoint pieces.
 struct Piece<'a> {
-    /// Its cells' bounds among the slots.
+    /// The begins of its cells in the sorted arrays, and the end of the last.
     bounds: &'a [u32],
     positions: &'a mut [Vec4],
     velocities: &'a mut [Vec4],
     ids: &'a mut [u32],
 }
 
-/// Sorts every cell's few entries in place of counting: the same order with less work.
+/// Sorts the few entries of every cell instead of counting smaller ids: the same order with less work.
 pub(super) fn reorder(buffers: ReorderBindings<'_>) {
     let ReorderBindings {
         cell_start,

@@ -1,12 +1,11 @@
-//! Copies the particles into the order of their cells, and inside every cell into that of their ids, whatever
-//! the order of their arrival: the same state gives the same bits twice.
+//! Copies the particles into the order of their cells, and within a cell into the order of their ids. The result does
+//! not depend on the order of arrival, so that equal states give bit-identical results.
 //!
-//! Every particle counts the ids of its cell that are smaller than its own; at two spacings of support a cell holds
-//! about eight. Only the dead may be many: more than 1,024 of them a GPU leaves as they arrived.
+//! Every particle counts the ids of its cell that are smaller than its own; with a support of two spacings a cell holds
+//! about eight particles. Only the removed particles may be many: a GPU does not sort more than 1,024 of them.
 //!
-//! The ids are read from `entries`, so that the sorted ones may go straight to the persistent array: a step
-//! integrates back in this order. A sort without a step leaves the persistent arrays alone and has `sorted_ids`
-//! for them.
+//! The ids are read from `entries`, so that the sorted ids may be written to the persistent array: a step integrates
+//! back in this order. A sort without a step does not change the persistent arrays, and writes to `sorted_ids`.
 
 mod cpu;
 

@@ -3,9 +3,9 @@
 
 #bindings
 
-// Nobody asks for the order of the dead behind the last cell. Past this many they stay as they arrived: they may be
-// all particles, and comparing each with each would hang the device.
-const MOST_DEAD_IN_ORDER: u32 = 1024u;
+// The order of removed particles, behind the last cell, does not matter. More than this many retain the order of
+// arrival: they may be all particles, and comparing all pairs would hang the device.
+const MOST_REMOVED_IN_ORDER: u32 = 1024u;
 
 @compute @workgroup_size(64)
 fn reorder(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -19,7 +19,7 @@ fn reorder(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     let begin = cell_start[cell];
     let end = cell_start[cell + 1u];
     var place = k;
-    if (cell < grid.cell_count || end - begin <= MOST_DEAD_IN_ORDER) {
+    if (cell < grid.cell_count || end - begin <= MOST_REMOVED_IN_ORDER) {
         place = begin;
         for (var m = begin; m < end; m++) {
             place += u32(entries[m].x < id);

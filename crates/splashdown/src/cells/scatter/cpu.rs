@@ -15,13 +15,13 @@ pub(super) fn scatter(buffers: ScatterBindings<'_>) {
     finish_step(params, state, counters);
     let n = cell_start[grid.cell_count as usize + 1] as usize;
     let (counts, cells) = cell_counts::split(grid, cell_counts);
-    // Every place is written once; relaxed atomic stores are plain ones that two threads may make side by side.
+    // Every place is written once. Relaxed atomic stores cost as much as plain ones and allow several threads.
     let out = as_atomic(out);
     let chunks = cells[..n].par_chunks(CHUNK).zip(ids[..n].par_chunks(CHUNK));
     chunks.enumerate().for_each(|(chunk, (cells, ids))| {
         let mut i = (chunk * CHUNK) as u32;
         let mut ids = ids.iter();
-        // Neighbours in the arrays that share a cell take themselves off it together.
+        // Consecutive particles of the same cell decrement its count together.
         for run in cells.chunk_by(|a, b| a == b) {
             let (cell, len) = (run[0] as usize, run.len());
             let left = counts[cell].fetch_sub(len as u32, Relaxed);

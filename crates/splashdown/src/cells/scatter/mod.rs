@@ -1,9 +1,10 @@
-//! Puts the id and the number of every particle into its cell's part of `entries`, in the order of arrival.
+//! Writes the id and the index of every particle into the part of `entries` that belongs to its cell, in the order of
+//! arrival.
 //!
-//! Each one takes itself off the cell_counts: what is left of its cell's number tells the place, and once all are placed all
-//! numbers are zero again, ready for the next count. So nothing has to be cleared, and no rank to be written and read.
+//! Each particle decrements the count of its cell, and the remaining count determines its place. Afterwards all counts
+//! are zero again for the next count, so that no clear and no array of ranks is needed.
 //!
-//! The first invocation ends the step before, which would otherwise take a dispatch of its own.
+//! The first invocation ends the previous step, which saves a dispatch.
 
 mod cpu;
 

@@ -11,7 +11,7 @@ fn scatter(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     if (i == 0u) {
         finish_step();
     }
-    // How many there are is known from the count: nobody but the first invocation looks at the state.
+    // The number of particles comes from the count: only the first invocation reads the state, which it changes.
     if (i >= cell_start[grid.cell_count + 1u]) {
         return;
     }

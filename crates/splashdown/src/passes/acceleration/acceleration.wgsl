@@ -11,7 +11,7 @@
 const HAS_TENSION: bool = true;
 var<private> own_normal: vec3<f32>;
 
-// Akinci's cohesion kernel times H^3; both branches meet at q = 1/2.
+// Akinci's cohesion kernel times H^3; both branches agree at q = 1/2.
 fn cohesion(q: f32) -> f32 {
     let t = (1.0 - q) * q;
     let t3 = t * t * t;

@@ -26,7 +26,7 @@ pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(buffers: A
     let pass = Acceleration::<K, FORCES>::new(params, state, positions, velocities, densities, wall_table);
     let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
     let out = accelerations;
-    // Columns and arithmetic that a scene does not ask for cost nothing.
+    // Scenes without surface tension skip its columns and arithmetic.
     if FORCES & part::OTHER != 0 && params.surface_tension > 0.0 {
         pairs::for_each(sorted, out, &WithTension { forces: pass, normals });
     } else {
@@ -46,14 +46,14 @@ pub(crate) struct Acceleration<'a, K, const FORCES: u32> {
     scale: f32,
     factor: f32,
     soft: f32,
-    /// What rubs where two particles part, and where they approach each other.
-    parting: f32,
+    /// Viscosity factors of a pair that separates, and of one that approaches.
+    separating: f32,
     approaching: f32,
     kernel: PhantomData<K>,
 }
 
 impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
-    /// Of a step's arrays, and the table of the walls.
+    /// Uses the arrays of a step and the table of the walls.
     pub fn new(
         params: &'a Params,
         state: &StepState,
@@ -76,7 +76,7 @@ impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
             scale,
             factor: (scale * scale) * (scale * scale) * scale,
             soft: 0.01 * support * support,
-            parting: laminar,
+            separating: laminar,
             approaching: laminar + params.artificial_viscosity * params.sound_speed * 0.5 * support * volume,
             kernel: PhantomData,
         }
@@ -91,15 +91,17 @@ impl<K, const FORCES: u32> Acceleration<'_, K, FORCES> {
         let mut a = self.factor * Vec3::from(sums);
         if let Some(terms) = self.walls.terms(x) {
             let [rho, pressure] = self.densities[i].to_array();
-            let push = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
-            a = terms.acceleration::<FORCES>(params, self.velocities[i].xyz(), self.body, a, push, self.dt);
+            let pressure_factor =
+                params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
+            let v = self.velocities[i].xyz();
+            a = terms.acceleration::<FORCES>(params, v, self.body, a, pressure_factor, self.dt);
         }
         if FORCES & part::OTHER != 0 { a + self.body } else { a }
     }
 
     /// Mass times pressure over the square of the density.
     #[inline(always)]
-    fn push(&self, j: usize) -> f32 {
+    fn pressure_term(&self, j: usize) -> f32 {
         let [rho, pressure] = self.densities[j].to_array();
         self.params.particle_mass * pressure / (rho * rho)
     }
@@ -111,26 +113,26 @@ impl<K: Kernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'_, K, FORCES>
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 7] {
         let (p, v) = (self.positions[j], self.velocities[j]);
-        [p.x, p.y, p.z, v.x, v.y, v.z, self.push(j)]
+        [p.x, p.y, p.z, v.x, v.y, v.z, self.pressure_term(j)]
     }
 
     /// The acceleration over the factor.
     #[inline(always)]
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 7]) -> [V; 3] {
         let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
-        let push = V::splat(self.push(i));
-        let (zero, parting, approaching) =
-            (V::splat(0.0), V::splat(self.parting), V::splat(self.approaching));
+        let pressure = V::splat(self.pressure_term(i));
+        let (zero, separating, approaching) =
+            (V::splat(0.0), V::splat(self.separating), V::splat(self.approaching));
         #[inline(always)]
-        move |[x_j, y_j, z_j, u_j, v_j, w_j, push_j]| {
+        move |[x_j, y_j, z_j, u_j, v_j, w_j, pressure_j]| {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
             let vx = dot(difference(v, [u_j, v_j, w_j]), d);
-            let rub = || vx * vx.if_less(zero, approaching, parting) / (r2 + self.soft);
+            let viscous = || vx * vx.if_less(zero, approaching, separating) / (r2 + self.soft);
             let along = match FORCES {
-                part::PRESSURE => V::splat(0.0) - (push + push_j),
-                part::OTHER => rub(),
-                _ => rub() - (push + push_j),
+                part::PRESSURE => V::splat(0.0) - (pressure + pressure_j),
+                part::OTHER => viscous(),
+                _ => viscous() - (pressure + pressure_j),
             };
             scaled(K::g(r2.sqrt() * self.scale) * along, d)
         }
@@ -153,29 +155,29 @@ impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES>
 
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 11] {
-        let [x, y, z, u, v, w, push] = self.forces.load(j);
+        let [x, y, z, u, v, w, pressure] = self.forces.load(j);
         let n = self.normals[j];
-        [x, y, z, u, v, w, push, self.forces.densities[j].x, n.x, n.y, n.z]
+        [x, y, z, u, v, w, pressure, self.forces.densities[j].x, n.x, n.y, n.z]
     }
 
     #[inline(always)]
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 11]) -> [V; 3] {
         let Acceleration { params, positions, densities, scale, factor, .. } = self.forces;
         let (x, n, rho) = (splat::<V>(positions[i]), splat::<V>(self.normals[i]), V::splat(densities[i].x));
-        // The sums are multiplied by the factor in the end.
+        // Divided by the factor, because `finish` multiplies the sums by it.
         let tension = V::splat(-2.0 * params.surface_tension * params.rest_density / factor);
         let pull = params.particle_mass * (scale * scale) * (scale * scale);
         let (zero, one, smallest) = (V::splat(0.0), V::splat(1.0), V::splat(SMALLEST_Q));
         let forces = self.forces.pair::<V>(i);
         #[inline(always)]
-        move |[x_j, y_j, z_j, u_j, v_j, w_j, push_j, rho_j, n_x, n_y, n_z]| {
-            let a = forces([x_j, y_j, z_j, u_j, v_j, w_j, push_j]);
+        move |[x_j, y_j, z_j, u_j, v_j, w_j, pressure_j, rho_j, n_x, n_y, n_z]| {
+            let a = forces([x_j, y_j, z_j, u_j, v_j, w_j, pressure_j]);
             let d = difference(x, [x_j, y_j, z_j]);
             let q = dot(d, d).sqrt() * scale;
-            let share = q.if_less(one, tension, zero) / (rho + rho_j);
+            let weight = q.if_less(one, tension, zero) / (rho + rho_j);
             let pull = cohesion(q) * pull / q.max(smallest);
-            let bend = difference(n, [n_x, n_y, n_z]);
-            std::array::from_fn(|axis| a[axis] + share * (pull * d[axis] + bend[axis]))
+            let normal_change = difference(n, [n_x, n_y, n_z]);
+            std::array::from_fn(|axis| a[axis] + weight * (pull * d[axis] + normal_change[axis]))
         }
     }
 
@@ -185,7 +187,7 @@ impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES>
     }
 }
 
-/// Akinci's cohesion kernel times H^3 for q in [0, 1]; both branches meet at q = 1/2.
+/// Akinci's cohesion kernel times H^3 for q in [0, 1]; both branches agree at q = 1/2.
 #[inline(always)]
 fn cohesion<V: Lanes>(q: V) -> V {
     let t = (V::splat(1.0) - q).max(V::splat(0.0)) * q;

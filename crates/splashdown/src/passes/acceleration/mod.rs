@@ -4,12 +4,12 @@
 //!
 //! * pressure: -m (p_i/rho_i^2 + p_j/rho_j^2) grad W (Monaghan 1992), which conserves momentum;
 //! * laminar viscosity: 10 nu V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 2005), which conserves angular momentum too;
-//!   rho0 in V instead of rho_j keeps each pair's two forces equal to the last bit that matters;
+//!   V uses rho0 instead of rho_j, so that the two forces of a pair are equal;
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
 //! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
-//! Walls push with the particle's own pressure and its image's, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G; what else
-//! they do is in [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
+//! Walls exert the pressure of the particle and of its image, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G. For their other forces
+//! see [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
 
 pub(crate) mod cpu;
 

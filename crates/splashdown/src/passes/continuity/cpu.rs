@@ -48,7 +48,7 @@ struct Continuity<'a, K> {
     scale: f32,
     soft: f32,
     diffusion: f32,
-    /// The gradient of the density that hydrostatics alone makes, in kg/m^4.
+    /// The hydrostatic gradient of the density in kg/m^4.
     hydrostatic: Vec4,
     kernel: PhantomData<K>,
 }

@@ -1,4 +1,4 @@
-//! Density by the continuity equation, and the pressure that follows from it.
+//! Density by the continuity equation, and the resulting pressure.
 //!
 //! ```text
 //! d rho_i / dt = rho_i sum (m/rho_j) v.grad W
@@ -6,14 +6,14 @@
 //!              + 2 rho_i v_i.G
 //! ```
 //!
-//! with v = v_i - v_j and h = H / 2: the diffusion of Molteni & Colagrossi (2009), where psi_ij = rho_j - rho_i
-//! less what hydrostatics alone makes of it (Fourtakas et al. 2019). The walls' share is twice the v_i.G of a
-//! solid at rest: behind a wall stands an image of the particle, which answers its pressure in
-//! [`acceleration`](super::acceleration) and moves when it moves.
+//! with v = v_i - v_j and h = H / 2. The second term is the diffusion of Molteni & Colagrossi (2009), where psi_ij is
+//! rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The contribution of walls is twice the v_i.G
+//! of a solid at rest, because each particle has an image behind the wall: the image has the pressure of the particle
+//! (see [`acceleration`](super::acceleration)) and mirrors its motion.
 //!
-//! The density is advanced first, with the velocities that the particles have, and the velocities after it, with the
-//! pressure of the new density: symplectic for sound. Advancing both from the old state, as explicit Euler would, makes
-//! every sound wave grow by (omega dt)^2 / 2 a step.
+//! The density is advanced first with the old velocities, and the velocities then with the pressure of the new density,
+//! which is symplectic for sound waves. Advancing both from the old state, as explicit Euler does, would amplify every
+//! sound wave by (omega dt)^2 / 2 per step.
 
 mod cpu;
 

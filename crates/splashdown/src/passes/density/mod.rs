@@ -1,6 +1,6 @@
-//! Density by summation, and the pressure that follows from it.
+//! Density by summation, and the resulting pressure.
 //!
-//! rho_i = m sum_j W(x_i - x_j) (j = i included) + rho0 D(x_i), with D the walls' share
+//! rho_i = m sum_j W(x_i - x_j) (j = i included) + rho0 D(x_i), with the kernel fraction D of the walls
 //! ([`crate::boundary`]); p_i by the equation of state (Batchelor 1967; Monaghan 1994).
 
 mod cpu;

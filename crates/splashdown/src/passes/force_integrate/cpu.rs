@@ -7,8 +7,8 @@ use crate::pairs;
 use crate::passes::acceleration::cpu::Acceleration;
 use crate::passes::advance::{Before, Persistent, advance_all};
 
-/// Two sweeps: moving a particle right behind its sums crowds the loop over the neighbours, and took 3 to 10 %
-/// of a step longer. The persistent velocities, which the second sweep writes, hold the accelerations in between.
+/// Uses two sweeps: integrating a particle directly after its sums slows down the loop over the neighbours, and made
+/// steps 3 to 10 % slower. The persistent velocities, which the second sweep writes, store the accelerations in between.
 pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBindings<'_>) {
     let ForceIntegrateBindings {
         params,

@@ -9,7 +9,7 @@
 
 #bindings
 
-// Surface tension needs one buffer more than there may be; scenes with it go the other way.
+// Surface tension needs a ninth storage buffer; scenes with it use the separate passes.
 const HAS_TENSION: bool = false;
 
 fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {

@@ -1,9 +1,9 @@
 //! [`acceleration`](super::acceleration) and [`integrate`](super::integrate) in one pass: the accelerations are neither
 //! written nor read, and position and velocity are read once.
 //!
-//! For steps where nothing comes between the two: no bodies, emitters, sinks, gauges or hand, no surface
-//! tension. Both ways share their WGSL (`forces.wgsl`, `advance.wgsl`) and their Rust. State and table of walls
-//! are bound as uniforms, because there may be eight storage buffers.
+//! Used in steps without couplings (bodies, emitters, sinks, probes, mouse force) and without surface tension. The
+//! fused pass and the separate ones use the same WGSL (`forces.wgsl`, `advance.wgsl`) and the same Rust. The state and
+//! the table of walls are bound as uniforms, because a pass may bind at most eight storage buffers.
 
 mod cpu;
 

@@ -5,7 +5,7 @@
 
 #bindings
 
-override COUNTS: u32 = 1u; // 0 leaves the count for the next step to another pass
+override COUNTS: u32 = 1u; // 0: another pass counts the particles for the next step
 
 @compute @workgroup_size(256)
 fn integrate(

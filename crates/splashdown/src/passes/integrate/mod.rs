@@ -1,14 +1,15 @@
 //! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the persistent ones.
 //!
-//! It is the leap-frog of the thesis read at half steps: v here is v at t + dt/2 there. Closed walls are a
-//! contact in the velocities: a particle nearer than a quarter of a spacing, or on its way there within this
-//! step, loses just the speed that would take it past. Pressure keeps a body of fluid off the wall; this holds
-//! the lone drops that have none. A particle that is outside all the same is put back and counted: the count is
-//! zero in a sound run. A result that is not finite leaves the particle where it was, dead, and is counted; so
-//! is one that leaves through an open side.
+//! It is equivalent to the leap-frog of the thesis: v here is the velocity at t + dt/2 there.
 //!
-//! The particles are counted by cell for the next step's sort, unless emitters are to make more before it, or
-//! there is no next step in this frame.
+//! Closed walls limit the velocity. A particle that would come nearer than a quarter of a spacing within this step loses
+//! the part of its speed that would take it there. Pressure keeps contiguous fluid off the wall; the limit acts on
+//! isolated particles, which have no pressure. A particle that is outside nevertheless is moved back and counted; the
+//! count is zero in a sound run. A particle whose new state is not finite remains where it was, and is removed and
+//! counted, as is one that leaves through an open side.
+//!
+//! The particles are counted by cell for the sort of the next step, unless emission precedes that sort, or no step
+//! follows in this frame.
 
 mod cpu;
 
@@ -49,7 +50,7 @@ pub static INTEGRATE: PassDesc = PassDesc {
     cpu: |_, slots| cpu::integrate::<true>(slots.into()),
 };
 
-/// Leaves the count for the next step to [`cells`](crate::cells).
+/// Without the count for the next step, which a pass of [`cells`](crate::cells) computes.
 pub static UNCOUNTED: PassDesc = PassDesc {
     label: "integrate.uncounted",
     constants: &[("COUNTS", 0.0)],

@@ -62,14 +62,14 @@ impl PairSum<8, 7> for Mueller<'_> {
         move |[x_j, y_j, z_j, u_j, v_j, w_j, pressure_j, volume]| {
             let d = difference(x, [x_j, y_j, z_j]);
             let q = dot(d, d).sqrt() * self.scale;
-            let push = volume * (pressure + pressure_j) * Spiky::g(q) * -0.5;
-            let rub = volume * viscosity_laplacian(q) * friction;
+            let pressure_force = volume * (pressure + pressure_j) * Spiky::g(q) * -0.5;
+            let viscous_force = volume * viscosity_laplacian(q) * friction;
             let slope = volume * Poly6::g(q);
             let dv = difference([u_j, v_j, w_j], v);
             [
-                push * d[0] + rub * dv[0],
-                push * d[1] + rub * dv[1],
-                push * d[2] + rub * dv[2],
+                pressure_force * d[0] + viscous_force * dv[0],
+                pressure_force * d[1] + viscous_force * dv[1],
+                pressure_force * d[2] + viscous_force * dv[2],
                 slope * d[0],
                 slope * d[1],
                 slope * d[2],

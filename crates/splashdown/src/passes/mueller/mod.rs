@@ -1,4 +1,4 @@
-//! Accelerations of Mueller, Charypar & Gross 2003, the thesis's mode.
+//! Accelerations of Mueller, Charypar & Gross 2003, the scheme of the thesis.
 //!
 //! f_p = -sum m_j (p_i + p_j) / (2 rho_j) grad W_spiky; f_v = nu rho0 sum m_j (v_j - v_i) / rho_j lap W_visc; with the
 //! colour field c = sum (m_j / rho_j) W_poly6 and n = grad c, f_s = -sigma lap c n / |n| where |n| > 0.5 / H. The

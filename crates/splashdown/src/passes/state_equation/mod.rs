@@ -1,5 +1,5 @@
-//! The pressure of a density that is integrated instead of summed, before the first step: what the first frame shows.
-//! The density travels in the velocities' fourth component.
+//! The pressure before the first step, for the first frame, if the density is integrated instead of summed. The density
+//! is the fourth component of the velocities.
 
 mod cpu;
 

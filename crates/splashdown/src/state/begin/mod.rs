@@ -1,6 +1,6 @@
-//! Begins a frame: sets its length and wakes the particles.
+//! Begins a frame: sets its duration and the number of particles to process.
 //!
-//! A frame of length zero only wakes them, for a sort without a step.
+//! A frame of zero seconds sets only this number, for a sort without a step.
 
 mod cpu;
 

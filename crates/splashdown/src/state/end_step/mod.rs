@@ -1,9 +1,9 @@
-//! Ends a step: takes the maxima, and chooses the next time step on the device.
+//! Ends a step: reads and resets the maxima, and computes the next time step on the device.
 //!
 //! With h = H / 2: dt = min(C h / (c0 + |v|max), C sqrt(h / |a|max), 0.4 spacing C / |v|max, 0.125 h^2 / nu, max_dt)
 //! (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last. The maxima are those of the step that
-//! ends, so the choice is one step late; the limit on velocities of half a spacing per step catches the rest. Near the
-//! end of the frame the rest is split evenly, so that no tiny step is left over.
+//! ends, so the time step lags by one step; velocities are limited to half a spacing per step for this reason. Near the
+//! end of a frame the remaining time is split evenly, so that the last step is not tiny.
 //!
 //! [`StepCounters::MOVED`] marks a step that has not ended yet, so ending it twice has no effect. The pass of this
 //! module runs once per submission; inside one, the next step's [`scatter`](crate::cells) ends the step before
@@ -40,7 +40,7 @@ pub static END_STEP: PassDesc = PassDesc {
     cpu: |_, slots| cpu::end_step(slots.into()),
 };
 
-/// Ends the last step of a submission: afterwards the host, or another step's passes, may read the state.
+/// Ends the last step of a submission. Afterwards the host, or passes of another step, may read the state.
 pub fn record(fields: &Fields) -> Recording {
     let mut recording = Recording::new("end_step");
     recording.dispatch(&END_STEP, DispatchSize::Groups(1), &fields.buffers());
