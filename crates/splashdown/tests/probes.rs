@@ -1,11 +1,11 @@
-//! Probes in whole scenes.
+//! Probes in complete scenes.
 
 use splashdown::probes::ProbeRows;
 use splashdown::scene::Scene;
 use splashdown::{Event, Run, RunOptions, Simulation};
 use splashdown_gpu::testing;
 
-/// A tank of still water, 0.4 m deep, with a cube of 0.15 m standing free of the walls in it.
+/// A tank of still water, 0.4 m deep, with a cube of 0.15 m away from the walls.
 const TANK: &str = r#"
     [scene]
     name = "tank"
@@ -71,15 +71,15 @@ fn probes_in_still_water_measure_hydrostatic_pressure_and_level() {
                 all.extend(rows);
             }
         }
-        assert!(simulation.take_probe_rows().iter().all(Vec::is_empty), "{name}: rows were taken twice");
-        // Rows come at their times, to half a step, one after the other.
+        assert!(simulation.take_probe_rows().iter().all(Vec::is_empty), "{name}: rows were returned twice");
+        // The times of rows are exact within half a step, and in order.
         for (rows, interval) in taken.iter().zip([0.05, 0.02, 0.02, 0.02, 0.02]) {
             assert!((rows.len() as f64 - 0.6 / interval).abs() <= 1.0, "{name}: {} rows", rows.len());
             for (k, row) in rows.iter().enumerate() {
                 assert!((row[0] - interval * (k + 1) as f64).abs() < 1e-3, "{name}: row {k} at {}", row[0]);
             }
         }
-        // The lattice's water has the cube's room less than the tank's.
+        // The water fills the volume of the tank minus that of the cube.
         let depth = f64::from(simulation.stats().particles) * 0.025_f64.powi(3) + 0.15_f64.powi(3);
         let depth = depth / 0.16;
         let weight = 1000.0 * 9.81 * depth;
@@ -99,7 +99,7 @@ fn probes_in_still_water_measure_hydrostatic_pressure_and_level() {
     }
 }
 
-/// A jet without gravity, through a rectangle, past another, and through one that looks back.
+/// A jet without gravity, through a rectangle, past another one, and through one with the opposite normal.
 const JET: &str = r#"
     [scene]
     name = "jet"
@@ -155,7 +155,7 @@ fn the_measured_flow_equals_the_emitted_flow() {
                 all.extend(rows);
             }
         }
-        // It arrives after 0.15 s.
+        // The jet arrives after 0.15 s.
         assert!(taken[0].iter().all(|row| row[0] > 0.14 || row[1] == 0.0), "{name}: {:?}", taken[0]);
         let through = mean(&taken[0], 1, 0.21);
         assert!((through - poured).abs() < 0.06 * poured, "{name}: {through} of {poured} m^3/s");

@@ -116,7 +116,7 @@ fn a_splash_agrees_with_splashsurf() {
     let test_name = "a_splash_agrees_with_splashsurf";
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/particles/mid64k.npy");
     if !file.exists() {
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {test_name}: the shared test data are not here");
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {test_name}: the shared test data do not exist");
         return;
     }
     let points = npy::read_positions(&file).unwrap();

@@ -1,4 +1,4 @@
-//! What an isolated blob of fluid keeps: momentum, angular momentum, its particles; and what viscosity takes.
+//! Conservation in an isolated blob of fluid: momentum, angular momentum, particles; and dissipation by viscosity.
 
 use glam::DVec3;
 use splashdown::scene::Scene;
@@ -10,9 +10,9 @@ use super::figures::Figures;
 use super::{angular_sum, cpu, rms_speed, scene, square_sum, velocity_sum};
 
 const STEPS: u64 = 1000;
-/// Pair forces are equal and opposite to the last bit that matters; a thousand steps of rounding are left.
+/// Pair forces are equal and opposite except for rounding, which adds up over a thousand steps.
 const MOMENTUM: f64 = 1e-5;
-/// Positions are rounded to 3e-8 m in every step, and each rounding is a small lever.
+/// Positions are rounded to 3e-8 m in every step, and each rounding changes the angular momentum.
 const ANGULAR_MOMENTUM: f64 = 1e-4;
 
 /// A ball of 500 particles in an open box without gravity.
@@ -45,7 +45,7 @@ fn noise(i: usize) -> f32 {
     testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5
 }
 
-/// The ball off its lattice, every particle with a velocity of its own of up to 0.25 m/s per axis.
+/// The ball with displaced particles, each with a random velocity of up to 0.25 m/s per axis.
 fn stirred(scene: &Scene) -> Particles {
     let mut particles = sample::particles(scene).unwrap();
     for (i, x) in particles.positions.iter_mut().flatten().enumerate() {
@@ -57,7 +57,7 @@ fn stirred(scene: &Scene) -> Particles {
     particles
 }
 
-/// Runs a thousand steps; nothing may be lost, limited or corrected on the way.
+/// Runs a thousand steps; no particle may be lost, limited or corrected.
 fn run(scene: &Scene, executor: Executor, start: &Particles) -> Particles {
     let mut simulation = Simulation::with_particles(scene, executor, start).unwrap();
     while simulation.stats().steps < STEPS {
@@ -99,7 +99,7 @@ fn an_isolated_blob_conserves_momentum_and_particles() {
             figures.close();
         }
     }
-    // Controls: a millionth of the earth's gravity, and forces that are no pair forces.
+    // Controls: a millionth of the earth's gravity, and forces that are not pair forces.
     let mut figures = Figures::new("momentum, controls, CPU");
     let scene = blob(-1e-5, fluid, SUMMATION);
     let start = stirred(&scene);
@@ -107,7 +107,7 @@ fn an_isolated_blob_conserves_momentum_and_particles() {
     figures.control("gravity of 1e-5 m/s^2", momentum_drift(&start, &end), MOMENTUM);
     let scene = blob(0.0, fluid, MUELLER_TENSION);
     let end = run(&scene, cpu(), &start);
-    figures.control("colour field's tension, which is no pair force", momentum_drift(&start, &end), MOMENTUM);
+    figures.control("surface tension of the colour field", momentum_drift(&start, &end), MOMENTUM);
     figures.close();
 }
 
@@ -140,7 +140,7 @@ fn a_spinning_blob_conserves_angular_momentum() {
 
 #[test]
 fn viscosity_only_dissipates_energy() {
-    // Next to no pressure, so that all that happens is friction; a step may round up by what one rounding is worth.
+    // Almost no pressure, so that only friction acts; in one step the energy may rise by one rounding.
     let rise = |solver: &str, viscosity: f32| {
         let mut scene = blob(0.0, "", solver);
         scene.solver.sound_speed = Some(1e-3);
@@ -160,11 +160,11 @@ fn viscosity_only_dissipates_energy() {
     for (word, solver) in [("laminar", SUMMATION), ("continuity", CONTINUITY), ("mueller", MUELLER)] {
         let mut figures = Figures::new(format!("energy, {word}, CPU"));
         let (worst, left) = rise(solver, 0.01);
-        figures.at_most("largest rise in a step, of the first energy", worst, 1e-6);
-        figures.at_most("energy left after 0.1 s, of the first", left, 0.5);
-        // Control: without friction the energy stays; the decay is the viscosity's.
+        figures.at_most("largest rise in a step over the initial energy", worst, 1e-6);
+        figures.at_most("energy after 0.1 s over the initial energy", left, 0.5);
+        // Control: without viscosity the energy does not decay.
         let (_, inviscid) = rise(solver.replace("0.1", "0.0").as_str(), 0.0);
-        figures.control("energy left without viscosity", inviscid, 0.5);
+        figures.control("the same without viscosity", inviscid, 0.5);
         figures.close();
     }
 }

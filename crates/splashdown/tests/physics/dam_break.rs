@@ -1,8 +1,8 @@
-//! The collapse of a column of water twice as high as wide, against Martin & Moyce 1952.
+//! The collapse of a column of water twice as high as wide, compared with Martin & Moyce 1952.
 //!
-//! A slab eight spacings thick between free-slip walls stands for the two dimensions. The front is the 98th percentile
-//! of x below y = 0.1 a; the height that of the column at the wall. The experiment's clock starts with a rupturing
-//! diaphragm, so one shift of the time is free.
+//! A slab eight spacings thick between free-slip walls represents two dimensions. The front is the 98th percentile of x
+//! below y = 0.1 a; the height is that of the column at the wall. The time of the experiment starts when a diaphragm
+//! ruptures, so one time shift is a free parameter.
 
 use splashdown::Simulation;
 use splashdown_io::Particles;
@@ -19,7 +19,7 @@ const A: f64 = 0.05715;
 const FRONT: f64 = 0.10;
 const HEIGHT: f64 = 0.04;
 const SLOPE: f64 = 0.12;
-/// Most shift of the time, in units of T.
+/// Largest time shift, in units of T.
 const SHIFT: f64 = 0.2;
 
 /// (T, value) pairs.
@@ -38,15 +38,15 @@ fn measured(which: &str) -> Series {
 }
 
 struct Column {
-    /// Particles over the column's width.
+    /// Number of particles across the column's width.
     across: u32,
     solver: &'static str,
     gravity: f64,
-    /// When to stop, in units of sqrt(a / g).
+    /// Duration, in units of sqrt(a / g).
     until: f64,
 }
 
-/// What the simulation gave: the front over T = t sqrt(2 g / a), the height over T = t sqrt(g / a).
+/// Simulation results: the front over T = t sqrt(2 g / a), the height over T = t sqrt(g / a).
 struct Collapse {
     front: Series,
     height: Series,
@@ -81,7 +81,7 @@ impl Column {
         ));
         let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
         assert_eq!(simulation.stats().particles, 16 * self.across * self.across);
-        // Time is counted with the earth's gravity, whatever the fluid feels.
+        // Time is scaled by the earth's gravity, even if the simulated gravity differs.
         let unit = (A / GRAVITY).sqrt();
         let frames = (self.until / 0.02).ceil() as u32;
         let mut collapse = Collapse { front: Vec::new(), height: Vec::new() };
@@ -105,7 +105,8 @@ fn front(particles: &Particles) -> f64 {
     x[(0.98 * (x.len() - 1) as f64).round() as usize]
 }
 
-/// The mean, over the eight rows across the slab, of the highest particle's upper side within two spacings of the wall.
+/// The mean, over the eight rows across the slab, of the upper side of the highest particle within two spacings of the
+/// wall.
 fn height(particles: &Particles, spacing: f64) -> f64 {
     let mut tops = [0.0_f64; 8];
     for x in particles.positions.iter().filter(|x| f64::from(x[0]) < 2.0 * spacing) {
@@ -121,7 +122,7 @@ fn at(series: &Series, t: f64) -> f64 {
     v0 + (v1 - v0) * (t - t0) / (t1 - t0)
 }
 
-/// Root mean square of the front's relative errors at the best shift of the time, and that shift.
+/// Root mean square of the relative errors of the front at the best time shift, and that shift.
 fn front_error(simulated: &Series, measured: &Series) -> (f64, f64) {
     let last = simulated[simulated.len() - 1].0;
     let error = |shift: f64| {
@@ -133,7 +134,7 @@ fn front_error(simulated: &Series, measured: &Series) -> (f64, f64) {
     shifts.map(|shift| (error(shift), shift)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }
 
-/// The slope of a straight line through the points past T = 1.4, where the front runs evenly.
+/// The slope of a straight line through the points after T = 1.4, where the speed of the front is constant.
 fn slope(series: impl Iterator<Item = (f64, f64)>) -> f64 {
     let points: Series = series.filter(|(t, _)| *t > 1.4).collect();
     let n = points.len() as f64;
@@ -156,13 +157,13 @@ fn compare(figures: &mut Figures, column: &Column) -> Collapse {
     let front = measured("front");
     let (error, shift) = front_error(&collapse.front, &front);
     figures.at_most("front, rms relative", error, FRONT);
-    figures.report("best shift of T", shift);
+    figures.report("best time shift T", shift);
     let experiment = slope(front.iter().copied());
     let inside = front.iter().map(|&(t, _)| (t, at(&collapse.front, t + shift)));
     let ratio = slope(inside) / experiment;
-    figures.within("front's speed over the measured", ratio, 1.0 - SLOPE, 1.0 + SLOPE);
+    figures.within("speed of the front over the measured speed", ratio, 1.0 - SLOPE, 1.0 + SLOPE);
     let error = height_error(&collapse.height, &measured("height"), column.until);
-    figures.at_most("height, rms of the first height", error, HEIGHT);
+    figures.at_most("height, rms over the initial height", error, HEIGHT);
     collapse
 }
 
@@ -174,7 +175,7 @@ fn a_collapsing_column_agrees_with_martin_and_moyce() {
         let mut figures = Figures::new(format!("dam break, {word}, CPU"));
         let collapse = compare(&mut figures, &column);
         if full() {
-            // Refinement: the front moves less from 20 to 40 particles than from 10 to 20.
+            // Convergence: the front differs less between 20 and 40 particles than between 10 and 20.
             let [coarse, fine] =
                 [10, 40].map(|across| Column { across, until: 2.4, ..column }.simulate().front);
             let gap = |a: &Series, b: &Series| {
@@ -183,8 +184,8 @@ fn a_collapsing_column_agrees_with_martin_and_moyce() {
                 (squares.sum::<f64>() / 22.0).sqrt()
             };
             let (first, second) = (gap(&coarse, &collapse.front), gap(&collapse.front, &fine));
-            figures.report("front, 10 to 20 across, rms of Z", first);
-            figures.at_most("front, 20 to 40 across, rms of Z", second, first);
+            figures.report("front, 10 against 20 particles across, rms of Z", first);
+            figures.at_most("front, 20 against 40 particles across, rms of Z", second, first);
         }
         figures.close();
     }
@@ -198,7 +199,11 @@ fn half_the_gravity_is_detected() {
     let mut figures = Figures::new("dam break, controls, CPU");
     figures.control("front, rms relative", front_error(&collapse.front, &front).0, FRONT);
     let ratio = slope(collapse.front.iter().copied().filter(|(t, _)| *t < 3.33)) / slope(front.into_iter());
-    figures.control("front's speed off the measured", (ratio - 1.0).abs(), SLOPE);
-    figures.control("height, rms of the first height", height_error(&collapse.height, &height, 2.5), HEIGHT);
+    figures.control("relative error of the speed of the front", (ratio - 1.0).abs(), SLOPE);
+    figures.control(
+        "height, rms over the initial height",
+        height_error(&collapse.height, &height, 2.5),
+        HEIGHT,
+    );
     figures.close();
 }

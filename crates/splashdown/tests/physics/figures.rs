@@ -1,11 +1,11 @@
-//! Measured figures against gates: what a case prints, asserts, and leaves for the validation report.
+//! Measured figures and their gates: printed, asserted, and written for the validation report.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::plot;
 
-/// True for the resolution of the published checks; without it the cases run smaller, with the same gates.
+/// True for the resolution of the published checks; otherwise the cases are smaller, with the same gates.
 pub fn full() -> bool {
     std::env::var_os("SPLASHDOWN_FULL").is_some()
 }
@@ -13,7 +13,7 @@ pub fn full() -> bool {
 enum Gate {
     AtMost(f64),
     Within(f64, f64),
-    /// A wrong input must give more than this, else the comparison sees nothing.
+    /// The figure of a wrong input must exceed this value; otherwise the comparison detects nothing.
     Control(f64),
     Reported,
 }
@@ -62,7 +62,7 @@ impl Figures {
         self.rows.push((name.into(), measured, Gate::Within(low, high)));
     }
 
-    /// The figure of a run with something wrong in it, which must miss the gate `limit` of the sound run.
+    /// The figure of a run with a deliberate error, which must miss the gate `limit` of the correct run.
     pub fn control(&mut self, name: impl Into<String>, measured: f64, limit: f64) {
         self.rows.push((name.into(), measured, Gate::Control(limit)));
     }
@@ -71,14 +71,14 @@ impl Figures {
         self.rows.push((name.into(), measured, Gate::Reported));
     }
 
-    /// Draws what was measured, as dots, and simulated curves, if anybody is going to look.
+    /// Draws measurements as dots and simulations as lines, if figures are requested.
     pub fn plot(&mut self, title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str, &Series)]) {
         if std::env::var_os("SPLASHDOWN_FIGURES").is_some() {
             self.plots.push(plot::draw(title, axes, measured, simulated));
         }
     }
 
-    /// Prints the figures, leaves them where `SPLASHDOWN_FIGURES` says, and fails if one misses its gate.
+    /// Prints the figures, writes them to the folder `SPLASHDOWN_FIGURES`, and fails if one misses its gate.
     pub fn close(self) {
         let mut table = String::new();
         for (name, measured, gate) in &self.rows {
@@ -101,7 +101,7 @@ impl Figures {
         assert!(missed.is_empty(), "{}: missed: {}\n{table}", self.case, missed.join(", "));
     }
 
-    /// The case's part of the page: a table, then the drawings.
+    /// The section of the page: a table, then the plots.
     fn page(&self) -> String {
         let mut page = format!(
             "<h2>{}</h2>\n<table>\n<tr><th>figure<th>measured<th>gate<th></tr>\n",
@@ -135,10 +135,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-#[expect(
-    clippy::print_stdout,
-    reason = "the figures are what these tests are for; the harness shows them on request"
-)]
+#[expect(clippy::print_stdout, reason = "these tests print figures; the harness shows them on request")]
 fn print(table: &str) {
     print!("{table}");
 }

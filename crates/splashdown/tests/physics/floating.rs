@@ -1,6 +1,5 @@
-//! Balls that float: as deep as Archimedes says (within 4 % of the diameter, after half a spacing on which the
-//! water keeps off), and heaving with the period that half of the displaced mass as added mass gives (within 10
-//! %).
+//! Floating balls. The draft follows Archimedes within 4 % of the diameter, corrected by the gap of half a spacing
+//! between water and body. The heave period follows from an added mass of half the displaced mass, within 10 %.
 
 use glam::Vec3;
 use splashdown::scene::{MeshShape, Motion, Scene};
@@ -16,7 +15,7 @@ fn spacing() -> f32 {
     if full() { 2.0 * RADIUS / 12.0 } else { 2.0 * RADIUS / 8.0 }
 }
 
-/// A tank of still water with a ball of this density whose middle is `height` in m above the level.
+/// A tank of still water with a ball of this density whose centre is `height` in m above the level.
 fn tank(density: f32, height: f32) -> Scene {
     let spacing = spacing();
     let depth = (0.28 / spacing).round() * spacing;
@@ -31,9 +30,11 @@ fn tank(density: f32, height: f32) -> Scene {
     scene
 }
 
-/// The ball's height above the level of the block that the scene starts with, over time.
+/// The height of the ball above the initial water level, over time.
 fn heights(scene: &Scene, seconds: f64) -> Series {
-    let splashdown::scene::Shape::Box { size, .. } = &scene.fluid.blocks[0].shape else { panic!("no block") };
+    let splashdown::scene::Shape::Box { size, .. } = &scene.fluid.blocks[0].shape else {
+        panic!("the fluid is not a block")
+    };
     let level = size.y;
     let mut simulation = at_rest(scene, |x| level - x.y);
     let mut found = Series::new();
@@ -46,8 +47,8 @@ fn heights(scene: &Scene, seconds: f64) -> Series {
     found
 }
 
-/// How far a ball's middle is under the level at rest, over its radius, for a density in kg/m^3: where the
-/// cap's volume is that of the displaced water.
+/// The depth of a ball's centre below the level at rest, over its radius, for a density in kg/m^3: the volume of the
+/// submerged cap equals that of the displaced water.
 fn archimedes(density: f64) -> f64 {
     let share = |s: f64| (2.0 + 3.0 * s - s.powi(3)) / 4.0;
     let (mut low, mut high) = (-1.0, 1.0);
@@ -61,9 +62,7 @@ fn archimedes(density: f64) -> f64 {
 #[test]
 fn the_draft_of_floating_balls_follows_archimedes() {
     if !full() {
-        eprintln!(
-            "SKIPPED: balls need 12 spacings of diameter (tests/bodies floats cubes): cargo xtask validate"
-        );
+        eprintln!("SKIPPED: floating balls need 12 spacings per diameter; run `cargo xtask validate`");
         return;
     }
     let mut figures = Figures::new("floating, draft, CPU");
@@ -72,14 +71,9 @@ fn the_draft_of_floating_balls_follows_archimedes() {
         let scene = tank(density as f32, (-under * f64::from(RADIUS)) as f32);
         let late: Series = heights(&scene, 1.5).into_iter().filter(|(t, _)| *t > 0.8).collect();
         let mean = late.iter().map(|(_, y)| y).sum::<f64>() / late.len() as f64;
-        // The tank's level does not rise: the ball was placed into the water, whose particles inside it were removed.
+        // The water level does not rise: the particles inside the ball were removed.
         let error = (mean / f64::from(RADIUS) + under) / 2.0;
-        figures.within(
-            format!("height off Archimedes over the diameter, {density} kg/m^3"),
-            error,
-            -0.04,
-            0.04,
-        );
+        figures.within(format!("height error over the diameter, {density} kg/m^3"), error, -0.04, 0.04);
     }
     figures.close();
 }
@@ -88,7 +82,7 @@ fn the_draft_of_floating_balls_follows_archimedes() {
 fn a_ball_heaves_with_its_added_mass() {
     let lift = 0.3 * RADIUS;
     let found = heights(&tank(500.0, lift), 1.1);
-    // The first time that it passes its mean height downwards, then upwards, then downwards: half a period each.
+    // The ball passes its mean height downwards, upwards, downwards: half a period each.
     let mean = found.iter().map(|(_, y)| y).sum::<f64>() / found.len() as f64;
     let passes: Vec<f64> = found
         .windows(2)
@@ -103,7 +97,7 @@ fn a_ball_heaves_with_its_added_mass() {
     figures.within("period over 2 pi sqrt(R / g)", period / exact, 0.9, 1.1);
     figures.report("mean height over the diameter", mean / f64::from(2.0 * RADIUS));
     figures.plot(
-        "A ball of 500 kg/m^3, let go 0.3 R too high",
+        "A ball of 500 kg/m^3, released 0.3 R above equilibrium",
         ["time, s", "height, m"],
         &Series::new(),
         &[("simulated", &found)],

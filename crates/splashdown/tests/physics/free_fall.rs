@@ -10,7 +10,7 @@ use super::scene;
 const DT: f32 = 0.002;
 const STEPS: u32 = 100;
 
-/// A hundred roundings of positions near one, half a unit in the last place each, add up like a random walk to 3e-7.
+/// A hundred roundings of positions near one, half a unit in the last place each, accumulate to 3e-7 as a random walk.
 const TOLERANCE: f64 = 1e-6;
 
 fn text(method: &str) -> String {
@@ -40,7 +40,7 @@ fn free_fall_of_particles_and_a_block_follows_symplectic_euler() {
     for method in ["mueller2003", "wcsph"] {
         for (name, executor) in testing::executors("free_fall") {
             let scene = scene(&text(method));
-            // Lone particles, further from each other than a support, with velocities of their own; then the block.
+            // Isolated particles, more than a support radius apart, with individual velocities; then the block.
             let lone = |i: u32| [-3.0 + 0.5 * i as f32, 1.0 + 0.25 * (i % 3) as f32, -2.0];
             let mut particles = Particles::from_positions((0..12).map(lone).collect())
                 .with_velocities((0..12).map(|i| [0.25, 0.5 * i as f32 - 2.0, -0.125]).collect());
@@ -69,9 +69,9 @@ fn free_fall_of_particles_and_a_block_follows_symplectic_euler() {
             };
             let centre = mean(&after) - mean(&particles) + 0.5 * 9.81 * t * (t + dt);
             let mut figures = Figures::new(format!("free fall, {method}, {name}"));
-            figures.at_most("worst lone particle, m", worst(dt), TOLERANCE);
+            figures.at_most("worst isolated particle, m", worst(dt), TOLERANCE);
             figures.at_most("centre of the block, m", centre.abs(), TOLERANCE);
-            // Control: the exact parabola differs by half a step's worth.
+            // Control: the exact parabola differs by half a step.
             figures.control("against the parabola, m", worst(0.0), TOLERANCE);
             figures.close();
         }

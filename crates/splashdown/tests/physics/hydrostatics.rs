@@ -1,10 +1,10 @@
 //! A tank at rest: p = rho g (surface - y), the level, the load on the walls (after 2 s).
 //!
-//! The tank starts with the densities of water at rest, as numbers where the density is integrated, by closer
-//! layers where it is summed: water let go without pressure rings like a bell, for H / c0 is short and its
-//! viscosity little. The continuity form, which is there to measure with, has a support of three spacings; at
-//! two, the kernel itself gives a lattice's pressure gradient 5 % too little. The summation form and
-//! mueller2003 run as scenes have them, and their pressure is told rather than judged.
+//! The tank starts with the densities of water at rest: as initial values where the density is integrated, by closer
+//! layers where it is summed. Water released without pressure would oscillate for a long time, because its viscosity is
+//! low. The continuity form, intended for measurements, has a support of three spacings; at two, the kernel
+//! underestimates the pressure gradient of a lattice by 5 %. The summation form and mueller2003 use the defaults of
+//! scenes; their pressure is reported without a gate.
 
 use glam::Vec3;
 use splashdown::scene::{DensityMode, Method};
@@ -21,7 +21,7 @@ struct Tank {
     size: [u32; 3],
     spacing: f64,
     solver: &'static str,
-    /// What the tank feels, while the figures are measured against 9.81 m/s^2.
+    /// The simulated gravity in m/s^2; the figures are relative to 9.81 m/s^2.
     gravity: f64,
 }
 
@@ -31,7 +31,7 @@ struct Rest {
     rms_speed: f64,
     max_speed: f64,
     load: f64,
-    /// The particles' mass over that of the water in their volume.
+    /// The mass of the particles over that of the water in their volume.
     mass: f64,
     floor: f64,
     corrections: u32,
@@ -75,7 +75,7 @@ impl Tank {
         ));
         let mut particles = sample::particles(&scene).unwrap();
         let params = splashdown::schemes::params(&scene, 0);
-        // A linear equation of state will do: the densities differ by a part in a hundred.
+        // A linear equation of state suffices: the densities differ by one per cent.
         let (height, per_depth) = (self.height() as f32, self.gravity as f32 / params.sound_speed.powi(2));
         if scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity {
             let density = |x: &[f32; 3]| params.rest_density * (1.0 + per_depth * (height - x[1]));
@@ -91,12 +91,12 @@ impl Tank {
     /// Lets the tank settle for `seconds` and measures it.
     fn settle(&self, executor: Executor, seconds: f32) -> Rest {
         let mut simulation = self.simulation(executor);
-        // A hand that does nothing: forces and motion in one pass would leave no accelerations to read.
+        // A mouse force without effect: the fused pass for forces and integration stores no accelerations.
         let mouse_force = MouseForce::new(Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO, 1.0, 0.0);
         simulation.set_mouse_force(Some(mouse_force)).unwrap();
         assert_eq!(simulation.stats().particles, self.size.iter().product::<u32>());
         simulation.advance(0.7 * seconds).unwrap();
-        // The load swings with the last sound waves: its mean over many of them.
+        // The load oscillates with the remaining sound waves, so it is averaged over many of them.
         let samples = 100;
         let mut load = 0.0;
         for _ in 0..samples {
@@ -131,8 +131,8 @@ impl Tank {
         }
     }
 
-    /// The walls' vertical force on the fluid over the particles' weight: what the accelerations hold beside
-    /// gravity and the forces of pairs, which cancel.
+    /// The vertical force of the walls on the fluid over the weight of the particles: the sum of the accelerations
+    /// without gravity. Pair forces cancel.
     fn load(&self, simulation: &mut Simulation) -> f64 {
         let accelerations = simulation.fields().accelerations;
         let accelerations = simulation.executor().read(accelerations).unwrap();
@@ -140,7 +140,7 @@ impl Tank {
         sum / (accelerations.len() as f64 * GRAVITY)
     }
 
-    /// The mean over the columns of the highest particle's upper side.
+    /// The upper side of the highest particle, averaged over the columns.
     fn level(&self, positions: &[[f32; 3]]) -> f64 {
         let [nx, _, nz] = self.size.map(|n| n as usize);
         let mut tops = vec![0.0_f64; nx * nz];
@@ -154,31 +154,30 @@ impl Tank {
 }
 
 impl Rest {
-    /// The figures with the gates of whoever means to be right: still to `speed`, level, and carried.
-    fn judged(&self, case: &str, speed: f64) -> Figures {
-        let mut figures = self.told(case, speed);
+    /// The figures with gates for the speed, the level and the load on the walls.
+    fn gated_figures(&self, case: &str, speed: f64) -> Figures {
+        let mut figures = self.figures(case, speed);
         figures.within("level - fill, spacings", self.level, -0.5, 0.5);
         figures.within("vertical wall force over particles' weight", self.load, 0.99, 1.01);
         figures
     }
 
-    /// The figures with the one gate that all must hold: it comes to rest, and nothing has to be put back.
-    fn told(&self, case: &str, speed: f64) -> Figures {
+    /// The figures with the gates for all solvers: the water comes to rest, and no wall correction is needed.
+    fn figures(&self, case: &str, speed: f64) -> Figures {
         let mut figures = Figures::new(case);
         figures.at_most("speed, rms over sqrt(gH)", self.rms_speed, speed);
         figures.at_most("corrections at walls", f64::from(self.corrections), 0.0);
         figures.report("speed, largest over sqrt(gH)", self.max_speed);
         figures.report("pressure at the floor over rho g H", self.floor);
         figures.report("pressure, L2 relative", self.pressure);
-        figures.report("particles' mass over the volume's", self.mass);
+        figures.report("mass of the particles over that of their volume", self.mass);
         figures
     }
 
-    /// Where the pressure is for moving the fluid, not for measuring it. Its walls carry less than the weight
-    /// by what the contact in the motion carries of particles that the pressure lets sink to a quarter of a
-    /// spacing.
-    fn told_of_mueller(&self, case: &str, speed: f64) {
-        let mut figures = self.told(case, speed);
+    /// For mueller2003, whose pressure is not intended for measurements. The walls carry less than the weight, because
+    /// particles sink to a quarter of a spacing and are then supported by the contact in the integration.
+    fn report_mueller(&self, case: &str, speed: f64) {
+        let mut figures = self.figures(case, speed);
         figures.report("level - fill, spacings", self.level);
         figures.report("vertical wall force over particles' weight", self.load);
         figures.close();
@@ -193,34 +192,34 @@ fn tank(solver: &'static str) -> Tank {
 #[test]
 fn a_tank_at_rest_has_the_hydrostatic_pressure() {
     let rest = tank(CONTINUITY).settle(cpu(), 2.0);
-    let mut figures = rest.judged("hydrostatics, continuity, CPU", 0.01);
+    let mut figures = rest.gated_figures("hydrostatics, continuity, CPU", 0.01);
     figures.at_most("pressure, L2 relative, gate", rest.pressure, 0.03);
     figures.within("vertical wall force over the volume's weight", rest.load * rest.mass, 0.99, 1.01);
     figures.close();
-    // Control: a tenth less gravity must not pass for the whole.
+    // Control: 0.9 g must miss the gates.
     let light = Tank { gravity: 0.9 * GRAVITY, size: [7, 8, 7], ..tank(CONTINUITY) }.settle(cpu(), 1.0);
     let mut figures = Figures::new("hydrostatics, controls, CPU");
     figures.control("pressure, L2 relative, with 0.9 g", light.pressure, 0.03);
-    figures.control("wall force off the weight, with 0.9 g", (light.load - 1.0).abs(), 0.01);
+    figures.control("relative error of the wall force, with 0.9 g", (light.load - 1.0).abs(), 0.01);
     figures.close();
 }
 
 #[test]
 fn a_tank_with_summed_densities_comes_to_rest() {
-    tank(SUMMATION).settle(cpu(), 2.0).judged("hydrostatics, summation, CPU", 0.01).close();
-    tank(MUELLER).settle(cpu(), 2.0).told_of_mueller("hydrostatics, mueller, CPU", 0.01);
+    tank(SUMMATION).settle(cpu(), 2.0).gated_figures("hydrostatics, summation, CPU", 0.01).close();
+    tank(MUELLER).settle(cpu(), 2.0).report_mueller("hydrostatics, mueller, CPU", 0.01);
 }
 
-/// A tank small enough for software Vulkan: seven particles from wall to wall, eight deep. It has half a second
-/// to come to rest instead of two, and a gate of 5 % instead of 1 %.
+/// A tank small enough for software Vulkan: seven particles wide, eight deep. It runs for half a second instead of two,
+/// with a gate of 5 % instead of 1 %.
 #[test]
 fn a_small_tank_comes_to_rest_on_every_executor() {
     for (name, executor) in testing::executors("a_small_tank_comes_to_rest_on_every_executor") {
         let tank = Tank { size: [7, 8, 7], ..tank(CONTINUITY) };
-        tank.settle(executor, 0.5).judged(&format!("small tank, continuity, {name}"), 0.05).close();
+        tank.settle(executor, 0.5).gated_figures(&format!("small tank, continuity, {name}"), 0.05).close();
     }
     for (name, executor) in testing::executors("a_small_tank_comes_to_rest_on_every_executor") {
         let tank = Tank { size: [7, 8, 7], ..tank(MUELLER) };
-        tank.settle(executor, 0.5).told_of_mueller(&format!("small tank, mueller, {name}"), 0.05);
+        tank.settle(executor, 0.5).report_mueller(&format!("small tank, mueller, {name}"), 0.05);
     }
 }

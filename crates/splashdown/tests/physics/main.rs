@@ -1,7 +1,7 @@
-//! Physics: whole runs against closed formulas, conservation laws and measurements.
+//! Physics: whole runs compared with analytic solutions, conservation laws and measurements.
 //!
 //! The gates were set before the first run. With `SPLASHDOWN_FULL=1` the cases run at the resolution of the published
-//! checks; with `SPLASHDOWN_FIGURES=DIR` they leave their figures there as JSON (`cargo xtask validate` does both).
+//! checks; with `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
 
 mod conservation;
 mod dam_break;
@@ -25,7 +25,7 @@ fn cpu() -> Executor {
     CpuExecutor::new().into()
 }
 
-/// A scene from its text, as a user writes it.
+/// Parses the text of a scene file.
 fn scene(text: &str) -> Scene {
     Scene::parse(text, "physics.toml").unwrap_or_else(|errors| panic!("{errors}"))
 }

@@ -6,11 +6,11 @@ use plotters::style::register_font;
 use super::figures::Series;
 
 const SIZE: (u32, u32) = (760, 360);
-/// Dark enough to be read on white, and told apart by those who see few colours (Okabe & Ito 2008).
+/// Readable on white, and distinguishable with colour vision deficiency (Okabe & Ito 2008).
 const COLOURS: [RGBColor; 4] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 
-/// Draws a chart over the range of everything in it.
+/// Draws a chart whose axes cover all data.
 pub fn draw(title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str, &Series)]) -> String {
     let all = || simulated.iter().flat_map(|(_, series)| series.iter()).chain(measured);
     let range = |value: fn(&(f64, f64)) -> f64| {
@@ -19,7 +19,7 @@ pub fn draw(title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str,
         let margin = 0.03 * (high - low).max(1e-9);
         low - margin..high + margin
     };
-    // plotters knows no font of its own.
+    // plotters has no built-in font.
     assert!(register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
     let mut text = String::new();
     {

@@ -1,4 +1,4 @@
-//! Meshes and starting states that cases share.
+//! Meshes and initial states shared by the cases.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene
 use splashdown::{Device, Simulation};
 use splashdown_io::Mesh;
 
-/// A body of a file or a model at a place.
+/// A body with the mesh of a file or a model, at a position.
 pub fn body(name: &str, shape: MeshShape, scale: f32, position: Vec3, motion: Motion) -> Body {
     Body {
         name: name.into(),
@@ -30,7 +30,7 @@ fn corners(min: Vec3, max: Vec3) -> [[f32; 3]; 8] {
     })
 }
 
-/// The faces of a box outwards, but for the one with this number of [-x, +x, -y, +y, -z, +z].
+/// The outward faces of a box, without the one with this index in [-x, +x, -y, +y, -z, +z].
 fn faces(first: u32, without: Option<usize>) -> Vec<[u32; 3]> {
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let kept = quads.iter().enumerate().filter(|(face, _)| Some(*face) != without);
@@ -49,9 +49,9 @@ pub fn tub(min: Vec3, max: Vec3, wall: f32) -> Mesh {
     let outer = corners(min - Vec3::splat(wall), max.with_x(max.x + wall).with_z(max.z + wall));
     let vertices = [outer, corners(min, max)].concat();
     let mut triangles = faces(0, Some(3));
-    // The inside faces the other way.
+    // The inner faces have the opposite orientation.
     triangles.extend(faces(8, Some(3)).iter().map(|&[a, b, c]| [a, c, b]));
-    // The rim: the top's corners of both boxes, in turn.
+    // The rim connects the upper corners of both boxes.
     let ring = [2, 6, 7, 3];
     for k in 0..4 {
         let (a, b) = (ring[k], ring[(k + 1) % 4]);
@@ -68,7 +68,7 @@ pub fn file(folder: &Path, name: &str, mesh: &Mesh) -> MeshShape {
     MeshShape::File(path)
 }
 
-/// A scene's fluid with the densities of water at rest under a level that is `height(x)` in m above each particle.
+/// The fluid of a scene with the densities of water at rest, where the level is `height(x)` in m above each particle.
 pub fn at_rest(scene: &Scene, height: impl Fn(Vec3) -> f32) -> Simulation {
     let mut simulation = Simulation::new(scene, &Device::Cpu).unwrap();
     let mut particles = simulation.particles().unwrap();

@@ -1,11 +1,10 @@
-//! SPHERIC's test 2, a dam break against a box (Kleefsman et al. 2005): heights, arrivals and impulses, read by the
-//! probes of the scene that comes with the program.
+//! SPHERIC test 2, a dam break against a box (Kleefsman et al. 2005): heights, arrival times and impulses, measured by
+//! the probes of the built-in scene.
 //!
-//! Heights are compared at the measured times, over the depth of 0.55 m. The front arrives when a gauge reads
-//! half a spacing: a front one particle high then covers half of the gauge's column. An impulse is the
-//! pressure's integral from 0.38 to 0.8 s. Of the peaks only P2's has a gate: a peak of a millisecond depends
-//! on where exactly the air was. The box is as high as three to nine particles, and its pressures are judged at
-//! the finer of the two spacings.
+//! Heights are compared at the measured times, relative to the depth of 0.55 m. The front arrives when a gauge measures
+//! half a spacing: a front one particle high then covers half of the gauge's column. An impulse is the integral of the
+//! pressure from 0.38 to 0.8 s. Only the peak of P2 has a gate, because a peak of a millisecond depends on the exact
+//! position of trapped air. The box is three to nine particles high; its pressures have gates only at the finer spacing.
 
 use splashdown::probes::ProbeRows;
 use splashdown::scene::Scene;
@@ -19,7 +18,7 @@ const HEIGHT: f64 = 0.06;
 const ARRIVAL: f64 = 0.08;
 const IMPULSE: f64 = 0.20;
 const PEAK: f64 = 0.25;
-/// When the water arrives where, measured, in s.
+/// Measured arrival times of the water at the gauges, in s.
 const ARRIVALS: [(&str, f64); 3] = [("H3", 0.218), ("H2", 0.368), ("H1", 0.920)];
 /// Impulses from 0.38 to 0.8 s in Pa s, and the highest pressure in Pa, of P1 to P4.
 const IMPULSES: [f64; 4] = [2218.0, 1893.0, 1659.0, 1425.0];
@@ -32,7 +31,7 @@ struct Case {
 }
 
 impl Case {
-    /// What every probe read, by its name.
+    /// The rows of every probe, by its name.
     fn simulate(&self) -> Vec<(String, ProbeRows)> {
         let text = include_str!("../../scenes/spheric2.toml");
         let mut scene = Scene::parse(text, "spheric2.toml").unwrap();
@@ -105,7 +104,7 @@ fn compare_heights(figures: &mut Figures, case: &Case) {
     {
         let (simulated, experiment) = (series(&readings, name), measured(HEIGHTS, column + 1));
         let error = height_error(&simulated, &experiment, until);
-        let label = format!("height at x = {place} m, mean error over the depth");
+        let label = format!("height at x = {place} m, mean error over depth");
         if matches!(name, "H2" | "H4") {
             figures.at_most(label, error, HEIGHT);
         } else {
@@ -117,8 +116,8 @@ fn compare_heights(figures: &mut Figures, case: &Case) {
     }
     for (name, time) in ARRIVALS.into_iter().filter(|(_, time)| *time < until) {
         let ratio = arrival(&series(&readings, name), case.spacing) / time;
-        let label = format!("arrival at {name} over measured");
-        // At a spacing of 5 cm a gauge is 30 cm wide, and the front passes it in a tenth of a second.
+        let label = format!("arrival at {name} over the measured time");
+        // At a spacing of 5 cm a gauge is 30 cm wide, which the front passes in a tenth of a second.
         if full() || name == "H2" {
             figures.within(label, ratio, 1.0 - ARRIVAL, 1.0 + ARRIVAL);
         } else {
@@ -133,16 +132,21 @@ fn compare_pressures(figures: &mut Figures, case: &Case) {
         let name = format!("P{}", k + 1);
         let pressures = series(&readings, &name);
         let ratio = impulse(&pressures) / IMPULSES[k];
-        figures.within(format!("impulse of {name} over measured"), ratio, 1.0 - IMPULSE, 1.0 + IMPULSE);
+        figures.within(
+            format!("impulse of {name} over the measured one"),
+            ratio,
+            1.0 - IMPULSE,
+            1.0 + IMPULSE,
+        );
         let peak = pressures.iter().map(|(_, p)| *p).fold(0.0, f64::max) / PEAKS[k];
-        let label = format!("peak of {name} over measured");
+        let label = format!("peak of {name} over the measured one");
         if k == 1 {
             figures.within(label, peak, 1.0 - PEAK, 1.0 + PEAK);
         } else {
             figures.report(label, peak);
         }
         let early: Series = pressures.into_iter().filter(|(t, _)| (0.35..1.05).contains(t)).collect();
-        let title = format!("Pressure on the box's front, {name}");
+        let title = format!("Pressure on the front of the box, {name}");
         let experiment = measured(PRESSURES, k + 1);
         figures.plot(&title, ["time, s", "pressure, Pa"], &experiment, &[("simulated", &early)]);
     }
@@ -159,7 +163,7 @@ fn heights_and_arrivals_agree_with_kleefsman() {
 #[test]
 fn pressures_on_the_box_agree_with_kleefsman() {
     if !full() {
-        eprintln!("SKIPPED: the pressures on the box need a spacing of 18 mm: cargo xtask validate");
+        eprintln!("SKIPPED: the pressures on the box need a spacing of 18 mm; run `cargo xtask validate`");
         return;
     }
     let mut figures = Figures::new("SPHERIC 2, pressures, CPU");
@@ -173,8 +177,8 @@ fn lunar_gravity_is_detected() {
     let readings = case.simulate();
     let mut figures = Figures::new("SPHERIC 2, controls, CPU");
     let error = height_error(&series(&readings, "H2"), &measured(HEIGHTS, 2), 1.2);
-    figures.control("height at x = 0.992 m with the moon's g", error, HEIGHT);
+    figures.control("height at x = 0.992 m with lunar gravity", error, HEIGHT);
     let late = arrival(&series(&readings, "H2"), case.spacing) / 0.368 - 1.0;
-    figures.control("arrival at H2 too late with the moon's g", late, ARRIVAL);
+    figures.control("arrival at H2, delay with lunar gravity", late, ARRIVAL);
     figures.close();
 }

@@ -1,8 +1,9 @@
-//! Bodies held under water: they are lifted by the weight of the water that they displace (within 5 %), and not
-//! pushed aside.
+//! Submerged fixed bodies: the vertical force is the weight of the displaced water within 5 %, and the horizontal force
+//! vanishes.
 //!
-//! At a support of three spacings a ball 12 spacings across is lifted by 9 % too much: where a surface bends within the
-//! support, the plane that its map stands for fits less well. Scenes have two spacings, and so has this case.
+//! At a support of three spacings the buoyancy of a ball 12 spacings wide is 9 % too large: the boundary map assumes a
+//! plane, which is a poor approximation if the surface curves within the support. Scenes use two spacings by default, and
+//! so does this case.
 
 use std::path::PathBuf;
 
@@ -14,11 +15,11 @@ use super::scene;
 use super::shapes::{at_rest, body};
 
 const GRAVITY: f64 = 9.81;
-/// How far the level is, in m, above the tank's floor.
+/// The water depth in m.
 const DEPTH: f32 = 0.5;
 
-/// Judges a mesh of this volume in m^3 in the middle of a tank.
-fn judge(name: &str, shape: MeshShape, scale: f32, volume: f64) {
+/// Checks the force on a mesh of this volume in m^3 in the middle of a tank.
+fn check(name: &str, shape: MeshShape, scale: f32, volume: f64) {
     let spacing = if full() { 0.0125 } else { 0.025 };
     let side = 0.5;
     let mut scene = scene(&format!(
@@ -29,7 +30,7 @@ fn judge(name: &str, shape: MeshShape, scale: f32, volume: f64) {
     ));
     scene.bodies.push(body(name, shape, scale, Vec3::new(0.25, 0.22, 0.25), Motion::Static));
     let mut simulation = at_rest(&scene, |x| DEPTH - x.y);
-    // Whatever rings at the start has a period of four depths over the speed of sound: some fifty of them pass.
+    // Initial oscillations have a period of four depths over the speed of sound; the run covers about fifty periods.
     let seconds = if full() { 1.0 } else { 0.5 };
     simulation.advance(0.5 * seconds).unwrap();
     let samples = 50;
@@ -43,12 +44,12 @@ fn judge(name: &str, shape: MeshShape, scale: f32, volume: f64) {
     let displaced = 1000.0 * GRAVITY * volume;
     let mut figures = Figures::new(format!("submerged {name}, CPU"));
     let lift = f64::from(force.y) / displaced;
-    figures.within("lift over the displaced water's weight", lift, 0.95, 1.05);
+    figures.within("buoyancy over the weight of the displaced water", lift, 0.95, 1.05);
     let aside = f64::from(force.with_y(0.0).length()) / displaced;
     if full() {
-        figures.at_most("push aside over the displaced water's weight", aside, 0.05);
+        figures.at_most("lateral force over that weight", aside, 0.05);
     } else {
-        figures.report("push aside over the displaced water's weight", aside);
+        figures.report("lateral force over that weight", aside);
     }
     figures.at_most("corrections", f64::from(simulation.stats().wall_corrections), 0.0);
     let inside = simulation.inside_bodies(&particles).unwrap();
@@ -60,17 +61,17 @@ fn judge(name: &str, shape: MeshShape, scale: f32, volume: f64) {
 fn buoyancy_of_a_submerged_ball() {
     let mesh = splashdown::models::build("sphere").unwrap();
     let scale = 1.5_f32;
-    judge("ball", MeshShape::Model("sphere".into()), scale, mesh.volume() * f64::from(scale).powi(3));
+    check("ball", MeshShape::Model("sphere".into()), scale, mesh.volume() * f64::from(scale).powi(3));
 }
 
 #[test]
 fn buoyancy_of_submerged_spot() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes/spot.obj");
     if !path.exists() {
-        eprintln!("SKIPPED: spot.obj is not there");
+        eprintln!("SKIPPED: spot.obj does not exist");
         return;
     }
     let mesh = splashdown_io::read_mesh(&path).unwrap();
     let scale = 0.17_f32;
-    judge("spot", MeshShape::File(path), scale, mesh.volume() * f64::from(scale).powi(3));
+    check("spot", MeshShape::File(path), scale, mesh.volume() * f64::from(scale).powi(3));
 }

@@ -1,11 +1,10 @@
-//! Water at rest in a tank that stands askew: once as a domain under leaning gravity, once as a leaning mesh in
-//! an upright domain.
+//! Water at rest in a tilted tank: once as a domain with tilted gravity, once as a tilted mesh in an upright domain.
 //!
-//! The same water on the tank's own lattice, the same gates: p = rho g depth (L2 within 3 %), at rest (rms
-//! within 1 % of sqrt(g depth)) after 2 s, and nothing leaves or has to be put back. Where two walls of one
-//! mesh meet, the mesh is felt as a plane across the edge, whose hydrostatic part is not that of the two: in a
-//! tank of 12 particles, where a third of the water is beside edges, the pressure misses the gate, and is
-//! judged at full size only.
+//! Both cases have the same water on the lattice of the tank and the same gates: p = rho g depth (L2 within 3 %), at rest
+//! (rms within 1 % of sqrt(g depth)) after 2 s, no escaped particles, no wall corrections. Where two walls of one mesh
+//! meet, the boundary map replaces them by one plane across the edge, whose hydrostatic pressure differs from that of the
+//! two walls. In a tank of 12 particles, a third of the water is near edges and the pressure misses the gate; there it is
+//! only reported.
 
 use glam::{Quat, Vec3};
 use splashdown::Simulation;
@@ -22,9 +21,10 @@ const GRAVITY: f32 = 9.81;
 const TILT: f32 = 0.35;
 const SPACING: f32 = 0.025;
 
-/// From the tank's frame into the world: the domain's tank lies still while gravity leans, the mesh's leans itself.
+/// The rotation from the frame of the tank to the world: the domain stays upright and gravity is tilted, or the mesh is
+/// tilted.
 struct Tank {
-    /// Particles along x, y and z, to the rim.
+    /// Particles along x, y and z, up to the rim.
     size: [u32; 3],
     turn: Quat,
 }
@@ -50,7 +50,7 @@ impl Tank {
         ))
     }
 
-    /// How deep a point of the tank's frame lies under a level through the tank's middle at half of its height.
+    /// The depth of a point, in the frame of the tank, below a level through the centre of the tank.
     fn depth(&self, x: Vec3) -> f32 {
         (0.5 * self.inner() - x).dot(Quat::from_rotation_z(-TILT) * Vec3::Y)
     }
@@ -75,7 +75,7 @@ impl Tank {
         particles
     }
 
-    fn judge(&self, case: &str, scene: &Scene) {
+    fn check(&self, case: &str, scene: &Scene) {
         let water = self.water(scene);
         let mut simulation = Simulation::with_particles(scene, CpuExecutor::new().into(), &water).unwrap();
         let stats = simulation.advance(2.0).unwrap();
@@ -108,7 +108,7 @@ impl Tank {
 #[test]
 fn water_is_at_rest_in_a_tilted_domain() {
     let tank = Tank::new(Quat::IDENTITY);
-    tank.judge("tilted tank, domain, CPU", &tank.scene(Vec3::ZERO, tank.inner()));
+    tank.check("tilted tank, domain, CPU", &tank.scene(Vec3::ZERO, tank.inner()));
 }
 
 #[test]
@@ -121,5 +121,5 @@ fn water_is_at_rest_in_a_tilted_mesh() {
     let mut tub = body("tub", file(folder.path(), "tub.obj", &mesh), 1.0, Vec3::ZERO, Motion::Static);
     tub.mesh.rotation = tank.turn;
     scene.bodies.push(tub);
-    tank.judge("tilted tank, mesh, CPU", &scene);
+    tank.check("tilted tank, mesh, CPU", &scene);
 }

@@ -1,10 +1,10 @@
-//! A tank that empties through a slit in its floor (Torricelli 1643): the level falls as (sqrt(y0) - C_d (A_o /
-//! A) sqrt(g / 2) t)^2, with the sharp edge's C_d about 0.61 (0.55 to 0.66 is the gate), and the jet leaves at
-//! sqrt(2 g y) (within 4 %).
+//! A tank that drains through a slit in its floor (Torricelli 1643). The level falls as
+//! (sqrt(y0) - C_d (A_o / A) sqrt(g / 2) t)^2, with C_d about 0.61 for a sharp edge (gate: 0.55 to 0.66). The speed of the
+//! jet is sqrt(2 g y) within 4 %.
 //!
-//! A slab eight spacings thick stands for two dimensions; the floor is two plates with a slit eight spacings
-//! wide, 16 at full resolution. An edge is felt through the kernel and so less far out than it is: at eight
-//! spacings the slit passes a seventh too much, which is told but not judged.
+//! A slab eight spacings thick represents two dimensions. The floor consists of two plates with a slit eight spacings
+//! wide, 16 at full resolution. The kernel smooths the edges of the slit: at eight spacings the flow is a seventh too
+//! large, so it is reported without a gate.
 
 use glam::Vec3;
 use splashdown::scene::Motion;
@@ -63,7 +63,7 @@ fn a_draining_tank_follows_torricelli() {
     let middle = 0.5 * tank.width;
     let sides = [("left", -0.1, middle - 0.5 * SLIT), ("right", middle + 0.5 * SLIT, tank.width + 0.1)];
     for (name, from, to) in sides {
-        // The plates reach through the domain's sides.
+        // The plates extend beyond the sides of the domain.
         let mesh = cuboid(Vec3::new(from, -plate, -0.1), Vec3::new(to, 0.0, thick + 0.1));
         let shape = file(folder.path(), &format!("{name}.obj"), &mesh);
         scene.bodies.push(body(name, shape, 1.0, Vec3::ZERO, Motion::Static));
@@ -78,7 +78,7 @@ fn a_draining_tank_follows_torricelli() {
         for (a, b) in rows[0].iter().zip(&rows[1]) {
             levels.push((a[0], 0.5 * (a[1] + b[1])));
         }
-        // The jet's core, half a slit to a slit below the edge, where it has contracted.
+        // The core of the jet, half a slit width to a slit width below the edge, where it has contracted.
         let particles = simulation.particles().unwrap();
         let level = levels[levels.len() - 1].1;
         let core = particles.positions.iter().zip(&particles.velocities).filter(|(x, _)| {

@@ -29,7 +29,7 @@ fn a_body_has_the_defaults_of_the_reference() {
     let keys = schema["properties"]["body"]["items"]["properties"].as_object().expect("keys");
     let mut seen = 0;
     for (name, key) in keys {
-        // What belongs to dynamic bodies is tested with one.
+        // Keys of dynamic bodies are tested separately.
         let Some(default) = key
             .get("default")
             .filter(|_| !matches!(name.as_str(), "density" | "velocity" | "angular_velocity"))
@@ -171,7 +171,7 @@ fn errors_in_bodies_name_the_allowed_values() {
 
 #[test]
 fn a_density_of_a_static_body_gives_a_warning() {
-    let scene = parse(&with_body(&format!("{PLAIN}\ndensity = 300"))).expect("legal");
+    let scene = parse(&with_body(&format!("{PLAIN}\ndensity = 300"))).expect("valid");
     let warnings = scene.warnings.iter().map(ToString::to_string).collect::<String>();
     assert!(warnings.contains("only to a dynamic body"), "{warnings}");
 }
@@ -189,6 +189,6 @@ fn paths_are_relative_to_the_folder_of_the_scene_file() {
     std::fs::create_dir(folder.path().join("models")).expect("a folder");
     std::fs::write(folder.path().join("models/a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         .expect("written");
-    let scene = Scene::load(&path).expect("legal");
+    let scene = Scene::load(&path).expect("valid");
     assert_eq!(scene.bodies[0].mesh.shape, MeshShape::File(folder.path().join("models/a.obj")));
 }

@@ -1,4 +1,4 @@
-//! Numbers that follow from a scene, against values worked out by hand.
+//! Derived values of a scene, compared with values calculated by hand.
 
 use glam::Vec3;
 use splashdown::scene::{Derived, Scene};
@@ -9,7 +9,7 @@ fn derived(text: &str) -> Derived {
     Derived::new(&parse(text).unwrap_or_else(|errors| panic!("{errors}")))
 }
 
-/// Within a part in ten thousand: the hand's digits.
+/// Equal within 1e-4, the precision of the values calculated by hand.
 fn near(value: f32, by_hand: f64) -> bool {
     (f64::from(value) - by_hand).abs() <= 1e-4 * by_hand.abs()
 }
@@ -56,12 +56,12 @@ fn the_reference_speed_follows_from_the_driving_forces() {
     ));
     // Sideways gravity: the block leans at x = 0, gravity pulls to +x: 1 m of fall.
     assert!(near(speed(&changed("frame_rate = 25", "gravity = [9.81, 0, 0]")), 6.26418));
-    // A shaken tank adds its own 2 pi 0.1 / 0.5.
+    // An oscillating domain adds 2 pi 0.1 / 0.5.
     assert!(near(
         speed(&changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]")),
         4.42945 + 1.25664
     ));
-    // Nothing at all; then surface tension alone: sqrt(2 * 0.07274 / (998.2 * 0.05)).
+    // No driving force; then surface tension alone: sqrt(2 * 0.07274 / (998.2 * 0.05)).
     let floating = changed("frame_rate = 25", "gravity = [0, 0, 0]");
     assert!(near(speed(&floating), 0.01));
     assert!(near(speed(&format!("{floating}surface_tension = \"akinci2013\"\n")), 0.053_990));
@@ -80,20 +80,20 @@ fn each_time_step_limit_can_be_the_smallest() {
 fn the_frame_count_is_free_of_rounding_errors() {
     let frames = |duration: &str, rate: &str| {
         parse(&changed("duration = 1.0", &format!("duration = {duration}")).replace("25", rate))
-            .expect("legal")
+            .expect("valid")
             .frame_count()
     };
     assert_eq!(frames("0.1", "30"), 3);
     assert_eq!(frames("1.5", "40"), 60);
-    assert_eq!(frames("0.11", "30"), 4, "a part of a frame is a frame");
+    assert_eq!(frames("0.11", "30"), 4, "a fraction of a frame counts as a frame");
     assert_eq!(frames("1e-4", "1"), 1);
 }
 
 #[test]
 fn an_oscillating_domain_adds_the_opposite_acceleration() {
     let text = changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]");
-    let scene: Scene = parse(&text).expect("legal");
-    let shake = scene.domain.shake.expect("the tank is shaken");
+    let scene: Scene = parse(&text).expect("valid");
+    let shake = scene.domain.shake.expect("the domain oscillates");
     let place = |t: f64| 0.1 * (std::f64::consts::TAU * t / 0.5).sin();
     let (t, step) = (0.13, 1e-4);
     let tank = (place(t + step) - 2.0 * place(t) + place(t - step)) / (step * step);

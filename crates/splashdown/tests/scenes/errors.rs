@@ -1,5 +1,5 @@
-//! The words of every kind of mistake, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test -p
-//! splashdown --test scenes`, then read the difference.
+//! The message of every kind of error, as snapshots. After an intended change, run `INSTA_UPDATE=always cargo test -p
+//! splashdown --test scenes` and review the difference.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use splashdown::scene::Scene;
 
 use crate::{CUBE, changed, parse};
 
-/// Errors of a text, as printed; with the warnings if it is legal.
+/// Errors of a text, as printed; with the warnings if it is valid.
 fn words(text: &str) -> String {
     match parse(text) {
         Err(errors) => errors.to_string(),
@@ -141,12 +141,12 @@ fov = 40
 "
 );
 
-/// Errors of a file of these bytes, without the folder's name.
+/// Errors of a file with these bytes, without the name of the folder.
 fn words_of_file(name: &str, bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join(name);
     fs::write(&path, bytes).expect("writing into a temporary folder");
-    let errors = Scene::load(&path).expect_err("the file is no scene").to_string();
+    let errors = Scene::load(&path).expect_err("the file is not a scene").to_string();
     errors.replace(&folder.path().display().to_string(), "FOLDER").replace('\\', "/")
 }
 
@@ -164,12 +164,12 @@ fn files_that_are_no_scenes() {
 fn a_missing_file_and_a_folder_have_different_messages() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let missing =
-        Scene::load(folder.path().join("none.toml")).expect_err("there is no such file").to_string();
+        Scene::load(folder.path().join("none.toml")).expect_err("the file does not exist").to_string();
     assert!(
         missing.contains("cannot open the scene file") && missing.contains("splashdown scenes"),
         "{missing}"
     );
-    let not_a_file = Scene::load(folder.path()).expect_err("a folder is no scene").to_string();
+    let not_a_file = Scene::load(folder.path()).expect_err("a folder is not a scene").to_string();
     assert!(not_a_file.contains("this is a folder"), "{not_a_file}");
 }
 
@@ -179,11 +179,11 @@ fn a_loaded_scene_stores_its_folder_and_text() {
     let path = folder.path().join("cube.toml");
     fs::write(&path, format!("\u{feff}{}", CUBE.replace('\n', "\r\n")))
         .expect("writing into a temporary folder");
-    let scene = Scene::load(&path).expect("a byte order mark and Windows line ends do no harm");
+    let scene = Scene::load(&path).expect("a byte order mark and Windows line ends are accepted");
     assert_eq!(scene.source.as_deref(), Some(path.as_path()));
-    // The text is kept as it stands in the file.
+    // The text is stored unchanged.
     assert!(scene.text.contains("\r\n"));
-    let plain = parse(CUBE).expect("the cube is legal");
+    let plain = parse(CUBE).expect("the cube is valid");
     assert_eq!(
         {
             let mut changed = scene;

@@ -1,4 +1,4 @@
-//! What is wrong with the files that a scene names, with the scene's line.
+//! Errors in the files that a scene refers to, with the line of the scene.
 
 use std::fs;
 use std::path::Path;
@@ -83,8 +83,8 @@ fn implausible_sizes_are_rejected_with_a_suggested_unit() {
     let message = load(folder.path(), &body("cube.stl")).map(drop).expect_err("300 m");
     assert!(message.contains("body \"rock\" (cube.stl) is 300.0000 m long"), "{message}");
     assert!(message.contains("give it scale = \"mm\"") && message.contains("scene.toml:20"), "{message}");
-    let scene =
-        load(folder.path(), &format!("{}\nscale = \"mm\"", body("cube.stl"))).expect("the advice helps");
+    let scene = load(folder.path(), &format!("{}\nscale = \"mm\"", body("cube.stl")))
+        .expect("the suggestion is valid");
     assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
     write_cube(&folder.path().join("cube.stl"), 0.3);
     let message =
@@ -111,16 +111,16 @@ fn fluid_outside_the_domain_is_rejected() {
 fn bodies_outside_the_domain_give_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = body("block").replace("0.5,", "2.5,");
-    let found = warnings(&load(folder.path(), &text).expect("legal"));
+    let found = warnings(&load(folder.path(), &text).expect("valid"));
     assert!(
         found.contains("body \"rock\" lies wholly outside the domain") && found.contains("scene.toml:23"),
         "{found}"
     );
     let comes = format!("{text}\nmove = [\"0\", \"-4*t\", \"0\"]");
-    let found = load(folder.path(), &comes).expect("legal");
-    assert!(found.warnings.is_empty(), "control: it comes in later: {}", warnings(&found));
+    let found = load(folder.path(), &comes).expect("valid");
+    assert!(found.warnings.is_empty(), "control: it enters later: {}", warnings(&found));
     let leaves = format!("{text}\nmove = [\"0\", \"4*t\", \"0\"]");
-    let found = warnings(&load(folder.path(), &leaves).expect("legal"));
+    let found = warnings(&load(folder.path(), &leaves).expect("valid"));
     assert!(found.contains("wholly outside"), "{found}");
 }
 
@@ -139,11 +139,11 @@ fn an_outlet_inside_a_body_is_rejected() {
         "{message}"
     );
     let moving = format!("{}\nmove = [\"t\", \"0\", \"0\"]\n{}", body("block"), tap(0.5));
-    let found = warnings(&load(folder.path(), &moving).expect("legal"));
+    let found = warnings(&load(folder.path(), &moving).expect("valid"));
     assert!(found.contains("before the body moves away"), "{found}");
     for y in [0.6, 0.75] {
         let scene = load(folder.path(), &format!("{}\n{}", body("block"), tap(y)))
-            .expect("on the surface, and off it");
+            .expect("on the surface and outside");
         assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
     }
 }

@@ -37,7 +37,7 @@ fn merge(scene: &mut Table, part: Table) {
     }
 }
 
-/// A block as a whole scene: with the rest of the cube, in a larger domain, if it is a part.
+/// A block as a complete scene: a part is merged into the scene of the cube with a larger domain.
 fn completed(block: &str) -> String {
     let part: Table = block.parse().unwrap_or_else(|error| panic!("{error}"));
     if part.contains_key("scene") {
@@ -74,7 +74,7 @@ fn every_scene_of_the_guide_is_valid() {
     assert!(count > 15, "only {count} examples were found");
 }
 
-/// Control: a wrong key in an example is found.
+/// Negative control: a wrong key in an example is detected.
 #[test]
 fn an_invalid_example_is_rejected() {
     let page = "Text\n\n```toml\n[solver]\nmethd = \"wcsph\"\n```\n";

@@ -1,4 +1,4 @@
-//! Nothing that can be written into a file makes the reader panic, hang or run out of memory.
+//! No file contents make the reader panic, hang or run out of memory.
 
 use proptest::prelude::*;
 use splashdown::sample;
@@ -6,7 +6,7 @@ use splashdown::scene::{Derived, Scene};
 
 use crate::{CUBE, changed, parse};
 
-/// Values as a hostile or careless hand writes them.
+/// Malicious and careless values.
 fn value() -> impl Strategy<Value = String> {
     let plain = [
         "nan",
@@ -82,7 +82,7 @@ proptest! {
             .collect();
         match parse(&text) {
             Err(errors) => prop_assert!(!errors.errors.is_empty()),
-            // What is accepted can be sampled without surprise.
+            // Every accepted scene can be sampled.
             Ok(scene) if sample::count(&scene) <= 1_000_000 => {
                 let particles = sample::particles(&scene);
                 prop_assert!(particles.is_ok(), "{particles:?}");
@@ -106,7 +106,7 @@ fn thousands_of_errors_are_truncated_quickly() {
     let errors = parse(&format!("{keys}{CUBE}")).expect_err("none of these keys exist");
     assert!(errors.errors.len() <= 200, "{}", errors.errors.len());
     assert!(errors.to_string().len() < 40_000);
-    // The same on one line: a column is not counted anew from the line's start for each of them.
+    // The same on one line: columns are not counted from the start of the line for each error.
     let line: String = (0..200_000).map(|i| format!("k{i}=1,")).collect();
     assert!(parse(&format!("a={{{line}}}\n{CUBE}")).is_err());
 }
@@ -120,7 +120,7 @@ fn thousands_of_blocks_are_rejected() {
 
 #[test]
 fn the_sampler_rejects_invalid_scenes_built_in_code() {
-    let scene = parse(CUBE).expect("the cube is legal");
+    let scene = parse(CUBE).expect("the cube is valid");
     for spacing in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-30, 1e30] {
         let mut scene = scene.clone();
         scene.fluid.particle_spacing = spacing;

@@ -1,4 +1,4 @@
-//! Scene files: what is read, what is refused and with which words, and how blocks become particles.
+//! Scene files: accepted and rejected input, error messages, and sampling of blocks.
 
 mod bodies;
 mod derived;
@@ -16,7 +16,7 @@ mod schema;
 
 use splashdown::scene::{Scene, SceneErrors};
 
-/// A small legal scene; tests change single lines of it.
+/// A small valid scene; tests change single lines of it.
 const CUBE: &str = "\
 [scene]
 name = \"cube\"

@@ -1,4 +1,4 @@
-//! The scenes that come with the program.
+//! The built-in scenes.
 
 use std::path::{Path, PathBuf};
 
@@ -24,16 +24,16 @@ fn every_file_in_the_folder_is_a_preset_and_loads_without_a_warning() {
     for (name, text) in presets() {
         let scene =
             Scene::load(folder().join(format!("{name}.toml"))).unwrap_or_else(|errors| panic!("{errors}"));
-        assert_eq!(&scene.name, name, "a scene is called like its file");
+        assert_eq!(&scene.name, name, "a scene has the name of its file");
         assert!(scene.warnings.is_empty(), "{}", scene.warnings[0]);
-        assert!(text.starts_with("# "), "{name} begins by saying what one sees");
+        assert!(text.starts_with("# "), "{name} starts with a description");
         assert_eq!(
             {
                 let mut changed = scene;
                 changed.source = None;
                 changed
             },
-            Scene::parse(text, name).expect("the embedded text is the file's")
+            Scene::parse(text, name).expect("the embedded text is valid")
         );
     }
 }
@@ -42,7 +42,7 @@ fn every_file_in_the_folder_is_a_preset_and_loads_without_a_warning() {
 fn presets_have_the_promised_sizes() {
     let count = |name: &str| {
         let (_, text) = presets().iter().find(|(known, _)| *known == name).expect("a preset");
-        let scene = Scene::parse(text, name).expect("a preset is legal");
+        let scene = Scene::parse(text, name).expect("a preset is valid");
         let particles = sample::particles(&scene).expect("a preset can be sampled");
         assert_eq!(sample::count(&scene), particles.positions.len() as u64, "{name}");
         (particles.positions.len(), scene.solver.method)
@@ -64,9 +64,9 @@ fn presets_have_the_promised_sizes() {
 #[test]
 fn presets_run_in_reasonable_time() {
     for (name, text) in presets() {
-        let derived = Derived::new(&Scene::parse(text, name).expect("a preset is legal"));
+        let derived = Derived::new(&Scene::parse(text, name).expect("a preset is valid"));
         let work = derived.steps_estimate * derived.particles;
-        // 12 ms per step of 64K particles are 5.5 million particle-steps per second: 1.4e9 are four and a half minutes.
+        // 12 ms per step of 64K particles are 5.5 million particle-steps per second: 1.4e9 take four and a half minutes.
         assert!(work < 1_400_000_000, "{name}: {work} particle-steps");
     }
 }

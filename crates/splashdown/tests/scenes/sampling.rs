@@ -9,7 +9,7 @@ fn positions(scene: &Scene) -> Vec<[f32; 3]> {
     sample::particles(scene).expect("the scene can be sampled").positions
 }
 
-/// Smallest distance of any two points: the plain way, all pairs.
+/// Smallest distance between any two points, over all pairs.
 fn smallest_distance(points: &[[f32; 3]]) -> f64 {
     let squared = |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|k| f64::from(a[k] - b[k]).powi(2)).sum::<f64>();
     let pairs = points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(move |b| squared(a, b)));
@@ -18,7 +18,7 @@ fn smallest_distance(points: &[[f32; 3]]) -> f64 {
 
 #[test]
 fn a_box_is_a_lattice_half_a_spacing_inside_its_faces() {
-    let scene = parse(&changed("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.25, 0.1]")).expect("legal");
+    let scene = parse(&changed("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.25, 0.1]")).expect("valid");
     let points = positions(&scene);
     assert_eq!(points.len(), 10 * 5 * 2);
     for axis in 0..3 {
@@ -38,7 +38,7 @@ fn a_box_is_a_lattice_half_a_spacing_inside_its_faces() {
 fn particles_have_ids_in_order_and_their_blocks_velocity() {
     let second =
         "[[fluid.block]]\nposition = [0.6, 0.6, 0.6]\nsize = [0.1, 0.1, 0.1]\nvelocity = [1, -2, 3]\n";
-    let scene = parse(&format!("{CUBE}{second}")).expect("legal");
+    let scene = parse(&format!("{CUBE}{second}")).expect("valid");
     let particles = sample::particles(&scene).expect("the scene can be sampled");
     let count = 1000 + 8;
     assert_eq!(particles.ids, (0..count).collect::<Vec<u32>>());
@@ -59,13 +59,13 @@ fn a_ball_has_the_volume_of_a_ball() {
             "position = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]",
             &format!("shape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = {radius}"),
         );
-        let scene = parse(&text.replace("0.05", &spacing.to_string())).expect("legal");
+        let scene = parse(&text.replace("0.05", &spacing.to_string())).expect("valid");
         let points = positions(&scene);
         let volume = points.len() as f64 * f64::powi(spacing, 3);
         let exact = 4.0 / 3.0 * std::f64::consts::PI * f64::powi(radius, 3);
         let error = (volume / exact - 1.0).abs();
         assert!(error < 0.02, "radius {radius}, spacing {spacing}: {error}");
-        // Control: a ball of 3 per cent more radius is told apart.
+        // Control: a radius larger by 3 % is detected.
         assert!((volume / (exact * 1.03f64.powi(3)) - 1.0).abs() > 0.02);
         let inside = |p: &[f32; 3]| {
             p.iter().map(|x| (f64::from(*x) - 0.5).powi(2)).sum::<f64>().sqrt() <= radius + 1e-6
@@ -81,11 +81,11 @@ fn a_ball_on_the_floor_keeps_half_a_spacing_from_it() {
         "shape = \"sphere\"\ncenter = [0.5, 0.23, 0.5]\nradius = 0.23",
     );
     let lowest = |text: &str| {
-        positions(&parse(text).expect("legal")).iter().map(|p| p[1]).fold(f32::INFINITY, f32::min)
+        positions(&parse(text).expect("valid")).iter().map(|p| p[1]).fold(f32::INFINITY, f32::min)
     };
     assert!(lowest(&text) >= 0.02);
     let open = text.replace("[fluid]", "open = [\"y_min\"]\n[fluid]");
-    assert!(lowest(&open) < 0.02, "control: without a floor the ball is whole");
+    assert!(lowest(&open) < 0.02, "control: without a floor the ball is complete");
 }
 
 #[test]
@@ -95,14 +95,14 @@ fn overlapping_blocks_are_sampled_once() {
     assert_eq!(scene.warnings.len(), 1);
     let points = positions(&scene);
     assert_eq!(points.len() as u64, sample::count(&scene));
-    // 0.76 m of the tank are wet: 15 layers of 0.05 m.
+    // 0.76 m of the tank contain fluid: 15 layers of 0.05 m.
     assert_eq!(points.len(), 15 * 100);
     assert!(smallest_distance(&points) > 0.7 * 0.05);
     // Control: sampled twice, the same two lattices come much closer.
     let alone =
         parse(&overlapping.replace("position = [0, 0, 0]", "position = [0, 0.5, 0.5]")).expect("apart");
     assert!(alone.warnings.is_empty());
-    let mut twice = positions(&parse(CUBE).expect("legal"));
+    let mut twice = positions(&parse(CUBE).expect("valid"));
     twice.extend(&positions(&alone)[1000..]);
     assert!(smallest_distance(&twice) < 0.7 * 0.05);
 }
@@ -110,7 +110,7 @@ fn overlapping_blocks_are_sampled_once() {
 #[test]
 fn touching_blocks_keep_all_particles() {
     let scene = parse(&format!("{CUBE}[[fluid.block]]\nposition = [0.5, 0, 0]\nsize = [0.5, 0.5, 0.5]\n"))
-        .expect("legal");
+        .expect("valid");
     assert!(scene.warnings.is_empty(), "{}", scene.warnings[0]);
     let points = positions(&scene);
     assert_eq!(points.len(), 2000);
@@ -120,34 +120,34 @@ fn touching_blocks_keep_all_particles() {
 #[test]
 fn a_block_of_fractional_spacings_touches_its_wall() {
     let low = |text: &str, axis: usize| {
-        positions(&parse(text).expect("legal")).iter().map(|p| p[axis]).fold(f32::INFINITY, f32::min)
+        positions(&parse(text).expect("valid")).iter().map(|p| p[axis]).fold(f32::INFINITY, f32::min)
     };
     let high = |text: &str, axis: usize| {
-        positions(&parse(text).expect("legal")).iter().map(|p| p[axis]).fold(0.0, f32::max)
+        positions(&parse(text).expect("valid")).iter().map(|p| p[axis]).fold(0.0, f32::max)
     };
-    // 2.4 spacings high: two layers, on the floor.
+    // 2.4 spacings high: two layers on the floor.
     let floor = changed("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.12, 0.5]");
     assert!((low(&floor, 1) - 0.025).abs() < 1e-6);
-    // At the lid: under it.
+    // At the lid: below it.
     let lid = floor.replace("position = [0, 0, 0]", "position = [0, 0.88, 0]");
     assert!((high(&lid, 1) - 0.975).abs() < 1e-6);
-    // Free: in the middle.
+    // Away from walls: in the middle.
     let free = floor.replace("position = [0, 0, 0]", "position = [0, 0.4, 0]");
     assert!((low(&free, 1) - 0.435).abs() < 1e-6);
-    // From wall to wall nothing is squeezed in: 20.8 spacings hold 20 layers, none nearer to a wall than half a
-    // spacing.
+    // From wall to wall the layers are not compressed: 20.8 spacings contain 20 layers, none closer to a wall than half
+    // a spacing.
     let full = changed("max = [1, 1, 1]", "max = [1, 1, 1.04]")
         .replace("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.5, 1.04]");
     assert!(low(&full, 2) >= 0.025 && high(&full, 2) <= 1.04 - 0.025);
-    assert_eq!(sample::count(&parse(&full).expect("legal")), 10 * 10 * 20);
+    assert_eq!(sample::count(&parse(&full).expect("valid")), 10 * 10 * 20);
 }
 
 #[test]
 fn counting_does_not_create_particles() {
-    let mut scene = parse(CUBE).expect("legal");
+    let mut scene = parse(CUBE).expect("valid");
     scene.fluid.particle_spacing = 0.5e-4;
     assert_eq!(sample::count(&scene), 1_000_000_000_000);
-    let error = sample::particles(&scene).expect_err("a million million particles").to_string();
+    let error = sample::particles(&scene).expect_err("10^12 particles").to_string();
     let fitting: f32 = error
         .split("particle_spacing of ")
         .nth(1)
@@ -158,6 +158,6 @@ fn counting_does_not_create_particles() {
     scene.fluid.particle_spacing = fitting * 0.9;
     assert!(
         sample::count(&scene) > sample::MAX_PARTICLES,
-        "control: the spacing proposed is not needlessly coarse"
+        "control: the suggested spacing is not coarser than necessary"
     );
 }

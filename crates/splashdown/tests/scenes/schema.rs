@@ -1,4 +1,4 @@
-//! The JSON schema and the reference: as committed, in accord with the parser, and satisfied by every scene.
+//! The JSON schema and the reference: up to date, consistent with the parser, and satisfied by every scene.
 
 use std::fs;
 
@@ -8,11 +8,11 @@ use splashdown::scene::{Solver, SurfaceSettings, presets, schema};
 
 use crate::{CUBE, parse, presets::folder};
 
-/// Compares a generated text with the committed file, or rewrites the file if asked to.
+/// Compares a generated text with the committed file, or rewrites the file if `UPDATE_EXPECT` is set.
 fn expect_file(name: &str, generated: &str) {
     let path = folder().join(name);
     if std::env::var_os("UPDATE_EXPECT").is_some() {
-        fs::write(&path, generated).expect("writing the expectation");
+        fs::write(&path, generated).expect("writing the file");
     }
     let committed = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
     assert!(
@@ -32,11 +32,11 @@ fn the_reference_is_as_committed() {
     expect_file("README.md", &reference());
 }
 
-/// What a value breaks of a schema: the part of JSON Schema that ours uses.
+/// The violations of a schema by a value, for the part of JSON Schema that the project uses.
 fn complaints(value: &Value, schema: &Value, path: &str) -> Vec<String> {
     if let Some(choices) = schema["anyOf"].as_array() {
         let fits = choices.iter().any(|choice| complaints(value, choice, path).is_empty());
-        return if fits { Vec::new() } else { vec![format!("{path}: fits none of the choices")] };
+        return if fits { Vec::new() } else { vec![format!("{path}: matches none of the choices")] };
     }
     let mut found = Vec::new();
     let kind = schema["type"].as_str().unwrap_or_default();
@@ -47,13 +47,13 @@ fn complaints(value: &Value, schema: &Value, path: &str) -> Vec<String> {
         "boolean" => value.is_boolean(),
         "number" => value.is_number(),
         "integer" => value.is_i64(),
-        other => panic!("{path}: the checker does not know the type {other:?}"),
+        other => panic!("{path}: the checker does not support the type {other:?}"),
     };
     if !fits {
         return vec![format!("{path}: not of type {kind}")];
     }
     if schema["enum"].as_array().is_some_and(|words| !words.contains(value)) {
-        found.push(format!("{path}: not among the words"));
+        found.push(format!("{path}: not one of the allowed values"));
     }
     if let Some(number) = value.as_f64() {
         let in_range = schema["minimum"].as_f64().is_none_or(|least| number >= least)
@@ -74,7 +74,7 @@ fn complaints(value: &Value, schema: &Value, path: &str) -> Vec<String> {
         }
     }
     if let Some(object) = value.as_object() {
-        assert_eq!(schema["additionalProperties"], json!(false), "{path}: every table refuses unknown keys");
+        assert_eq!(schema["additionalProperties"], json!(false), "{path}: every table rejects unknown keys");
         for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
             if !object.contains_key(name) {
                 found.push(format!("{path}: {name} is missing"));
@@ -104,7 +104,7 @@ fn every_scene_satisfies_the_schema() {
     assert!(complaints(&as_json(CUBE), &schema, "cube").is_empty());
 }
 
-/// Controls of the checker above, and at once the accord of schema and parser: both refuse each of these, and
+/// Negative controls of the checker above, and consistency of schema and parser: both reject each of these errors and
 /// accept the cube.
 #[test]
 fn schema_and_parser_reject_the_same_errors() {
@@ -137,19 +137,19 @@ fn schema_and_parser_reject_the_same_errors() {
     }
 }
 
-/// Every key of the schema, with its default or an allowed value, one at a time: the parser knows it, and the
-/// defaults it names are the defaults it takes.
+/// Tests every key of the schema with its default or an allowed value: the parser accepts it, and the documented
+/// defaults are the actual defaults.
 #[test]
 fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
     let schema = schema();
-    let plain = parse(CUBE).expect("the cube is legal");
+    let plain = parse(CUBE).expect("the cube is valid");
     let mut seen = 0;
     for (section, table) in schema["properties"].as_object().expect("sections") {
-        // The keys of lists of sections are compared where the lists are tested.
+        // The keys of lists of sections are tested with the lists.
         let Some(keys) = table["properties"].as_object() else { continue };
         for (name, key) in keys {
             let Some(default) = key.get("default") else { continue };
-            // Without a meaning for the plain method; their defaults are compared below.
+            // Keys without effect for the plain method; their defaults are compared below.
             if name == "density_diffusion" {
                 continue;
             }

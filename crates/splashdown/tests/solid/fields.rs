@@ -19,7 +19,7 @@ fn build(mesh: &Mesh, settings: &SolidSettings) -> Solid {
     Solid::build(mesh, settings, &|_| {}).unwrap()
 }
 
-/// Nodes with their place, distance and effective distance.
+/// Nodes with their position, distance and effective distance.
 fn nodes(solid: &Solid) -> impl Iterator<Item = (Vec3, f32, f32)> + '_ {
     let field = &solid.field;
     let [nx, ny, _] = field.nodes;
@@ -63,7 +63,7 @@ fn the_kernel_integral_of_a_cube_is_a_plane_at_faces_and_smaller_at_edges() {
         let edge = (x.x - 0.5).abs() < 0.026 && (x.y - 0.5).abs() < 0.026 && x.z.abs() < 0.2;
         if edge {
             edges += 1;
-            // A quarter space or thereabouts: less than half the kernel.
+            // About a quarter of space: less than half of the kernel.
             assert!(effective > phi + 0.01, "{x}: {effective} at {phi}");
         }
     }
@@ -81,7 +81,7 @@ fn the_kernel_integral_at_an_edge_matches_the_edge_table() {
             continue;
         }
         checked += 1;
-        // The solid is where both half-spaces behind x = 0.5 and y = 0.5 are.
+        // The solid is the intersection of the half-spaces behind x = 0.5 and y = 0.5.
         let (i, j) = (a * 32.0, b * 32.0);
         let node = |i: f32, j: f32| table[j as usize * 33 + i as usize].y;
         let (fi, fj) = (i.fract(), j.fract());
@@ -89,9 +89,9 @@ fn the_kernel_integral_at_an_edge_matches_the_edge_table() {
         let exact = (1.0 - fj) * ((1.0 - fi) * node(i, j) + fi * node(i + 1.0, j))
             + fj * ((1.0 - fi) * node(i, j + 1.0) + fi * node(i + 1.0, j + 1.0));
         let share = |distance: f32| KernelPair::WendlandC2.gradient((distance / 0.2).min(1.0)).0;
-        // The grid's straight lines round the crease off, by less than a cell.
+        // The linear interpolation of the grid smooths the crease by less than a cell.
         assert!((share(effective) - exact).abs() < 0.01, "{x}: {} for {exact}", share(effective));
-        // Control: the plane at the same distance is something else near the edge.
+        // Control: near the edge, a plane at the same distance has another value.
         if phi < 0.03 {
             assert!((share(phi) - exact).abs() > 0.05, "{x}");
         }
@@ -123,22 +123,22 @@ fn a_second_build_is_cached_and_a_damaged_file_is_rebuilt() {
     let cube = models::build("cube").unwrap();
     let first = build(&cube, &settings);
     let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
-    let told = std::sync::atomic::AtomicU32::new(0);
-    let again = |told: &std::sync::atomic::AtomicU32| {
+    let reports = std::sync::atomic::AtomicU32::new(0);
+    let again = |reports: &std::sync::atomic::AtomicU32| {
         Solid::build(&cube, &settings, &|_| {
-            told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            reports.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         })
         .unwrap()
     };
-    let second = again(&told);
-    assert_eq!(told.load(std::sync::atomic::Ordering::Relaxed), 0, "it was built again");
+    let second = again(&reports);
+    assert_eq!(reports.load(std::sync::atomic::Ordering::Relaxed), 0, "the solid was built again");
     assert_eq!((&first.field, &first.mesh, first.report), (&second.field, &second.mesh, second.report));
     let mut bytes = std::fs::read(&file).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 0x40;
     std::fs::write(&file, &bytes).unwrap();
-    let third = again(&told);
-    assert!(told.load(std::sync::atomic::Ordering::Relaxed) > 0, "a damaged file was believed");
+    let third = again(&reports);
+    assert!(reports.load(std::sync::atomic::Ordering::Relaxed) > 0, "a damaged file was accepted");
     assert_eq!(first.field, third.field);
 }
 
@@ -149,7 +149,7 @@ fn lattice_and_surface_samples_of_a_cube() {
         solid.fill(Vec3::new(2.0, 0.0, 0.0), glam::Quat::IDENTITY, 0.1, Vec3::new(2.05, 0.05, 0.05), 0.045);
     assert_eq!(points.len(), 1000);
     let samples = solid.sample_surface(0.1, 0.05);
-    // The faces of the cube of 0.9 that lies half a spacing inside; random packing is looser than a lattice.
+    // The samples lie on the cube of 0.9, half a spacing inside; a random packing is less dense than a lattice.
     let lattice = 6.0 * 0.9 * 0.9 / 0.01;
     let ratio = samples.len() as f32 / lattice;
     assert!(ratio > 0.8 && ratio < 1.2, "{ratio}");

@@ -8,11 +8,11 @@ use splashdown::solid::{Solid, SolidError, SolidSettings};
 use splashdown_io::Mesh;
 
 const KERNELS: KernelPair = KernelPair::WendlandC2;
-/// A power of two, so that nodes lie exactly on the middles of walls and slots, where the distance has no slope.
+/// A power of two, so that nodes lie exactly on the middle of walls and slots, where the distance has no gradient.
 const CELL: f32 = 0.0625;
 const SUPPORT: f32 = 0.25;
-/// Nodes of one layer that are compared: those with |x| and |z| up to 0.25. Between two surfaces, the middle
-/// layer at least is no plane.
+/// Number of compared nodes per layer: those with |x| and |z| up to 0.25. Between two surfaces, at least the middle
+/// layer differs from a plane.
 const LAYER: u32 = 9 * 9;
 
 fn settings() -> SolidSettings {
@@ -26,7 +26,7 @@ fn settings() -> SolidSettings {
     }
 }
 
-/// The unit cube stretched between two corners.
+/// The unit cube scaled to the box between two corners.
 fn block(low: Vec3, high: Vec3) -> Mesh {
     let mut mesh = models::build("cube").unwrap();
     for v in &mut mesh.vertices {
@@ -44,16 +44,15 @@ fn joined(a: &Mesh, b: &Mesh) -> Mesh {
     )
 }
 
-/// D(q) on both sides of a wall.
+/// The kernel integral D(q) on both sides of a wall.
 fn share(distance: f32) -> f32 {
     let q = (distance / SUPPORT).clamp(-1.0, 1.0);
     let d = KERNELS.gradient(q.abs()).0;
     if q < 0.0 { 1.0 - d } else { d }
 }
 
-/// Compares the share at every node near the y axis with that of the layers `solid` (lower and upper y), which
-/// need not end inside the support; returns the number of nodes at which the plane at the same distance would
-/// not pass.
+/// Compares the kernel integral at every node near the y axis with that of the layers `solid` (lower and upper y), which
+/// may extend beyond the support. Returns the number of nodes at which a plane at the same distance would fail.
 fn compare_with_layers(mesh: &Mesh, solid: &[[f32; 2]]) -> u32 {
     let made = Solid::build(mesh, &settings(), &|_| {}).unwrap();
     let [nx, ny, nz] = made.field.nodes;
@@ -107,11 +106,11 @@ fn a_damaged_cache_file_is_rebuilt() {
     let same = |damaged: &[u8], what: &str| {
         std::fs::write(&file, damaged).unwrap();
         let again = Solid::build(&cube, &settings, &|_| {}).unwrap();
-        // Without the values: there are thousands.
+        // The thousands of values are not printed.
         let equal = first.mesh == again.mesh && first.report == again.report && first.field == again.field;
         assert!(equal, "{what}");
     };
-    // The header, the mesh and the first values, then the rest in leaps.
+    // Every byte of the header, the mesh and the first values, then a sample of the rest.
     for at in (0..700).step_by(7).chain((700..good.len()).step_by(good.len() / 20)) {
         let mut bytes = good.clone();
         bytes[at] ^= 0x01;
@@ -121,7 +120,7 @@ fn a_damaged_cache_file_is_rebuilt() {
         same(&good[..length], &format!("cut to {length}"));
     }
     same(&[good.as_slice(), &[0]].concat(), "one byte too many");
-    same(&good, "the good one");
+    same(&good, "the undamaged file");
 }
 
 proptest! {

@@ -1,4 +1,4 @@
-//! Solids from meshes: mending, distances, shares of the kernel, masses, the cache.
+//! Solids from meshes: repair, distances, kernel integrals, masses, cache.
 
 mod fields;
 mod hostile;

@@ -1,4 +1,4 @@
-//! The meshes that the project does not ship, and models spoilt as badly as the worst of them.
+//! Meshes that are not part of the project, and built-in models with the same kinds of damage.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use splashdown_io::Mesh;
 fn shared(name: &str) -> Option<Mesh> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes").join(name);
     if !path.exists() {
-        eprintln!("SKIPPED: {name} is not there");
+        eprintln!("SKIPPED: {name} does not exist");
         return None;
     }
     Some(splashdown_io::read_mesh(&path).unwrap())
@@ -54,8 +54,8 @@ fn open_meshes_become_shells_and_closed_meshes_volumes() {
     }
 }
 
-/// How many nodes within three cells of the good mesh's surface have another distance, by more than a cell,
-/// from the bad one; and how many there are.
+/// The number of nodes within three cells of the undamaged surface whose distances differ by more than a cell, and the
+/// number of all nodes there.
 fn differing(good: &Solid, bad: &Solid) -> (u32, u32) {
     let cell = good.field.cell_size;
     let [nx, ny, _] = good.field.nodes;
@@ -79,7 +79,7 @@ fn distances_of_the_damaged_spot_agree_with_spot() {
     let (Some(spot), Some(ugly)) = (shared("spot.obj"), shared("spot_ugly.obj")) else { return };
     let (differing, all) = differing(&build(&spot, 60.0), &build(&ugly, 60.0));
     eprintln!("{differing} of {all} nodes near the surface differ by more than a cell");
-    // Where they differ is the hole and what floats about.
+    // They differ at the hole and at floating fragments.
     assert!(f64::from(differing) < 0.05 * f64::from(all), "{differing} of {all}");
 }
 
@@ -90,10 +90,10 @@ fn distances_of_a_damaged_model_agree_with_the_model() {
     for seed in [1, 2] {
         let (differing, all) = differing(&good, &build(&models::ugly(&figure, seed), 60.0));
         eprintln!("seed {seed}: {differing} of {all} nodes near the surface differ by more than a cell");
-        // The four scraps that float about fill some cells of their own.
+        // The four floating fragments occupy some cells.
         assert!(f64::from(differing) < 0.05 * f64::from(all), "{differing} of {all}");
     }
-    // Control: another figure, three tenths wider, is not taken for it.
+    // Control: a model that is wider by 30 % is detected.
     let mut wide = figure;
     for v in &mut wide.vertices {
         v[0] *= 1.3;
