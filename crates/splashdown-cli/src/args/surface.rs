@@ -33,7 +33,7 @@ Examples:
   splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
   splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
-  splashdown surface out/dam-break/particles -o 'meshes/water_*.glb' --particle-spacing 0.02";
+  splashdown surface out/my/particles -o 'meshes/water_*.glb' --particle-spacing 0.02";
 
 /// Options of `surface`.
 #[derive(Debug, Args)]
