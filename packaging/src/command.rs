@@ -1,4 +1,4 @@
-//! Running other programs, and printing.
+//! Runs other programs and prints lines.
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -7,18 +7,18 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-/// Prints a line; a closed pipe is no reason to panic.
+/// Prints a line; a closed pipe does not cause a panic.
 pub fn say(text: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout().lock(), "{}", text.as_ref());
 }
 
-/// The folder that holds the workspace.
+/// The root of the workspace.
 pub fn root() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.parent().unwrap_or(package)
 }
 
-/// A program in a folder.
+/// A command that runs in a folder.
 pub fn program<I: IntoIterator<Item = S>, S: AsRef<OsStr>>(
     name: impl AsRef<OsStr>,
     folder: &Path,

@@ -1,5 +1,5 @@
-//! Release archives, the Debian package and the version number. `cargo xtask dist` and `cargo xtask release` start
-//! this program; it is a crate of its own so that `xtask` needs nothing but the standard library and `anyhow`.
+//! Builds release archives and the Debian package, and sets the version number. `cargo xtask dist` and
+//! `cargo xtask release` start this program; it is a separate crate so that `xtask` depends only on `anyhow`.
 
 mod command;
 mod dist;

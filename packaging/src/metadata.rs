@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use crate::command::{cargo, output};
 
-/// Packages and, unless left out, how they depend on each other.
+/// Packages and, optionally, their dependencies.
 #[derive(Debug, Deserialize)]
 pub struct Metadata {
     pub packages: Vec<Package>,
@@ -33,18 +33,18 @@ pub struct Package {
     pub categories: Vec<String>,
     pub manifest_path: PathBuf,
     pub publish: Option<Vec<String>>,
-    /// Where it comes from; none for the packages of this workspace.
+    /// The registry of the package; `None` for packages of this workspace.
     pub source: Option<String>,
 }
 
 impl Package {
-    /// Its folder.
+    /// The folder of the package.
     pub fn folder(&self) -> &Path {
         self.manifest_path.parent().unwrap_or(&self.manifest_path)
     }
 }
 
-/// Which package depends on which.
+/// The dependencies between packages.
 #[derive(Debug, Deserialize)]
 pub struct Resolve {
     nodes: Vec<Node>,
@@ -64,12 +64,12 @@ struct Dependency {
 
 #[derive(Debug, Deserialize)]
 struct DependencyKind {
-    /// `build` or `dev`; none for a normal dependency.
+    /// `build` or `dev`; `None` for a normal dependency.
     kind: Option<String>,
 }
 
 impl Metadata {
-    /// Asks cargo, with further arguments.
+    /// Runs `cargo metadata` with further arguments.
     ///
     /// # Errors
     /// If cargo fails.
@@ -84,15 +84,15 @@ impl Metadata {
     /// If there is no such package.
     pub fn linked_into(&self, name: &str) -> Result<Vec<&Package>> {
         let start = self.packages.iter().find(|package| package.name == name && package.source.is_none());
-        let start = start.with_context(|| format!("there is no package {name}"))?;
-        let nodes = self.resolve.as_ref().context("`cargo metadata` gave no dependencies")?;
+        let start = start.with_context(|| format!("no package is called {name}"))?;
+        let nodes = self.resolve.as_ref().context("`cargo metadata` printed no dependencies")?;
         let nodes: BTreeMap<&str, &Node> = nodes.nodes.iter().map(|node| (node.id.as_str(), node)).collect();
         let packages: BTreeMap<&str, &Package> =
             self.packages.iter().map(|package| (package.id.as_str(), package)).collect();
         let mut found = BTreeMap::new();
         let mut open = vec![start.id.as_str()];
         while let Some(id) = open.pop() {
-            let package = packages.get(id).with_context(|| format!("there is no package {id}"))?;
+            let package = packages.get(id).with_context(|| format!("no package has the id {id}"))?;
             if found.insert((&package.name, &package.version), *package).is_some() {
                 continue;
             }

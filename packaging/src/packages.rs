@@ -1,4 +1,4 @@
-//! The crates as the registry receives them: complete, described, and without a file from outside of their folders.
+//! Tests of the crates as published: complete, described, and without files from outside their folders.
 //! `cargo package --list` compiles nothing; `cargo xtask package` builds every crate from its package.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use crate::command::{cargo, output, root};
 use crate::metadata::{Metadata, Package};
 
-/// The crates that are published.
+/// The published crates.
 fn published() -> Result<Vec<Package>> {
     let packages = Metadata::ask(&["--no-deps", "--offline"])?.packages;
     Ok(packages.into_iter().filter(|package| package.publish.is_none()).collect())
@@ -22,8 +22,8 @@ fn listed(package: &Package) -> Result<BTreeSet<PathBuf>> {
     Ok(output(&mut cargo(arguments))?.lines().map(PathBuf::from).collect())
 }
 
-/// The paths that a source file includes when it is compiled: arguments of `include_str!` and `include_bytes!`. Of
-/// `concat!(..)` it is the text before the first variable part.
+/// The paths that a source file includes at compile time: the arguments of `include_str!` and `include_bytes!`. For
+/// `concat!(..)`, the text before the first variable part.
 fn included(source: &str) -> Vec<String> {
     let calls = ["include_str!(", "include_bytes!("];
     let starts = calls.iter().flat_map(|call| source.match_indices(call).map(|(at, call)| at + call.len()));
@@ -36,7 +36,7 @@ fn included(source: &str) -> Vec<String> {
         .collect()
 }
 
-/// A path below a file's folder, without `.` and `..`; nothing if it leaves the package.
+/// A path relative to the folder of a file, without `.` and `..`; `None` if it leaves the package.
 fn resolved(file: &Path, path: &str) -> Option<PathBuf> {
     let mut parts: Vec<Component> = file.parent()?.components().collect();
     for part in Path::new(path).components() {
@@ -49,7 +49,7 @@ fn resolved(file: &Path, path: &str) -> Option<PathBuf> {
     Some(parts.iter().collect())
 }
 
-/// What a source file of a package includes and the package lacks.
+/// The files that a source file includes and the package does not contain.
 fn missing(file: &Path, source: &str, listed: &BTreeSet<PathBuf>) -> Vec<String> {
     let present = |path: &str| {
         resolved(file, path).is_some_and(|inside| {
@@ -72,12 +72,12 @@ fn every_included_file_is_in_the_package() -> Result<()> {
             count += included(&source).len();
         }
     }
-    assert!(count > 50, "only {count} inclusions were found: is the search broken?");
+    assert!(count > 50, "only {count} included files were found");
     Ok(())
 }
 
 #[test]
-fn an_included_file_outside_of_the_package_is_found() {
+fn an_included_file_outside_the_package_is_found() {
     let listed = BTreeSet::from(["src/lib.rs", "src/a.wgsl", "data/x.toml"].map(PathBuf::from));
     let check = |source: &str| missing(Path::new("src/lib.rs"), source, &listed);
     assert!(check(r#"include_str!("a.wgsl"); include_bytes!( "../data/x.toml")"#).is_empty());
@@ -96,7 +96,7 @@ fn every_package_has_its_readme_and_licences() -> Result<()> {
         }
         for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
             let ours = fs::read_to_string(root().join(name))?;
-            // A clone on Windows may hold the link's target in place of the linked text.
+            // A clone on Windows may contain the target of the link instead of the linked text.
             let packed = fs::read_to_string(package.folder().join(name))?;
             assert!(packed == ours || packed.trim() == format!("../../{name}"), "{}: {name}", package.name);
         }

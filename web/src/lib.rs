@@ -4,8 +4,7 @@
 mod entry {
     use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
 
-    /// Starts the program on a canvas. `scene` is the name of a scene that comes with the program, or the text of a scene
-    /// file.
+    /// Starts the program on a canvas. `scene` is the name of a built-in scene, or the text of a scene file.
     #[wasm_bindgen]
     pub async fn start(canvas: web_sys::HtmlCanvasElement, scene: String) -> Result<(), JsValue> {
         splashdown_viewer::start_on_page(canvas, &scene).await

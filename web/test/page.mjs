@@ -154,7 +154,7 @@ async function compilesEveryPass() {
   return sound.passes;
 }
 
-// The browser takes the device away: the program restarts with the fluid of some seconds before.
+// The browser destroys the device: the program restarts with the state from a few seconds earlier.
 async function recoversFromALostDevice() {
   const catchDevice = (page) => page.addInitScript(() => {
     const request = GPUAdapter.prototype.requestDevice;

@@ -1,5 +1,5 @@
-//! Measures the surface tension that a drop really has: a weightless drop gets a push that stretches it,
-//! and swings.
+//! Measures the effective surface tension of a drop: a weightless drop is stretched by an initial velocity and
+//! oscillates.
 //!
 //! Rayleigh (1879): omega^2 = 8 sigma / (rho R^3) for the second mode, so sigma follows from the period of
 //! <x^2> - <y^2>. `cargo run --release -p splashdown --example droplet -- [RADIUS IN SPACINGS] [SPACING IN M]`
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     let scene = Scene::parse(&text, "droplet").map_err(|errors| errors.to_string())?;
     let particles = splashdown::sample::particles(&scene)?;
-    // A ball filled from a lattice has as much fluid as its particles say.
+    // The radius follows from the number of particles of the sampled ball.
     let count = particles.positions.len() as f64;
     let radius = (count * spacing.powi(3) * 0.75 / std::f64::consts::PI).cbrt();
     let sigma = f64::from(scene.fluid.material.surface_tension);
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{count} particles, R = {radius:.5} m, sigma = {sigma} N/m, expected period {expected:.4} s");
 
     let mut simulation = Simulation::with_particles(&scene, Device::Cpu.executor()?, &particles)?;
-    // The lattice becomes a liquid first; then the drop gets a push that stretches it.
+    // The lattice relaxes to a liquid first; then the drop gets a velocity that stretches it.
     simulation.advance(expected as f32)?;
     let mut particles = simulation.particles()?;
     let push = (0.3 * std::f64::consts::TAU / expected) as f32;
@@ -63,12 +63,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (Some(first), Some(last)) if crossings.len() > 3 => {
             let period = 2.0 * (last - first) / (crossings.len() - 2) as f64;
             println!(
-                "period {period:.4} s from {} crossings: sigma is {:.3} of the material's",
+                "period {period:.4} s from {} zero crossings: sigma is {:.3} of the material's",
                 crossings.len(),
                 (expected / period).powi(2)
             );
         }
-        _ => println!("too few swings: {crossings:?}"),
+        _ => println!("too few oscillations: {crossings:?}"),
     }
     Ok(())
 }

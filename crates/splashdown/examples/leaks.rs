@@ -35,7 +35,7 @@ fn options() -> Result<Options, String> {
             "--spacing-factor" => {
                 options.factor = value()?.parse().map_err(|error| format!("--spacing-factor: {error}"))?;
             }
-            option if option.starts_with('-') => return Err(format!("there is no option {option}")),
+            option if option.starts_with('-') => return Err(format!("unknown option {option}")),
             name => options.scenes.push(name.to_owned()),
         }
     }
@@ -95,19 +95,19 @@ fn main() -> ExitCode {
         }
     };
     println!(
-        "| scene | particles | inside | outside | put back in 1 s | and later | NaN | density error | wall time |"
+        "| scene | particles | inside | outside | moved back in 1 s | and later | NaN | density error | wall time |"
     );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|");
     let mut leaks = 0;
     for name in &options.scenes {
         let Some((_, text)) = presets().iter().find(|(known, _)| known == name) else {
-            eprintln!("error: there is no scene {name}; `splashdown scenes` lists them");
+            eprintln!("error: unknown scene {name}; `splashdown scenes` lists all scenes");
             return ExitCode::from(2);
         };
         let begun = Instant::now();
         let outcome = Scene::parse(text, name).map_err(|errors| errors.to_string()).and_then(|mut scene| {
             scene.fluid.particle_spacing *= options.factor;
-            // Emitters get room for the whole study.
+            // The buffers have capacity for emitters over the whole study.
             scene.duration = options.seconds;
             count(&scene, &options).map_err(|error| error.to_string())
         });

@@ -1,7 +1,7 @@
-//! Times the steps of a scene on the CPU with every kind of register that this processor has, in turn:
+//! Measures the steps of a scene on the CPU with each kind of SIMD register of this processor, alternately:
 //! `cargo run --release -p splashdown --example registers -- SCENE [ROUNDS] [FRAMES]`
 //!
-//! FRAMES are advanced before (0 by default), so that a settled fluid can be measured.
+//! FRAMES are simulated first (0 by default), so that a fluid at rest can be measured.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     simulation.enable_timing();
     let mut times = Times::new();
-    // As many steps as a few dozen: a fraction of a frame.
+    // A fraction of a frame: a few dozen steps.
     let piece = scene.frame_duration() / 8.0;
     for _ in 0..rounds {
         for kind in Simd::ALL.into_iter().filter(|kind| kind.is_available()) {

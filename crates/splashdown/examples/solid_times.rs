@@ -1,4 +1,4 @@
-//! Times the making of solids: a sphere of many triangles, and the same with scraps floating about.
+//! Measures the construction of solids: a sphere with many triangles, and the same with floating fragments.
 //!
 //! `cargo run --release -p splashdown --example solid_times -- 100000`
 
@@ -8,7 +8,7 @@ use splashdown::boundary::KernelPair;
 use splashdown::solid::{Solid, SolidSettings};
 use splashdown_io::Mesh;
 
-/// A sphere of radius 1 m of about so many triangles.
+/// A sphere of radius 1 m with about this number of triangles.
 fn sphere(triangles: u32) -> Mesh {
     let rings = ((triangles / 4) as f64).sqrt().max(3.0) as u32;
     let round = 2 * rings;
@@ -33,8 +33,8 @@ fn sphere(triangles: u32) -> Mesh {
 }
 
 /// Small triangles on a lattice outside the sphere.
-fn add_scraps(mesh: &mut Mesh, scraps: u32) {
-    for k in 0..scraps {
+fn add_fragments(mesh: &mut Mesh, fragments: u32) {
+    for k in 0..fragments {
         let corner = [k % 20, k / 20 % 20, k / 400].map(|n| 0.6 + 0.02 * n as f32);
         let first = mesh.vertices.len() as u32;
         for axis in 0..3 {
@@ -46,7 +46,7 @@ fn add_scraps(mesh: &mut Mesh, scraps: u32) {
     }
 }
 
-#[expect(clippy::print_stdout, reason = "an example speaks to its reader")]
+#[expect(clippy::print_stdout, reason = "an example that prints")]
 fn main() {
     let triangles = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100_000);
     let folder = std::env::temp_dir().join(format!("splashdown-solid-times-{}", std::process::id()));
@@ -58,10 +58,10 @@ fn main() {
         shell: None,
         cache: Some(folder.clone()),
     };
-    for scraps in [0, 2000] {
+    for fragments in [0, 2000] {
         let mut mesh = sphere(triangles);
-        add_scraps(&mut mesh, scraps);
-        for what in ["made", "from the disk"] {
+        add_fragments(&mut mesh, fragments);
+        for what in ["built", "from the cache"] {
             let begun = Instant::now();
             match Solid::build(&mesh, &settings, &|_| {}) {
                 Ok(solid) => println!(
@@ -75,6 +75,6 @@ fn main() {
             }
         }
     }
-    // Best effort: the folder is a temporary one.
+    // Best effort: the folder is temporary.
     std::fs::remove_dir_all(&folder).ok();
 }

@@ -1,8 +1,8 @@
-//! Steps a scene and prints its account and the time of every pass:
+//! Advances a scene and prints its statistics and the time of every pass:
 //! `cargo run --release -p splashdown --example step -- SCENE [DEVICE] [FRAMES] [unchecked] [apart]`
 //!
-//! `unchecked` runs shaders without checks; `apart` has a hand that does nothing, so that forces and motion are
-//! two passes.
+//! `unchecked` runs shaders without bounds checks; `apart` sets a mouse force without effect, so that forces and
+//! integration are separate passes.
 
 use glam::Vec3;
 use splashdown::{Device, MouseForce, Simulation, scene::Scene};
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ways: Vec<String> = arguments.collect();
     let has = |way: &str| ways.iter().any(|given| given == way);
     let executor = if has("unchecked") {
-        // SAFETY: nobody but the simulation uses the executor.
+        // SAFETY: only the simulation uses the executor.
         unsafe { device.unchecked_executor()? }
     } else {
         device.executor()?

@@ -1,4 +1,4 @@
-//! Times of surface reconstruction per pass, with `splashsurf_lib` for comparison in the same run:
+//! Measures surface reconstruction per pass, with `splashsurf_lib` for comparison in the same run:
 //! `cargo run --release -p splashdown --example surface_times -- [POINTS.npy SPACING]`
 //!
 //! Without a file of positions it first simulates the dam break up to 0.2 s.
@@ -56,12 +56,12 @@ fn main() -> Result<(), Failure> {
             params
         };
         println!(
-            "{} particles, cells of {cell_ratio} spacings, {smoothing_iterations} rounds of smoothing",
+            "{} particles, cells of {cell_ratio} spacings, {smoothing_iterations} smoothing iterations",
             points.len()
         );
         for name in ["cpu", "llvmpipe"] {
             let Ok(executor) = name.parse::<Device>().unwrap_or_default().executor() else {
-                println!("  {name}: not here");
+                println!("  {name}: not available");
                 continue;
             };
             times(name, executor, &points, &params)?;
@@ -89,7 +89,7 @@ fn times(
     reconstruct(points, params, &mut executor)?;
     let timings = executor.take_timings();
     println!(
-        "  {name}: {total:.1} ms with sorting and reading back; passes {:.1} ms:",
+        "  {name}: {total:.1} ms with sorting and read-back; passes {:.1} ms:",
         1e3 * timings.total().as_secs_f64()
     );
     for (label, time) in &timings.passes {

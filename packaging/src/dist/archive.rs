@@ -10,7 +10,7 @@ use zip::write::SimpleFileOptions;
 
 use super::stage::StagedFile;
 
-/// Writes the files below one folder of the archive's name; where the archive is.
+/// Writes the files into a folder with the name of the archive, and returns the path of the archive.
 pub fn write(folder: &Path, name: &str, files: &[StagedFile], time: u64, zip: bool) -> Result<PathBuf> {
     let path = folder.join(format!("{name}.{}", if zip { "zip" } else { "tar.gz" }));
     let partial = folder.join(format!("{name}.partial"));
@@ -25,8 +25,7 @@ pub fn write(folder: &Path, name: &str, files: &[StagedFile], time: u64, zip: bo
     Ok(path)
 }
 
-/// A gzipped tar archive of files, with the folders that they lie in. Owner and group are root, as in a Debian
-/// package.
+/// A gzipped tar archive of files and their folders. Owner and group are root, as in a Debian package.
 pub fn write_gzipped_tar<'a>(
     file: impl Write,
     entries: impl Iterator<Item = (String, &'a StagedFile)>,

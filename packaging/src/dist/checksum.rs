@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::read;
 
-/// Writes `SHA256SUMS` beside the files; where it is.
+/// Writes `SHA256SUMS` into the folder, and returns its path.
 pub fn write(folder: &Path, files: &[PathBuf]) -> Result<PathBuf> {
     let mut text = String::new();
     for file in files {
@@ -31,7 +31,7 @@ mod tests {
 
     /// The example of FIPS 180-2, appendix B.1.
     #[test]
-    fn the_checksum_is_that_of_the_standard() {
+    fn the_checksum_matches_the_standard() {
         assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 }

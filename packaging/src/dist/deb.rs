@@ -1,4 +1,4 @@
-//! A Debian package: an `ar` archive of a version, the control files and the data (deb(5)).
+//! A Debian package: an `ar` archive with the format version, the control files and the data (deb(5)).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use flate2::{Compression, GzBuilder};
 
 use super::{Release, archive::write_gzipped_tar, read, stage::StagedFile, target::Target};
 
-/// Writes the package; where it is.
+/// Writes the package, and returns its path.
 pub fn write(release: &Release, target: &Target, binary: &Path, stage: &[StagedFile]) -> Result<PathBuf> {
     let architecture = architecture(target)?;
     let files = layout(stage)?;
@@ -27,17 +27,17 @@ pub fn write(release: &Release, target: &Target, binary: &Path, stage: &[StagedF
     Ok(path)
 }
 
-/// Debian's name of the processor.
+/// Debian's name of the processor architecture.
 fn architecture(target: &Target) -> Result<&'static str> {
     let processor = target.triple.split('-').next().unwrap_or_default();
     match processor {
         "x86_64" => Ok("amd64"),
         "aarch64" => Ok("arm64"),
-        other => anyhow::bail!("there is no Debian package for {other}"),
+        other => anyhow::bail!("Debian packages for {other} are not supported"),
     }
 }
 
-/// The files of the archive, where Debian wants them.
+/// The files of the archive at the paths that Debian requires.
 fn layout(stage: &[StagedFile]) -> Result<Vec<StagedFile>> {
     let mut files = Vec::new();
     for file in stage {
@@ -79,8 +79,7 @@ fn layout(stage: &[StagedFile]) -> Result<Vec<StagedFile>> {
     Ok(files)
 }
 
-/// The control file. The window, the Vulkan driver and `ffmpeg` are found while running, so the program works
-/// without them.
+/// The control file. The libraries of the window, the Vulkan driver and `ffmpeg` are loaded at run time and optional.
 fn control(version: &str, architecture: &str, libc: &str, kilobytes: usize) -> String {
     format!(
         "Package: splashdown\n\
@@ -102,7 +101,7 @@ fn control(version: &str, architecture: &str, libc: &str, kilobytes: usize) -> S
     )
 }
 
-/// The newest version of glibc that a binary asks for: `GLIBC_2.34` among its symbol versions.
+/// The newest version of glibc that a binary requires, from symbol versions such as `GLIBC_2.34`.
 fn newest_glibc(binary: &[u8]) -> Option<String> {
     let mark = b"GLIBC_";
     let mut versions = BTreeSet::new();
@@ -145,7 +144,7 @@ mod tests {
     use super::{append, newest_glibc};
 
     #[test]
-    fn the_newest_glibc_is_found_by_number() {
+    fn glibc_versions_are_compared_as_numbers() {
         let binary = b"\0GLIBC_2.9\0GLIBC_2.34\0GLIBC_2.2.5\0GLIBC_PRIVATE\0";
         assert_eq!(newest_glibc(binary).as_deref(), Some("2.34"));
         assert_eq!(newest_glibc(b"static"), None);

@@ -1,4 +1,4 @@
-//! What the program prints about itself: its commands, its help, the completions of the shells.
+//! The parts of an archive that the program generates: its list of commands, its help, and shell completions.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use super::stage::StagedFile;
 use crate::command::{output, program, root};
 
-/// Shells and the names that their completion files have.
+/// Shells and the names of their completion files.
 const SHELLS: [(&str, &str); 5] = [
     ("bash", "splashdown.bash"),
     ("zsh", "_splashdown"),
@@ -16,12 +16,12 @@ const SHELLS: [(&str, &str); 5] = [
     ("powershell", "_splashdown.ps1"),
 ];
 
-/// What the program prints when it is started with these arguments.
+/// The output of the program for these arguments.
 pub fn ask(binary: &Path, arguments: &[&str]) -> Result<String> {
     output(&mut program(binary, root(), arguments))
 }
 
-/// The program's commands, as its help lists them.
+/// The commands of the program, from its help.
 pub fn commands(binary: &Path) -> Result<Vec<String>> {
     let commands = listed(&ask(binary, &["--help"])?);
     ensure!(!commands.is_empty(), "`splashdown --help` lists no commands");
@@ -41,7 +41,7 @@ fn listed(help: &str) -> Vec<String> {
         .collect()
 }
 
-/// One file of completions for each shell.
+/// One completion file for each shell.
 pub fn completions(binary: &Path) -> Result<Vec<StagedFile>> {
     let file = |(shell, name): (&str, &str)| -> Result<StagedFile> {
         Ok(StagedFile::new(format!("completions/{name}"), ask(binary, &["completions", shell])?))

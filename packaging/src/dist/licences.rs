@@ -1,4 +1,4 @@
-//! The licences of everything that is linked into the program.
+//! The licences of all packages that are linked into the program.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,10 +10,10 @@ use super::{PACKAGE, target::Target};
 use crate::command::say;
 use crate::metadata::{Metadata, Package};
 
-/// How names of licence files begin, in capitals. OFL and UFL are licences of fonts.
+/// Prefixes of the names of licence files, in capitals. OFL and UFL are font licences.
 const NAMES: [&str; 8] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE", "OFL", "UFL"];
 
-/// Folders below a package that licence files are looked for in.
+/// Depth of the folders of a package that are searched for licence files.
 const DEPTH: usize = 2;
 
 /// A list of the packages with their licences, followed by the texts.
@@ -28,7 +28,7 @@ pub fn text(target: &Target) -> Result<String> {
     let packages = metadata.linked_into(PACKAGE)?;
     let packages: Vec<&Package> = packages.into_iter().filter(|package| package.source.is_some()).collect();
     let mut list = String::new();
-    // Packages that bring the same text share one copy.
+    // Packages with the same text share one copy.
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut without_text = Vec::new();
     for package in packages {
@@ -64,7 +64,7 @@ const RULE: &str = "------------------------------------------------------------
 
 const HEADING: &str = "\
 Splashdown is licensed under MIT or Apache-2.0. It contains the following packages, listed with their
-licences; the texts follow. A package without a text of its own is under the named standard licences.
+licences; the texts follow. A package without its own text is under the named standard licences.
 It also contains the Rust standard library (MIT or Apache-2.0, https://github.com/rust-lang/rust).
 ";
 
@@ -111,7 +111,7 @@ mod tests {
     use super::is_licence;
 
     #[test]
-    fn licence_files_are_known_by_their_names() {
+    fn licence_files_are_recognized_by_their_names() {
         for name in ["LICENSE", "LICENSE-MIT", "LICENSE.APACHE-2.0", "COPYING.TXT", "OFL.TXT", "UNLICENSE"] {
             assert!(is_licence(name), "{name}");
         }

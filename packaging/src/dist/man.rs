@@ -1,4 +1,4 @@
-//! A manual page from the program's help: one section per command, in the words of `splashdown COMMAND --help`.
+//! A manual page from the program's help: one section per command, with the text of `splashdown COMMAND --help`.
 
 use std::path::Path;
 
@@ -23,19 +23,19 @@ pub fn page(binary: &Path, commands: &[String], release: &Release) -> Result<Str
     Ok(page)
 }
 
-/// A block whose lines stay as they are.
+/// A block of unformatted lines.
 fn verbatim(text: &str) -> String {
     let lines: String = text.trim_end().lines().map(|line| line_of_roff(line) + "\n").collect();
     format!(".EX\n{lines}.EE\n")
 }
 
-/// A line that begins with a dot or an apostrophe would be a request.
+/// Escapes a line. roff would read a line that begins with a dot or an apostrophe as a request.
 fn line_of_roff(line: &str) -> String {
     let line = escape(line.trim_end());
     if line.starts_with(['.', '\'']) { format!("\\&{line}") } else { line }
 }
 
-/// Backslashes and hyphens have a meaning in roff.
+/// Escapes backslashes and hyphens, which are special in roff.
 fn escape(text: &str) -> String {
     text.replace('\\', "\\e").replace('-', "\\-")
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask dist`: archives of the program for every target that this machine can build, a Debian package,
-//! and a file of checksums.
+//! `cargo xtask dist`: archives of the program for every target that this machine can build, a Debian package, and
+//! checksums.
 //!
 //! Every file of an archive has the time of the last commit and a fixed owner, so that the same commit and the same
 //! compiler give the same archive.
@@ -26,7 +26,7 @@ use target::Target;
 /// The package whose binary is released.
 const PACKAGE: &str = "splashdown-cli";
 
-/// What the command line asks for.
+/// The options of the command line.
 #[derive(Debug, Default)]
 struct Options {
     targets: Vec<String>,
@@ -51,7 +51,7 @@ impl Options {
     }
 }
 
-/// A release in the making.
+/// A release that is being built.
 struct Release {
     version: String,
     /// Seconds since 1970: the time of every file.
@@ -60,7 +60,7 @@ struct Release {
     target_folder: PathBuf,
 }
 
-/// The word `dist`.
+/// The command `dist`.
 ///
 /// # Errors
 /// If a build, a file or the check of an archive fails.
@@ -69,7 +69,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let targets = target::chosen(&options.targets)?;
     let metadata = Metadata::ask(&["--no-deps", "--offline"])?;
     let package = metadata.packages.iter().find(|package| package.name == PACKAGE);
-    let version = package.with_context(|| format!("there is no package {PACKAGE}"))?.version.to_string();
+    let version =
+        package.with_context(|| format!("the workspace has no package {PACKAGE}"))?.version.to_string();
     let release = Release {
         time: commit_time(),
         folder: metadata.target_directory.join("dist"),
@@ -93,7 +94,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Builds, packs and tries one target; the files that are made.
+/// Builds, packs and tests one target, and returns the files.
 fn build(release: &Release, target: &Target) -> Result<Vec<PathBuf>> {
     say(format!("\n=== {} ({})", target.triple, target.contents()));
     let binary = compile(release, target)?;
@@ -104,7 +105,7 @@ fn build(release: &Release, target: &Target) -> Result<Vec<PathBuf>> {
     if target.is_host() {
         smoke::run(&path, &name)?;
     } else {
-        say("Not started: it is for another system.");
+        say("Not tested: the target is another system.");
     }
     if target.has_debian_package() {
         files.push(deb::write(release, target, &binary, &stage)?);
@@ -130,7 +131,7 @@ fn compile(release: &Release, target: &Target) -> Result<PathBuf> {
     Ok(binary)
 }
 
-/// Type-checks for the systems that this machine cannot link for.
+/// Type-checks the program for the systems that this machine cannot link for.
 fn check_other_systems() {
     for triple in target::checked_elsewhere() {
         say(format!("\n=== {triple}: type check only; its archive is built on that system"));

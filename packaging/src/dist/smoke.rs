@@ -1,4 +1,4 @@
-//! The archive as a user meets it: unpacked into an empty folder, and run there.
+//! Tests an archive: unpacks it into an empty folder and runs the program there.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -8,10 +8,10 @@ use flate2::read::GzDecoder;
 
 use crate::command::{program, run as execute, say};
 
-/// Unpacks an archive, simulates one frame of a small scene on the CPU, and removes everything again.
+/// Unpacks an archive, simulates one frame of a small scene on the CPU, and removes the folder.
 ///
 /// # Errors
-/// If the program fails or leaves no particles.
+/// If the program fails or writes no particles.
 pub fn run(archive: &Path, name: &str) -> Result<()> {
     let folder = archive.with_file_name(format!("{name}.check"));
     if folder.exists() {
@@ -21,7 +21,7 @@ pub fn run(archive: &Path, name: &str) -> Result<()> {
     unpack(archive, &folder)?;
     let place = folder.join(name);
     let binary = place.join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
-    say(format!("Trying {} ...", binary.display()));
+    say(format!("Testing {} ...", binary.display()));
     let mut command = program(&binary, &place, ["run", "scenes/dam-break-small.toml", "--frames", "1"]);
     command.args(["--device", "cpu", "--no-pictures", "--quiet", "--out", "out"]);
     execute(&mut command)?;

@@ -18,13 +18,13 @@ pub struct StagedFile {
 }
 
 impl StagedFile {
-    /// A file that is read.
+    /// A file with these contents.
     pub fn new(path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { path: path.into(), bytes: bytes.into(), executable: false }
     }
 }
 
-/// Everything that goes into the archive of a target.
+/// All files of the archive of a target.
 pub fn collect(release: &Release, target: &Target, binary: &Path) -> Result<Vec<StagedFile>> {
     let name = binary.file_name().context("the binary has no name")?.to_string_lossy().into_owned();
     let mut files = vec![StagedFile { path: name, bytes: read(binary)?, executable: true }];
@@ -43,7 +43,7 @@ pub fn collect(release: &Release, target: &Target, binary: &Path) -> Result<Vec<
     Ok(files)
 }
 
-/// The shipped scenes, with their reference and their schema.
+/// The built-in scenes with their reference and schema.
 fn scenes() -> Result<Vec<StagedFile>> {
     let folder = root().join("crates/splashdown/scenes");
     let entries = fs::read_dir(&folder).with_context(|| format!("cannot list {}", folder.display()))?;

@@ -1,4 +1,4 @@
-//! The systems that a release is built for.
+//! The targets of a release.
 
 use anyhow::{Context, Result, bail};
 
@@ -7,7 +7,7 @@ use crate::command::{output, program, root};
 const LINUX_GNU: &str = "x86_64-unknown-linux-gnu";
 const LINUX_MUSL: &str = "x86_64-unknown-linux-musl";
 
-/// One system.
+/// One target.
 #[derive(Clone, Debug)]
 pub struct Target {
     pub triple: String,
@@ -30,7 +30,7 @@ impl Target {
         self.triple.contains("-windows-")
     }
 
-    /// True if it is exactly what cargo builds for when no target is given.
+    /// True if it is cargo's default target.
     pub fn is_host_triple(&self) -> bool {
         self.triple == self.host
     }
@@ -40,17 +40,17 @@ impl Target {
         self.is_host_triple() || (self.is_static() && self.host == LINUX_GNU)
     }
 
-    /// True if a Debian package is made of it.
+    /// True if it has a Debian package.
     pub fn has_debian_package(&self) -> bool {
         self.triple.ends_with("-linux-gnu")
     }
 
-    /// Arguments of cargo that choose the features.
+    /// Arguments of cargo that select the features.
     pub fn features(&self) -> &'static [&'static str] {
         if self.is_static() { STATIC_FEATURES } else { &[] }
     }
 
-    /// The binary in a few words.
+    /// A short description of the binary.
     pub fn contents(&self) -> &'static str {
         if self.is_static() {
             "static, simulates on the CPU: no GPU, pictures or window"
@@ -74,7 +74,7 @@ impl Target {
 /// Everything except the window.
 const STATIC_FEATURES: &[&str] = &["--no-default-features", "--features", "plot,rigid"];
 
-/// The targets that were asked for, or all that this machine can link.
+/// The requested targets, or all that this machine can link.
 pub fn chosen(asked: &[String]) -> Result<Vec<Target>> {
     let host = host()?;
     let triples: Vec<&str> = match asked {

@@ -1,4 +1,4 @@
-//! The changelog: what was unreleased becomes the new version, below a new empty section.
+//! The changelog: the unreleased changes become the section of the new version, below a new empty section.
 
 use anyhow::{Context, Result, ensure};
 use semver::Version;
@@ -13,6 +13,6 @@ pub fn released(text: &str, version: &Version, date: &str) -> Result<String> {
     let section = after.split("\n## ").next().unwrap_or_default();
     let entries = section.lines().any(|line| line.starts_with("- ") || line.starts_with("* "));
     ensure!(entries, "the section `## [Unreleased]` of CHANGELOG.md lists no changes");
-    ensure!(!text.contains(&format!("## [{version}]")), "CHANGELOG.md has a section for {version} already");
+    ensure!(!text.contains(&format!("## [{version}]")), "CHANGELOG.md already has a section for {version}");
     Ok(format!("{before}{UNRELEASED}\n## [{version}] - {date}\n{after}"))
 }

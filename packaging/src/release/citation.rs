@@ -1,4 +1,4 @@
-//! Version and date in `CITATION.cff` (Citation File Format 1.2.0), of which they are top-level keys.
+//! Version and date in `CITATION.cff` (Citation File Format 1.2.0), where they are top-level keys.
 
 use anyhow::{Result, ensure};
 use semver::Version;
@@ -14,7 +14,7 @@ pub fn released(text: &str, version: &Version, date: &str) -> Result<String> {
     }))
 }
 
-/// The text with another value for a key that begins a line; nothing if no line has it.
+/// The text with another value for a key at the start of a line; `None` if no line has the key.
 fn replace(text: &str, key: &str, value: &str) -> Option<String> {
     let start = format!("{key}:");
     text.lines().any(|line| line.starts_with(&start)).then(|| {

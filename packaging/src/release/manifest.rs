@@ -1,4 +1,4 @@
-//! The version in `Cargo.toml` and `Cargo.lock`. Comments and layout stay as they are.
+//! The version in `Cargo.toml` and `Cargo.lock`. Comments and layout are preserved.
 
 use anyhow::{Context, Result, ensure};
 use semver::Version;
@@ -22,7 +22,7 @@ pub fn with_version(manifest: &str, old: &Version, new: &Version) -> Result<Stri
             continue;
         };
         let version =
-            table.get_mut("version").with_context(|| format!("{name} has a path and no version"))?;
+            table.get_mut("version").with_context(|| format!("{name} has a path but no version"))?;
         let found = version.as_str().unwrap_or_default();
         ensure!(found == old.to_string(), "{name} has version {found:?}, the workspace has {old}");
         set(version, new)?;
@@ -30,7 +30,7 @@ pub fn with_version(manifest: &str, old: &Version, new: &Version) -> Result<Stri
     Ok(document.to_string())
 }
 
-/// `Cargo.lock` with the new version of the packages of the workspace: those without a source.
+/// `Cargo.lock` with the new version of the packages of the workspace, which have no source.
 pub fn lock_with_version(lock: &str, old: &Version, new: &Version) -> Result<String> {
     let mut document: DocumentMut = lock.parse().context("Cargo.lock is not TOML")?;
     let packages = document["package"].as_array_of_tables_mut().context("Cargo.lock lists no packages")?;
@@ -46,9 +46,9 @@ pub fn lock_with_version(lock: &str, old: &Version, new: &Version) -> Result<Str
     Ok(document.to_string())
 }
 
-/// Replaces a text and leaves what surrounds it.
+/// Replaces a text and preserves the surrounding layout.
 fn set(item: &mut Item, version: &Version) -> Result<()> {
-    let value = item.as_value_mut().context("a version is not a text")?;
+    let value = item.as_value_mut().context("a version is not a string")?;
     let surroundings = value.decor().clone();
     *value = Value::from(version.to_string());
     *value.decor_mut() = surroundings;

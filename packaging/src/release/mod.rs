@@ -1,4 +1,4 @@
-//! `cargo xtask release X.Y.Z`: the version number and the changelog of a release, in every file that holds them.
+//! `cargo xtask release X.Y.Z`: sets the version number in every file that contains it, and updates the changelog.
 
 mod changelog;
 mod citation;
@@ -14,10 +14,10 @@ use semver::Version;
 
 use crate::command::{output, program, root, run as execute, say};
 
-/// The word `release`: a version, `--date YYYY-MM-DD` (`xtask` adds it), and `--commit` to commit and tag.
+/// The command `release`: a version, `--date YYYY-MM-DD` (`xtask` adds it), and `--commit` to commit and tag.
 ///
 /// # Errors
-/// If the version does not grow, the working tree has changes, or a file cannot be edited. Then no file is changed.
+/// If the version does not increase, the working tree has changes, or a file cannot be edited. Then no file is changed.
 pub fn run(arguments: &[String]) -> Result<()> {
     let mut version = None;
     let mut date = None;
@@ -26,11 +26,12 @@ pub fn run(arguments: &[String]) -> Result<()> {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--commit" => commit = true,
-            "--date" => date = Some(arguments.next().context("--date needs a day, as in 2026-01-31")?),
+            "--date" => date = Some(arguments.next().context("--date needs a date, as in 2026-01-31")?),
             text if version.is_none() && !text.starts_with('-') => {
-                version = Some(Version::parse(text).with_context(|| {
-                    format!("{text:?} is no version: three numbers are needed, as in 0.2.0")
-                })?);
+                version = Some(
+                    Version::parse(text)
+                        .with_context(|| format!("{text:?} is not a version; the format is 0.2.0"))?,
+                );
             }
             other => bail!("release takes a version and --commit, got {other}"),
         }
@@ -63,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// A file with its new content.
+/// A file with its new contents.
 struct Edit {
     path: PathBuf,
     text: String,
@@ -75,9 +76,9 @@ impl Edit {
     }
 }
 
-/// Computes every change of a release, writes nothing.
+/// Computes all changes of a release without writing them.
 fn prepare(folder: &Path, version: &Version, date: &str) -> Result<Vec<Edit>> {
-    ensure!(is_date(date), "{date:?} is no day: the form is 2026-01-31");
+    ensure!(is_date(date), "{date:?} is not a date; the format is 2026-01-31");
     let changes = output(&mut program("git", folder, ["status", "--porcelain"]))?;
     ensure!(
         changes.is_empty(),
@@ -90,7 +91,7 @@ fn prepare(folder: &Path, version: &Version, date: &str) -> Result<Vec<Edit>> {
     };
     let manifest = read("Cargo.toml")?;
     let old = manifest::version(&manifest)?;
-    ensure!(*version > old, "the version must grow: it is {old}, asked for was {version}");
+    ensure!(*version > old, "the version must increase: it is {old}, and {version} was requested");
     let edit = |name: &str, text: String| Edit { path: folder.join(name), text };
     let mut edits = vec![
         edit("Cargo.toml", manifest::with_version(&manifest, &old, version)?),
@@ -103,7 +104,7 @@ fn prepare(folder: &Path, version: &Version, date: &str) -> Result<Vec<Edit>> {
     Ok(edits)
 }
 
-/// True for four digits, two digits and two digits with hyphens between them.
+/// True for four, two and two digits separated by hyphens.
 fn is_date(text: &str) -> bool {
     let parts: Vec<&str> = text.split('-').collect();
     let lengths: Vec<usize> = parts.iter().map(|part| part.len()).collect();

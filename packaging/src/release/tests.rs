@@ -1,4 +1,4 @@
-//! Releases of a temporary copy of this repository's files.
+//! Tests releases with a temporary copy of this repository's files.
 
 use std::fs;
 use std::path::Path;
@@ -64,7 +64,7 @@ fn a_release_changes_every_file_that_holds_the_version() -> Result<()> {
     assert_eq!(manifest::version(&after)?, version);
     let old = manifest::version(&before)?;
     let expected = before.replace(&format!("version = \"{old}\""), &format!("version = \"{version}\""));
-    assert_eq!(after, expected, "comments and layout of Cargo.toml stay");
+    assert_eq!(after, expected, "comments and layout of Cargo.toml are preserved");
     let lock = read("Cargo.lock")?;
     for name in ["splashdown", "splashdown-cli", "xtask"] {
         assert!(
@@ -89,16 +89,16 @@ fn a_release_changes_every_file_that_holds_the_version() -> Result<()> {
 }
 
 #[test]
-fn a_version_that_does_not_grow_is_refused() -> Result<()> {
+fn a_version_that_does_not_increase_is_rejected() -> Result<()> {
     let folder = copy()?;
     let old = manifest::version(&fs::read_to_string(folder.path().join("Cargo.toml"))?)?;
-    assert!(refusal(folder.path(), &old).contains("must grow"));
-    assert!(refusal(folder.path(), &Version::new(0, 0, 1)).contains("must grow"));
+    assert!(refusal(folder.path(), &old).contains("must increase"));
+    assert!(refusal(folder.path(), &Version::new(0, 0, 1)).contains("must increase"));
     Ok(())
 }
 
 #[test]
-fn a_working_tree_with_changes_is_refused() -> Result<()> {
+fn a_working_tree_with_changes_is_rejected() -> Result<()> {
     let folder = copy()?;
     let version = next(folder.path())?;
     assert_eq!(refusal(folder.path(), &version), "");
@@ -109,7 +109,7 @@ fn a_working_tree_with_changes_is_refused() -> Result<()> {
 }
 
 #[test]
-fn an_empty_or_repeated_section_of_the_changelog_is_refused() -> Result<()> {
+fn an_empty_or_repeated_section_of_the_changelog_is_rejected() -> Result<()> {
     let folder = copy()?;
     let version = next(folder.path())?;
     let path = folder.path().join("CHANGELOG.md");
@@ -128,7 +128,7 @@ fn an_empty_or_repeated_section_of_the_changelog_is_refused() -> Result<()> {
 }
 
 #[test]
-fn a_dependency_of_another_version_is_refused() -> Result<()> {
+fn a_dependency_with_another_version_is_rejected() -> Result<()> {
     let folder = copy()?;
     let version = next(folder.path())?;
     let path = folder.path().join("Cargo.toml");
