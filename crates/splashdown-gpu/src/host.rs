@@ -57,45 +57,24 @@ impl<'a> Slot<'a> {
         Self { name, bytes }
     }
 
-    /// The elements.
-    pub fn read<T: GpuElement>(&self) -> &[T] {
-        bytemuck::cast_slice(match &self.bytes {
-            Bytes::Read(bytes) => bytes,
-            Bytes::Write(bytes) => bytes,
-        })
-    }
-
-    /// The elements, writable.
-    ///
-    /// # Panics
-    /// If the binding is declared as read or uniform.
-    pub fn write<T: GpuElement>(&mut self) -> &mut [T] {
-        match &mut self.bytes {
-            Bytes::Read(_) => panic!("the pass writes to binding {:?}, which it declares as read", self.name),
-            Bytes::Write(bytes) => bytemuck::cast_slice_mut(bytes),
-        }
-    }
-
-    /// The one element of a uniform or of a storage struct.
-    pub fn get<T: GpuElement>(&self) -> T {
-        self.read::<T>()[0]
-    }
-
-    /// The elements as atomics, for passes whose invocations write to the same places.
-    pub fn atomics(&mut self) -> &[AtomicU32] {
-        as_atomic::<u32>(self.write())
-    }
-
     /// The content of the binding `name`, which must be the next one. [`bindings!`](crate::bindings) calls it.
     #[doc(hidden)]
     pub fn view<'b, T: BindingType + ?Sized>(slot: Option<&'b mut Self>, name: &str) -> &'b T {
-        T::view(Self::named(slot, name).read())
+        T::view(bytemuck::cast_slice(match &Self::named(slot, name).bytes {
+            Bytes::Read(bytes) => bytes,
+            Bytes::Write(bytes) => bytes,
+        }))
     }
 
     /// The writable content of the binding `name`, which must be the next one. [`bindings!`](crate::bindings) calls it.
     #[doc(hidden)]
     pub fn view_mut<'b, T: BindingType + ?Sized>(slot: Option<&'b mut Self>, name: &str) -> &'b mut T {
-        T::view_mut(Self::named(slot, name).write())
+        match &mut Self::named(slot, name).bytes {
+            Bytes::Read(_) => {
+                panic!("the CPU code writes to binding {name:?}, which the pass declares as read")
+            }
+            Bytes::Write(bytes) => T::view_mut(bytemuck::cast_slice_mut(bytes)),
+        }
     }
 
     fn named<'b>(slot: Option<&'b mut Self>, name: &str) -> &'b mut Self {

@@ -1,35 +1,6 @@
 //! One declaration per compute pass, read by the executors, the gate and the tests.
 
-use crate::{Access, Binding, Field, GpuElement, GpuStruct, Shape, Slot, WgslModule, wgsl};
-
-const fn binding<T: GpuElement>(name: &'static str, access: Access) -> Binding {
-    let (element, size, fields): (_, _, &[Field]) = (T::WGSL, size_of::<T>(), T::FIELDS);
-    Binding { name, access, atomic: false, shape: Shape::Array, element, size, fields }
-}
-
-/// A uniform struct, until every pass has a [`bindings!`](crate::bindings) list.
-#[doc(hidden)]
-pub const fn uniform<T: GpuStruct>(name: &'static str) -> Binding {
-    binding::<T>(name, Access::Uniform)
-}
-
-/// A uniform array, until every pass has a [`bindings!`](crate::bindings) list.
-#[doc(hidden)]
-pub const fn uniform_array(name: &'static str) -> Binding {
-    binding::<glam::Vec4>(name, Access::Uniform)
-}
-
-/// A storage buffer that is read, until every pass has a [`bindings!`](crate::bindings) list.
-#[doc(hidden)]
-pub const fn read<T: GpuElement>(name: &'static str) -> Binding {
-    binding::<T>(name, Access::Read)
-}
-
-/// A storage buffer that is written, until every pass has a [`bindings!`](crate::bindings) list.
-#[doc(hidden)]
-pub const fn write<T: GpuElement>(name: &'static str) -> Binding {
-    binding::<T>(name, Access::ReadWrite)
-}
+use crate::{Binding, Slot, WgslModule, wgsl};
 
 /// The amount of work of one dispatch, for the CPU code of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

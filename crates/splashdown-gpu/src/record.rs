@@ -92,10 +92,6 @@ impl DispatchSize {
     }
 }
 
-/// Former name of [`DispatchSize`], until every user has changed.
-#[doc(hidden)]
-pub type Grid = DispatchSize;
-
 /// The largest number of workgroups in one dimension of a dispatch, on every adapter.
 const MAX_GROUPS: u32 = 65_535;
 
@@ -144,39 +140,6 @@ pub enum Command {
     },
 }
 
-/// What a [`Recording`] accepts as the buffers of a dispatch.
-#[doc(hidden)]
-pub trait Bind {
-    fn bind(&self, pass: &'static PassDesc) -> Result<Vec<BufferId>, String>;
-}
-
-impl Bind for BufferSet {
-    fn bind(&self, pass: &'static PassDesc) -> Result<Vec<BufferId>, String> {
-        pass.bindings.iter().map(|binding| self.find(binding.name)).collect()
-    }
-}
-
-/// Positional lists, until every user has changed.
-impl Bind for [BufferId] {
-    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
-        Ok(self.to_vec())
-    }
-}
-
-/// Positional lists, until every user has changed.
-impl<const N: usize> Bind for [BufferId; N] {
-    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
-        Ok(self.to_vec())
-    }
-}
-
-/// Positional lists, until every user has changed.
-impl Bind for Vec<BufferId> {
-    fn bind(&self, _: &'static PassDesc) -> Result<Vec<BufferId>, String> {
-        Ok(self.clone())
-    }
-}
-
 /// A list of commands with a name.
 #[derive(Clone, Debug)]
 pub struct Recording {
@@ -196,8 +159,8 @@ impl Recording {
 
     /// Appends a dispatch; every binding of the pass gets the buffer of its name. Where the set has no such buffer,
     /// running the recording is an error that names pass and binding.
-    pub fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, buffers: &(impl Bind + ?Sized)) {
-        match buffers.bind(pass) {
+    pub fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, buffers: &BufferSet) {
+        match pass.bindings.iter().map(|binding| buffers.find(binding.name)).collect() {
             Ok(buffers) => self.commands.push(Command::Dispatch { pass, size, buffers }),
             Err(reason) => self.note(Some((pass.label, reason))),
         }
