@@ -309,6 +309,57 @@ fn an_exceeded_capacity_is_reported_and_enlarged() {
     }
 }
 
+/// The memory in use before a surface, and after each of ten surfaces that grow and are dropped.
+fn bytes_of_recreations(executor: &mut Executor, free: bool) -> Vec<u64> {
+    let input = simulation_input(executor, 50);
+    let mut bytes = vec![executor.bytes()];
+    for i in 0..10 {
+        let mut params = SurfaceParams::new(SPACING);
+        params.cell_size *= 1.0 - 0.05 * i as f32;
+        params.smoothing_iterations = i % 3;
+        let mut surface = Surface::with_capacity(executor, params, input, 1, 1, 1).unwrap();
+        assert!(surface.extract(executor).unwrap().retries > 0);
+        if free {
+            surface.free(executor).unwrap();
+        }
+        bytes.push(executor.bytes());
+    }
+    bytes
+}
+
+#[test]
+fn recreated_surfaces_do_not_accumulate_memory() {
+    for (name, mut executor) in testing::executors("recreated_surfaces_do_not_accumulate_memory") {
+        let bytes = bytes_of_recreations(&mut executor, true);
+        assert!(bytes.iter().all(|&after| after == bytes[0]), "{name}: {bytes:?}");
+        // Negative control: without `free` the memory grows.
+        let bytes = bytes_of_recreations(&mut executor, false);
+        assert!(bytes.is_sorted_by(|a, b| a < b), "{name}: {bytes:?}");
+    }
+}
+
+#[test]
+fn reconstruction_and_refused_surfaces_leave_no_buffers() {
+    for (name, mut executor) in testing::executors("reconstruction_and_refused_surfaces_leave_no_buffers") {
+        let mut params = SurfaceParams::new(SPACING);
+        params.smoothing_iterations = 2;
+        let points = ball(Vec3::ZERO, 0.2);
+        let (mesh, _) = reconstruct(&points, &params, &mut executor).unwrap();
+        assert!(!mesh.is_empty());
+        assert_eq!(executor.bytes(), 0, "{name}");
+        params.iso_level = 5.0;
+        let error = reconstruct(&points, &params, &mut executor).unwrap_err();
+        assert!(matches!(error, SurfaceError::NoSurface { .. }), "{name}: {error}");
+        assert_eq!(executor.bytes(), 0, "{name}");
+        let input = simulation_input(&mut executor, 50);
+        let before = executor.bytes();
+        let params = SurfaceParams::new(SPACING);
+        let refused = Surface::with_capacity(&mut executor, params, input, 1, 1, u32::MAX);
+        assert!(matches!(refused, Err(SurfaceError::Gpu(_))), "{name}");
+        assert_eq!(executor.bytes(), before, "{name}");
+    }
+}
+
 /// Without blocking, as in a window: the status arrives later and enlarges the buffers for the next
 /// frame.
 #[test]

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
-use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
+use splashdown_gpu::{Buffer, BufferId, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
 use splashdown_io::Mesh;
 
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
@@ -248,8 +248,13 @@ impl Surface {
             block_scan: Scan::new(executor, lattice.block_capacity)?,
             vertex_scan: None,
         };
-        surface.allocate(executor)?;
-        Ok(surface)
+        match surface.allocate(executor) {
+            Ok(()) => Ok(surface),
+            Err(error) => {
+                surface.free(executor)?;
+                Err(error)
+            }
+        }
     }
 
     /// Resizes the buffers to the lattice, and rebuilds the list of passes.
@@ -257,10 +262,14 @@ impl Surface {
         let smoothed = self.params.smoothing_iterations > 0;
         self.b.resize(executor, &self.lattice, smoothed)?;
         if self.block_scan.len() != self.lattice.block_capacity {
-            self.block_scan = Scan::new(executor, self.lattice.block_capacity)?;
+            let scan = Scan::new(executor, self.lattice.block_capacity)?;
+            std::mem::replace(&mut self.block_scan, scan).free(executor)?;
         }
         if smoothed && self.vertex_scan.is_none_or(|scan| scan.len() != self.lattice.vertex_capacity) {
-            self.vertex_scan = Some(Scan::new(executor, self.lattice.vertex_capacity)?);
+            let scan = Scan::new(executor, self.lattice.vertex_capacity)?;
+            if let Some(old) = self.vertex_scan.replace(scan) {
+                old.free(executor)?;
+            }
         }
         let mut recording = Recording::new("surface");
         self.record(&mut recording);
@@ -406,18 +415,33 @@ impl Surface {
         Ok(executor.fetch(self.b.status).await?[0])
     }
 
-    /// Releases the memory of the field and of the smoothing. The mesh remains; no other can be
-    /// extracted.
-    pub(crate) fn release_field(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
-        let lattice = &mut self.lattice;
-        (lattice.particle_capacity, lattice.block_count, lattice.block_capacity) = (0, 0, 0);
-        self.b.resize(executor, &self.lattice, false)
+    /// Frees the buffers. Recordings of this surface become invalid; the input remains.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Gpu`] if this is not the executor of the surface.
+    pub fn free(self, executor: &mut Executor) -> Result<(), SurfaceError> {
+        self.free_scans(executor)?;
+        Ok(executor.free(self.b.by_name().ids())?)
     }
 
-    /// Releases the memory of all buffers.
-    pub(crate) fn release(mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
-        (self.lattice.vertex_capacity, self.lattice.triangle_capacity) = (0, 0);
-        self.release_field(executor)
+    /// Reads back the mesh of the last extraction and frees the buffers: those without the mesh
+    /// before it is copied, because the field takes most of the memory.
+    pub(crate) fn into_mesh(self, executor: &mut Executor) -> Result<Mesh, SurfaceError> {
+        let b = &self.b;
+        let of_mesh = buffer_set!(b => status, vertex_positions, normals, indices);
+        let is_of_mesh = |id: &BufferId| of_mesh.ids().any(|other| other == *id);
+        self.free_scans(executor)?;
+        executor.free(b.by_name().ids().filter(|id| !is_of_mesh(id)))?;
+        let mesh = self.mesh(executor);
+        executor.free(of_mesh.ids())?;
+        mesh
+    }
+
+    fn free_scans(&self, executor: &mut Executor) -> Result<(), SurfaceError> {
+        for scan in [self.mark_scan, self.block_scan].into_iter().chain(self.vertex_scan) {
+            scan.free(executor)?;
+        }
+        Ok(())
     }
 
     /// Positions of the vertices in m; w is internal. The first [`Status::vertices`] are valid.

@@ -38,20 +38,35 @@ pub fn reconstruct(
     if finite.is_empty() {
         return Ok((Mesh::default(), SurfaceStats { not_finite, ..SurfaceStats::default() }));
     }
-    let mut input = upload(executor, &finite, params)?;
-    let mut surface = Surface::new(executor, *params, input)?;
-    let stats = surface.extract(executor)?;
-    let highest = if stats.triangles == 0 { Some(surface.highest(executor, &stats)?) } else { None };
-    // Before the mesh is copied, because the field takes most of the memory.
-    surface.release_field(executor)?;
-    executor.resize(&mut input.sorted_positions, 0)?;
-    executor.resize(&mut input.cell_start, 0)?;
-    let mesh = surface.mesh(executor)?;
-    surface.release(executor)?;
-    if let Some(highest) = highest {
-        return Err(SurfaceError::NoSurface { given: params.iso_level, highest });
-    }
+    let input = upload(executor, &finite, params)?;
+    let extracted = extract(executor, params, input);
+    executor.free(input.buffers().ids())?;
+    let (surface, stats) = extracted?;
+    let mesh = surface.into_mesh(executor)?;
     Ok((mesh, SurfaceStats { not_finite, ..stats }))
+}
+
+/// Extracts the surface of uploaded points; an empty mesh is an error, after which no buffers remain.
+fn extract(
+    executor: &mut Executor,
+    params: &SurfaceParams,
+    input: SurfaceInput,
+) -> Result<(Surface, SurfaceStats), SurfaceError> {
+    let mut surface = Surface::new(executor, *params, input)?;
+    let stats = surface.extract(executor).and_then(|stats| match stats.triangles {
+        0 => {
+            let highest = surface.highest(executor, &stats)?;
+            Err(SurfaceError::NoSurface { given: params.iso_level, highest })
+        }
+        _ => Ok(stats),
+    });
+    match stats {
+        Ok(stats) => Ok((surface, stats)),
+        Err(error) => {
+            surface.free(executor)?;
+            Err(error)
+        }
+    }
 }
 
 /// Sorts points by cell and uploads them.

@@ -214,8 +214,8 @@ impl Worker {
                 // Existing foam would not match the water.
                 foam.clear(simulation.executor())?;
             }
-            if surface_differs {
-                self.surface = None;
+            if surface_differs && let Some(surface) = self.surface.take() {
+                surface.free(simulation.executor())?;
             }
             // The bodies are unchanged, so the picture can reuse their buffers.
             let bodies = self.opened.as_ref().map(|opened| Arc::clone(&opened.bodies));
