@@ -68,7 +68,7 @@ fn upside_down_beaker(scene: &mut Scene) -> Body {
 #[test]
 fn an_upside_down_beaker_of_zero_thickness_holds_water() {
     let mut scene = tank(0.02, [0.6, 0.5, 0.6], 0.36);
-    let cup = turned_over(&mut scene);
+    let cup = upside_down_beaker(&mut scene);
     scene.bodies.push(cup);
     let mut simulation = run_tight(&scene, 6);
     let particles = simulation.particles().unwrap();
