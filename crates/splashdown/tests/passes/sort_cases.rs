@@ -110,8 +110,8 @@ fn count(name: &str, remaining: f32, moved: u32) -> Case {
     ];
     let mut expected = judge(&params, &grid, &positions, &velocities, counters);
     // After the last step of a frame nothing is counted.
-    let counts_for_none = moved == 1 && state.is_last_step();
-    if counts_for_none {
+    let is_count_unused = moved == 1 && state.is_last_step();
+    if is_count_unused {
         expected[1] = Data::U32(cell_counts);
     }
     Case {
