@@ -1,14 +1,14 @@
 //! Checkpoints: a simulation in a file, from which it can be resumed.
 //!
-//! *Content.* Everything that a step reads and that does not follow from the scene: the persistent arrays of the
-//! particles, the state on the device, the counters, the bodies with the state of their collisions, the state of emitters
-//! and probes, and the text of the scene. What follows from the scene (grids, maps, constants) is computed again, and
-//! compared where a file may have changed. On the CPU and on the same adapter, a resumed simulation is bit-identical to an
-//! uninterrupted one.
+//! *Content.* All data that a step reads and that cannot be derived from the scene: the persistent arrays of the
+//! particles, the state on the device, the counters, the bodies with the state of their collisions, the state of
+//! emitters and probes, and the text of the scene. Data derived from the scene (grids, maps, constants) is computed
+//! again. Fingerprints detect changes of the meshes that the scene names. On the CPU and on the same adapter, a resumed
+//! simulation is bit-identical to an uninterrupted one.
 //!
-//! *The file* is a ZIP of NPY arrays ([`Archive`]): `numpy.load` opens it. `positions` (N, 4) in m, the fourth
-//! zero for the living; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,); `scene.toml` the
-//! scene; `about.json` describes the file.
+//! *The file* is a ZIP of NPY arrays ([`Archive`]), which `numpy.load` opens. `positions` (N, 4) in m, with a fourth
+//! component of zero for active particles; `velocities` (N, 4) in m/s with the density in kg/m^3; `ids` (N,);
+//! `scene.toml` with the scene; `about.json` with a description of the file.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -21,19 +21,19 @@ use crate::bodies::{BodiesChanged, BodyKey};
 use crate::foam::{Diffuse, FoamState, KeptFoam};
 use crate::scene::{Scene, SceneErrors};
 
-/// The number of the format that is written and read.
+/// The version of the format.
 const VERSION: u32 = 2;
-/// Words of a diffuse particle.
+/// Words per diffuse particle.
 const FOAM_COLUMNS: usize = size_of::<Diffuse>() / 4;
 
-/// Why a checkpoint cannot be used.
+/// A checkpoint cannot be written, read or used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// It is none, or damaged.
+    /// The file is not a checkpoint, or it is damaged.
     #[error("this is not a usable checkpoint: {0}")]
     Malformed(String),
     /// Another program version made it.
@@ -47,7 +47,7 @@ pub enum CheckpointError {
         /// The version of the program that wrote it.
         program: String,
     },
-    /// Its scene cannot be read any more.
+    /// The scene in the checkpoint cannot be read any more.
     #[error("the scene in the checkpoint cannot be used: {0}")]
     Scene(#[from] SceneErrors),
     /// A mesh of an emitter or a sink has changed.
@@ -55,17 +55,17 @@ pub enum CheckpointError {
         "the mesh of an outlet or a sink is not the one of the checkpoint: restore the old file, or run the scene again"
     )]
     FlowChanged,
-    /// A file that the scene names has changed.
+    /// The mesh of a body has changed.
     #[error(
-        "body {body:?} is not the one of the checkpoint: its mesh had {then}, now it has {now}. Put the old mesh back, or run the \
-         scene anew"
+        "body {body:?} is not the one of the checkpoint: its mesh had {then}, now it has {now}. Restore the old mesh, or run the \
+         scene again"
     )]
     BodyChanged {
         /// The body's name.
         body: String,
-        /// The mesh then.
+        /// Properties of the mesh in the checkpoint.
         then: String,
-        /// The mesh now.
+        /// Properties of the mesh now.
         now: String,
     },
 }
@@ -77,7 +77,7 @@ impl From<BodiesChanged> for CheckpointError {
                 Self::BodyChanged { body: now.name.clone(), then: then.to_string(), now: now.to_string() }
             }
             BodiesChanged::Count { now, then } => {
-                Self::Malformed(format!("it has {then} bodies, its scene {now}"))
+                Self::Malformed(format!("it has {then} bodies, but its scene has {now}"))
             }
         }
     }
@@ -90,9 +90,9 @@ struct About {
     version: u32,
     program: String,
     scene: String,
-    /// The scene's file.
+    /// The path of the scene file.
     source: Option<PathBuf>,
-    /// Of the adapter, or `CPU`.
+    /// The name of the adapter, or `CPU`.
     device: Option<String>,
     time: f64,
     particles: u32,
@@ -110,33 +110,33 @@ pub(crate) struct HostState {
     /// Emitters whose lack of room has been reported.
     pub reported: Vec<bool>,
     pub bodies: Vec<BodyKey>,
-    /// Of the meshes of outlets and sinks.
+    /// Fingerprint of the emitters and sinks.
     pub flow: u64,
 }
 
 impl HostState {
-    /// Refuses values that no simulation can have.
+    /// Checks that the values are possible in a simulation.
     fn check(&self) -> Result<(), &'static str> {
         let Self { stats, stable_dt, sound_speed, initial, capacity, .. } = self;
         let is_positive = |x: f32| x.is_finite() && x > 0.0;
         let is_time = stats.time.is_finite() && stats.time >= 0.0;
         if !(is_time && is_positive(*stable_dt) && is_positive(*sound_speed)) {
-            return Err("its time, its time step or its speed of sound is no positive number");
+            return Err("its time, its time step or its speed of sound is not a positive number");
         }
-        let (made, gone) = (
+        let (created, lost) = (
             u64::from(*initial) + u64::from(stats.emitted),
             u64::from(stats.escaped) + u64::from(stats.drained) + u64::from(stats.non_finite),
         );
-        let there = made.checked_sub(gone) == Some(u64::from(stats.particles));
-        if !there || initial > capacity || stats.particles > *capacity || stats.steps > 1 << 60 {
-            return Err("its counts of particles contradict one another");
+        let is_consistent = created.checked_sub(lost) == Some(u64::from(stats.particles));
+        if !is_consistent || initial > capacity || stats.particles > *capacity || stats.steps > 1 << 60 {
+            return Err("its counts of particles contradict each other");
         }
         Ok(())
     }
 }
 
-/// A simulation between two frames, in memory: [`Simulation::checkpoint`](crate::Simulation::checkpoint) makes it,
-/// [`Simulation::resume`](crate::Simulation::resume) continues from it.
+/// The state of a simulation between two frames. [`Simulation::checkpoint`](crate::Simulation::checkpoint) creates it,
+/// and [`Simulation::resume`](crate::Simulation::resume) continues from it.
 ///
 /// ```
 /// use splashdown::{Checkpoint, Device, Simulation, scene::Scene};
@@ -155,7 +155,7 @@ impl HostState {
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     pub(crate) archive: Archive,
-    /// The scene, once it has been read: with it the files that it names are read.
+    /// The scene, once it has been read. Reading it also reads the files that it names.
     scene: OnceLock<Scene>,
 }
 
@@ -166,7 +166,7 @@ impl PartialEq for Checkpoint {
 }
 
 impl Checkpoint {
-    /// The ending of a checkpoint's file name.
+    /// The file name extension of checkpoints.
     pub const ENDING: &'static str = "splashdown";
 
     pub(crate) fn new(archive: Archive, scene: &Scene, text: &str, device: String, host: &HostState) -> Self {
@@ -185,7 +185,7 @@ impl Checkpoint {
             time: host.stats.time,
             particles: host.stats.particles,
         };
-        // Names and numbers always have a JSON form.
+        // Cannot fail: the values are strings and numbers.
         let about = serde_json::to_string_pretty(&about).unwrap_or_default();
         checkpoint.archive.set_text("about.json", &about);
         checkpoint.archive.set_text("scene.toml", text);
@@ -193,7 +193,7 @@ impl Checkpoint {
         checkpoint
     }
 
-    /// Writes it, complete or not at all; returns the file's size in bytes.
+    /// Writes the file atomically. Returns its size in bytes.
     ///
     /// # Errors
     /// [`CheckpointError::Io`].
@@ -204,8 +204,8 @@ impl Checkpoint {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`CheckpointError::Io`] where it cannot be read; else [`CheckpointError`]: none, cut short, damaged, or
-    /// of another version.
+    /// [`CheckpointError::Io`] if it cannot be read; [`CheckpointError::Malformed`] if it is not a checkpoint, truncated
+    /// or damaged; [`CheckpointError::Version`] if it has another version.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
         let named = |reason: String| CheckpointError::Malformed(format!("`{}`: {reason}", path.display()));
         let archive = Archive::read(path).map_err(|error| match error {
@@ -218,15 +218,15 @@ impl Checkpoint {
         })
     }
 
-    /// The whole file.
+    /// The content of the file.
     ///
     /// # Errors
-    /// [`CheckpointError::Malformed`] where it is larger than the format allows.
+    /// [`CheckpointError::Malformed`] if it is larger than the format allows.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
         self.archive.to_bytes().map_err(CheckpointError::Malformed)
     }
 
-    /// From a whole file.
+    /// Reads the content of a file.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -238,7 +238,7 @@ impl Checkpoint {
         let checkpoint = Self { archive, scene: OnceLock::new() };
         let About { format, version, program, .. } = checkpoint.about()?;
         if format != "Splashdown checkpoint" {
-            return Err(CheckpointError::Malformed(format!("it calls itself {format:?}")));
+            return Err(CheckpointError::Malformed(format!("its format is {format:?}")));
         }
         if version != VERSION {
             return Err(CheckpointError::Version { given: version, program });
@@ -255,7 +255,7 @@ impl Checkpoint {
     /// The scene that is simulated.
     ///
     /// # Errors
-    /// [`CheckpointError::Scene`] where a file that it names is gone, say.
+    /// [`CheckpointError::Scene`], for example if a file that it names does not exist any more.
     pub fn scene(&self) -> Result<Scene, CheckpointError> {
         if let Some(scene) = self.scene.get() {
             return Ok(scene.clone());
@@ -277,8 +277,8 @@ impl Checkpoint {
         Ok(self.host()?.stats.time)
     }
 
-    /// What it was made on: an adapter's name, or `CPU`; the same bits follow there. `None` where an earlier
-    /// version did not say.
+    /// The device on which the checkpoint was made: the name of an adapter, or `CPU`. On this device a resumed run is
+    /// bit-identical. `None` if an earlier version did not store it.
     ///
     /// # Errors
     /// [`CheckpointError::Malformed`].
@@ -286,12 +286,12 @@ impl Checkpoint {
         Ok(self.about()?.device)
     }
 
-    /// What a front end left with [`set_notes`](Self::set_notes), if it did.
+    /// The text that a front end has stored with [`set_notes`](Self::set_notes), if any.
     pub fn notes(&self) -> Option<&str> {
         self.archive.text("notes.json").ok()
     }
 
-    /// Leaves a text of the front end's own in the file: what it was asked for, say.
+    /// Stores a text of a front end in the file, for example its settings.
     pub fn set_notes(&mut self, text: &str) {
         self.archive.set_text("notes.json", text);
     }
@@ -302,7 +302,7 @@ impl Checkpoint {
         Ok(host)
     }
 
-    /// Checks that it can be resumed, as far as that is possible without doing so.
+    /// Checks that a simulation can be resumed from it, as far as this is possible without resuming.
     ///
     /// # Errors
     /// [`CheckpointError`].
@@ -321,13 +321,13 @@ impl Checkpoint {
         self.archive.bytes(name).is_ok()
     }
 
-    /// Puts foam in beside the simulation that made it.
+    /// Stores the foam of the simulation.
     pub fn set_foam(&mut self, kept: &KeptFoam) {
         self.archive.set_array("foam_state", bytemuck::cast_slice::<_, u32>(&[kept.state]), 1);
         self.archive.set_array("foam", bytemuck::cast_slice::<_, u32>(&kept.pool), FOAM_COLUMNS);
     }
 
-    /// The foam in it, if any.
+    /// The foam in the checkpoint, if any.
     ///
     /// # Errors
     /// [`CheckpointError::Malformed`].
@@ -342,9 +342,9 @@ impl Checkpoint {
         Ok(Some(KeptFoam { state, pool }))
     }
 
-    /// Puts a value in by its exact bits.
+    /// Stores a value as its exact bits.
     pub(crate) fn set(&mut self, name: &str, value: &impl Serialize) {
-        // Fails only for types whose length is not known before, of which there is none here.
+        // Fails only for types of unknown length, which are not used here.
         if let Ok(bytes) = postcard::to_stdvec(value) {
             self.archive.set_bytes(name, bytes);
         }
@@ -365,7 +365,7 @@ impl Checkpoint {
         let numbers = self.archive.array(name).map_err(CheckpointError::Malformed)?;
         if numbers.len() != count {
             let reason =
-                format!("its entry `{name}` has {} numbers; the scene in it needs {count}", numbers.len());
+                format!("its entry `{name}` has {} numbers, but its scene needs {count}", numbers.len());
             return Err(CheckpointError::Malformed(reason));
         }
         Ok(numbers)

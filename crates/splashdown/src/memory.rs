@@ -1,4 +1,4 @@
-//! How much memory a simulation takes, before it takes it.
+//! Forecasts the memory of a simulation.
 
 use crate::cells::Grid;
 use crate::check::Built;
@@ -13,7 +13,7 @@ const LARGEST_PER_PARTICLE: u64 = 16;
 /// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): two
 /// positions, two velocities, two ids, density and pressure, cell, slot.
 const PER_PARTICLE: u64 = 4 * 16 + 2 * 4 + 8 + 4 + 8;
-/// Bytes per particle of what only some scenes need: an acceleration, a normal, a pair for the bitonic sort.
+/// Bytes per particle of buffers that only some scenes need: accelerations, normals, pairs of the bitonic sort.
 const ACCELERATION: u64 = 16;
 const NORMAL: u64 = 16;
 const PAIR: u64 = 8;
@@ -25,9 +25,9 @@ pub fn largest_particle_count(largest_buffer: u64) -> u64 {
     (largest_buffer / LARGEST_PER_PARTICLE).min(u64::from(u32::MAX) - 1)
 }
 
-/// Refuses a number of particles that a device cannot hold, and says how many and which spacing it can. A
-/// device binds every buffer as a whole: they are not split, because each pass would then have to find a
-/// neighbour's half first.
+/// Checks that a device can hold a number of particles. The error contains the largest number and the smallest spacing
+/// that fit. Every buffer is bound as a whole: buffers are not split, because each pass would then have to determine the
+/// part that contains a neighbour.
 ///
 /// # Errors
 /// [`SimulationError::TooMany`].
@@ -53,11 +53,11 @@ pub fn check_particles(
     })
 }
 
-/// Bytes in the buffers of a scene's simulation and, where the scene asks for them, of its surface and its
-/// foam. Particles inside bodies, which a simulation leaves out, are counted: to know them takes loading the
-/// bodies ([`memory_forecast_of`]).
+/// The size in bytes of the buffers of a scene's simulation, and of its surface and foam if the scene enables them.
+/// Particles inside bodies, which a simulation removes, are included, because finding them requires loading the bodies
+/// ([`memory_forecast_of`]).
 ///
-/// A splash with more surface than most makes the surface's buffers grow beyond this.
+/// The buffers of an unusually large surface may exceed the forecast.
 pub fn memory_forecast(scene: &Scene) -> u64 {
     forecast(scene, Built::of(scene).count(scene))
 }
@@ -68,7 +68,7 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
 }
 
 fn forecast(scene: &Scene, particles: u64) -> u64 {
-    // A mesh that cannot be read is reported where the simulation starts.
+    // A mesh that cannot be read is reported when the simulation starts.
     let built = Built::of(scene);
     let particles = built.flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
     let motion = particles.saturating_mul(per_particle(scene)).saturating_add(bodies::forecast(
@@ -76,7 +76,7 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
         &built.extents(scene),
         particles,
     ));
-    // A domain of more cells than there can be is refused at the start.
+    // A domain with too many cells is an error when the simulation starts.
     let Some(grid) = Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene)) else {
         return motion.saturating_add(PER_CELL << 31);
     };
@@ -91,7 +91,7 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
     motion.saturating_add(u64::from(grid.cell_count) * PER_CELL).saturating_add(surface).saturating_add(foam)
 }
 
-/// Bytes per particle in the buffers of a scene's simulation, but for what its bodies need.
+/// Bytes per particle in the buffers of a scene's simulation, without those of its bodies.
 fn per_particle(scene: &Scene) -> u64 {
     let is_plain = scene.bodies.is_empty()
         && scene.emitters.is_empty()
@@ -105,7 +105,7 @@ fn per_particle(scene: &Scene) -> u64 {
         + some(scene.solver.sort == Sort::Bitonic, PAIR)
 }
 
-/// What a cell of the grid must span, in metres: one grid serves the motion and the surface.
+/// The smallest size of a grid cell in metres: the simulation and the surface use the same grid.
 pub(crate) fn grid_reach(scene: &Scene) -> f32 {
     let spacing = scene.fluid.particle_spacing;
     scene.solver.support_radius(spacing).max(scene.surface.support_ratio * spacing)
@@ -124,7 +124,7 @@ mod tests {
     use crate::state::Params;
     use crate::{Device, Simulation};
 
-    /// Bytes in all buffers of this many particles in one grid.
+    /// The size in bytes of all buffers for this number of particles in one grid.
     fn in_arrays(particles: u32, normals: bool, sort: Sort) -> u64 {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = Params { particle_count: particles, ..bytemuck::Zeroable::zeroed() };
@@ -139,14 +139,14 @@ mod tests {
     }
 
     #[test]
-    fn with_all_that_a_scene_can_ask_for_a_particle_takes_at_most_160_bytes() {
+    fn with_all_optional_buffers_a_particle_takes_at_most_160_bytes() {
         let per_particle = |normals, sort| {
             (in_arrays(3 << 16, normals, sort) - in_arrays(1 << 16, normals, sort)) / (2 << 16)
         };
         let plain = per_particle(false, Sort::Counting);
         assert_eq!(plain, 92);
         assert_eq!(plain, PER_PARTICLE);
-        // With all that a scene can ask for.
+        // With all optional buffers.
         let most = per_particle(true, Sort::Bitonic);
         assert_eq!(most, PER_PARTICLE + ACCELERATION + NORMAL + PAIR);
         assert!(most <= 160, "{most}");
@@ -162,7 +162,7 @@ mod tests {
             for (smoothing_iterations, sort) in [(0, Sort::Counting), (5, Sort::Bitonic)] {
                 scene.surface.smoothing_iterations = smoothing_iterations;
                 scene.solver.sort = sort;
-                // Without what the bodies displace, which the simulation leaves out.
+                // Without the particles inside bodies, which the simulation removes.
                 let inventory = crate::inventory(&scene).unwrap();
                 let forecast = memory_forecast_of(&scene, &inventory);
                 assert!(memory_forecast(&scene) >= forecast, "{name}");
@@ -170,13 +170,13 @@ mod tests {
                 let without_surface = simulation.memory();
                 simulation.surface(&scene.surface).unwrap();
                 let taken = simulation.memory();
-                // Tables and uniforms of fixed size, and the sums of the scans' blocks, are left out: some tens of kB.
+                // Tables and uniforms of fixed size and the block sums of scans are not included: some tens of kB.
                 let difference = taken.abs_diff(forecast);
-                // Whether a mesh is a sheet, whose grid is a little larger, is known only when it has been looked at.
+                // The grid of an open mesh is slightly larger; whether a mesh is open is known only after loading.
                 let part = if scene.bodies.is_empty() { 100 } else { 25 };
                 assert!(difference < taken / part + 50_000, "{name}: {forecast} forecast, {taken} taken");
-                // Controls: the surface matters (beside maps of bodies less so), and a scene without one takes
-                // what the motion takes.
+                // Controls: the surface is a large part (with maps of bodies a smaller one), and a scene without a
+                // surface takes what the simulation takes.
                 assert!(
                     without_surface < forecast / 2 || !scene.bodies.is_empty(),
                     "{name}: {without_surface} of {forecast}"
@@ -194,7 +194,7 @@ mod tests {
         }
     }
 
-    /// A block as deep as asked for, in a box that stays as it is.
+    /// A block of this depth, in a domain of fixed size.
     fn block(spacing: f64, depth: f64) -> Scene {
         let text = format!(
             "[scene]\nname = \"block\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [3, 2, 2]\n\
@@ -204,7 +204,7 @@ mod tests {
         Scene::parse(&text, "block").unwrap()
     }
 
-    /// Bytes in the buffers of a simulation of `wcsph`, and its particles.
+    /// The size in bytes of the buffers of a `wcsph` simulation, and its number of particles.
     fn taken(depth: f64) -> [f64; 2] {
         let simulation = Simulation::new(&block(1.0 / 16.0, depth), &Device::Cpu).unwrap();
         [simulation.memory() as f64, f64::from(simulation.stats().particles)]
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_particle_takes_at_most_160_bytes() {
-        // The same box twice, so that cells do not count.
+        // The same domain twice, so that the cells cancel.
         let [less, more] = [taken(0.5), taken(1.0)];
         let each = (more[0] - less[0]) / (more[1] - less[1]);
         assert!((each / PER_PARTICLE as f64 - 1.0).abs() < 0.01, "{each} bytes");
@@ -228,24 +228,24 @@ mod tests {
         };
         let bare = scene(0.00584);
         assert!((10_000_000..10_200_000).contains(&Derived::new(&bare).particles));
-        // Motion alone takes a third of the budget.
+        // The simulation without surface takes less than a third of the budget.
         assert!(memory_forecast(&bare) < budget / 3, "{}", memory_forecast(&bare));
         // Control: sixty million do not fit.
         assert!(memory_forecast(&scene(0.0032)) > budget);
-        // One buffer of theirs is more than the least that every device binds.
+        // Their largest buffer exceeds the size that every device supports.
         assert!(check_particles(10_000_000, 128 << 20, 0.00584).is_err());
         assert!(check_particles(10_000_000, 160_000_000, 0.00584).is_ok());
     }
 
     #[test]
-    fn the_count_that_fits_is_told_and_the_spacing_told_fits() {
+    fn the_reported_count_and_spacing_fit() {
         let error = check_particles(20_000_000, 128 << 20, 0.01).unwrap_err();
         assert!(matches!(error, SimulationError::TooMany { allowed: 8_388_608, .. }), "{error}");
         let text = error.to_string();
         assert!(text.contains("at most 8388608 fit") && text.contains("134 MB"), "{text}");
         let (_, rest) = text.split_once("particle_spacing of ").unwrap();
-        let told: f64 = rest.split(' ').next().unwrap().parse().unwrap();
-        let fitting = 20e6 * (0.01 / told).powi(3);
-        assert!((7e6..8_388_608.0).contains(&fitting), "{told} m gives {fitting}");
+        let reported: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+        let fitting = 20e6 * (0.01 / reported).powi(3);
+        assert!((7e6..8_388_608.0).contains(&fitting), "{reported} m gives {fitting}");
     }
 }

@@ -8,6 +8,6 @@ fn row_range(cell: u32, row: u32) -> vec2<u32> {
 }
 
 // The number of active particles.
-fn living() -> u32 {
+fn active_count() -> u32 {
     return cell_start[grid.cell_count];
 }

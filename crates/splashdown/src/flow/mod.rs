@@ -1,11 +1,12 @@
-//! Emitters and sinks: fluid that comes and goes while a simulation runs.
+//! Emitters and sinks: they add and remove fluid during a simulation.
 //!
-//! *How it works.* The buffers have room for the particles that the emitters create in the scene's time; particles that do
-//! not exist yet are marked as dead from the start, and the sort places dead particles behind the others. The nozzle of an
-//! emitter is a short pipe that ends at its outlet. At its back face layers of particles are created on a lattice (`emission_schedule`, `emit`),
-//! and travel to the outlet as one piston (`inflow_constraint`), so that fluid leaves at rest density and with the right
-//! speed. The columns of a falling jet are staggered, or gravity, which stretches it, would draw it out into
-//! discs. A sink marks what is in it as dead (`sink`); its places are used again.
+//! *How it works.* The buffers have room for the particles that the emitters create within the duration of the scene.
+//! Particles not yet emitted are marked as such from the start, and the sort places them behind the active ones. The
+//! nozzle of an emitter is a short pipe that ends at its outlet. At its back face layers of particles are created on a
+//! lattice (`emission_schedule`, `emit`) and travel to the outlet like a piston (`inflow_constraint`), so that the fluid
+//! leaves at rest density and at the given speed. The columns of a falling jet are staggered; otherwise gravity, which
+//! stretches the jet, would separate it into discs. A sink marks the particles inside it as removed (`sink`); their
+//! places in the arrays are reused.
 
 mod emission_schedule;
 mod emit;
@@ -27,7 +28,7 @@ use crate::scene::{Emitter, Scene, Sink, SinkRegion};
 /// The WGSL side of [`Nozzle`], [`SinkShape`] and [`EmissionSchedule`].
 pub const FLOW: WgslModule = WgslModule { name: "sph/flow", source: include_str!("flow.wgsl") };
 
-/// Most nodes in the map of a sink's mesh along one edge.
+/// The largest number of nodes along an edge of the map of a sink's mesh.
 const MOST_NODES: f32 = 128.0;
 
 /// The passes of this module.
@@ -40,7 +41,7 @@ pub fn passes() -> Vec<&'static PassDesc> {
     ]
 }
 
-/// A scene's emitters and sinks, ready for a device.
+/// The emitters and sinks of a scene, before they are placed on a device.
 #[derive(Clone, Debug, Default)]
 pub struct LoadedFlow {
     nozzles: Vec<Nozzle>,
@@ -53,7 +54,7 @@ pub struct LoadedFlow {
 }
 
 impl LoadedFlow {
-    /// From a scene.
+    /// Loads the emitters and sinks of a scene.
     ///
     /// # Errors
     /// [`BodyError`] of the meshes of outlets and sinks.
@@ -104,18 +105,18 @@ impl LoadedFlow {
     pub(crate) fn forecast(&self, duration: f32, spacing: f32) -> (u64, f64) {
         let (mut all, mut average) = (0u64, 0.0);
         for nozzle in &self.nozzles {
-            let brought = outlet::expected(nozzle, duration, spacing);
-            // The flow is steady from its start until it is stopped or has made all it may.
+            let emitted = outlet::expected(nozzle, duration, spacing);
+            // The flow is steady from its start until its end, or until the largest number of particles is reached.
             let per_second = nozzle.points as f32 * nozzle.speed / spacing;
-            let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, brought as f32 / per_second);
+            let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, emitted as f32 / per_second);
             let present = (duration - nozzle.start - 0.5 * busy) / duration;
-            all = all.saturating_add(brought);
-            average += brought as f64 * f64::from(present.clamp(0.0, 1.0));
+            all = all.saturating_add(emitted);
+            average += emitted as f64 * f64::from(present.clamp(0.0, 1.0));
         }
         (all, average)
     }
 
-    /// By what the emitters and sinks are known again.
+    /// A fingerprint of the emitters and sinks, by which a checkpoint identifies them.
     pub(crate) fn hash(&self) -> u64 {
         let parts = [
             hash(bytemuck::cast_slice(&self.nozzles)),
@@ -126,12 +127,12 @@ impl LoadedFlow {
         hash(bytemuck::cast_slice(&parts))
     }
 
-    /// True if nothing comes or goes.
+    /// True if there are no emitters and no sinks.
     pub fn is_empty(&self) -> bool {
         self.nozzles.is_empty() && self.drains.is_empty()
     }
 
-    /// How many particles need room, of which there are `initial` at the start; at most `allowed`.
+    /// The number of particles for which buffers need room, with `initial` particles at the start; at most `allowed`.
     pub fn capacity(&self, initial: u64, allowed: u64) -> u64 {
         initial.saturating_add(self.expected).min(allowed).max(initial)
     }
@@ -176,19 +177,19 @@ impl LoadedFlow {
     }
 }
 
-/// What emitters and sinks have done.
+/// The counters of emitters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlowCount {
-    /// Particles made so far.
+    /// Particles created so far.
     pub emitted: u32,
-    /// Particles for which there was no room.
+    /// Particles not created because the buffers were full.
     pub refused: u32,
 }
 
 /// Emitters and sinks on a device.
 #[derive(Debug)]
 pub struct Flow {
-    /// By what it is known again.
+    /// See [`LoadedFlow::hash`].
     hash: u64,
     nozzles: Option<Nozzles>,
     drains: Option<(Buffer<SinkShape>, Buffer<f32>)>,
@@ -205,7 +206,7 @@ struct Nozzles {
 }
 
 impl Flow {
-    /// Places them on a device. The first particle born gets the id `next_id`.
+    /// Creates the buffers on a device. The first particle emitted gets the id `next_id`.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -218,10 +219,10 @@ impl Flow {
         let nozzles = if loaded.nozzles.is_empty() {
             None
         } else {
-            // The first layer is due at once.
+            // The first layer is due in the first step.
             let mut schedules = vec![0; loaded.nozzles.len() * EmissionSchedule::WORDS + 1];
-            for plan in schedules.chunks_exact_mut(EmissionSchedule::WORDS) {
-                plan[EmissionSchedule::PHASE] = spacing.to_bits();
+            for schedule in schedules.chunks_exact_mut(EmissionSchedule::WORDS) {
+                schedule[EmissionSchedule::PHASE] = spacing.to_bits();
             }
             schedules[loaded.nozzles.len() * EmissionSchedule::WORDS] = next_id;
             Some(Nozzles {
@@ -241,7 +242,7 @@ impl Flow {
         Ok(Self { hash: loaded.hash(), nozzles, drains })
     }
 
-    /// By what the emitters and sinks are known again.
+    /// A fingerprint of the emitters and sinks, by which a checkpoint identifies them.
     pub(crate) fn hash(&self) -> u64 {
         self.hash
     }
@@ -251,7 +252,7 @@ impl Flow {
         self.nozzles.is_some()
     }
 
-    /// What the emitters remember from step to step, if there are any.
+    /// The state of the emitters from step to step, if there are any.
     pub(crate) fn schedules(&self) -> Option<Buffer<u32>> {
         self.nozzles.as_ref().map(|nozzles| nozzles.schedules)
     }
@@ -264,8 +265,8 @@ impl Flow {
     /// Sets the emitters whose lack of room has been reported.
     pub(crate) fn set_reported(&mut self, reported: &[bool]) {
         if let Some(nozzles) = &mut self.nozzles {
-            for (mine, &theirs) in nozzles.reported.iter_mut().zip(reported) {
-                *mine = theirs;
+            for (present, &restored) in nozzles.reported.iter_mut().zip(reported) {
+                *present = restored;
             }
         }
     }
@@ -287,7 +288,7 @@ impl Flow {
         step.dispatch(&emit::EMIT, DispatchSize::Items(nozzles.points.len()));
     }
 
-    /// What has been made so far, and a sentence for each emitter that found no room for the first time.
+    /// The number of particles emitted so far, and a warning for each emitter that found no room for the first time.
     ///
     /// # Errors
     /// If the device was lost.
@@ -296,15 +297,15 @@ impl Flow {
         let mut messages = Vec::new();
         let Some(nozzles) = &mut self.nozzles else { return Ok((count, messages)) };
         let schedules = executor.fetch(nozzles.schedules).await?;
-        for (k, plan) in schedules.chunks_exact(EmissionSchedule::WORDS).enumerate() {
-            count.emitted += plan[EmissionSchedule::EMITTED];
-            count.refused += plan[EmissionSchedule::REFUSED];
-            if plan[EmissionSchedule::REFUSED] > 0 && !std::mem::replace(&mut nozzles.reported[k], true) {
+        for (k, schedule) in schedules.chunks_exact(EmissionSchedule::WORDS).enumerate() {
+            count.emitted += schedule[EmissionSchedule::EMITTED];
+            count.refused += schedule[EmissionSchedule::REFUSED];
+            if schedule[EmissionSchedule::REFUSED] > 0 && !std::mem::replace(&mut nozzles.reported[k], true) {
                 messages.push(format!(
-                    "emitter {:?} found no room for more after {} particles: the buffers were made for the scene's own \
-                     duration. Make duration longer, or drain more",
+                    "emitter {:?} found no room for more after {} particles: the buffers are sized for the duration of \
+                     the scene. Increase duration, or add a sink",
                     nozzles.names[k],
-                    plan[EmissionSchedule::EMITTED]
+                    schedule[EmissionSchedule::EMITTED]
                 ));
             }
         }

@@ -1,4 +1,4 @@
-//! The outlet of an emitter on the host: the lattice of a layer, the nozzle behind it, and how many particles it emits.
+//! The outlet of an emitter on the host: the lattice of a layer, the nozzle behind it, and the number of particles.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -8,30 +8,30 @@ pub use crate::scene::outlet::{axes, disc_layer, rectangle_layer};
 use crate::scene::{Domain, Emitter, MeshSource, Outlet, Scene};
 use crate::solid::Solid;
 
-/// More than any scene makes, and small enough to be added to.
+/// More particles than any scene emits, and small enough that sums do not overflow.
 const UNLIMITED: u32 = u32::MAX / 2;
 
-/// A layer with its points shifted forward, each by its own share of `depth` (m): columns of fluid keep their
-/// distances, and a jet that gravity stretches comes apart evenly instead of into a pile of discs. The shares
-/// are those of Roberts' sequence R2 on the lattice, which puts neighbours far apart from each other.
+/// Shifts the points of a layer forward, each by its own fraction of `depth` (m). The distances between columns do not
+/// change, and a jet that gravity stretches thins evenly instead of separating into discs. The fractions are those of
+/// Roberts' sequence R2 on the lattice, which differ strongly between neighbours.
 pub fn staggered(layer: &[Vec2], spacing: f32, depth: f32) -> Vec<Vec4> {
     const PLASTIC: f32 = 1.324_718;
-    let share = |q: &Vec2| {
+    let fraction = |q: &Vec2| {
         let place = (*q / spacing + 0.25).floor();
         (place.x / PLASTIC + place.y / (PLASTIC * PLASTIC)).rem_euclid(1.0)
     };
-    layer.iter().map(|q| q.extend(depth * share(q)).extend(0.0)).collect()
+    layer.iter().map(|q| q.extend(depth * fraction(q)).extend(0.0)).collect()
 }
 
-/// How deep a layer is staggered, in m: a spacing for a jet straight down, nothing for one that gravity does
-/// not stretch, whose layers may have to press into standing fluid as one.
+/// The depth in m by which a layer is staggered: a spacing for a jet straight down, and zero for one that gravity does
+/// not stretch, whose layers may have to enter fluid at rest as a whole.
 pub fn stagger(direction: Vec3, gravity: Vec3, spacing: f32) -> f32 {
     spacing * direction.dot(gravity.normalize_or_zero()).clamp(0.0, 1.0)
 }
 
-/// Points of the mesh's cross-section at the outlet that keep half a spacing off its rim, on a square lattice
-/// along [`axes`] round `position`: of the four lattices that have a point or a square's side or middle there,
-/// the one that makes up the area best.
+/// The points of a square lattice along [`axes`] that lie in the cross-section of the mesh at the outlet, at least half
+/// a spacing from its rim. Four lattices are tried, which differ in their position relative to the centre; the one whose
+/// points represent the area best is used.
 fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Vec<Vec2> {
     const FINER: i32 = 4;
     let (across, up) = axes(emitter.direction);
@@ -45,31 +45,31 @@ fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f3
         let points = (-n..=n).flat_map(move |j| (-n..=n).map(move |i| Vec2::new(i as f32, j as f32)));
         points.map(move |q| distance * (q + shift))
     };
-    // Cells, rather than points, fill an area.
+    // The area of the cross-section in squares of the spacing, by counting finer cells.
     let fine = lattice(spacing / FINER as f32, Vec2::splat(0.5)).filter(|q| inside(*q)).count();
     let wanted = fine as f32 / (FINER * FINER) as f32;
     let off_rim = |q: Vec2| {
         let rim =
             (0..8).map(|k| Vec2::from_angle(std::f32::consts::FRAC_PI_4 * k as f32) * (0.499 * spacing));
-        inside(q) && rim.into_iter().all(|way| inside(q + way))
+        inside(q) && rim.into_iter().all(|offset| inside(q + offset))
     };
     let shifts = [Vec2::ZERO, Vec2::splat(0.5), Vec2::new(0.5, 0.0), Vec2::new(0.0, 0.5)];
     let layers = shifts.map(|shift| lattice(spacing, shift).filter(|q| off_rim(*q)).collect::<Vec<_>>());
-    let missed = |layer: &Vec<Vec2>| (layer.len() as f32 - wanted).abs();
-    layers.into_iter().min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or_default()
+    let error = |layer: &Vec<Vec2>| (layer.len() as f32 - wanted).abs();
+    layers.into_iter().min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or_default()
 }
 
-/// An emitter's layer, not yet [`staggered`], and its nozzle; `first_point` is not yet set.
+/// The nozzle of an emitter, with `first_point` not yet set, and its layer, not yet [`staggered`].
 ///
 /// # Errors
-/// [`BodyError`] of an outlet's mesh; of a sheet without an inside, too.
+/// [`BodyError`] of the outlet's mesh, which must be closed.
 pub fn nozzle(emitter: &Emitter, scene: &Scene) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
     let spacing = scene.fluid.particle_spacing;
     let support_radius = scene.solver.support_radius(spacing);
     nozzle_in(emitter, &scene.domain, spacing, support_radius)
 }
 
-/// As [`nozzle`], of a scene that is not yet whole.
+/// As [`nozzle`], for a scene that is not complete yet.
 pub(crate) fn nozzle_in(
     emitter: &Emitter,
     domain: &Domain,
@@ -125,8 +125,8 @@ pub(crate) fn nozzle_in(
     Ok((nozzle, layer))
 }
 
-/// How far a nozzle must stick out so that its back face is inside the domain, in m: an outlet in a wall has
-/// its nozzle before the wall.
+/// The distance in m by which a nozzle is moved forward so that its back face is inside the domain: the nozzle of an
+/// outlet in a wall lies in front of the wall.
 fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], length: f32, spacing: f32) -> f32 {
     let (across, up) = axes(emitter.direction);
     let (low, high) = (domain.min + 0.5 * spacing, domain.max - 0.5 * spacing);
@@ -140,7 +140,7 @@ fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], lengt
     (0..=steps).map(|k| 0.25 * spacing * k as f32).find(|&shift| fits(shift)).unwrap_or(0.0)
 }
 
-/// How many particles a nozzle makes until `duration` (s), one layer more than the flow asks for.
+/// The number of particles that a nozzle creates until `duration` (s), plus one layer.
 pub fn expected(nozzle: &Nozzle, duration: f32, spacing: f32) -> u64 {
     let active = (nozzle.end.min(duration) - nozzle.start).max(0.0);
     if active == 0.0 {
@@ -192,13 +192,13 @@ mod tests {
             max_particles: None,
         };
         let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], shake: None };
-        // A square of whole spacings is filled to its rim, be they even or odd.
+        // A square whose edge is an even or odd number of spacings is filled to its rim.
         for (spacing, count) in [(0.01, 100), (0.02, 25)] {
             let (nozzle, layer) = nozzle_in(&emitter, &domain, spacing, 2.0 * spacing).unwrap();
             assert_eq!((layer.len(), nozzle.points), (count, count as u32), "{spacing}");
             assert!(layer.iter().all(|q| q.abs().max_element() < 0.05 - 0.49 * spacing));
         }
-        // A gear is a plate, 0.22 m across at this scale: its layer leaves the bore free, and the gaps between teeth.
+        // The gear is 0.22 m wide at this scale. Its layer has no points in the bore and between the teeth.
         let gear = MeshSource {
             shape: MeshShape::Model("gear".into()),
             rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_in_a_layer_are_born_at_different_depths() {
+    fn neighbours_in_a_layer_are_emitted_at_different_depths() {
         for layer in [disc_layer(0.083, 0.01), rectangle_layer([0.08, 0.05], 0.01)] {
             let points = staggered(&layer, 0.01, 0.01);
             assert!(points.iter().zip(&layer).all(|(p, q)| p.x == q.x && p.y == q.y));

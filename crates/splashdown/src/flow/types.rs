@@ -1,12 +1,12 @@
-//! What the device knows of emitters and sinks.
+//! The elements of the buffers of emitters and sinks.
 
 use glam::{UVec2, UVec3, Vec3};
 use splashdown_gpu::gpu_struct;
 
 gpu_struct! {
-    /// An emitter's nozzle: a straight piece of pipe from its back face to the outlet.
+    /// The nozzle of an emitter: a straight pipe from its back face to the outlet.
     pub struct Nozzle {
-        /// Middle of the back face in m.
+        /// Centre of the back face in m.
         back: Vec3,
         /// Speed of the fluid in m/s.
         speed: f32,
@@ -16,25 +16,25 @@ gpu_struct! {
         length: f32,
         /// Unit vector across the direction, horizontal.
         across: Vec3,
-        /// When it begins, in s.
+        /// Start of the emission in s.
         start: f32,
         /// Unit vector along `direction` x `across`.
         up: Vec3,
-        /// When it ends, in s.
+        /// End of the emission in s.
         end: f32,
         /// Radius of a disc, or half the width along `across`, in m.
         half_across: f32,
         /// Half the height along `up`, in m.
         half_up: f32,
-        /// Where its layer begins among the points of all.
+        /// Index of the first point of its layer among the points of all nozzles.
         first_point: u32,
         /// Particles in a layer.
         points: u32,
-        /// Most particles that it makes.
+        /// Largest number of particles that it creates.
         most: u32,
         /// 1 for a disc, 0 for a rectangle.
         disc: u32,
-        /// Nothing.
+        /// Padding.
         unused: UVec2,
     }
 }
@@ -48,18 +48,18 @@ gpu_struct! {
         kind: u32,
         /// Upper corner in m, or the plane's normal.
         high: Vec3,
-        /// Distance of a map's nodes in m.
+        /// Distance between the nodes of a map in m.
         cell_size: f32,
         /// Nodes of a map along x, y, z; x fastest.
         nodes: UVec3,
-        /// Where the map begins among those of all.
+        /// Index of the first node of the map among the nodes of all maps.
         first_node: u32,
     }
 }
 
 impl Nozzle {
-    /// True if a point in m lies in the pipe, a quarter of a spacing behind its back face included: rounding
-    /// must not leave a layer out that was born right there.
+    /// True if a point in m lies in the pipe, or up to a quarter of a spacing behind its back face: rounding must not
+    /// exclude a layer that was created there.
     #[inline]
     pub fn holds(&self, x: Vec3, particle_spacing: f32) -> bool {
         let o = x - self.back;
@@ -74,33 +74,33 @@ impl Nozzle {
 }
 
 impl SinkShape {
-    /// A box.
+    /// The interior of a box.
     pub const BOX: u32 = 0;
     /// The half-space behind a plane.
     pub const BELOW: u32 = 1;
-    /// Where a map of signed distances is negative.
+    /// The region in which a map of signed distances is negative.
     pub const MAP: u32 = 2;
 }
 
-/// One emitter's words in the buffer of schedules; behind the last emitter's comes the next id to give.
+/// The words of an emitter in the buffer of schedules. The next unused id follows the words of the last emitter.
 pub struct EmissionSchedule;
 
 impl EmissionSchedule {
-    /// Distance since the last layer in m; a float's bits.
+    /// Distance since the last layer in m, as the bits of a float.
     pub const PHASE: usize = 0;
-    /// Particles made so far.
+    /// Particles created so far.
     pub const EMITTED: usize = 1;
-    /// Particles for which there was no room.
+    /// Particles not created because the buffers are full.
     pub const REFUSED: usize = 2;
-    /// Particles to make in this step: a layer, or none.
+    /// Particles to create in this step: those of a layer, or none.
     pub const LAYER: usize = 3;
-    /// Where they go.
+    /// Index of the first of them in the arrays.
     pub const SLOT: usize = 4;
-    /// The id of the first.
+    /// Id of the first of them.
     pub const ID: usize = 5;
-    /// How far in front of the back face they are born, in m; a float's bits.
+    /// Their distance from the back face in m, as the bits of a float.
     pub const DISTANCE: usize = 6;
-    /// Particles not made because another one was in the way.
+    /// Particles not created because another particle was too near.
     pub const BLOCKED: usize = 7;
     /// Words per emitter.
     pub const WORDS: usize = 8;

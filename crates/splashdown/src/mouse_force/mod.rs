@@ -1,7 +1,7 @@
-//! A hand in the water: whoever watches a simulation can stir it.
+//! The mouse force, with which a user of the window stirs the fluid.
 //!
-//! The hand is a soft rod along a line, usually the line of sight through the mouse, that carries fluid along
-//! with it. What it does is no physics of water; a run from the command line has no hand.
+//! It acts like a soft rod that drags fluid along. The axis of the rod is usually the line of sight through the mouse
+//! pointer. It is not a physical model, and runs from the command line do not use it.
 
 pub mod apply;
 
@@ -15,26 +15,26 @@ pub(crate) const MOUSE_FORCE: WgslModule =
     WgslModule { name: "sph/mouse_force", source: include_str!("mouse_force.wgsl") };
 
 gpu_struct! {
-    /// A rod that carries fluid along: a = rate w (velocity - v) across it, w = (1 - (d / radius)^2)^2 at a
-    /// distance d from its axis.
+    /// A rod that drags fluid along. The acceleration across its axis is a = rate w (velocity - v), with
+    /// w = (1 - (d / radius)^2)^2 at a distance d from the axis.
     pub struct MouseForce {
         /// A point on the rod's axis in m.
         origin: Vec3,
-        /// Where the rod ends, in m from its axis.
+        /// Radius of the rod in m.
         radius: f32,
-        /// The axis, a unit vector.
+        /// Direction of the axis, a unit vector.
         direction: Vec3,
-        /// How quickly fluid takes the hand's velocity, in 1/s; 0 for no hand.
+        /// Rate in 1/s at which the fluid assumes the velocity of the rod; 0 for no force.
         rate: f32,
-        /// The hand's velocity in m/s; its part along the axis does nothing.
+        /// Velocity of the rod in m/s. The component along the axis has no effect.
         velocity: Vec3,
-        /// Nothing.
+        /// Padding.
         unused: f32,
     }
 }
 
 impl MouseForce {
-    /// None.
+    /// No force.
     pub(crate) const NONE: Self = Self {
         origin: Vec3::ZERO,
         radius: 1.0,
@@ -44,12 +44,12 @@ impl MouseForce {
         unused: 0.0,
     };
 
-    /// A hand that moves with `velocity` (m/s) along the line through `origin` (m) in this direction.
+    /// A rod with this velocity (m/s), whose axis goes through `origin` (m) in this direction.
     pub fn new(origin: Vec3, direction: Vec3, velocity: Vec3, radius: f32, rate: f32) -> Self {
         Self { origin, radius, direction: direction.normalize_or(Vec3::NEG_Y), rate, velocity, unused: 0.0 }
     }
 
-    /// What it does to fluid at `x` with velocity `v`, in m/s^2.
+    /// The acceleration in m/s^2 of fluid at `x` (m) with velocity `v` (m/s).
     pub fn acceleration(&self, x: Vec3, v: Vec3) -> Vec3 {
         let across = |u: Vec3| u - self.direction * self.direction.dot(u);
         let distance = across(x - self.origin);
@@ -66,13 +66,13 @@ pub fn passes() -> Vec<&'static PassDesc> {
     vec![&apply::APPLY]
 }
 
-/// The hand's place on a device.
+/// The mouse force on a device.
 pub struct MouseForceCoupling {
     mouse_force: Buffer<MouseForce>,
 }
 
 impl MouseForceCoupling {
-    /// Makes the place, with no hand in it.
+    /// Creates the buffer, without a force.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -80,7 +80,7 @@ impl MouseForceCoupling {
         Ok(Self { mouse_force: executor.create("mouse_force", 1)? })
     }
 
-    /// Puts a hand there.
+    /// Sets the force.
     ///
     /// # Errors
     /// If the device was lost.

@@ -43,7 +43,7 @@ pub(super) fn for_each_box_with<const F: usize, P: BoxPass<F>>(
     outputs: impl IndexedParallelIterator<Item = P::Output>,
     pass: &P,
 ) {
-    let columns = &Columns::new(sorted.living(), |j| pass.load(j));
+    let columns = &Columns::new(sorted.active_count(), |j| pass.load(j));
     outputs.enumerate().for_each_init(Candidates::new, |candidates, (i, mut out)| {
         run_with(simd, OneBox { sorted, columns, candidates, i, out: &mut out, pass })
     });

@@ -47,7 +47,7 @@ pub(crate) use vector::{difference, dot, scaled, splat};
 #[derive(Clone, Copy)]
 pub(crate) struct Sorted<'a> {
     pub grid: &'a Grid,
-    /// First particle of each cell, followed by the number of living particles: see
+    /// First particle of each cell, followed by the number of active particles: see
     /// [`Cells::cell_start`](crate::cells::Cells::cell_start).
     pub cell_start: &'a [u32],
     /// Positions in metres, sorted by cell; w is ignored.
@@ -61,8 +61,8 @@ impl<'a> Sorted<'a> {
         Self { grid, cell_start, positions, support_radius }
     }
 
-    /// Number of living particles.
-    pub fn living(&self) -> usize {
+    /// Number of active particles.
+    pub fn active_count(&self) -> usize {
         self.cell_start[self.grid.cell_count as usize] as usize
     }
 

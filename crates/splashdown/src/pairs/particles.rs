@@ -33,7 +33,7 @@ pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
     }
 }
 
-/// Runs a pass over all living particles. `outputs` has their results, in the same order.
+/// Runs a pass over all active particles. `outputs` has their results, in the same order.
 pub(crate) fn for_each<const F: usize, const S: usize, P: PairSum<F, S>>(
     sorted: Sorted<'_>,
     outputs: &mut [P::Output],
@@ -48,7 +48,7 @@ pub(super) fn for_each_with<const F: usize, const S: usize, P: PairSum<F, S>>(
     outputs: &mut [P::Output],
     pass: &P,
 ) {
-    let columns = &Columns::new(sorted.living(), |j| pass.load(j));
+    let columns = &Columns::new(sorted.active_count(), |j| pass.load(j));
     rows(sorted, outputs)
         .into_par_iter()
         .with_max_len(8)

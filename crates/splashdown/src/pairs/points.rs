@@ -42,7 +42,7 @@ pub(super) fn sums_at_with<const F: usize, const S: usize, P: PointSum<F, S>>(
     if points.is_empty() {
         return sums;
     }
-    let columns = &Columns::new(sorted.living(), |j| pass.load(j));
+    let columns = &Columns::new(sorted.active_count(), |j| pass.load(j));
     let entry = |(i, &x): (usize, &Vec3)| u64::from(sorted.grid.cell_of(x)) << 32 | i as u64;
     let mut entries: Vec<u64> = points.par_iter().enumerate().map(entry).collect();
     entries.par_sort_unstable();

@@ -1,8 +1,7 @@
-//! What is measured of all the fluid, or of what is in a box: volume, energies, momentum.
+//! Probes of the whole fluid, or of the fluid in a box: volume, energies, momentum.
 //!
-//! These are sums over particles that the host has at the end of every frame anyway, in double precision, and
-//! read once a frame: nobody needs the energy of a step, and a sum over all particles in every step would cost
-//! the device more than all gauges together.
+//! The host computes these sums in double precision once per frame, when it has the particles anyway. A sum over all
+//! particles in every step would cost the device more than all gauges together.
 
 use glam::DVec3;
 use splashdown_io::Particles;
@@ -10,7 +9,7 @@ use splashdown_io::Particles;
 use super::ProbeRows;
 use crate::scene::{Quantity, Scene};
 
-/// Columns of such a probe.
+/// The columns of such a probe.
 pub(super) const COLUMNS: &[&str] = &[
     "time (s)",
     "volume (m^3)",
@@ -21,10 +20,10 @@ pub(super) const COLUMNS: &[&str] = &[
     "momentum z (N s)",
 ];
 
-/// A scene's probes of this kind.
+/// The probes of this kind of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct FluidProbes {
-    /// Number among the scene's probes, and the box's corners in m.
+    /// Index among the probes of the scene, and the corners of the box in m.
     boxes: Vec<(usize, [DVec3; 2])>,
     /// Volume of a particle in m^3, and its mass in kg.
     volume: f64,
@@ -47,7 +46,7 @@ impl FluidProbes {
         }
     }
 
-    /// Gives each of the probes its row of this moment.
+    /// Appends a row for this time to each of the probes.
     pub(crate) fn read(&self, rows: &mut [ProbeRows], time: f64, particles: &Particles) {
         for &(number, corners) in &self.boxes {
             if let Some(rows) = rows.get_mut(number) {

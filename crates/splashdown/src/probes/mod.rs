@@ -1,9 +1,9 @@
-//! Probes: what is measured while a simulation runs, as gauges in a laboratory do.
+//! Probes: measurements during a simulation, like those of gauges in a laboratory.
 //!
-//! *How it works.* In every step the device reads each probe (`gather`, `crossings`), adds the reading to an
-//! account, and writes a row, the mean since the row before, when one is due (`log`). The host fetches the rows
-//! once a frame. A particle counts as spacing^3 of fluid, as everywhere; its mass is less than that of so much
-//! fluid by what the kernel's sum over a lattice is off.
+//! *How it works.* In every step the device evaluates each probe (`sample`, `flux`) and accumulates the values. When a
+//! row is due it writes their mean since the previous row (`accumulate`). The host fetches the rows once per frame. The
+//! volume of a particle is spacing^3. Its mass is slightly less than the rest density times this volume, because the sum
+//! of the kernel over a lattice exceeds one.
 
 mod accumulate;
 mod fluid;
@@ -21,7 +21,7 @@ use crate::bodies::{Bodies, Body};
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Probe, Quantity, Scene};
 
-/// Room for rows that a longer frame than the scene's may need.
+/// Additional rows, for frames that are longer than those of the scene.
 const SPARE_ROWS: u32 = 64;
 
 /// The passes of this module.
@@ -29,11 +29,11 @@ pub fn passes() -> Vec<&'static PassDesc> {
     vec![&sample::SAMPLE, &flux::FLUX, &accumulate::ACCUMULATE]
 }
 
-/// One probe's readings in time: a row is the time in s at which it ends, then the mean values since the row before, as
-/// [`columns`] names them.
+/// The rows of a probe: each is the time in s at its end, then the mean values since the previous row. [`columns`]
+/// names the values.
 pub type ProbeRows = Vec<Vec<f64>>;
 
-/// The names of a probe's columns with their units; the first is the time.
+/// The names of a probe's columns with units; the first is the time.
 pub fn columns(probe: &Probe) -> &'static [&'static str] {
     match probe.quantity {
         Quantity::Pressure(_) => &["time (s)", "pressure (Pa)"],
@@ -55,12 +55,12 @@ pub fn columns(probe: &Probe) -> &'static [&'static str] {
 /// The probes of a simulation, on its device.
 #[derive(Debug)]
 pub struct Probes {
-    /// How many columns each has.
+    /// The number of columns of each probe.
     columns: Vec<usize>,
     points: Vec<ProbePoint>,
     has_flow: bool,
     probes: Buffer<ProbePoint>,
-    /// Where there are no bodies, one that nothing reads.
+    /// The bodies; a single unused one if the scene has none.
     bodies: Buffer<Body>,
     values: Buffer<f32>,
     counts: Buffer<u32>,
@@ -69,7 +69,7 @@ pub struct Probes {
 }
 
 impl Probes {
-    /// Places a scene's probes on a device; `None` if it has none.
+    /// Creates the buffers of a scene's probes on a device; `None` if the scene has none.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -108,13 +108,13 @@ impl Probes {
         }))
     }
 
-    /// What the probes remember from step to step.
+    /// The buffers of the probes' state from step to step.
     pub(crate) fn memory(&self) -> [Buffer<u32>; 2] {
         [self.accounts, self.counts]
     }
 
-    /// Fetches the rows of a frame that began at `start` and has gone on for `passed`, in s: one list per probe, in the
-    /// order of the scene.
+    /// Fetches the rows of a frame that began at `start` (s) and lasted `passed` (s): one list per probe, in the order
+    /// of the scene.
     ///
     /// # Errors
     /// If the device was lost.
@@ -172,10 +172,10 @@ impl Coupling for Probes {
     }
 }
 
-/// What the device needs of a probe, but for its place in the rows.
+/// The device's representation of a probe, except the index of its rows.
 fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
     let standard = match probe.quantity {
-        // The host reads it: never due on the device.
+        // Evaluated by the host, and never due on the device.
         Quantity::Fluid { .. } => f32::MAX,
         _ => 0.1 * scene.frame_duration(),
     };
@@ -190,7 +190,7 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
             point.kind = ProbePoint::HEIGHT;
             point.normal = (-scene.gravity).try_normalize().unwrap_or(Vec3::Y);
             point.position = off_walls(scene, *foot, point.normal);
-            point.half_along = way_out(scene, point.position, point.normal);
+            point.half_along = distance_to_side(scene, point.position, point.normal);
         }
         Quantity::Force(name) => {
             point.kind = ProbePoint::FORCE;
@@ -210,7 +210,7 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
     point
 }
 
-/// The foot of a column so far from the closed sides that none of the column is cut off.
+/// Moves the base of a column away from the closed sides, so that the column does not intersect them.
 fn off_walls(scene: &Scene, foot: Vec3, up: Vec3) -> Vec3 {
     let radius = sample::COLUMN * scene.solver.support_radius(scene.fluid.particle_spacing);
     let Domain { min, max, closed, .. } = scene.domain;
@@ -229,12 +229,12 @@ fn off_walls(scene: &Scene, foot: Vec3, up: Vec3) -> Vec3 {
     place
 }
 
-/// How far it is in m from a point of the domain along a direction to its side.
-fn way_out(scene: &Scene, from: Vec3, direction: Vec3) -> f32 {
+/// The distance in m from a point of the domain to its side, along a direction.
+fn distance_to_side(scene: &Scene, from: Vec3, direction: Vec3) -> f32 {
     let ends = [scene.domain.min, scene.domain.max];
-    let ways = (0..3).filter(|&axis| direction[axis].abs() > 1e-6).map(|axis| {
+    let distances = (0..3).filter(|&axis| direction[axis].abs() > 1e-6).map(|axis| {
         let end = ends[usize::from(direction[axis] > 0.0)][axis];
         (end - from[axis]) / direction[axis]
     });
-    ways.fold(f32::MAX, f32::min).max(0.0)
+    distances.fold(f32::MAX, f32::min).max(0.0)
 }

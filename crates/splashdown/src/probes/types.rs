@@ -1,4 +1,4 @@
-//! What the device knows of probes.
+//! The elements of the buffers of probes.
 
 use glam::Vec3;
 use splashdown_gpu::{WgslModule, gpu_struct};
@@ -7,9 +7,9 @@ use splashdown_gpu::{WgslModule, gpu_struct};
 pub const PROBE: WgslModule = WgslModule { name: "sph/probe", source: include_str!("probe.wgsl") };
 
 gpu_struct! {
-    /// Something that is measured.
+    /// A probe on the device.
     pub struct ProbePoint {
-        /// Where, in m: a point, the foot of a column, the middle of a rectangle.
+        /// Position in m: of a point, of the base of a column, or of the centre of a rectangle.
         position: Vec3,
         /// [`ProbePoint::PRESSURE`], [`ProbePoint::HEIGHT`], [`ProbePoint::FORCE`], [`ProbePoint::FLOW`] or
         /// [`ProbePoint::FLUID`].
@@ -18,21 +18,21 @@ gpu_struct! {
         normal: Vec3,
         /// Time between two rows in s.
         interval: f32,
-        /// Unit vector along a rectangle's first edge.
+        /// Unit vector along the first edge of a rectangle.
         along: Vec3,
-        /// Half of that edge in m; the height of a column.
+        /// Half the length of this edge in m; or the height of a column.
         half_along: f32,
-        /// Unit vector along a rectangle's second edge.
+        /// Unit vector along the second edge of a rectangle.
         across: Vec3,
-        /// Half of that edge in m.
+        /// Half the length of this edge in m.
         half_across: f32,
-        /// Which body.
+        /// Index of the body.
         body: u32,
-        /// Where its rows begin among those of all.
+        /// Index of its first row among the rows of all probes.
         first_row: u32,
-        /// How many rows there is room for.
+        /// Number of rows for which there is room.
         most_rows: u32,
-        /// Nothing.
+        /// Padding.
         unused: u32,
     }
 }
@@ -46,27 +46,27 @@ impl ProbePoint {
     pub const FORCE: u32 = 2;
     /// Volume through a rectangle.
     pub const FLOW: u32 = 3;
-    /// Sums over the fluid, which the host makes.
+    /// Sums over the fluid, which the host computes.
     pub const FLUID: u32 = 4;
 }
 
-/// A probe's words in the buffer of accounts: what has been summed since its last row.
+/// The words of a probe in the buffer of accounts, which accumulates values since the last row.
 pub struct Account;
 
 impl Account {
-    /// When the next row is due, in s since the frame's beginning; a float's bits.
+    /// Time at which the next row is due, in s since the beginning of the frame, as the bits of a float.
     pub const NEXT: usize = 0;
-    /// Rows since the frame's beginning.
+    /// Number of rows since the beginning of the frame.
     pub const ROWS: usize = 1;
-    /// Time since the last row in s; a float's bits.
+    /// Time since the last row in s, as the bits of a float.
     pub const TIME: usize = 2;
-    /// The first of [`VALUES`] sums of value times dt; floats' bits.
+    /// The first of [`VALUES`] sums of value times dt, as the bits of floats.
     pub const SUMS: usize = 3;
     /// Words per probe.
     pub const WORDS: usize = Self::SUMS + VALUES;
 }
 
-/// Most values of a probe: a force and a torque.
+/// The largest number of values of a probe: those of a force and a torque.
 pub const VALUES: usize = 6;
-/// Floats per row: the time since the frame's beginning in s, then the values.
+/// Floats per row: the time since the beginning of the frame in s, then the values.
 pub const ROW: usize = 1 + VALUES;

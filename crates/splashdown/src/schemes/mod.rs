@@ -5,8 +5,8 @@
 //! | `wcsph` | `wcsph::wcsph` | Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009 |
 //! | `mueller2003` | `mueller2003::mueller2003` | Müller, Charypar & Gross 2003 |
 //!
-//! The functions call the operations of [`Step`], which choose the variant of a pass by the scene's kernel, density form
-//! and surface tension. Parameters that only one scheme has stand beside its function.
+//! The functions call the operations of [`Step`], which select the variant of a pass by the scene's kernel, density
+//! formulation and surface tension. Parameters of a single scheme are defined beside its function.
 
 mod mueller2003;
 mod params;
@@ -25,9 +25,9 @@ use crate::cells::{self, Cells};
 use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
 use crate::state::{Fields, begin};
 
-/// Beginnings of the labels of passes that a completed frame may repeat: each computes its output from its input alone,
-/// and with the cells empty there is no input. `flow.emit` follows the schedule, which a completed frame empties. All
-/// other passes of a step read the flag of a completed frame.
+/// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
+/// its output from its input alone, and with empty cells there is no input. `flow.emit` follows the schedule, which is
+/// empty after the end of a frame. All other passes of a step read the flag.
 pub(crate) const REPEATABLE: &[&str] =
     &["scan.", "sort.", "cells.reorder", "density.", "normals.", "bodies.boundary_lookup.", "flow.emit"];
 
@@ -66,7 +66,7 @@ impl Scheme {
         self.has_tension
     }
 
-    /// True if forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
+    /// True if the forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
     pub fn is_fused(&self) -> bool {
         self.method == Method::Wcsph && !self.has_tension
     }
@@ -89,7 +89,7 @@ impl Scheme {
         step.finish()
     }
 
-    /// Records the sort, density and pressure without motion: the fields of the first frame.
+    /// Records the sort, density and pressure without integration, for the fields of the first frame.
     pub fn initial_state(
         &self,
         cells: &Cells,
@@ -103,7 +103,7 @@ impl Scheme {
     }
 }
 
-/// Begins a frame of the length that `duration` holds, and counts the particles for the first sort.
+/// Begins a frame whose duration is in the buffer `duration`, and counts the particles for the first sort.
 pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
     let mut recording = Recording::new("begin frame");
     recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &fields.buffers());

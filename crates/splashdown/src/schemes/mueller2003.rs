@@ -9,7 +9,7 @@ use crate::coupling::Stage;
 /// seconds.
 pub(super) const ADDED_VISCOSITY: f32 = 0.015;
 
-/// One step: sort, density (poly6) and pressure, force densities (spiky and viscosity kernels), motion.
+/// One step: sort, density (poly6) and pressure, force densities (spiky and viscosity kernels), integration.
 pub(super) fn mueller2003(step: &mut Step<'_>) {
     step.sort();
     step.couple(Stage::BoundaryLookup);

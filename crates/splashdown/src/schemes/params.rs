@@ -1,4 +1,4 @@
-//! The constants of a simulation, from its scene.
+//! Computes the constants of a simulation from its scene.
 
 use super::{Scheme, mueller2003, wcsph};
 use crate::boundary::wall_offset;

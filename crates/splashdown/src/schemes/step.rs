@@ -53,13 +53,12 @@ impl<'a> Couplings<'a> {
     }
 }
 
-/// A step while a scheme composes it. Each operation appends the passes that the scene needs for it, and none where it
-/// needs none.
+/// A step while a scheme composes it. Each operation appends the passes that the scene needs for it, which may be none.
 pub struct Step<'a> {
     scheme: Scheme,
     couplings: Couplings<'a>,
     recorder: StepRecorder<'a>,
-    /// Particles, dead ones and those to be emitted included.
+    /// Number of particles, including removed ones and those not yet emitted.
     count: u32,
 }
 
@@ -79,7 +78,7 @@ impl<'a> Step<'a> {
             buffers,
             cells,
             fields,
-            // An invocation where there is no particle, so that time advances.
+            // At least one invocation, so that time advances without particles.
             particles: DispatchSize::Items(count.max(1)),
             is_density_integrated: scheme.is_density_integrated,
         };
@@ -95,8 +94,8 @@ impl<'a> Step<'a> {
         self.scheme.is_fused() && self.couplings.is_empty()
     }
 
-    /// Ends the step before, and sorts the persistent arrays by cell into the sorted ones. Ids go straight into the
-    /// persistent array, which takes the sorted order when the step integrates back into it.
+    /// Ends the previous step, and sorts the persistent arrays by cell into the sorted ones. The ids are written to the
+    /// persistent array, because the step integrates the other arrays back in sorted order.
     pub(super) fn sort(&mut self) {
         let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
         cells.record_sort(recording, fields, fields.ids);
@@ -109,7 +108,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Density of fluid and walls, by summation or by the continuity equation, and the pressure that follows.
+    /// Density of fluid and walls, by summation or by the continuity equation, and the resulting pressure.
     pub(super) fn density_and_pressure(&mut self) {
         let pass = match self.scheme.method {
             Method::Mueller2003 => &density::POLY6,
@@ -130,7 +129,7 @@ impl<'a> Step<'a> {
         self.recorder.dispatch_particles(pass);
     }
 
-    /// Accelerations by fluid, walls and body forces, in one visit of the neighbours.
+    /// Accelerations by fluid, walls and body forces, in one loop over the neighbours.
     pub(super) fn acceleration(&mut self) {
         let wcsph = self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE);
         self.recorder.dispatch_particles(match self.scheme.method {
@@ -155,7 +154,7 @@ impl<'a> Step<'a> {
         self.recorder.dispatch_particles(pass);
     }
 
-    /// The count for the next sort, where emitted particles have to be counted with the others.
+    /// The count for the next sort, if it has to include emitted particles.
     pub(super) fn count_emitted(&mut self) {
         if self.couplings.act_in(Stage::Emission) {
             let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
@@ -165,7 +164,7 @@ impl<'a> Step<'a> {
 
     /// Sort, boundary lookup, density and pressure of particles that have not moved yet.
     pub(super) fn initial_state(&mut self) {
-        // Without particles there is nothing to compute, and time stands still.
+        // Time does not advance, so that no invocation is needed without particles.
         self.recorder.particles = DispatchSize::Items(self.count);
         let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
         recording.append(&super::begin_frame(cells, fields));
@@ -175,7 +174,7 @@ impl<'a> Step<'a> {
         recording.copy(fields.sorted_positions, fields.positions);
         recording.copy(fields.sorted_velocities, fields.velocities);
         if self.scheme.is_density_integrated {
-            // The densities are those the particles come with.
+            // The densities are those of the initial particles.
             self.recorder.dispatch_particles(&state_equation::STATE_EQUATION);
         } else {
             self.density_and_pressure();

@@ -6,7 +6,7 @@ use crate::cells::Grid;
 use crate::cells::Sort;
 use crate::mouse_force::MouseForceCoupling;
 
-/// A block of 64 particles in a box of so many metres, whose cells have edges of 0.2 m.
+/// A block of 64 particles in a cubic domain with edges of `size` metres, and cells of 0.2 m.
 fn scene(size: f32, solver: &str) -> Scene {
     let text = format!(
         r#"
@@ -28,7 +28,7 @@ fn scene(size: f32, solver: &str) -> Scene {
     Scene::parse(&text, "block.toml").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// Cells, and the commands of a step by kind: labels of its dispatches, clears and copies.
+/// The number of cells, and the commands of a step: labels of its dispatches, clears and copies.
 fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static str>) {
     let scene = scene(size, solver);
     let (solver, params) = (Scheme::new(&scene), params(&scene, 64));
@@ -65,7 +65,7 @@ fn a_plain_step_is_five_dispatches_and_six_where_there_are_many_cells() {
     assert!(cells > 16_384);
     assert_eq!(large[..2], ["scan.reduce", "scan.spread"]);
     assert_eq!(large[2..], passes[1..]);
-    // Controls: what comes between forces and motion parts them.
+    // Controls: a coupling between forces and integration prevents the fused pass, as does surface tension.
     assert_eq!(step(2.0, "", true).1.len(), 7);
     assert_eq!(step(2.0, "surface_tension = \"akinci2013\"", false).1.len(), 7);
 }

@@ -3,12 +3,12 @@
 use super::Step;
 use crate::coupling::Stage;
 
-/// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Fitted with `examples/droplet.rs`: the period of a
-/// swinging drop then gives 1.1 to 2.0 times the material's surface tension at radii of five to eight spacings. Akinci's
-/// model is made for pictures, not for measurement (Akinci, Akinci & Teschner 2013).
+/// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Fitted with `examples/droplet.rs`: the period of an
+/// oscillating drop corresponds to 1.1 to 2.0 times the surface tension of the material, at radii of five to eight
+/// spacings. Akinci's model is made for pictures, not for measurement (Akinci, Akinci & Teschner 2013).
 pub(super) const AKINCI_PER_SIGMA: f32 = 100.0;
 
-/// One step: sort, density and pressure, forces, motion.
+/// One step: sort, density and pressure, forces, integration.
 pub(super) fn wcsph(step: &mut Step<'_>) {
     step.sort();
     step.couple(Stage::BoundaryLookup);

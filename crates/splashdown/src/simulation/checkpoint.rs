@@ -159,8 +159,8 @@ impl Simulation {
         if let Some(bodies) = &self.bodies {
             words.push(("body_sums", Words::Plain(bodies.sums), 1));
         }
-        if let Some(plans) = self.flow.as_ref().and_then(|flow| flow.schedules()) {
-            words.push(("emitters", Words::Plain(plans), 1));
+        if let Some(schedules) = self.flow.as_ref().and_then(|flow| flow.schedules()) {
+            words.push(("emitters", Words::Plain(schedules), 1));
         }
         if let Some(probes) = &self.probes {
             let [accounts, counts] = probes.memory();

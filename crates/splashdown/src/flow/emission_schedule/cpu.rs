@@ -5,28 +5,28 @@ pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
     let EmissionScheduleBindings { params, grid, state, cell_start, nozzles, schedules } = buffers;
     let (schedules, next) = schedules.split_at_mut(nozzles.len() * EmissionSchedule::WORDS);
     let mut slot = cell_start[grid.cell_count as usize];
-    for (nozzle, plan) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
-        plan[EmissionSchedule::LAYER] = 0;
+    for (nozzle, schedule) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
+        schedule[EmissionSchedule::LAYER] = 0;
         if state.run_count == 0 || state.time < nozzle.start || state.time >= nozzle.end {
             continue;
         }
-        if plan[EmissionSchedule::EMITTED] + nozzle.points > nozzle.most {
+        if schedule[EmissionSchedule::EMITTED] + nozzle.points > nozzle.most {
             continue;
         }
-        let mut phase = f32::from_bits(plan[EmissionSchedule::PHASE]) + nozzle.speed * state.dt;
+        let mut phase = f32::from_bits(schedule[EmissionSchedule::PHASE]) + nozzle.speed * state.dt;
         if phase >= params.particle_spacing {
             phase -= params.particle_spacing;
             if slot + nozzle.points > params.particle_count {
-                plan[EmissionSchedule::REFUSED] += nozzle.points;
+                schedule[EmissionSchedule::REFUSED] += nozzle.points;
             } else {
-                plan[EmissionSchedule::LAYER] = nozzle.points;
-                plan[EmissionSchedule::SLOT] = slot;
-                plan[EmissionSchedule::ID] = next[0];
-                plan[EmissionSchedule::DISTANCE] = phase.to_bits();
+                schedule[EmissionSchedule::LAYER] = nozzle.points;
+                schedule[EmissionSchedule::SLOT] = slot;
+                schedule[EmissionSchedule::ID] = next[0];
+                schedule[EmissionSchedule::DISTANCE] = phase.to_bits();
                 slot += nozzle.points;
                 next[0] += nozzle.points;
             }
         }
-        plan[EmissionSchedule::PHASE] = phase.to_bits();
+        schedule[EmissionSchedule::PHASE] = phase.to_bits();
     }
 }

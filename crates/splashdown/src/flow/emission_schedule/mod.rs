@@ -1,8 +1,8 @@
-//! Decides which emitters make a layer of particles in this step, and where these go.
+//! Determines which emitters create a layer of particles in this step, and the positions and array indices of these.
 //!
-//! The fluid in a nozzle travels speed * dt per step; when it has gone a spacing the next layer is due, at the
-//! distance that is left over. Layers take the places behind the living, which the sort keeps free; one that
-//! finds too few is dropped and counted.
+//! The fluid in a nozzle advances by speed * dt per step. Once it has advanced by a spacing the next layer is due, at
+//! the distance that exceeds the spacing. New particles use the array places behind the active ones, which the sort
+//! leaves free. A layer without enough free places is not created, and its particles are counted as refused.
 
 mod cpu;
 

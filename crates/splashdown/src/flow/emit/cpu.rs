@@ -5,7 +5,7 @@ use crate::cells::Grid;
 use crate::flow::EmissionSchedule;
 use crate::state::Params;
 
-/// Nothing is born nearer to another particle than this many spacings.
+/// The smallest distance of a new particle from others, in spacings.
 const NEAREST: f32 = 0.7;
 
 pub(super) fn emit(buffers: EmitBindings<'_>) {
@@ -22,25 +22,25 @@ pub(super) fn emit(buffers: EmitBindings<'_>) {
         densities,
     } = buffers;
     let schedules = schedules.chunks_exact_mut(EmissionSchedule::WORDS);
-    for (nozzle, plan) in nozzles.iter().zip(schedules) {
-        if plan[EmissionSchedule::LAYER] == 0 {
+    for (nozzle, schedule) in nozzles.iter().zip(schedules) {
+        if schedule[EmissionSchedule::LAYER] == 0 {
             continue;
         }
-        let distance = f32::from_bits(plan[EmissionSchedule::DISTANCE]);
+        let distance = f32::from_bits(schedule[EmissionSchedule::DISTANCE]);
         let first = nozzle.first_point as usize;
         for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
             let forward = (distance + q.z) * nozzle.direction;
             let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
             if !is_free(params, grid, cell_start, positions, x) {
-                plan[EmissionSchedule::BLOCKED] += 1;
+                schedule[EmissionSchedule::BLOCKED] += 1;
                 continue;
             }
-            let slot = plan[EmissionSchedule::SLOT] as usize + place;
+            let slot = schedule[EmissionSchedule::SLOT] as usize + place;
             positions[slot] = x.extend(0.0);
             velocities[slot] = (nozzle.speed * nozzle.direction).extend(params.rest_density);
-            ids[slot] = plan[EmissionSchedule::ID] + place as u32;
+            ids[slot] = schedule[EmissionSchedule::ID] + place as u32;
             densities[slot] = Vec2::new(params.rest_density, 0.0);
-            plan[EmissionSchedule::EMITTED] += 1;
+            schedule[EmissionSchedule::EMITTED] += 1;
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Writes the particles of the layers that are due ([`emission_schedule`](super::plan)).
+//! Creates the particles of the layers that are due ([`emission_schedule`](super::emission_schedule)).
 //!
-//! The sorted order of the step still holds: particles have moved by half a spacing at most since, so that the
-//! 27 cells show everything within reach. Where another particle is in the way, as in an outlet under water,
-//! none is made and that is counted.
+//! The search for neighbours uses the sorted order of the step. Particles have moved by at most half a spacing since, so
+//! that the 27 cells contain all neighbours. If another particle is too near, as at a submerged outlet, the new particle
+//! is not created, and this is counted.
 
 mod cpu;
 

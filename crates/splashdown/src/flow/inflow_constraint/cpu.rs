@@ -16,15 +16,15 @@ pub(super) fn inflow_constraint(buffers: InflowConstraintBindings<'_>) {
         sorted_velocities,
         accelerations,
     } = buffers;
-    let living = cell_start[grid.cell_count as usize];
-    let n = living.min(state.run_count) as usize;
+    let active = cell_start[grid.cell_count as usize];
+    let n = active.min(state.run_count) as usize;
     let on: Vec<Nozzle> = nozzles
         .iter()
         .zip(schedules.chunks_exact(EmissionSchedule::WORDS))
-        .filter(|(nozzle, plan)| {
+        .filter(|(nozzle, schedule)| {
             state.time >= nozzle.start
                 && state.time < nozzle.end
-                && plan[EmissionSchedule::EMITTED] + nozzle.points <= nozzle.most
+                && schedule[EmissionSchedule::EMITTED] + nozzle.points <= nozzle.most
         })
         .map(|(nozzle, _)| *nozzle)
         .collect();

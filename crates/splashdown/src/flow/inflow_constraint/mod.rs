@@ -1,7 +1,9 @@
-//! Moves what is in a nozzle as one piston: a = (speed * direction - v) / dt, so that the step ends with that velocity.
+//! Moves the fluid in a nozzle like a piston: a = (speed * direction - v) / dt, so that the step ends with the velocity
+//! of the emitter.
 //!
-//! Particles are born at rest density behind others of the same lattice, a support radius and more before the
-//! outlet; until they are there, nothing may push them about, since their lattice still lacks its back half.
+//! Particles are created at rest density behind others of the same lattice, more than a support radius before the
+//! outlet. Until they reach the outlet no other force acts on them: their kernel support is incomplete at the back face,
+//! and pressure forces would scatter them.
 
 mod cpu;
 

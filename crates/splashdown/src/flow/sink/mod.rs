@@ -1,4 +1,5 @@
-//! Takes out the particles that are in a sink: they are marked, counted, and behind the living from the next sort on.
+//! Removes the particles inside a sink: they are marked and counted, and the next sort places them behind the active
+//! ones.
 
 mod cpu;
 

@@ -13,7 +13,7 @@ const SPREAD: f32 = 0.1;
 @compute @workgroup_size(64)
 fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (foam_state.is_due == 0u || foam_state.born == 0u || i >= living()) {
+    if (foam_state.is_due == 0u || foam_state.born == 0u || i >= active_count()) {
         return;
     }
     let first = foam_starts[i];

@@ -12,7 +12,7 @@ const LEAST_NORMAL: f32 = 0.5;
 @compute @workgroup_size(64)
 fn normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (foam_state.is_due == 0u || i >= living()) {
+    if (foam_state.is_due == 0u || i >= active_count()) {
         return;
     }
     let x = sorted_positions[i].xyz;

@@ -13,7 +13,7 @@ const FORWARDS: f32 = 0.6;
 @compute @workgroup_size(64)
 fn potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (foam_state.is_due == 0u || i >= living()) {
+    if (foam_state.is_due == 0u || i >= active_count()) {
         return;
     }
     let v = sorted_velocities[i].xyz;

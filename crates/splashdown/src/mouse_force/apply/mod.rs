@@ -1,4 +1,4 @@
-//! Adds the hand's acceleration: see [`MouseForce`].
+//! Adds the acceleration of the mouse force: see [`MouseForce`].
 
 mod cpu;
 

@@ -28,7 +28,7 @@ fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32)
 @compute @workgroup_size(64)
 fn acceleration(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (i >= living()) {
+    if (i >= active_count()) {
         return;
     }
     if (params.surface_tension > 0.0) {

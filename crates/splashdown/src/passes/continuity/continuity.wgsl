@@ -10,7 +10,7 @@
 @compute @workgroup_size(64)
 fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (i >= living()) {
+    if (i >= active_count()) {
         return;
     }
     let x = sorted_positions[i].xyz;

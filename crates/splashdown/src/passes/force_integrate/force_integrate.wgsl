@@ -29,7 +29,7 @@ fn force_integrate(
         let v = sorted_velocities[i];
         let own = densities[i];
         var a = vec3(0.0);
-        if (i < living()) {
+        if (i < active_count()) {
             a = acceleration_of(i, p.xyz, v.xyz, own);
         }
         let cell = advance(i, p, v, own.x, a);

@@ -33,7 +33,7 @@ fn accumulate(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     } else {
         add(sums, probe_values[k * PROBE_VALUES] * dt);
     }
-    // The step whose end is nearest to the time that is due has the row.
+    // The row is written by the step whose end is nearest to the due time.
     let elapsed = state.frame_duration - state.remaining + dt;
     let row = probe_accounts[account + ACCOUNT_ROWS];
     let next = bitcast<f32>(probe_accounts[account + ACCOUNT_NEXT]);
@@ -49,6 +49,6 @@ fn accumulate(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     }
     probe_accounts[account + ACCOUNT_TIME] = 0u;
     probe_accounts[account + ACCOUNT_ROWS] = row + 1u;
-    // Steps longer than the interval have a row each.
+    // Each step longer than the interval writes a row.
     probe_accounts[account + ACCOUNT_NEXT] = bitcast<u32>(max(next + probe.interval, elapsed));
 }

@@ -35,7 +35,7 @@ pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
         } else {
             add(&mut sums[0], values[0] * dt);
         }
-        // The step whose end is nearest to the time that is due has the row.
+        // The row is written by the step whose end is nearest to the due time.
         let elapsed = state.frame_duration - state.remaining + dt;
         let row = account[Account::ROWS];
         let next = f32::from_bits(account[Account::NEXT]);
@@ -52,7 +52,7 @@ pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
         }
         account[Account::TIME] = 0;
         account[Account::ROWS] = row + 1;
-        // Steps longer than the interval have a row each.
+        // Each step longer than the interval writes a row.
         account[Account::NEXT] = (next + probe.interval).max(elapsed).to_bits();
     }
 }

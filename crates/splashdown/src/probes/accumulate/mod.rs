@@ -1,8 +1,7 @@
-//! Sums what the probes read over the time since their last row, and writes a row when it is due; an invocation
-//! per probe.
+//! Accumulates the values of the probes since their last row, and writes a row when it is due; one invocation per probe.
 //!
-//! A row is the mean over the time since the row before: a mean keeps impulses exact whatever the interval, and
-//! what sound adds to the pressures of one step is not mistaken for the fluid's.
+//! A row is the mean over the time since the previous row. A mean preserves impulses exactly for any interval, and
+//! averages out the pressure oscillations of sound waves.
 
 mod cpu;
 

@@ -9,13 +9,13 @@ use crate::probes::ProbePoint;
 pub(super) fn flux(buffers: FluxBindings<'_>) {
     let FluxBindings { grid, state, cell_start, probes, sorted_positions, positions, probe_counts: counts } =
         buffers;
-    let living = cell_start[grid.cell_count as usize];
-    let n = living.min(state.run_count) as usize;
+    let active = cell_start[grid.cell_count as usize];
+    let n = active.min(state.run_count) as usize;
     let flows: Vec<_> =
         probes.iter().enumerate().filter(|(_, probe)| probe.kind == ProbePoint::FLOW).collect();
     let sums: Vec<AtomicU32> = probes.iter().map(|_| AtomicU32::new(0)).collect();
-    let ways = sorted_positions[..n].par_iter().zip(&positions[..n]);
-    ways.with_min_len(4096).filter(|(before, _)| before.w == 0.0).for_each(|(before, after)| {
+    let paths = sorted_positions[..n].par_iter().zip(&positions[..n]);
+    paths.with_min_len(4096).filter(|(before, _)| before.w == 0.0).for_each(|(before, after)| {
         let (before, after) = (before.xyz(), after.xyz());
         for (k, probe) in &flows {
             let [a, b] = [before, after].map(|x| (x - probe.position).dot(probe.normal));
@@ -26,7 +26,7 @@ pub(super) fn flux(buffers: FluxBindings<'_>) {
             if at.dot(probe.along).abs() <= probe.half_along
                 && at.dot(probe.across).abs() <= probe.half_across
             {
-                // One up, or one down in two's complement.
+                // Adds 1, or -1 in two's complement.
                 sums[*k].fetch_add(if a < 0.0 { 1 } else { u32::MAX }, Ordering::Relaxed);
             }
         }

@@ -28,7 +28,7 @@ fn flux(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
         }
         let at = before.xyz + a / (a - b) * (after - before.xyz) - probe.position;
         if (abs(dot(at, probe.along)) <= probe.half_along && abs(dot(at, probe.across)) <= probe.half_across) {
-            // One up, or one down in two's complement.
+            // Adds 1, or -1 in two's complement.
             atomicAdd(&probe_counts[k], select(0xffffffffu, 1u, a < 0.0));
         }
     }

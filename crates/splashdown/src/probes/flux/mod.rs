@@ -1,8 +1,7 @@
-//! Counts the particles that went through the rectangles of flow probes in this step.
+//! Counts the particles that crossed the rectangles of flow probes in this step.
 //!
-//! Each particle's way from the step's beginning to its end is a straight line, and every line that meets a
-//! rectangle is one particle's volume: nothing that flows is missed or counted twice, however the rectangle is
-//! turned.
+//! The path of a particle in a step is a straight line. Every path that intersects a rectangle counts as the volume of
+//! one particle, so that no particle is missed or counted twice, whatever the orientation of the rectangle.
 
 mod cpu;
 

@@ -37,7 +37,7 @@ pub(super) fn sample(buffers: SampleBindings<'_>) {
             let mut d = p.xyz() - probe.position;
             if column {
                 let up = d.dot(probe.normal);
-                // Fluid below the foot does not count.
+                // Fluid below the base of the column does not count.
                 if up < 0.0 {
                     return;
                 }
@@ -64,7 +64,7 @@ pub(super) fn sample(buffers: SampleBindings<'_>) {
     }
 }
 
-/// Calls `visit` with every particle in the cells that a probe's reach touches.
+/// Calls `visit` with every particle in the cells within reach of a probe.
 fn for_each_near(
     grid: &Grid,
     cell_start: &[u32],

@@ -1,15 +1,15 @@
-//! Pressures at points and heights in columns, from the particles near them; a workgroup per probe.
+//! Measures pressures at points and heights in columns from the particles near them; one workgroup per probe.
 //!
-//! *Pressure.* The mean of the particles' pressures with the kernel's weight (Shepard 1968), carried from their
-//! mean place to the point by the gradient that the momentum equation gives, grad p = rho (g - Dv/Dt): without
-//! it a gauge in a floor would read the pressure of half a support above. Where there is hardly any fluid the
-//! reading fades to zero.
+//! *Pressure.* The kernel-weighted mean of the particles' pressures (Shepard 1968), extrapolated from the weighted mean
+//! position to the point with the gradient of the momentum equation, grad p = rho (g - Dv/Dt). Without it a gauge in a
+//! floor would measure the pressure half a support radius above. Where there is little fluid the value decreases to
+//! zero.
 //!
-//! *Height.* The fluid's length along the column: the integral of the share of fluid along it, sum V w(r) with
-//! a kernel of the distance r from the column whose integral over a plane is one (Wendland C2 in two
-//! dimensions). It is what a resistance gauge measures, counts no air under a breaking wave, and is smooth
-//! where a highest particle is not. The column is wider than the support, by [`COLUMN`]: at two spacings the
-//! lattice that particles rest on would show as three per cent.
+//! *Height.* The length of fluid along the column: the integral of the volume fraction along it, sum V w(r), with a
+//! kernel of the distance r from the axis whose integral over a plane is one (Wendland C2 in two dimensions). This is
+//! the quantity that a resistance gauge measures. It excludes air under a breaking wave and, unlike the position of the
+//! highest particle, is smooth in time. The column is wider than the support radius, by [`COLUMN`]: at two spacings the
+//! lattice of the particles would cause an error of three per cent.
 
 mod cpu;
 
@@ -20,10 +20,11 @@ use super::{PROBE, ProbePoint};
 use crate::cells::{GRID, Grid};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
-/// Below this share of fluid round a point its pressure fades to zero: a corner of three walls still has an eighth.
+/// The volume fraction of fluid below which the pressure at a point decreases to zero. In a corner of three walls the
+/// fraction is an eighth.
 pub const WETTED: f32 = 0.1;
 
-/// Radius of a column over the support radius.
+/// The radius of a column over the support radius.
 pub const COLUMN: f32 = 1.5;
 
 bindings! {

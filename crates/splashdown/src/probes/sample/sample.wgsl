@@ -9,7 +9,7 @@ const PI: f32 = 3.14159265;
 const WETTED: f32 = 0.1;
 const COLUMN: f32 = 1.5;
 
-// Sums of the lanes: weight, weight times pressure, weight times offset of place and acceleration from the probe's.
+// Sums of the lanes: weight, weighted pressure, weighted offset from the probe, weighted acceleration.
 var<workgroup> weights: array<vec2<f32>, 64>;
 var<workgroup> offsets: array<vec3<f32>, 64>;
 var<workgroup> drives: array<vec3<f32>, 64>;
@@ -50,7 +50,7 @@ fn sample(
             var d = p.xyz - probe.position;
             if (probe.kind == PROBE_HEIGHT) {
                 let up = dot(d, probe.normal);
-                // Fluid below the foot does not count.
+                // Fluid below the base of the column does not count.
                 if (up < 0.0) {
                     continue;
                 }
