@@ -5,14 +5,15 @@ use crate::check::Built;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort, SurfaceTension};
 use crate::schemes::Scheme;
+use crate::state::{CARRIED, bytes_per_particle};
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
-/// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): two
-/// positions, two velocities, two ids, density and pressure, cell, slot.
-const PER_PARTICLE: u64 = 4 * 16 + 2 * 4 + 8 + 4 + 8;
+/// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): the carried
+/// quantities, a cell and an entry.
+const PER_PARTICLE: u64 = bytes_per_particle(CARRIED) + 4 + 8;
 /// Bytes per particle of buffers that only some scenes need: accelerations, normals, pairs of the bitonic sort.
 const ACCELERATION: u64 = 16;
 const NORMAL: u64 = 16;

@@ -86,7 +86,7 @@ impl Copies {
         surface: Option<(&Surface, SurfaceStats)>,
         foam: Option<(&Foam, u32)>,
     ) -> Arc<Drawn> {
-        let fields = *simulation.fields();
+        let fields = simulation.fields().clone();
         let count = simulation.params().particle_count;
         let mut old = self.reuse();
         let mut mesh = old.as_mut().and_then(|drawn| drawn.mesh.take());

@@ -16,7 +16,9 @@ mod count;
 pub(crate) mod grid;
 mod keys;
 mod reorder;
+mod reorder_carried;
 mod scatter;
+mod store_carried;
 
 pub use cell_counts::WGSL as CELL_COUNTS;
 pub use grid::{Grid, WGSL as GRID};
@@ -28,10 +30,13 @@ use splashdown_gpu::{
     Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, buffer_set,
 };
 
-use crate::state::{Fields, end_step};
+use crate::state::{Array, CarriedArrays, Fields, Update, end_step};
 
 /// `row_range`: traversal of neighbours on the GPU.
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
+
+/// `sorted_index`: the index of a particle after the sort.
+pub(crate) const PLACE: WgslModule = WgslModule { name: "sph/place", source: include_str!("place.wgsl") };
 
 /// The algorithm that sorts particles into cells. All give the same result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +49,17 @@ pub enum Sort {
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![&reorder::REORDER, &bounds::BOUNDS, &count::COUNT, &keys::KEYS, &scatter::SCATTER]
+    vec![
+        &reorder::REORDER,
+        &reorder_carried::SCALAR,
+        &reorder_carried::VECTOR,
+        &store_carried::SCALAR,
+        &store_carried::VECTOR,
+        &bounds::BOUNDS,
+        &count::COUNT,
+        &keys::KEYS,
+        &scatter::SCATTER,
+    ]
 }
 
 /// The grid and the buffers of the sort.
@@ -105,6 +120,19 @@ impl Cells {
         buffers
     }
 
+    /// Appends the copies of the carried quantities that a step does not change from the sorted arrays back to the
+    /// persistent ones.
+    pub fn record_store(&self, recording: &mut Recording, fields: &Fields) {
+        let buffers = fields.buffers();
+        for carried in fields.carried.iter().filter(|carried| carried.quantity.update == Update::Constant) {
+            if let Some((pass, buffers)) =
+                bound(&buffers, carried, [&store_carried::SCALAR, &store_carried::VECTOR])
+            {
+                recording.dispatch(pass, self.all(), &buffers);
+            }
+        }
+    }
+
     /// Appends the count that the first sort of a frame needs.
     pub fn record_first_count(&self, recording: &mut Recording, fields: &Fields) {
         // An abandoned frame leaves a count that was not used.
@@ -134,11 +162,36 @@ impl Cells {
                 recording.dispatch(&bounds::BOUNDS, DispatchSize::Items(self.particles + 1), &buffers);
             }
         }
-        recording.dispatch(&reorder::REORDER, self.all(), &buffers.with("sorted_ids", sorted_ids));
+        recording.dispatch(&reorder::REORDER, self.all(), &buffers.clone().with("sorted_ids", sorted_ids));
+        for carried in fields.carried.iter().filter(|carried| carried.quantity.update.needs_reordering()) {
+            if let Some((pass, buffers)) =
+                bound(&buffers, carried, [&reorder_carried::SCALAR, &reorder_carried::VECTOR])
+            {
+                recording.dispatch(pass, self.all(), &buffers);
+            }
+        }
     }
 
     /// An invocation per particle, but at least one, so that steps end and time advances.
     fn all(&self) -> DispatchSize {
         DispatchSize::Items(self.particles.max(1))
+    }
+}
+
+/// The variant of a pass for the type of a carried quantity, and the buffers with its arrays; `None` if the quantity has
+/// no pass of its own.
+fn bound(
+    buffers: &BufferSet,
+    carried: &CarriedArrays,
+    [scalar, vector]: [&'static PassDesc; 2],
+) -> Option<(&'static PassDesc, BufferSet)> {
+    match (carried.persistent, carried.sorted?) {
+        (Array::F32(persistent), Array::F32(sorted)) => {
+            Some((scalar, buffers.clone().with("carried", persistent).with("sorted_carried", sorted)))
+        }
+        (Array::Vec4(persistent), Array::Vec4(sorted)) => {
+            Some((vector, buffers.clone().with("carried", persistent).with("sorted_carried", sorted)))
+        }
+        _ => None,
     }
 }

@@ -13,7 +13,7 @@ use crate::passes::{
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method};
-use crate::state::Fields;
+use crate::state::{Array, Fields};
 
 /// The couplings of a simulation.
 #[derive(Clone, Copy, Default)]
@@ -142,6 +142,7 @@ impl<'a> Step<'a> {
     pub(super) fn force_integrate(&mut self) {
         let pass = self.by_kernel(&force_integrate::WENDLAND_C2, &force_integrate::CUBIC_SPLINE);
         self.recorder.dispatch_particles(pass);
+        self.store_carried();
     }
 
     /// Velocity, then position (symplectic Euler), and the count for the next sort.
@@ -152,6 +153,13 @@ impl<'a> Step<'a> {
             &integrate::INTEGRATE
         };
         self.recorder.dispatch_particles(pass);
+        self.store_carried();
+    }
+
+    /// The carried quantities that a step does not change follow their particles into the persistent arrays.
+    fn store_carried(&mut self) {
+        let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
+        cells.record_store(recording, fields);
     }
 
     /// The count for the next sort, if it has to include emitted particles.
@@ -173,6 +181,13 @@ impl<'a> Step<'a> {
         let StepRecorder { recording, fields, .. } = &mut self.recorder;
         recording.copy(fields.sorted_positions, fields.positions);
         recording.copy(fields.sorted_velocities, fields.velocities);
+        for carried in fields.carried.iter().filter(|carried| carried.quantity.update.needs_reordering()) {
+            match (carried.sorted, carried.persistent) {
+                (Some(Array::F32(sorted)), Array::F32(persistent)) => recording.copy(sorted, persistent),
+                (Some(Array::Vec4(sorted)), Array::Vec4(persistent)) => recording.copy(sorted, persistent),
+                _ => {}
+            }
+        }
         if self.scheme.is_density_integrated {
             // The densities are those of the initial particles.
             self.recorder.dispatch_particles(&state_equation::STATE_EQUATION);

@@ -1,13 +1,12 @@
 //! Saving and resuming a simulation.
 
-use bytemuck::Pod;
 use splashdown_gpu::{Buffer, Executor, GpuElement, block_on};
 use splashdown_io::{Archive, NpyElement};
 
 use super::Simulation;
 use crate::check::Built;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
-use crate::state::StepCounters;
+use crate::state::{CARRIED, Carried, CarriedArrays, Kind, StepCounters};
 use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
@@ -31,15 +30,13 @@ impl Simulation {
         for (name, buffer, columns) in self.words() {
             archive.set_array(name, &buffer.fetch(&mut self.executor).await?, columns);
         }
-        let fields = self.fields;
-        let positions = self.executor.request(fields.positions, self.params.particle_count as usize)?;
-        let velocities = self.executor.request(fields.velocities, self.params.particle_count as usize)?;
-        let densities = self.executor.fetch(fields.densities).await?;
-        let ids = self.executor.fetch(fields.ids).await?;
-        archive.set_array("positions", floats(&positions.take().await?), 4);
-        archive.set_array("velocities", floats(&velocities.take().await?), 4);
-        archive.set_array("densities", floats(&densities), 2);
-        archive.set_array("ids", &ids, 1);
+        for (quantity, values) in self.fetch_carried().await? {
+            let (words, columns) = (values.words(), quantity.kind.components());
+            match quantity.kind {
+                Kind::U32 => archive.set_array(quantity.name, words, columns),
+                _ => archive.set_array(quantity.name, bytemuck::cast_slice::<u32, f32>(words), columns),
+            }
+        }
         let mut host = HostState {
             stats: self.stats,
             stable_dt: self.stable_dt,
@@ -90,6 +87,15 @@ impl Simulation {
         executor: Executor,
         progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
+        Self::resume_with_table(checkpoint, executor, progress, CARRIED).await
+    }
+
+    pub(super) async fn resume_with_table(
+        checkpoint: &Checkpoint,
+        executor: Executor,
+        progress: &(dyn Fn(&str, f32) + Sync),
+        table: &'static [Carried],
+    ) -> Result<Self, SimulationError> {
         // Validates the sizes before buffers of these sizes are created.
         checkpoint.check()?;
         let scene = checkpoint.scene()?;
@@ -99,18 +105,23 @@ impl Simulation {
         let loaded_flow = built.flow(&scene)?;
         let spacing = scene.fluid.particle_spacing;
         memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), spacing)?;
-        let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow)?;
+        let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow, table)?;
         simulation.restore(checkpoint, host).await?;
         Ok(simulation)
     }
 
     async fn restore(&mut self, checkpoint: &Checkpoint, host: HostState) -> Result<(), SimulationError> {
         let n = host.capacity as usize;
-        let (fields, executor) = (self.fields, &mut self.executor);
-        upload(executor, fields.positions, &checkpoint.numbers::<f32>("positions", 4 * n)?)?;
-        upload(executor, fields.velocities, &checkpoint.numbers::<f32>("velocities", 4 * n)?)?;
-        upload(executor, fields.densities, &checkpoint.numbers::<f32>("densities", 2 * n)?)?;
-        upload(executor, fields.ids, &checkpoint.numbers::<u32>("ids", n)?)?;
+        for CarriedArrays { quantity, persistent, .. } in self.fields.carried.clone() {
+            let numbers = n * quantity.kind.components();
+            let words = match quantity.kind {
+                Kind::U32 => checkpoint.numbers::<u32>(quantity.name, numbers)?,
+                _ => {
+                    checkpoint.numbers::<f32>(quantity.name, numbers)?.into_iter().map(f32::to_bits).collect()
+                }
+            };
+            persistent.write(&mut self.executor, &words)?;
+        }
         for (name, buffer, _) in self.words() {
             let words = checkpoint.numbers::<u32>(name, buffer.words())?;
             buffer.write(&mut self.executor, &words)?;
@@ -199,10 +210,6 @@ impl Words {
             Self::State(buffer) => upload(executor, buffer, words),
         }
     }
-}
-
-fn floats<T: Pod>(data: &[T]) -> &[f32] {
-    bytemuck::cast_slice(data)
 }
 
 /// Writes numbers into a buffer, whose elements consist of several numbers each.

@@ -136,7 +136,9 @@ impl Simulation {
         // The fluid does not overlap the old bodies: only new ones displace particles.
         let new: Vec<&LoadedBody> = loaded.iter().filter(|body| place(&body.name).is_none()).collect();
         let removed = sample::retain_outside(scene, &mut particles, &new);
-        let mut next = Self::with_bodies(scene, self.executor.successor(), &particles, loaded).await?;
+        let mut next =
+            Self::with_bodies(scene, self.executor.successor(), &particles, loaded, self.fields.table())
+                .await?;
         next.removed = removed;
         next.most_steps = self.most_steps;
         next.begin_at(self.stats.time, &kept).await?;

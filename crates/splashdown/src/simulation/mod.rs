@@ -1,5 +1,7 @@
 //! A running simulation.
 
+#[cfg(test)]
+mod carried_tests;
 mod checkpoint;
 mod foam;
 mod frame;

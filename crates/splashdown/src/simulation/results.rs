@@ -1,13 +1,13 @@
 //! Results of a simulation: particles, bodies, the surface.
 
-use glam::{Vec2, Vec4, Vec4Swizzles};
-use splashdown_gpu::{Recording, block_on};
+use splashdown_gpu::{GpuError, Recording, block_on};
 use splashdown_io::{Mesh, Particles};
 
 use super::Simulation;
 use crate::SimulationError;
 use crate::bodies::BodyState;
 use crate::scene::{Probe, Quantity, SurfaceSettings};
+use crate::state::{Carried, CarriedArrays, Values};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
 
 impl Simulation {
@@ -25,16 +25,32 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub async fn particles_async(&mut self) -> Result<Particles, SimulationError> {
-        let (fields, executor) = (self.fields, &mut self.executor);
-        // All four copies are requested before the host waits for the first.
-        let n = self.params.particle_count as usize;
-        let positions = executor.request(fields.positions, n)?;
-        let velocities = executor.request(fields.velocities, n)?;
-        let densities = executor.request(fields.densities, n)?;
-        let ids = executor.request(fields.ids, n)?.take().await?;
-        let (positions, velocities) = (positions.take().await?, velocities.take().await?);
-        let densities = densities.take().await?;
-        Ok(in_order_of_id(&ids, &positions, &velocities, &densities))
+        let values = self.fetch_carried().await?;
+        let find =
+            |name: &str| values.iter().find(|(quantity, _)| quantity.name == name).map(|(_, v)| v.words());
+        let (Some(ids), Some(positions)) = (find("ids"), find("positions")) else {
+            unreachable!("the table has rows for ids and positions")
+        };
+        // The fourth component of a position marks removed particles.
+        let is_active = |i: &u32| f32::from_bits(positions[4 * *i as usize + 3]) == 0.0;
+        let mut order: Vec<u32> = (0..ids.len() as u32).filter(is_active).collect();
+        order.sort_unstable_by_key(|&i| ids[i as usize]);
+        let add = |particles, (quantity, values): &(&Carried, Values)| {
+            (quantity.output)(particles, &values.ordered(quantity.kind, &order))
+        };
+        Ok(values.iter().fold(Particles::default(), add))
+    }
+
+    /// The persistent arrays of all carried quantities. All copies are requested before the host waits for the first.
+    pub(super) async fn fetch_carried(&mut self) -> Result<Vec<(&'static Carried, Values)>, SimulationError> {
+        let (n, executor) = (self.params.particle_count as usize, &mut self.executor);
+        let request = |arrays: &CarriedArrays| Ok((arrays.quantity, arrays.persistent.request(executor, n)?));
+        let pending = self.fields.carried.iter().map(request).collect::<Result<Vec<_>, GpuError>>()?;
+        let mut values = Vec::with_capacity(pending.len());
+        for (quantity, copy) in pending {
+            values.push((quantity, copy.take().await?));
+        }
+        Ok(values)
     }
 
     /// The number of these particles that lie inside a body: zero in a sound run.
@@ -151,15 +167,4 @@ impl Simulation {
     pub async fn mesh_async(&mut self, surface: &Surface) -> Result<Mesh, SimulationError> {
         Ok(surface.mesh_async(&mut self.executor).await?)
     }
-}
-
-fn in_order_of_id(ids: &[u32], positions: &[Vec4], velocities: &[Vec4], densities: &[Vec2]) -> Particles {
-    let mut order: Vec<u32> = (0..ids.len() as u32).filter(|&i| positions[i as usize].w == 0.0).collect();
-    order.sort_unstable_by_key(|&i| ids[i as usize]);
-    let order = || order.iter().map(|&i| i as usize);
-    Particles::from_positions(order().map(|i| positions[i].xyz().to_array()).collect())
-        .with_ids(order().map(|i| ids[i]).collect())
-        .with_velocities(order().map(|i| velocities[i].xyz().to_array()).collect())
-        .with_densities(order().map(|i| densities[i].x).collect())
-        .with_pressures(order().map(|i| densities[i].y).collect())
 }

@@ -2,7 +2,6 @@
 
 use std::mem::offset_of;
 
-use glam::{Vec3, Vec4};
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
@@ -18,7 +17,7 @@ use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::schemes::{self, Couplings, Scheme};
 use crate::solid;
-use crate::state::{DEAD_UNBORN, Fields, Params, StepState};
+use crate::state::{CARRIED, Carried, Fields, Initial, Params, StepState};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample, state};
 
 impl Simulation {
@@ -66,7 +65,7 @@ impl Simulation {
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
         }
-        let mut simulation = Self::with_bodies(scene, executor, &particles, bodies).await?;
+        let mut simulation = Self::with_bodies(scene, executor, &particles, bodies, CARRIED).await?;
         simulation.removed = removed;
         Ok(simulation)
     }
@@ -83,7 +82,7 @@ impl Simulation {
         particles: &Particles,
     ) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene, &|_, _| {})?;
-        block_on(Self::with_bodies(scene, executor, particles, bodies))
+        block_on(Self::with_bodies(scene, executor, particles, bodies, CARRIED))
     }
 
     pub(crate) fn load_bodies(
@@ -101,6 +100,7 @@ impl Simulation {
         executor: Executor,
         particles: &Particles,
         loaded: Vec<LoadedBody>,
+        table: &'static [Carried],
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
         let largest = executor.largest_buffer();
@@ -110,7 +110,7 @@ impl Simulation {
         let initial = n as u32;
         let capacity = loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as u32;
         let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
-        let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow)?;
+        let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow, table)?;
         simulation.initial = initial;
         upload(&mut simulation.executor, &simulation.fields, particles, &simulation.params)?;
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
@@ -127,6 +127,7 @@ impl Simulation {
         next_id: u32,
         loaded: Vec<LoadedBody>,
         loaded_flow: &LoadedFlow,
+        table: &'static [Carried],
     ) -> Result<Self, SimulationError> {
         let scheme = Scheme::new(scene);
         let params = schemes::params(scene, capacity);
@@ -138,8 +139,8 @@ impl Simulation {
                 allowed: 1 << 31,
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
-        let fields =
-            Fields::new(&mut executor, &params, &wall_table(scheme.walls()), scheme.needs_normals())?;
+        let walls = wall_table(scheme.walls());
+        let fields = Fields::with_table(&mut executor, &params, &walls, scheme.needs_normals(), table)?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {
             None
@@ -215,30 +216,18 @@ impl Simulation {
     }
 }
 
+/// Writes the initial values of the carried quantities.
 fn upload(
     executor: &mut Executor,
     fields: &Fields,
     particles: &Particles,
     params: &Params,
 ) -> Result<(), SimulationError> {
-    let n = particles.positions.len();
-    let not_emitted = params.particle_count as usize - n;
-    let rest_density = params.rest_density;
-    let mut positions: Vec<Vec4> = particles.positions.iter().map(|&x| Vec3::from(x).extend(0.0)).collect();
-    positions.extend(vec![params.domain_min.extend(DEAD_UNBORN); not_emitted]);
-    // Passes divide by densities. A density that is not positive becomes NaN, so that the particle is removed as not
-    // finite.
-    let positive = |rho: f32| if rho > 0.0 { rho } else { f32::NAN };
-    let density = |i: usize| particles.densities.get(i).map_or(rest_density, |&rho| positive(rho));
-    let velocity = |i: usize| Vec3::from(particles.velocities.get(i).copied().unwrap_or_default());
-    let mut velocities: Vec<Vec4> = (0..n).map(|i| velocity(i).extend(density(i))).collect();
-    velocities.extend(vec![Vec3::ZERO.extend(rest_density); not_emitted]);
-    let mut ids: Vec<u32> =
-        if particles.ids.len() == n { particles.ids.clone() } else { (0..n as u32).collect() };
-    // Ids of particles not yet emitted must differ from all others: they count down from the largest number.
-    ids.extend((0..not_emitted as u32).map(|k| u32::MAX - k));
-    executor.write(fields.positions, &positions)?;
-    executor.write(fields.velocities, &velocities)?;
-    executor.write(fields.ids, &ids)?;
+    let start = Initial { particles, params };
+    for arrays in &fields.carried {
+        if let Some(words) = arrays.initial(&start, params.particle_count as usize) {
+            arrays.persistent.write(executor, &words)?;
+        }
+    }
     Ok(())
 }

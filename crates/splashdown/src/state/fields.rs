@@ -4,10 +4,10 @@ use bytemuck::Zeroable;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
-use super::{Params, StepCounters, StepState};
+use super::{Array, CARRIED, Carried, CarriedArrays, Params, StepCounters, StepState};
 
 /// The buffers shared by all passes, except those of the sort. One entry per particle unless noted otherwise.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone)]
 pub struct Fields {
     /// Constants; a uniform.
     pub params: Buffer<Params>,
@@ -39,6 +39,9 @@ pub struct Fields {
     pub accelerations: Buffer<Vec4>,
     /// Normals for surface tension; order as `densities`. A single entry without surface tension.
     pub normals: Buffer<Vec4>,
+    /// The arrays of the carried quantities, row by row of their table: those above, and others.
+    pub carried: Vec<CarriedArrays>,
+    table: &'static [Carried],
 }
 
 impl Fields {
@@ -52,31 +55,71 @@ impl Fields {
         wall_table: &[Vec4],
         normals: bool,
     ) -> Result<Self, GpuError> {
+        Self::with_table(executor, params, wall_table, normals, CARRIED)
+    }
+
+    /// [`new`](Self::new) with another table of carried quantities, which begins with the rows of [`CARRIED`].
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub fn with_table(
+        executor: &mut Executor,
+        params: &Params,
+        wall_table: &[Vec4],
+        normals: bool,
+        table: &'static [Carried],
+    ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
+        let carried = CarriedArrays::create(executor, table, n)?;
+        let [
+            CarriedArrays {
+                persistent: Array::Vec4(positions),
+                sorted: Some(Array::Vec4(sorted_positions)),
+                ..
+            },
+            CarriedArrays {
+                persistent: Array::Vec4(velocities),
+                sorted: Some(Array::Vec4(sorted_velocities)),
+                ..
+            },
+            CarriedArrays { persistent: Array::Vec2(densities), .. },
+            CarriedArrays { persistent: Array::U32(ids), sorted: Some(Array::U32(sorted_ids)), .. },
+            ..,
+        ] = carried[..]
+        else {
+            unreachable!("the table begins with the rows of CARRIED")
+        };
         Ok(Self {
             params: executor.create_uniform("params", params)?,
             state: executor.create_small("state", &[StepState::zeroed()])?,
             duration: executor.create_from("duration", &[0.0])?,
             counters: executor.create_from("counters", &[0; StepCounters::WORDS])?,
             wall_table: executor.create_small("wall_table", wall_table)?,
-            positions: executor.create("positions", n)?,
-            velocities: executor.create("velocities", n)?,
-            ids: executor.create("ids", n)?,
-            sorted_positions: executor.create("sorted_positions", n)?,
-            sorted_velocities: executor.create("sorted_velocities", n)?,
-            sorted_ids: executor.create("sorted_ids", n)?,
-            densities: executor.create("densities", n)?,
+            positions,
+            velocities,
+            ids,
+            sorted_positions,
+            sorted_velocities,
+            sorted_ids,
+            densities,
             accelerations: executor.create("accelerations", 1)?,
             normals: executor.create("normals", if normals { n } else { 1 })?,
+            carried,
+            table,
         })
+    }
+
+    /// The table of the carried quantities.
+    pub fn table(&self) -> &'static [Carried] {
+        self.table
     }
 
     /// The buffers by name, for recordings.
     pub fn buffers(&self) -> BufferSet {
-        buffer_set!(self =>
-            params, state, duration, counters, wall_table, positions, velocities, ids, sorted_positions,
-            sorted_velocities, sorted_ids, densities, accelerations, normals,
-        )
+        let mut set =
+            buffer_set!(self => params, state, duration, counters, wall_table, accelerations, normals);
+        self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));
+        set
     }
 
     /// Resizes the buffer of accelerations to all particles; a fused step does not need it.

@@ -4,12 +4,18 @@
 //! that only read and write the state: [`begin`] begins a frame, [`end_step`] ends a step.
 
 pub mod begin;
+mod carried;
 mod counters;
 pub mod end_step;
 mod fields;
 mod params;
 mod step;
 
+pub use carried::{
+    Array, CARRIED, Carried, CarriedArrays, Initial, Kind, Update, Values, bits, bytes_per_particle,
+};
+#[cfg(test)]
+pub(crate) use carried::{DENSITIES, IDS, POSITIONS, VELOCITIES};
 pub use counters::{
     DEAD_DRAINED, DEAD_ESCAPED, DEAD_NON_FINITE, DEAD_UNBORN, StepCounters, WGSL as STEP_COUNTERS,
 };

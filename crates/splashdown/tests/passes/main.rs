@@ -4,6 +4,7 @@
 //! output. Each comparison has a negative control: the smallest change of the input that must be detected. The
 //! passes of the surface and of bodies have separate tests.
 
+mod carried_cases;
 mod cases;
 mod flow_cases;
 mod foam_cases;
@@ -25,6 +26,7 @@ use splashdown_gpu::{CpuExecutor, Executor, testing};
 fn all_cases() -> Vec<Case> {
     let all = [
         sort_cases::cases(),
+        carried_cases::cases(),
         cases::cases(),
         neighbour_cases::cases(),
         flow_cases::cases(),

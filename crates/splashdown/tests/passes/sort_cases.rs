@@ -7,7 +7,7 @@ use splashdown_gpu::{DispatchSize, PassDesc};
 
 use super::cases::{next_state, same_state, state_of};
 use super::harness::{Case, Check, Compare, Data, exact};
-use super::world::{World, params, points, state};
+use super::world::{Shuffled, World, params, points, state};
 
 /// The pass with this label.
 pub fn pass(label: &str) -> &'static PassDesc {
@@ -32,7 +32,7 @@ fn expecting(expected: Vec<Data>) -> Check {
     Box::new(move |out| exact_all()(out, &expected))
 }
 
-fn case(
+pub fn case(
     label: &str,
     name: &str,
     items: usize,
@@ -308,37 +308,44 @@ fn bounds(world: &World) -> Case {
     })
 }
 
-fn reorder(world: &World) -> Case {
-    let shuffled = world.shuffled();
+/// Grid, counts, starts and entries of shuffled particles, the first inputs of the passes that reorder. The entries of a
+/// cell are in the order of arrival, which is not that of ids.
+pub fn before_reordering(world: &World, shuffled: &Shuffled) -> Vec<Data> {
     let (cell_counts, cells) = shuffled.cell_counts(world);
     let ids = shuffled.of(&world.ids);
-    // Entries in the order of arrival, which is not that of the ids.
-    let mut slots = vec![UVec2::ZERO; world.len()];
+    let mut entries = vec![UVec2::ZERO; world.len()];
     let mut next = world.cell_start.clone();
     for (i, &cell) in cells.iter().enumerate() {
-        let slot = &mut next[cell as usize];
-        slots[*slot as usize] = UVec2::new(ids[i], i as u32);
-        *slot += 1;
+        let entry = &mut next[cell as usize];
+        entries[*entry as usize] = UVec2::new(ids[i], i as u32);
+        *entry += 1;
     }
+    vec![
+        Data::Grid(world.grid),
+        Data::U32(cell_counts),
+        Data::U32(world.cell_start.clone()),
+        Data::UVec2(entries),
+    ]
+}
+
+/// Swaps the ids of two entries of one cell.
+pub fn swap_ids(input: &mut [Data]) {
+    let Data::U32(starts) = &input[2] else { panic!("no starts") };
+    let crowded = starts.windows(2).position(|bounds| bounds[1] - bounds[0] >= 2).unwrap();
+    let k = starts[crowded] as usize;
+    let Data::UVec2(entries) = &mut input[3] else { panic!("no entries") };
+    (entries[k].x, entries[k + 1].x) = (entries[k + 1].x, entries[k].x);
+}
+
+fn reorder(world: &World) -> Case {
+    let shuffled = world.shuffled();
     let sorted = [
         Data::Vec4(world.positions.clone()),
         Data::Vec4(world.velocities.clone()),
         Data::U32(world.ids.clone()),
     ];
-    let mut input = vec![
-        Data::Grid(world.grid),
-        Data::U32(cell_counts),
-        Data::U32(world.cell_start.clone()),
-        Data::UVec2(slots),
-        Data::Vec4(shuffled.of(&world.positions)),
-        Data::Vec4(shuffled.of(&world.velocities)),
-    ];
+    let mut input = before_reordering(world, &shuffled);
+    input.extend([Data::Vec4(shuffled.of(&world.positions)), Data::Vec4(shuffled.of(&world.velocities))]);
     input.extend(sorted.iter().map(Data::poison));
-    case("cells.reorder", "all", world.len(), input, sorted.to_vec(), |input| {
-        let Data::U32(starts) = &input[2] else { panic!("no starts") };
-        let crowded = starts.windows(2).position(|bounds| bounds[1] - bounds[0] >= 2).unwrap();
-        let k = starts[crowded] as usize;
-        let Data::UVec2(slots) = &mut input[3] else { panic!("no entries") };
-        (slots[k].x, slots[k + 1].x) = (slots[k + 1].x, slots[k].x);
-    })
+    case("cells.reorder", "all", world.len(), input, sorted.to_vec(), swap_ids)
 }

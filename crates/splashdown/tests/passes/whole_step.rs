@@ -98,7 +98,8 @@ impl Rig {
             let content = from.read(source).unwrap();
             to.write(target, &content).unwrap();
         }
-        let (a, b, from, to) = (other.fields, self.fields, &mut other.executor, &mut self.executor);
+        let (a, b, from, to) =
+            (other.fields.clone(), self.fields.clone(), &mut other.executor, &mut self.executor);
         carry(from, to, a.state, b.state);
         carry(from, to, a.counters, b.counters);
         carry(from, to, a.ids, b.ids);
@@ -118,7 +119,7 @@ impl Rig {
 
     /// Positions, velocities, densities, and state with counters, as floats.
     fn result(&mut self) -> [Vec<f32>; 4] {
-        let (fields, executor) = (self.fields, &mut self.executor);
+        let (fields, executor) = (self.fields.clone(), &mut self.executor);
         let positions: Vec<Vec4> = executor.read(fields.positions).unwrap();
         let velocities: Vec<Vec4> = executor.read(fields.velocities).unwrap();
         let densities: Vec<Vec2> = executor.read(fields.densities).unwrap();

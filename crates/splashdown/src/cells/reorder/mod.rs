@@ -12,7 +12,7 @@ mod cpu;
 use glam::{UVec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use super::{GRID, Grid};
+use super::{GRID, Grid, PLACE};
 
 bindings! {
     /// The buffers of `reorder.wgsl`.
@@ -33,7 +33,7 @@ bindings! {
 pub static REORDER: PassDesc = PassDesc {
     label: "cells.reorder",
     wgsl: include_str!("reorder.wgsl"),
-    imports: &[wgsl::INDEX, GRID],
+    imports: &[wgsl::INDEX, GRID, PLACE],
     entry: "reorder",
     workgroup_size: [64, 1, 1],
     constants: &[],
