@@ -1,10 +1,10 @@
-//! Times of the primitives on every executor of this machine, in milliseconds; the best of ten rounds of ten runs. And
-//! the time of an indirect dispatch of one workgroup after another one, in microseconds.
+//! Measures the primitives on every executor of this machine, in milliseconds: the best of ten rounds of ten runs. Also
+//! measures an indirect dispatch of one workgroup that depends on the previous one, in microseconds.
 //!
 //! `cargo run --release -p splashdown-gpu --example primitives [LENGTH...]`
 //!
-//! With `WGPU_VALIDATION_INDIRECT_CALL=1` wgpu validates the arguments of indirect dispatches, which this project's
-//! instances leave out.
+//! With `WGPU_VALIDATION_INDIRECT_CALL=1` wgpu validates the arguments of indirect dispatches, which this project
+//! disables.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ static COUNT: PassDesc = PassDesc {
     },
 };
 
-/// Indirect dispatches in a recording.
+/// Number of indirect dispatches in a recording.
 const DISPATCHES: u32 = 256;
 
 const RUNS: u32 = 10;
@@ -86,7 +86,7 @@ fn measure(executor: &mut Executor, len: u32) -> Result<[f64; 3], GpuError> {
     Ok(times)
 }
 
-/// Microseconds of an indirect dispatch that depends on the one before.
+/// Microseconds of an indirect dispatch that depends on the previous one.
 fn indirect(executor: &mut Executor) -> Result<f64, GpuError> {
     let arguments = executor.create_from("arguments", &[1_u32; 3])?;
     let counter = executor.create::<u32>("counter", 1)?;
@@ -98,7 +98,7 @@ fn indirect(executor: &mut Executor) -> Result<f64, GpuError> {
     Ok(1000.0 * best(executor, &recording)? / f64::from(DISPATCHES))
 }
 
-/// Milliseconds of one run when `RUNS` follow one another.
+/// Milliseconds of one run in a sequence of `RUNS`.
 fn best(executor: &mut Executor, once: &Recording) -> Result<f64, GpuError> {
     let mut recording = Recording::new("measured");
     (0..RUNS).for_each(|_| recording.append(once));
@@ -112,7 +112,7 @@ fn best(executor: &mut Executor, once: &Recording) -> Result<f64, GpuError> {
     Ok(best)
 }
 
-#[expect(clippy::print_stdout, reason = "what an example measures goes to the terminal")]
+#[expect(clippy::print_stdout, reason = "an example prints its results")]
 fn say(line: &str) {
     println!("{line}");
 }

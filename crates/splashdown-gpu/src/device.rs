@@ -294,7 +294,7 @@ impl Gpu {
     }
 }
 
-/// Keeps the first report: later ones are mostly its consequences.
+/// Stores the first report; later ones are usually its consequences.
 fn note(trouble: &Mutex<Option<Trouble>>, new: Trouble) {
     if let Ok(mut trouble) = trouble.lock() {
         trouble.get_or_insert(new);

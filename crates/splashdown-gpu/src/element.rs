@@ -41,7 +41,7 @@ impl<T: GpuMember, const N: usize> GpuMember for [T; N] {
     const SCALAR: &'static str = T::SCALAR;
 }
 
-/// A Rust struct that mirrors a WGSL struct; made by [`gpu_struct!`](crate::gpu_struct).
+/// A Rust struct that mirrors a WGSL struct; declared by [`gpu_struct!`](crate::gpu_struct).
 pub trait GpuStruct: GpuElement {}
 
 impl GpuElement for f32 {

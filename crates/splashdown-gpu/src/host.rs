@@ -19,7 +19,7 @@ pub(crate) struct HostBuffer {
 }
 
 impl HostBuffer {
-    /// `None` if the memory cannot be allocated. Zeros come from the system, which gives real memory on first use.
+    /// `None` if the memory cannot be allocated. Zeroed memory comes from the system, which provides pages on first use.
     pub(crate) fn new(bytes: u64, fill: u8) -> Option<Self> {
         let bytes = usize::try_from(bytes).ok()?;
         let mut chunks: Vec<Chunk> = bytemuck::try_zeroed_vec(bytes.div_ceil(16)).ok()?;
@@ -88,6 +88,6 @@ impl<'a> Slot<'a> {
 pub fn as_atomic<T: GpuElement>(elements: &mut [T]) -> &[AtomicU32] {
     let words: &mut [u32] = bytemuck::cast_slice_mut(elements);
     // SAFETY: `AtomicU32` has the size, alignment and bit validity of `u32`, and the exclusive borrow guarantees that
-    // for its lifetime nobody accesses the values except through these atomics.
+    // for its lifetime all accesses to the values use these atomics.
     unsafe { &*(std::ptr::from_mut(words) as *const [AtomicU32]) }
 }

@@ -1,19 +1,18 @@
-//! A thin layer on [`wgpu`] that knows nothing of fluids.
+//! A thin layer on [`wgpu`], independent of fluid simulation.
 //!
 //! Work is recorded once and executed in two ways:
 //!
 //! 1. A [`PassDesc`] declares one compute pass as data: its WGSL, its bindings with their types, and the Rust
 //!    function that does the same work on a machine without a GPU. [`bindings!`] lists the bindings once; the WGSL, the
 //!    CPU code and the recordings refer to them by name. The [gate](check::check) parses the WGSL with `naga` and
-//!    compares it with the declaration, so that the two stay in agreement.
+//!    compares it with the declaration, so that the two agree.
 //! 2. A [`Recording`] is a list of commands (dispatches, copies, clears, bounded repetitions) over buffers, which a
 //!    [`BufferSet`] finds by name.
 //! 3. An [`Executor`] owns the buffers and runs recordings: on the GPU ([`GpuExecutor`]) or on the CPU
 //!    ([`CpuExecutor`]), from equal input to comparable output.
-//! 4. Three primitives are built on these, each a folder that shows how a pass is written: [`scan`], [`compact`] and
-//!    [`sort`].
+//! 4. Three primitives are built on these and show how a pass is written: [`scan`], [`compact`] and [`sort`].
 //!
-//! With the feature `roofline` there are also measurements of what a device can do at best.
+//! The feature `roofline` adds measurements of the limits of a device.
 //!
 //! ```
 //! use splashdown_gpu::{CpuExecutor, Executor, Recording, scan};
@@ -28,7 +27,7 @@
 //! # Ok::<(), splashdown_gpu::GpuError>(())
 //! ```
 
-// The macros name this crate by its own name, here as in other crates.
+// The macros refer to this crate by its name, in this crate as in others.
 extern crate self as splashdown_gpu;
 
 mod binding;

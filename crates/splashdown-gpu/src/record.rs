@@ -1,4 +1,4 @@
-//! A list of commands over buffers: a step before any executor runs it.
+//! Recordings: lists of commands over buffers, independent of the executor.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,7 +12,7 @@ pub struct Flag {
     pub buffer: BufferId,
     /// The index of the word in the buffer.
     pub word: u32,
-    /// Beginnings of the labels of passes that need not read the flag: see [`Flag::except`].
+    /// Prefixes of the labels of passes that need not read the flag: see [`Flag::except`].
     pub(crate) repeatable: &'static [&'static str],
 }
 
@@ -22,24 +22,24 @@ impl Flag {
         Self { buffer: buffer.id, word: (byte_offset / 4) as u32, repeatable: &[] }
     }
 
-    /// Passes whose labels begin so need not bind the flag's buffer: they compute their output from their input alone,
-    /// so running them again after the flag is set has no effect.
+    /// Passes whose labels have one of these prefixes need not bind the flag's buffer: their output depends only on their
+    /// input, so running them again after the flag is set has no effect.
     #[must_use]
     pub fn except(self, labels: &'static [&'static str]) -> Self {
         Self { repeatable: labels, ..self }
     }
 
-    /// True if a pass of this label need not bind the flag's buffer.
+    /// True if a pass with this label need not bind the flag's buffer.
     pub(crate) fn excepts(&self, label: &str) -> bool {
         self.repeatable.iter().any(|start| label.starts_with(start))
     }
 }
 
-/// How many rounds of a repetition a submission contains. The host may change the number between submissions without
-/// recording again: clones share it.
+/// The number of rounds of a repetition per submission. The host may change it between submissions without recording
+/// again: clones share it.
 ///
-/// A GPU cannot skip the rounds behind the one that raises the flag; each costs a dispatch that does nothing. So the
-/// host sets the number to a little more than the rounds that the last submission needed.
+/// A GPU cannot skip the rounds after the one that sets the flag; each costs a dispatch without effect. So the host sets
+/// the number slightly above the rounds that the last submission needed.
 #[derive(Clone, Debug)]
 pub struct Rounds {
     most: u32,
@@ -47,12 +47,12 @@ pub struct Rounds {
 }
 
 impl Rounds {
-    /// `most` rounds, until [`set`](Self::set) chooses fewer.
+    /// `most` rounds, until [`set`](Self::set) selects fewer.
     pub fn new(most: u32) -> Self {
         Self { most, current: Arc::new(AtomicU32::new(most)) }
     }
 
-    /// Chooses the number of rounds of the next submissions, limited to [`most`](Self::most).
+    /// Sets the number of rounds of the next submissions, limited to [`most`](Self::most).
     pub fn set(&self, rounds: u32) {
         self.current.store(rounds.min(self.most), Ordering::Relaxed);
     }
@@ -86,7 +86,7 @@ pub enum DispatchSize {
 }
 
 impl DispatchSize {
-    /// As many workgroups as the first three words of this buffer say.
+    /// The number of workgroups in the first three words of this buffer.
     pub fn indirect(buffer: Buffer<u32>) -> Self {
         Self::Indirect { buffer: buffer.id, word: 0 }
     }
@@ -127,9 +127,9 @@ pub enum Command {
     },
     /// Run the body until the flag is set, at most as often as `rounds` says.
     ///
-    /// The CPU tests the flag before every round. A GPU runs all rounds in one submission; the passes of the body
-    /// read the flag and do nothing once it is set. So each of them has to bind the flag's buffer, and the body
-    /// contains no copy and no clear, which know no flag.
+    /// The CPU tests the flag before every round. A GPU runs all rounds in one submission; the passes of the body read the
+    /// flag and do nothing once it is set. Therefore each of them must bind the flag's buffer, and the body must not
+    /// contain copies or clears, which cannot read a flag.
     Repeat {
         /// The commands of a round.
         body: Vec<Command>,
@@ -145,9 +145,9 @@ pub enum Command {
 pub struct Recording {
     /// The name, shown in graphics debuggers and errors.
     pub label: String,
-    /// The commands, in order; each sees what those before it wrote.
+    /// The commands, in order; each sees the writes of earlier ones.
     pub commands: Vec<Command>,
-    /// The first dispatch whose buffers were not found: the pass and the reason.
+    /// The first dispatch with a missing buffer: the pass and the reason.
     pub(crate) error: Option<(&'static str, String)>,
 }
 
@@ -157,8 +157,8 @@ impl Recording {
         Self { label: label.into(), commands: Vec::new(), error: None }
     }
 
-    /// Appends a dispatch; every binding of the pass gets the buffer of its name. Where the set has no such buffer,
-    /// running the recording is an error that names pass and binding.
+    /// Appends a dispatch; every binding of the pass gets the buffer of its name. If the set has no such buffer, running
+    /// the recording is an error that names pass and binding.
     pub fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, buffers: &BufferSet) {
         match pass.bindings.iter().map(|binding| buffers.find(binding.name)).collect() {
             Ok(buffers) => self.commands.push(Command::Dispatch { pass, size, buffers }),
@@ -198,7 +198,7 @@ mod tests {
     use super::dispatch_groups;
 
     #[test]
-    fn no_dimension_exceeds_the_limit_and_no_group_is_missing() {
+    fn dispatch_groups_respects_the_limit_and_covers_all_groups() {
         for groups in [1, 65_535, 65_536, 131_070, 131_071, 1 << 24, 3_000_000_000] {
             let [x, y, z] = dispatch_groups(groups);
             assert!(x <= 65_535 && y <= 65_535 && z == 1, "{groups}: {x} x {y}");

@@ -1,6 +1,6 @@
 //! Shared test tools: the executors of this machine, visible skipping, and the gate.
 //!
-//! Not for use outside of tests: it panics.
+//! Only for tests, because it panics.
 //!
 //! ```
 //! use splashdown_gpu::testing;
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pass_that_the_registry_lacks_is_found() {
+    fn a_pass_missing_from_the_registry_is_found() {
         let text = |label: &str| format!("pub static PASS: PassDesc = PassDesc {{\n    label: {label},\n}};");
         let registry = crate::passes();
         let known = format!("{:?}", registry[0].label);

@@ -1,17 +1,17 @@
-//! How long passes took on a GPU.
+//! Measures the time of passes on a GPU.
 //!
 //! *How it works.* Every pass writes a timestamp at its beginning and at its end. At the end of a group of passes (a
 //! submission, a picture) the timestamps are copied into a buffer that is mapped once the group is submitted; a later
-//! call finds it ready and reads it. Nothing waits.
+//! call reads it when it is ready. No call waits.
 //!
-//! *Why not* wait for each group: the device would run out of work between them, which changes what is measured.
+//! Waiting for each group would leave the device without work in between and change the measurement.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
-/// After this many groups without a free place, those pending belong to encoders that were never submitted.
+/// After this many groups without a free buffer, the pending groups belong to encoders that were never submitted.
 const PATIENCE: u32 = 60;
 
 /// Measures groups of compute and render passes.
@@ -26,9 +26,9 @@ pub struct PassTimer {
     most_pending: usize,
     free: Vec<wgpu::Buffer>,
     pending: VecDeque<Pending>,
-    /// Groups in a row that found no place.
+    /// Number of consecutive groups without a free buffer.
     skipped: u32,
-    /// Of the group being recorded; absent if it is not measured.
+    /// The labels of the group being recorded; `None` if it is not measured.
     labels: Option<Vec<&'static str>>,
 }
 
@@ -45,7 +45,7 @@ const READY: u8 = 1;
 const FAILED: u8 = 2;
 
 impl PassTimer {
-    /// Measures the first `most_passes` passes of each group. Groups go unmeasured while the times of `most_pending`
+    /// Measures the first `most_passes` passes of each group. Groups are not measured while the times of `most_pending`
     /// earlier ones have not arrived. `None` if the device has no timestamps.
     pub fn new(
         device: &wgpu::Device,
@@ -90,7 +90,7 @@ impl PassTimer {
         self.labels.is_some()
     }
 
-    /// Where a compute pass of this label writes its times.
+    /// The timestamp writes of a compute pass with this label.
     pub fn compute_pass(&mut self, label: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let (query_set, first) = self.pass(label)?;
         Some(wgpu::ComputePassTimestampWrites {
@@ -100,7 +100,7 @@ impl PassTimer {
         })
     }
 
-    /// Where a render pass of this label writes its times.
+    /// The timestamp writes of a render pass with this label.
     pub fn render_pass(&mut self, label: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         let (query_set, first) = self.pass(label)?;
         Some(wgpu::RenderPassTimestampWrites {
@@ -167,7 +167,7 @@ fn buffer(device: &wgpu::Device, most_passes: u32, usage: wgpu::BufferUsages) ->
     })
 }
 
-/// The times from pairs of ticks; a clock that runs backwards counts as no time.
+/// The times from pairs of ticks; a decreasing clock gives a time of zero.
 fn times(bytes: &[u8], labels: &[&'static str], period: f64) -> Vec<(&'static str, Duration)> {
     let ticks = |pair: &[u8; 16]| {
         let (begin, end) = pair.split_at(8);
@@ -187,13 +187,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_become_times() {
+    fn ticks_are_converted_to_times() {
         let ticks: [u64; 6] = [100, 1_100, 2_000, 2_500, 9_000, 8_000];
         let bytes: Vec<u8> = ticks.iter().flat_map(|tick| tick.to_le_bytes()).collect();
         let labels = ["smooth", "smooth", "clean"];
         let expected = [("smooth", 1_000_000), ("smooth", 500_000), ("clean", 0)]
             .map(|(label, nanoseconds)| (label, Duration::from_nanos(nanoseconds)));
-        assert_eq!(times(&bytes, &labels, 1000.0), expected, "a clock that runs backwards counts as nothing");
+        assert_eq!(times(&bytes, &labels, 1000.0), expected, "a decreasing clock gives zero");
         // Negative control: another period.
         assert_ne!(times(&bytes, &labels, 1.0), expected);
     }

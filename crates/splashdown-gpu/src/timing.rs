@@ -1,4 +1,4 @@
-//! How long passes took, by label.
+//! The times of passes by label.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use std::time::Duration;
 pub struct PassTime {
     /// Number of dispatches.
     pub count: u64,
-    /// Their time together.
+    /// Their total time.
     pub total: Duration,
 }
 

@@ -1,4 +1,4 @@
-//! Waiting for futures.
+//! Runs futures to completion.
 
 use std::future::Future;
 use std::pin::pin;
@@ -6,8 +6,8 @@ use std::task::{Context, Poll, Waker};
 
 /// Runs a future to completion.
 ///
-/// Outside of a web page a future of this project waits for the device whenever it is polled, so this is the same as
-/// calling a blocking function.
+/// Outside a web page a future of this project waits for the device whenever it is polled, so this is equivalent to a
+/// blocking function.
 ///
 /// # Panics
 /// On a web page, which cannot block, if the future has to wait for the browser. Work on the CPU never waits.

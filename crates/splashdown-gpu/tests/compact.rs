@@ -1,4 +1,4 @@
-//! Lists of set flags against a filter, with room for all and for few, and the dispatch over them.
+//! Compares lists of set flags with a filter, with full and insufficient capacity, and tests the dispatch over them.
 
 use splashdown_gpu::compact::Compact;
 use splashdown_gpu::{Executor, Recording, testing};
@@ -21,7 +21,7 @@ fn compact(executor: &mut Executor, flags: &[u32], capacity: usize, workgroup: u
     (executor.read(indices).unwrap(), counted)
 }
 
-/// About one flag in `sparsity` is set, to any value.
+/// About one flag in `sparsity` is set, to an arbitrary value.
 fn flags(len: u32, sparsity: u32) -> Vec<u32> {
     (0..len)
         .map(|i| if testing::noise(i).is_multiple_of(sparsity) { testing::noise(!i) | 1 } else { 0 })
@@ -48,7 +48,7 @@ fn lists_are_complete_and_in_order() {
                 let count = expected.len() as u32;
                 assert_eq!(counted, [count.div_ceil(64), 1, 1, count], "{name}, {len}, 1 in {sparsity}");
                 assert!(indices[..expected.len()] == expected, "{name}, {len}, 1 in {sparsity}");
-                // Poison shows that nothing was written behind the list.
+                // Intact poison shows that nothing was written after the list.
                 assert!(indices[expected.len()..].iter().all(|i| *i == u32::MAX), "{name}, {len}");
             }
         }
@@ -56,21 +56,22 @@ fn lists_are_complete_and_in_order() {
 }
 
 #[test]
-fn what_does_not_fit_is_counted_but_not_written() {
-    for (name, mut executor) in testing::executors("what_does_not_fit_is_counted_but_not_written") {
+fn elements_beyond_the_capacity_are_counted_but_not_written() {
+    for (name, mut executor) in testing::executors("elements_beyond_the_capacity_are_counted_but_not_written")
+    {
         let flags = flags(100_000, 2);
         let expected = expected(&flags);
         for capacity in [1, 1000, expected.len() - 1, expected.len()] {
             let (indices, counted) = compact(&mut executor, &flags, capacity, 64);
-            assert!(indices == expected[..capacity], "{name}, room for {capacity}");
+            assert!(indices == expected[..capacity], "{name}, capacity {capacity}");
             assert_eq!(counted, [(capacity as u32).div_ceil(64), 1, 1, expected.len() as u32], "{name}");
         }
     }
 }
 
 #[test]
-fn arguments_past_65_535_workgroups_have_two_dimensions() {
-    for (name, mut executor) in testing::executors("arguments_past_65_535_workgroups_have_two_dimensions") {
+fn arguments_beyond_65_535_workgroups_have_two_dimensions() {
+    for (name, mut executor) in testing::executors("arguments_beyond_65_535_workgroups_have_two_dimensions") {
         let flags = vec![1; 70_001];
         let (_, counted) = compact(&mut executor, &flags, 70_001, 1);
         assert_eq!(counted, [35_001, 2, 1, 70_001], "{name}");

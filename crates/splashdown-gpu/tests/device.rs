@@ -1,4 +1,4 @@
-//! Adapters: choosing, refusing by name, and a machine without drivers.
+//! Adapters: selection, rejected names, and a machine without drivers.
 
 use std::process::Command;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ fn listed_adapters_can_be_opened_by_name() {
 }
 
 #[test]
-fn an_unknown_name_is_refused_with_the_names_there_are() {
+fn an_unknown_name_is_rejected_with_the_available_names() {
     for name in ["Voodoo 2", ""] {
         let error = Gpu::open(&DeviceRequest::Named(name.into())).unwrap_err();
         assert!(matches!(error, GpuError::UnknownDevice { .. }), "{error}");
@@ -41,7 +41,7 @@ fn an_unknown_name_is_refused_with_the_names_there_are() {
 }
 
 #[test]
-fn asking_for_a_kind_that_is_missing_names_what_there_is() {
+fn an_unavailable_kind_is_rejected_with_the_available_names() {
     let adapters = list_adapters();
     for (request, software) in [(DeviceRequest::Hardware, false), (DeviceRequest::Software, true)] {
         let there = adapters.iter().any(|adapter| adapter.software == software);
@@ -57,8 +57,8 @@ fn asking_for_a_kind_that_is_missing_names_what_there_is() {
 }
 
 #[test]
-fn shaders_without_checks_compute_the_same() {
-    if testing::gpu_or_skip("shaders_without_checks_compute_the_same").is_none() {
+fn shaders_without_checks_have_the_same_results() {
+    if testing::gpu_or_skip("shaders_without_checks_have_the_same_results").is_none() {
         return;
     }
     let flags: Vec<u32> = (0..50_000).map(|i| testing::noise(i) & 1).collect();
@@ -72,7 +72,7 @@ fn shaders_without_checks_compute_the_same() {
         executor.read(starts).unwrap()
     };
     let open = || Gpu::open(&DeviceRequest::Auto).unwrap();
-    // SAFETY: the scan stays inside its buffers, whatever they hold.
+    // SAFETY: the scan stays inside its buffers for any contents.
     let (checked, unchecked) = (open(), unsafe { open().without_shader_checks() });
     assert!(checked.checks_shaders() && !unchecked.checks_shaders());
     let starts = scanned(checked);
@@ -84,7 +84,7 @@ fn shaders_without_checks_compute_the_same() {
 const CHILD: &str = "SPLASHDOWN_TEST_WITHOUT_DRIVERS";
 
 #[test]
-fn without_drivers_opening_fails_and_says_how_to_get_one() {
+fn opening_without_a_driver_fails_with_installation_advice() {
     if std::env::var_os(CHILD).is_some() {
         assert!(list_adapters().is_empty());
         for request in [DeviceRequest::Auto, DeviceRequest::Hardware, DeviceRequest::Software] {
@@ -95,11 +95,11 @@ fn without_drivers_opening_fails_and_says_how_to_get_one() {
         return;
     }
     if cfg!(not(target_os = "linux")) {
-        return; // where drivers belong to the system, no variable hides them
+        return; // on other systems no environment variable hides the drivers
     }
     let test = std::env::current_exe().unwrap();
     let output = Command::new(test)
-        .args(["--exact", "without_drivers_opening_fails_and_says_how_to_get_one", "--nocapture"])
+        .args(["--exact", "opening_without_a_driver_fails_with_installation_advice", "--nocapture"])
         .env(CHILD, "1")
         .env("VK_ICD_FILENAMES", "/nonexistent")
         .env("VK_DRIVER_FILES", "/nonexistent")

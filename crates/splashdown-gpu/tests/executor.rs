@@ -1,4 +1,4 @@
-//! What both executors promise: order, bounds, refusals, resizing, read-back and times.
+//! The guarantees of both executors: order, bounds, rejected commands, resizing, read-back and times.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -61,7 +61,7 @@ fn add(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) g
     },
 };
 
-/// `state` is a number of rounds left, a flag set when there are none, and a number of rounds that did something.
+/// `state` contains the remaining rounds, a flag that is set when none remain, and the number of effective rounds.
 static COUNT_DOWN: PassDesc = PassDesc {
     label: "test.count_down",
     wgsl: "\
@@ -91,7 +91,7 @@ fn count_down() {
     },
 };
 
-/// How often the CPU side of [`COUNT_DOWN`] ran.
+/// Number of runs of the CPU code of [`COUNT_DOWN`].
 static ROUNDS: AtomicU32 = AtomicU32::new(0);
 
 /// A recording that adds `amount` to all numbers, with its uniform.
@@ -121,7 +121,7 @@ fn commands_run_in_order() {
         executor.run(&recording).unwrap();
         assert_eq!(executor.read(numbers).unwrap(), [21, 22, 23], "{name}");
         assert_eq!(executor.read(copied).unwrap(), [11, 12, 13, 9, 9], "{name}");
-        // Uniforms are read when the recording runs, not when it is written.
+        // Uniforms are read when the recording runs, not when it is recorded.
         executor.write(params, &[Params { len: 1, amount: 5 }]).unwrap();
         recording.clear(copied);
         executor.run(&recording).unwrap();
@@ -192,10 +192,8 @@ fn two_dimensions_reach_the_last_element() {
 }
 
 #[test]
-fn commands_that_do_not_fit_are_refused_before_anything_runs() {
-    for (name, mut executor) in
-        testing::executors("commands_that_do_not_fit_are_refused_before_anything_runs")
-    {
+fn invalid_commands_are_rejected_before_anything_runs() {
+    for (name, mut executor) in testing::executors("invalid_commands_are_rejected_before_anything_runs") {
         let numbers = executor.create_from("numbers", &[1_u32, 2, 3]).unwrap();
         let short = executor.create::<u32>("short", 2).unwrap();
         let floats = executor.create::<f32>("floats", 3).unwrap();
@@ -332,7 +330,7 @@ fn commands_that_do_not_fit_are_refused_before_anything_runs() {
     }
 }
 
-/// Would write one buffer through two bindings.
+/// A pass that would write one buffer through two bindings.
 static TWICE: PassDesc = PassDesc {
     label: "test.twice",
     wgsl: "",
@@ -341,12 +339,13 @@ static TWICE: PassDesc = PassDesc {
     workgroup_size: [64, 1, 1],
     constants: &[],
     bindings: TwiceBindings::LIST,
-    cpu: |_, _| panic!("refused before"),
+    cpu: |_, _| panic!("the pass must be rejected before it runs"),
 };
 
 #[test]
-fn a_shader_that_does_not_compile_is_an_error_with_its_name() {
-    let Some(gpu) = testing::gpu_or_skip("a_shader_that_does_not_compile_is_an_error_with_its_name") else {
+fn a_shader_that_does_not_compile_is_an_error_with_the_pass_name() {
+    let Some(gpu) = testing::gpu_or_skip("a_shader_that_does_not_compile_is_an_error_with_the_pass_name")
+    else {
         return;
     };
     let mut executor = Executor::from(GpuExecutor::new(gpu));
@@ -381,7 +380,7 @@ fn resizing_keeps_recordings_valid() {
 }
 
 #[test]
-fn executors_may_be_used_from_any_thread() {
+fn executors_are_send_and_sync() {
     fn shared<T: Send + Sync>() {}
     shared::<Executor>();
     shared::<Recording>();
@@ -389,9 +388,8 @@ fn executors_may_be_used_from_any_thread() {
 }
 
 #[test]
-fn freed_buffers_cannot_be_used_and_give_their_memory_back() {
-    for (name, mut executor) in testing::executors("freed_buffers_cannot_be_used_and_give_their_memory_back")
-    {
+fn freed_buffers_cannot_be_used_and_release_their_memory() {
+    for (name, mut executor) in testing::executors("freed_buffers_cannot_be_used_and_release_their_memory") {
         let numbers = executor.create_from("numbers", &[1_u32; 1000]).unwrap();
         let other = executor.create_from("other", &[5_u32; 10]).unwrap();
         let (recording, params) = adding(&mut executor, numbers, 1);
@@ -399,7 +397,7 @@ fn freed_buffers_cannot_be_used_and_give_their_memory_back() {
         let before = executor.bytes();
         executor.free([numbers]).unwrap();
         assert_eq!(before - executor.bytes(), 4000, "{name}");
-        // The new buffer takes the slot of the freed one; the old handle does not reach it.
+        // The new buffer reuses the slot of the freed one; the old handle does not refer to it.
         let mut again = executor.create_from("again", &[7_u32; 3]).unwrap();
         let mut stale = numbers;
         let copy = |from, to| {
@@ -438,9 +436,9 @@ fn freed_buffers_cannot_be_used_and_give_their_memory_back() {
 }
 
 #[test]
-fn primitives_give_their_memory_back() {
+fn primitives_release_their_memory() {
     use splashdown_gpu::{compact::Compact, scan::Scan, sort::Sort};
-    for (name, mut executor) in testing::executors("primitives_give_their_memory_back") {
+    for (name, mut executor) in testing::executors("primitives_release_their_memory") {
         for len in [10, 100_000, 20_000_000] {
             Scan::new(&mut executor, len).unwrap().free(&mut executor).unwrap();
         }
@@ -451,8 +449,8 @@ fn primitives_give_their_memory_back() {
 }
 
 #[test]
-fn a_buffer_that_is_too_large_is_refused_with_what_fits() {
-    for (name, mut executor) in testing::executors("a_buffer_that_is_too_large_is_refused_with_what_fits") {
+fn a_too_large_buffer_is_rejected_with_the_possible_size() {
+    for (name, mut executor) in testing::executors("a_too_large_buffer_is_rejected_with_the_possible_size") {
         let most = executor.largest_buffer() / 4;
         let len = usize::try_from(most.max(u64::from(u32::MAX)) + 1).unwrap();
         let error = executor.create::<u32>("positions", len).unwrap_err();
@@ -461,9 +459,13 @@ fn a_buffer_that_is_too_large_is_refused_with_what_fits() {
         assert!(*fits < *asked && error.to_string().contains(&fits.to_string()), "{name}: {error}");
         let mut small = executor.create_from("small", &[1_u32]).unwrap();
         assert!(executor.resize(&mut small, len).is_err(), "{name}");
-        assert_eq!(executor.read(small).unwrap(), [1], "{name}: a refused resize leaves the buffer");
+        assert_eq!(
+            executor.read(small).unwrap(),
+            [1],
+            "{name}: a rejected resize leaves the buffer unchanged"
+        );
     }
-    if let Some(gpu) = testing::gpu_or_skip("a_buffer_that_is_too_large_is_refused_with_what_fits") {
+    if let Some(gpu) = testing::gpu_or_skip("a_too_large_buffer_is_rejected_with_the_possible_size") {
         let most = gpu.largest_buffer() / 4;
         let mut executor = Executor::from(GpuExecutor::new(gpu));
         if let Ok(len) = u32::try_from(most + 1) {
@@ -488,9 +490,8 @@ fn new_buffers_are_zero_or_poisoned() {
 }
 
 #[test]
-fn a_read_back_sees_what_was_before_it_and_waits_for_nobody() {
-    for (name, mut executor) in testing::executors("a_read_back_sees_what_was_before_it_and_waits_for_nobody")
-    {
+fn a_read_back_contains_earlier_writes_and_does_not_block() {
+    for (name, mut executor) in testing::executors("a_read_back_contains_earlier_writes_and_does_not_block") {
         let numbers = executor.create_from("numbers", &[1_u32, 2, 3]).unwrap();
         let (recording, _) = adding(&mut executor, numbers, 1);
         let before = executor.request(numbers, 3).unwrap();
@@ -509,12 +510,12 @@ fn a_read_back_sees_what_was_before_it_and_waits_for_nobody() {
 }
 
 #[test]
-fn every_dispatch_is_timed_once_asked_for() {
-    for (name, mut executor) in testing::executors("every_dispatch_is_timed_once_asked_for") {
+fn every_dispatch_is_timed_once_timing_is_enabled() {
+    for (name, mut executor) in testing::executors("every_dispatch_is_timed_once_timing_is_enabled") {
         let numbers = executor.create_from("numbers", &vec![0_u32; 100_000]).unwrap();
         let (mut recording, _) = adding(&mut executor, numbers, 1);
         executor.run(&recording).unwrap();
-        assert!(executor.take_timings().passes.is_empty(), "{name}: nobody asked");
+        assert!(executor.take_timings().passes.is_empty(), "{name}: timing is disabled");
         if !executor.enable_timing() {
             eprintln!("{name}: this device has no timestamps");
             continue;
@@ -527,7 +528,7 @@ fn every_dispatch_is_timed_once_asked_for() {
         let timings = executor.take_timings();
         assert_eq!(timings.passes["test.add"].count, 4, "{name}");
         assert!(timings.total() > std::time::Duration::ZERO, "{name}");
-        assert!(executor.take_timings().passes.is_empty(), "{name}: taken");
+        assert!(executor.take_timings().passes.is_empty(), "{name}: already taken");
         assert!(executor.read(numbers).unwrap().iter().all(|number| *number == 5), "{name}");
     }
 }

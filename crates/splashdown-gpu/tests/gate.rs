@@ -1,4 +1,4 @@
-//! The gate: this crate's passes pass it, and for each thing it claims to catch there is a mutation that it catches.
+//! The gate: the passes of this crate pass it, and it detects one mutation of every kind of difference.
 
 use std::path::Path;
 
@@ -104,11 +104,11 @@ const PASS: PassDesc = PassDesc {
 };
 
 #[test]
-fn the_pass_that_is_mutated_below_is_right() {
+fn the_unmutated_pass_is_accepted() {
     check(&PASS).unwrap();
 }
 
-/// What it is, the texts replaced with their replacements, and a part of the message.
+/// A description, the replaced texts with their replacements, and a part of the message.
 type Mutation = (&'static str, &'static [(&'static str, &'static str)], &'static str);
 
 const MUTATIONS: &[Mutation] = &[
@@ -118,7 +118,7 @@ const MUTATIONS: &[Mutation] = &[
         "struct Sim",
     ),
     (
-        "a vec3 moved up: the padding trap",
+        "a vec3 moved up, which changes the padding",
         &[
             ("    domain_min: vec3<f32>,\n", ""),
             ("struct Sim {\n", "struct Sim {\n    domain_min: vec3<f32>,\n"),
@@ -127,8 +127,8 @@ const MUTATIONS: &[Mutation] = &[
     ),
     ("a member's scalar", &[("cell_count: u32", "cell_count: f32")], "4 bytes of f32 at 12"),
     ("a member's size", &[("dt: f32", "dt: vec2<f32>")], "bytes"),
-    ("a member too many", &[("dt: f32,", "dt: f32,\n    exponent: f32,")], "48 bytes"),
-    ("another struct of the same members", &[("Sim", "World")], "World in WGSL, Sim in Rust"),
+    ("an additional member", &[("dt: f32,", "dt: f32,\n    exponent: f32,")], "48 bytes"),
+    ("another struct with the same members", &[("Sim", "World")], "World in WGSL, Sim in Rust"),
     ("read becomes read_write", &[("read> cell_start", "read_write> cell_start")], "ReadWrite in WGSL"),
     ("read_write becomes read", &[("densities[i] = rho;", ""), ("read_write> d", "read> d")], "Read in WGSL"),
     ("uniform becomes storage", &[("var<uniform> sim", "var<storage, read> sim")], "Uniform in Rust"),
@@ -150,7 +150,7 @@ const MUTATIONS: &[Mutation] = &[
         &[("binding(1)", "binding(9)"), ("binding(2)", "binding(1)"), ("binding(9)", "binding(2)")],
         "binding",
     ),
-    ("a binding Rust lacks", &[("binding(4)", "binding(5)")], "which Rust does not declare"),
+    ("a binding that Rust does not declare", &[("binding(4)", "binding(5)")], "which Rust does not declare"),
     ("another group", &[("group(0) @binding(3)", "group(1) @binding(3)")], "group 1"),
     (
         "missing binding",
@@ -200,25 +200,25 @@ const MUTATIONS: &[Mutation] = &[
 ];
 
 #[test]
-fn every_mutation_of_the_wgsl_is_caught() {
+fn every_mutation_of_the_wgsl_is_detected() {
     let source = PASS.source().unwrap();
     for (what, replacements, word) in MUTATIONS {
         let mut mutated = source.clone();
         for (from, to) in *replacements {
-            assert!(mutated.contains(from), "{what}: {from:?} is not there");
+            assert!(mutated.contains(from), "{what}: {from:?} is not in the WGSL");
             mutated = mutated.replace(from, to);
         }
         let message = check_source(&PASS, &mutated).expect_err(what);
-        assert!(message.contains(word), "{what}: caught for another reason: {message}");
+        assert!(message.contains(word), "{what}: detected for another reason: {message}");
     }
 }
 
 #[test]
-fn every_mutation_of_the_declaration_is_caught() {
+fn every_mutation_of_the_declaration_is_detected() {
     let many = &const { [Binding::new::<[u32]>("many", Access::Read, false); 9] };
     let mutations = [
         (
-            "a constant the WGSL lacks",
+            "a constant that the WGSL does not declare",
             PassDesc { constants: &[("FACTR", 2.0)], ..PASS },
             "no `override FACTR`",
         ),
@@ -229,7 +229,7 @@ fn every_mutation_of_the_declaration_is_caught() {
     ];
     for (what, pass, word) in mutations {
         let message = check(&pass).expect_err(what);
-        assert!(message.contains(word), "{what}: caught for another reason: {message}");
+        assert!(message.contains(word), "{what}: detected for another reason: {message}");
     }
     let source = PASS.source().unwrap();
     let message = check_source(&PassDesc { bindings: &[], ..PASS }, &source).unwrap_err();
@@ -301,7 +301,7 @@ mod changed {
 }
 
 #[test]
-fn every_mutation_of_the_list_is_caught() {
+fn every_mutation_of_the_binding_list_is_detected() {
     let mutations = [
         ("written, declared as read", changed::Access::LIST, "writing to this location is not permitted"),
         (
@@ -311,12 +311,12 @@ fn every_mutation_of_the_list_is_caught() {
         ),
         ("atomic, declared as plain", changed::NotAtomic::LIST, "atomic"),
         ("another element", changed::Element::LIST, "error"),
-        ("a binding too many", changed::TooMany::LIST, "`velocities` is bound and never used"),
+        ("an additional binding", changed::TooMany::LIST, "`velocities` is bound and never used"),
         ("swapped types", changed::Swapped::LIST, "error"),
     ];
     for (what, bindings, word) in mutations {
         let message = check(&PassDesc { bindings, ..PASS }).expect_err(what);
-        assert!(message.contains(word), "{what}: caught for another reason: {message}");
+        assert!(message.contains(word), "{what}: detected for another reason: {message}");
     }
 }
 
@@ -329,7 +329,7 @@ bindings! {
 }
 
 bindings! {
-    /// The same with two bindings of one type swapped.
+    /// The same with two bindings of the same type swapped.
     struct SwappedDifference {
         subtrahends: read [f32],
         minuends: read [f32],
@@ -356,7 +356,7 @@ fn subtract() {
     },
 };
 
-/// The WGSL and the executors follow the swapped list; the CPU code is still that of the other list.
+/// The WGSL and the executors use the swapped list; the CPU code uses the other one.
 static HALF_SWAPPED: PassDesc = PassDesc { bindings: SwappedDifference::LIST, ..SUBTRACT };
 
 static SWAPPED: PassDesc = PassDesc {
@@ -367,7 +367,7 @@ static SWAPPED: PassDesc = PassDesc {
     ..HALF_SWAPPED
 };
 
-/// 5 - 3 by this pass. The labels are those of the buffers that hold 5 and 3.
+/// Computes 5 - 3 with this pass. The labels are those of the buffers that contain 5 and 3.
 fn difference(
     executor: &mut splashdown_gpu::Executor,
     pass: &'static PassDesc,
@@ -387,19 +387,19 @@ fn difference(
 }
 
 #[test]
-fn swapped_bindings_of_one_type_fail_or_make_no_difference() {
+fn swapped_bindings_of_the_same_type_fail_or_have_no_effect() {
     let names = ["minuends", "subtrahends"];
-    // In the declaration alone, against the WGSL that the device compiles: refused by the gate.
+    // Swapped only in the declaration, not in the WGSL: rejected by the gate.
     let message = check_source(&SWAPPED, &SUBTRACT.source().unwrap()).unwrap_err();
     assert!(message.contains("binding 0: `minuends` in WGSL, `subtrahends` in Rust"), "{message}");
-    for (name, mut executor) in testing::executors("swapped_bindings_of_one_type_fail_or_make_no_difference")
+    for (name, mut executor) in testing::executors("swapped_bindings_of_the_same_type_fail_or_have_no_effect")
     {
-        // In the one list that everything follows by name: no difference.
+        // Swapped in the binding list that everything refers to by name: no effect.
         for pass in [&SUBTRACT, &SWAPPED] {
             check(pass).unwrap();
             assert_eq!(difference(&mut executor, pass, names).unwrap(), 2.0, "{name}");
         }
-        // Where the buffers are created: refused.
+        // Swapped where the buffers are created: rejected.
         let error = difference(&mut executor, &SUBTRACT, ["subtrahends", "minuends"]).unwrap_err();
         let expected =
             "pass test.subtract: binding \"minuends\": the set holds buffer \"subtrahends\" under this name";
@@ -411,7 +411,7 @@ fn swapped_bindings_of_one_type_fail_or_make_no_difference() {
 #[should_panic(
     expected = "the CPU code views binding \"minuends\", but the pass declares Some(\"subtrahends\")"
 )]
-fn cpu_code_of_another_list_is_caught() {
+fn cpu_code_with_another_list_is_detected() {
     let mut executor = splashdown_gpu::CpuExecutor::new().into();
     let _ = difference(&mut executor, &HALF_SWAPPED, ["minuends", "subtrahends"]);
 }

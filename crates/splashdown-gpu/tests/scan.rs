@@ -1,4 +1,4 @@
-//! Prefix sums over the sizes at which they break: none, one, round the sizes of subgroups, workgroups and blocks.
+//! Prefix sums at critical lengths: zero, one, and around the sizes of subgroups, workgroups and blocks.
 
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Executor, GpuError, Recording, testing};
@@ -24,7 +24,7 @@ const SIZES: [u32; 18] = [
     2_000_003,
 ];
 
-/// The oracle: a running sum in 64 bits, cut to 32.
+/// The oracle: a running sum in 64 bits, truncated to 32.
 fn expected(counts: &[u32]) -> Vec<u32> {
     let mut sum = 0_u64;
     let mut starts = vec![0];
@@ -35,7 +35,7 @@ fn expected(counts: &[u32]) -> Vec<u32> {
     starts
 }
 
-/// Small counts with empty stretches, as cells have them; the same for the same length.
+/// Small counts with empty ranges, as in cells; deterministic for each length.
 fn counts(len: u32) -> Vec<u32> {
     (0..len).map(|i| if i % 1000 < 300 { 0 } else { (i.wrapping_mul(2_654_435_761) >> 16) % 23 }).collect()
 }
@@ -61,8 +61,8 @@ fn the_oracle_adds() {
 }
 
 #[test]
-fn every_size_is_right_on_both_executors() {
-    for (name, mut executor) in testing::executors("every_size_is_right_on_both_executors") {
+fn every_size_is_correct_on_both_executors() {
+    for (name, mut executor) in testing::executors("every_size_is_correct_on_both_executors") {
         for len in SIZES {
             let counts = counts(len);
             let starts = scan(&mut executor, &counts).unwrap();
@@ -75,15 +75,15 @@ fn every_size_is_right_on_both_executors() {
 }
 
 #[test]
-fn fourteen_million_are_right_on_the_cpu() {
+fn fourteen_million_counts_are_correct_on_the_cpu() {
     let counts = counts(14_000_000);
     let starts = scan(&mut splashdown_gpu::CpuExecutor::new().into(), &counts).unwrap();
     assert!(starts == expected(&counts));
 }
 
 #[test]
-fn sums_wrap_alike() {
-    for (name, mut executor) in testing::executors("sums_wrap_alike") {
+fn sums_wrap_equally_on_both_executors() {
+    for (name, mut executor) in testing::executors("sums_wrap_equally_on_both_executors") {
         let counts = vec![0xc000_0001; 20_000];
         assert!(scan(&mut executor, &counts).unwrap() == expected(&counts), "{name}");
     }

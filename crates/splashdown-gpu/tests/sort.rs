@@ -1,4 +1,4 @@
-//! The bitonic sort against the standard library's.
+//! Compares the bitonic sort with that of the standard library.
 
 use glam::{UVec2, uvec2};
 use splashdown_gpu::sort::Sort;
@@ -41,7 +41,7 @@ fn every_size_and_kind_of_key_is_sorted() {
     for (name, mut executor) in testing::executors("every_size_and_kind_of_key_is_sorted") {
         for len in SIZES {
             for (kind, key) in kinds {
-                // Values descend, so that equal keys are in the wrong order before.
+                // Values descend, so that equal keys start in the wrong order.
                 let pairs: Vec<UVec2> = (0..len).map(|i| uvec2(key(i, len), len - i)).collect();
                 assert!(sort(&mut executor, &pairs, len) == expected(&pairs), "{name}, {len} {kind} keys");
             }
@@ -50,8 +50,8 @@ fn every_size_and_kind_of_key_is_sorted() {
 }
 
 #[test]
-fn pairs_beyond_the_length_stay_where_they_are() {
-    for (name, mut executor) in testing::executors("pairs_beyond_the_length_stay_where_they_are") {
+fn pairs_beyond_the_length_are_unchanged() {
+    for (name, mut executor) in testing::executors("pairs_beyond_the_length_are_unchanged") {
         let pairs: Vec<UVec2> = (0..2000).map(|i| uvec2(2000 - i, i)).collect();
         let sorted = sort(&mut executor, &pairs, 1300);
         assert_eq!(sorted[..1300], expected(&pairs[..1300]), "{name}");

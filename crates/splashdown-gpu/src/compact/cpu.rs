@@ -1,4 +1,4 @@
-//! The same on the CPU: each task compacts a range of flags into its own part of the list.
+//! The CPU code: each task compacts a range of flags into its part of the list.
 
 use rayon::prelude::*;
 
@@ -26,7 +26,8 @@ pub(super) fn gather(GatherBindings { params, starts, indices, counted }: Gather
         tasks.push((first, &starts[first..=end], part));
     }
     tasks.into_par_iter().for_each(|(first, starts, part)| {
-        // Every index is written to the next free place, and only a set flag advances it: no branch to mispredict.
+        // Every index is written to the next free position, which only a set flag advances. This avoids a mispredicted
+        // branch.
         let mut kept = 0;
         for (i, pair) in starts.windows(2).enumerate() {
             if let Some(place) = part.get_mut(kept) {

@@ -1,14 +1,15 @@
-//! The list of the elements whose flag is set, in order, and the arguments to dispatch over it.
+//! Stream compaction: the ordered list of elements whose flag is set, and the arguments of a dispatch over it.
 //!
 //! # How it works
 //!
-//! A [scan](crate::scan) of the flags says where each kept element goes; one more pass puts them there. The list may
-//! be shorter than the flags (few blocks of a grid hold fluid): what does not fit is not written, but counted.
+//! A [scan](crate::scan) of the flags gives the position of each selected element; another pass writes the elements
+//! there. The list may be shorter than the flags, because few blocks of a grid contain fluid: elements that do not fit
+//! are counted but not written.
 //!
-//! # Why not the other way
+//! # Alternatives
 //!
-//! A counter that every kept element increments atomically is one dispatch instead of up to four, but leaves the list
-//! in an order that differs from run to run.
+//! A counter that every selected element increments atomically takes one dispatch instead of up to four, but the order
+//! of the list then differs from run to run.
 
 mod cpu;
 
@@ -49,7 +50,7 @@ static GATHER: PassDesc = PassDesc {
 
 pub(crate) static PASSES: [&PassDesc; 1] = [&GATHER];
 
-/// The compaction of a fixed number of flags, with the buffers that takes.
+/// The compaction of a fixed number of flags, with its buffers.
 ///
 /// ```
 /// use splashdown_gpu::{CpuExecutor, Executor, Recording, compact::Compact};
@@ -74,8 +75,7 @@ pub struct Compact {
 }
 
 impl Compact {
-    /// Where in `counted` the number of set flags lies; before it are the arguments of
-    /// [`DispatchSize::Indirect`].
+    /// The index of the number of set flags in `counted`; the arguments of [`DispatchSize::Indirect`] precede it.
     pub const COUNT_WORD: u32 = 3;
 
     /// Prepares compactions of `len` flags into lists over which passes with `workgroup_size` invocations run.
@@ -95,20 +95,20 @@ impl Compact {
         })
     }
 
-    /// Where each element stands in the list: after the recorded commands element `i` of this buffer is the number of
-    /// set flags before flag `i`, so it is the place of `i` in the list if its flag is set; the last of its `len + 1`
+    /// The position of each element in the list. After the recorded commands, element `i` of this buffer is the number of
+    /// set flags before flag `i`, which is the position of `i` in the list if its flag is set. The last of its `len + 1`
     /// elements is the number of all set flags.
     pub fn places(&self) -> Buffer<u32> {
         self.starts
     }
 
-    /// Appends: `indices` becomes the ascending list of every `i` with `flags[i] != 0`, as many as it has room for, and
-    /// `counted` becomes four words: the arguments of a [`DispatchSize::Indirect`] over the
-    /// list, then the number of flags set, which may be more than fit. Passes over the list check their number against
-    /// that number and their list's length.
+    /// Appends the compaction. `indices` becomes the ascending list of every `i` with `flags[i] != 0`, up to its length.
+    /// `counted` becomes four words: the arguments of a [`DispatchSize::Indirect`] over the list, then the number of set
+    /// flags, which may exceed the length of the list. Passes over the list compare their index with that number and
+    /// with the length of the list.
     ///
     /// # Panics
-    /// If `flags` has fewer elements than this compaction was made for, `indices` none, or `counted` fewer than four.
+    /// If `flags` has fewer elements than this compaction was prepared for, `indices` none, or `counted` fewer than four.
     pub fn record(
         &self,
         recording: &mut Recording,

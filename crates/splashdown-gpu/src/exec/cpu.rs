@@ -17,7 +17,7 @@ use crate::{
 /// The threads are those of the rayon pool that the caller is in (`pool.install(..)`), otherwise all cores.
 #[derive(Default)]
 pub struct CpuExecutor {
-    /// By slot; empty where a buffer was freed.
+    /// By slot; empty for a freed buffer.
     buffers: Vec<HostBuffer>,
     table: Table,
     timings: Option<Timings>,
@@ -106,7 +106,8 @@ impl CpuExecutor {
                 Command::Dispatch { pass, size, buffers } => self.dispatch(pass, *size, buffers),
                 Command::Copy { from, to } => {
                     let slots = [from.slot as usize, to.slot as usize];
-                    let [from, to] = self.buffers.get_disjoint_mut(slots).expect("the table has checked");
+                    let [from, to] =
+                        self.buffers.get_disjoint_mut(slots).expect("the table has checked the buffers");
                     let from = from.read::<u8>();
                     to.write::<u8>()[..from.len()].copy_from_slice(from);
                 }

@@ -1,4 +1,4 @@
-//! Runs recordings on a device: one submission each, bind groups and pipelines made once.
+//! Runs recordings on a device, each as one submission; bind groups and pipelines are created once.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -13,13 +13,13 @@ use crate::{
     dispatch_groups,
 };
 
-/// Dispatches timed per submission; those beyond go untimed.
+/// Largest number of timed dispatches per submission; further ones are not timed.
 const TIMED_DISPATCHES: u32 = 2048;
 
-/// Buffers on a device; passes run by their WGSL.
+/// Buffers on a device; runs the WGSL of the passes.
 pub struct GpuExecutor {
     gpu: Arc<Gpu>,
-    /// By slot; `None` where a buffer was freed.
+    /// By slot; `None` for a freed buffer.
     buffers: Vec<Option<wgpu::Buffer>>,
     table: Table,
     pipelines: HashMap<usize, Pipeline>,
@@ -36,9 +36,9 @@ fn key(pass: &'static PassDesc) -> usize {
     std::ptr::from_ref(pass) as usize
 }
 
-/// A buffer that the table knows.
+/// A buffer that exists according to the table.
 fn live(buffers: &[Option<wgpu::Buffer>], id: BufferId) -> &wgpu::Buffer {
-    buffers[id.slot as usize].as_ref().expect("the table has checked")
+    buffers[id.slot as usize].as_ref().expect("the table has checked the buffers")
 }
 
 impl GpuExecutor {
@@ -82,7 +82,7 @@ impl GpuExecutor {
         Ok(id)
     }
 
-    /// The device gives the memory back when submitted work no longer uses it.
+    /// The device releases the memory when submitted work no longer uses it.
     pub(super) fn free(&mut self, ids: &[BufferId]) {
         for id in ids {
             self.table.remove(*id);
@@ -187,7 +187,7 @@ impl GpuExecutor {
         self.timer = None;
     }
 
-    /// On a web page, which cannot wait, only the times that have arrived.
+    /// On a web page, which cannot block, only the times that have arrived.
     pub(super) fn take_timings(&mut self) -> Timings {
         let Some(timer) = &mut self.timer else { return Timings::default() };
         timer.collect();
@@ -232,7 +232,7 @@ impl GpuExecutor {
         self.gpu.health(&recording.label)
     }
 
-    /// Makes the pipelines and bind groups that are missing.
+    /// Creates missing pipelines and bind groups.
     fn prepare(&mut self, commands: &[Command]) -> Result<(), GpuError> {
         for command in commands {
             match command {
@@ -315,7 +315,7 @@ impl Timer {
     }
 }
 
-/// The encoder and, while dispatches follow one another, the compute pass they share.
+/// The encoder and the compute pass that consecutive dispatches share.
 struct Target<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     pass: Option<wgpu::ComputePass<'static>>,

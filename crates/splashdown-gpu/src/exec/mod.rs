@@ -1,4 +1,4 @@
-//! The two executors of one list of commands.
+//! The two executors of recordings: GPU and CPU.
 
 mod cpu;
 mod gpu;
@@ -20,7 +20,7 @@ use crate::{Buffer, BufferId, GpuElement, GpuError, GpuStruct, Recording, Timing
 /// The same recording runs on both; see the crate's page for an example.
 #[expect(clippy::large_enum_variant, reason = "a process has a handful of executors")]
 pub enum Executor {
-    /// In host memory, on the cores.
+    /// In host memory, on the CPU cores.
     Cpu(CpuExecutor),
     /// On a device.
     Gpu(GpuExecutor),
@@ -66,7 +66,7 @@ impl Executor {
         }
     }
 
-    /// Makes a storage buffer of `len` elements, all bytes zero (all bits one after [`poison`](Self::poison)).
+    /// Creates a storage buffer of `len` elements, all bytes zero (all bits one after [`poison`](Self::poison)).
     ///
     /// # Errors
     /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
@@ -75,7 +75,7 @@ impl Executor {
         Ok(Buffer { id, len: len as u32, element: PhantomData })
     }
 
-    /// Makes a storage buffer with this content.
+    /// Creates a storage buffer with this content.
     ///
     /// # Errors
     /// As [`create`](Self::create).
@@ -89,7 +89,7 @@ impl Executor {
         Ok(buffer)
     }
 
-    /// Makes a storage buffer with this content that passes may bind as a uniform too; at most 64 KiB.
+    /// Creates a storage buffer with this content that passes may also bind as a uniform; at most 64 KiB.
     ///
     /// # Errors
     /// As [`create`](Self::create).
@@ -104,7 +104,7 @@ impl Executor {
         Ok(buffer)
     }
 
-    /// Makes a uniform with this content.
+    /// Creates a uniform buffer with this content.
     ///
     /// # Errors
     /// As [`create`](Self::create).
@@ -130,8 +130,8 @@ impl Executor {
         Ok(())
     }
 
-    /// Frees buffers: one handle in an array, or the [ids](crate::BufferSet::ids) of a set. Every later use of their
-    /// handles, also in recordings, is an error that names the buffer.
+    /// Frees buffers: one handle in an array, or the [ids](crate::BufferSet::ids) of a set. Later uses of their handles,
+    /// including those in recordings, are errors that name the buffer.
     ///
     /// # Errors
     /// [`GpuError::NoSuchBuffer`] if one of them was freed before or belongs to another executor; then none is freed.
@@ -151,7 +151,7 @@ impl Executor {
         either!(self, e => e.table_ref())
     }
 
-    /// The number of elements now; a handle copied before a [`resize`](Self::resize) has the former one.
+    /// The current number of elements; a handle copied before a [`resize`](Self::resize) has the former one.
     fn len<T>(&self, buffer: Buffer<T>) -> Result<usize, GpuError> {
         Ok(self.table().get(buffer.id)?.len)
     }
@@ -169,7 +169,7 @@ impl Executor {
         either!(self, e => e.write(buffer.id, bytemuck::cast_slice(data)))
     }
 
-    /// Reads a whole buffer, waiting for all work before it. For set-up, tests and the end of a frame.
+    /// Reads a whole buffer after waiting for all earlier work. For set-up, tests and the end of a frame.
     ///
     /// # Errors
     /// [`GpuError::NoSuchBuffer`], or if the device was lost or refused earlier work.
@@ -177,7 +177,7 @@ impl Executor {
         self.read_first(buffer, self.len(buffer)?)
     }
 
-    /// Reads the first `len` elements, waiting for all work before it.
+    /// Reads the first `len` elements after waiting for all earlier work.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -205,7 +205,7 @@ impl Executor {
         self.request(buffer, len)?.take().await
     }
 
-    /// Requests the first `len` elements as they are after all work submitted so far, without waiting.
+    /// Requests the first `len` elements after all work submitted so far, without waiting.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -245,7 +245,7 @@ impl Executor {
     }
 
     /// From now on dispatches are timed: all of them on the CPU, the first 2,048 of each recording on a GPU, where each
-    /// dispatch then has a compute pass of its own.
+    /// dispatch then has a separate compute pass.
     ///
     /// Returns false if the device has no timestamps.
     pub fn enable_timing(&mut self) -> bool {

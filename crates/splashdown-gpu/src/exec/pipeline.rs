@@ -1,10 +1,10 @@
-//! From a declaration to a pipeline.
+//! Creates the pipeline of a pass from its declaration.
 
 use std::collections::HashMap;
 
 use crate::{Access, BufferId, Gpu, GpuError, PassDesc};
 
-/// A pass on a device, and the bind groups of the buffers it has run with.
+/// A compiled pass, and the bind groups of the buffers that it has used.
 pub(super) struct Pipeline {
     pub pipeline: wgpu::ComputePipeline,
     pub layout: wgpu::BindGroupLayout,
@@ -23,7 +23,7 @@ impl Pipeline {
         Ok(Self { pipeline, layout, bind_groups: HashMap::new() })
     }
 
-    /// Compiles a pass to learn whether the device accepts it.
+    /// Compiles a pass to check whether the device accepts it.
     pub async fn try_out(gpu: &Gpu, pass: &'static PassDesc) -> Result<(), GpuError> {
         let source = pass.source().map_err(|reason| GpuError::BadShader { pass: pass.label, reason })?;
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);

@@ -1,4 +1,4 @@
-//! Transfers from the device to the host that do not block.
+//! Non-blocking transfers from the device to the host.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ impl<T: GpuElement> Readback<T> {
         block_on(self.take())
     }
 
-    /// The data, once it has arrived. Outside of a web page this future blocks when it is polled, and is then ready.
+    /// The data, once it has arrived. Outside a web page this future blocks when it is polled, and is then ready.
     ///
     /// # Errors
     /// If the device was lost.
@@ -93,7 +93,7 @@ pub(super) struct Mapping {
 #[derive(Default)]
 struct Report {
     status: AtomicU8,
-    /// The task that waits: on a web page the browser reports, and the state cannot be polled for.
+    /// The waiting task: on a web page the browser calls back, and the state cannot be polled.
     #[cfg(target_arch = "wasm32")]
     waker: std::sync::Mutex<Option<std::task::Waker>>,
 }

@@ -1,4 +1,4 @@
-//! What both executors know about their buffers, and the check of commands against it.
+//! The metadata of an executor's buffers, and the validation of commands.
 
 use crate::{
     Access, BufferId, Command, DispatchSize, Flag, GpuElement, GpuError, PassDesc, Recording, Shape,
@@ -31,13 +31,12 @@ impl Meta {
         Self { label, element: T::WGSL, size: size_of::<T>(), len, kind }
     }
 
-    /// WebGPU binds no empty buffers, so the smallest has room for one element.
+    /// WebGPU cannot bind an empty buffer, so the smallest has the size of one element.
     pub fn bytes(&self) -> u64 {
         self.size as u64 * self.len.max(1) as u64
     }
 
-    /// Refuses more elements than a 32-bit index reaches, which is all that passes have, and more bytes than a uniform
-    /// may have.
+    /// Rejects more elements than the 32-bit indices of passes can address, and more bytes than a uniform may have.
     pub fn check_len(&self) -> Result<(), GpuError> {
         let fits = match self.kind {
             Kind::Storage => u64::from(u32::MAX),
@@ -58,7 +57,7 @@ impl Meta {
 
 #[derive(Default)]
 pub(crate) struct Table {
-    /// By slot; `None` where a buffer was freed.
+    /// By slot; `None` for a freed buffer.
     entries: Vec<Option<(BufferId, Meta)>>,
     free_slots: Vec<u32>,
     pub poison: bool,
@@ -75,7 +74,7 @@ impl Table {
         id
     }
 
-    /// Forgets a buffer. Its slot is used again, its identifier is not.
+    /// Removes a buffer. Its slot is reused, its identifier is not.
     pub fn remove(&mut self, id: BufferId) {
         self.entries[id.slot as usize] = None;
         self.free_slots.push(id.slot);
@@ -85,7 +84,7 @@ impl Table {
         self.entries[id.slot as usize] = Some((id, meta));
     }
 
-    /// What is known of a buffer; `None` if it was freed or belongs to another executor.
+    /// The metadata of a buffer; `None` if it was freed or belongs to another executor.
     pub fn find(&self, id: BufferId) -> Option<&Meta> {
         let (known, meta) = self.entries.get(id.slot as usize)?.as_ref()?;
         (*known == id).then_some(meta)
@@ -104,7 +103,7 @@ impl Table {
         if self.poison { 0xff } else { 0 }
     }
 
-    /// Compares every command with the buffers it names, so that an executor need not check again.
+    /// Validates every command against its buffers, so that executors need no further checks.
     pub fn check(&self, recording: &Recording) -> Result<(), GpuError> {
         if let Some((pass, reason)) = &recording.error {
             return Err(GpuError::BadBinding { pass, reason: reason.clone() });
@@ -113,7 +112,7 @@ impl Table {
         self.check_commands(&recording.commands, &mut Vec::new(), &bad)
     }
 
-    /// `flags`: those of the repetitions around these commands.
+    /// `flags`: the flags of the enclosing repetitions.
     fn check_commands(
         &self,
         commands: &[Command],
@@ -127,7 +126,7 @@ impl Table {
                     let misses = |flag: &&Flag| !buffers.contains(&flag.buffer) && !flag.excepts(pass.label);
                     if let Some(Flag { buffer: flag, .. }) = flags.iter().find(misses) {
                         return Err(bad(format!(
-                            "pass {} is repeated until a flag in {flag:?} is set, and does not bind that buffer: on a \
+                            "pass {} is repeated until a flag in {flag:?} is set, but does not bind that buffer: on a \
                              GPU it would not stop",
                             pass.label
                         )));

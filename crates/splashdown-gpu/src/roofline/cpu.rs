@@ -1,4 +1,4 @@
-//! The same work on the CPU.
+//! The CPU code of the measurements.
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ fn fused(x: &mut [f32; 4 * TOGETHER]) {
     work(x, f32::mul_add);
 }
 
-/// One factor after the other, each over all lanes: here the lanes are the independent chains.
+/// Applies one factor after the other to all lanes; on the CPU the lanes are the independent chains.
 #[inline(always)]
 fn work(x: &mut [f32; 4 * TOGETHER], fma: impl Fn(f32, f32, f32) -> f32) {
     let begin = *x;

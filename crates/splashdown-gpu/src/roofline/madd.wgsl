@@ -11,7 +11,7 @@ fn madd(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         return;
     }
     let x = values[i];
-    // Eight chains that do not wait for one another.
+    // Eight independent chains.
     var a = x;
     var b = x;
     var c = x;

@@ -1,13 +1,13 @@
 //! The roofline of a device: its copy bandwidth, its arithmetic throughput, and the cost of a dispatch that depends on
 //! the previous one.
 //!
-//! The speed of a step is reported as a ratio to these limits, measured in the same process on the same device, so that
-//! the ratio holds on any machine.
+//! The time of a step is reported relative to these limits, measured in the same process on the same device, so that the
+//! ratio is comparable between machines.
 //!
-//! *How it works.* Three passes that serve the measurement only. `copy` moves 32 MiB from one buffer to another, more
-//! than caches hold. `madd` runs eight independent chains of fused multiply-adds per lane, enough to hide their
-//! latency. `nothing` is one workgroup that increments a counter, many times in one submission, each after the previous
-//! one. The best of several rounds counts, because a roofline is what is possible.
+//! *How it works.* Three passes serve only the measurement. `copy` copies 32 MiB from one buffer to another, more than
+//! fits into caches. `madd` runs eight independent chains of fused multiply-adds per lane, enough to hide their latency.
+//! `nothing` is one workgroup that increments a counter, many times in one submission, each after the previous one. The
+//! best of several rounds is reported, because a roofline is an upper limit.
 
 mod cpu;
 
@@ -97,7 +97,7 @@ impl Roofline {
     /// # Errors
     /// Those of the device.
     pub fn measure(executor: &mut Executor) -> Result<Self, GpuError> {
-        // Written, because memory that was never written is one page of zeros, which is read from a cache.
+        // Initialized, because memory that was never written maps to one page of zeros, which is read from a cache.
         let values = executor.create_from("values", &vec![Vec4::ONE; COPIED])?;
         let results = executor.create::<Vec4>("results", COPIED)?;
         let counter = executor.create::<u32>("counter", 1)?;
@@ -156,8 +156,8 @@ mod tests {
     use crate::testing::executors;
 
     #[test]
-    fn the_measured_work_is_done() -> Result<(), GpuError> {
-        for (device, mut executor) in executors("the_measured_work_is_done") {
+    fn the_measured_passes_compute_correct_results() -> Result<(), GpuError> {
+        for (device, mut executor) in executors("the_measured_passes_compute_correct_results") {
             let n = 1000;
             let input: Vec<Vec4> = (0..n).map(|i| Vec4::new(i as f32, 0.25, -1.0, 0.5) / n as f32).collect();
             let values = executor.create_from("values", &input)?;

@@ -1,11 +1,11 @@
-//! The same passes on the cores. Integer sums wrap and may be taken in any order, so the number of threads
-//! changes nothing.
+//! The CPU code of the passes. Integer sums wrap and are independent of the order, so the result does not depend on the
+//! number of threads.
 
 use rayon::prelude::*;
 
 use super::{ReduceBindings, ScanParams, SingleBindings, SpreadBindings};
 
-/// Blocks per task: 16,384 words, enough to hide what a task costs.
+/// Blocks per task: 16,384 words, enough to hide the overhead of a task.
 const BLOCKS_PER_TASK: usize = 4;
 
 /// The sum of every block of `256 * RUN` counts.
@@ -17,13 +17,13 @@ pub(super) fn reduce<const RUN: usize, const MOST: u32>(
     );
 }
 
-/// All of it, serial.
+/// The whole scan, serially.
 pub(super) fn single<const MOST: u32>(SingleBindings { params, counts, starts }: SingleBindings<'_>) {
     let len = params.len as usize;
     starts[len] = run::<MOST>(&counts[..len], &mut starts[..len], 0);
 }
 
-/// The prefix sums inside every block, on top of the sums of the blocks before.
+/// The prefix sums inside every block, offset by the sums of the preceding blocks.
 pub(super) fn spread<const RUN: usize, const MOST: u32, const SCANNED: bool>(
     SpreadBindings { params, counts, sums, starts }: SpreadBindings<'_>,
 ) {
@@ -49,7 +49,7 @@ pub(super) fn spread<const RUN: usize, const MOST: u32, const SCANNED: bool>(
         });
 }
 
-/// Writes the sums before each count, beginning with `sum`, and returns the sum after the last.
+/// Writes the sum before each count, starting with `sum`, and returns the sum after the last.
 fn run<const MOST: u32>(counts: &[u32], starts: &mut [u32], mut sum: u32) -> u32 {
     for (count, start) in counts.iter().zip(starts) {
         *start = sum;

@@ -1,26 +1,25 @@
-//! Prefix sums: where each cell, block or kept element begins, from how many there are of each.
+//! Prefix sums: the start of each cell, block or selected element from the counts.
 //!
 //! # How it works
 //!
-//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 4,096 counts. Then each workgroup
-//! adds up the sums of the blocks before its own by itself, all of its invocations together, and scans its
-//! block on top of that. Up to 4,096 blocks (16.8 million counts) these are at most sixteen more reads per
-//! invocation, of words that all workgroups share; a dispatch of its own, between the two, costs more. Past
-//! that it is three dispatches: one workgroup scans the sums in the middle. It loops over them, 4,096 a round,
-//! so there is no length at which a further level would be needed: the longest buffer a device binds (2^30
-//! counts) takes 64 rounds. Short inputs take that middle pass alone.
+//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 4,096 counts. Then each workgroup adds up the
+//! sums of the preceding blocks, with all of its invocations, and scans its block starting from that sum. Up to 4,096
+//! blocks (16.8 million counts) this takes at most sixteen more reads per invocation, of words that all workgroups
+//! share; a separate dispatch between the two costs more. Longer inputs take three dispatches: in the middle, one
+//! workgroup scans the sums in a loop over 4,096 sums per round. No further level is needed at any length: the longest
+//! buffer a device binds (2^30 counts) takes 64 rounds. Short inputs take only the middle pass.
 //!
-//! Inside a workgroup each invocation sums sixteen counts in registers, and sixteen invocations join the 256 sums: two
-//! barriers a round where the usual tree has sixteen.
+//! Inside a workgroup each invocation sums sixteen counts in registers, and sixteen invocations combine the 256 sums: two
+//! barriers per round, where the usual tree has sixteen.
 //!
-//! # What it costs
+//! # Cost
 //!
 //! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 counts take 0.04 ms by
 //! the CPU side and 0.28 ms on software Vulkan (lavapipe of Mesa 22.3.6), a million counts 0.3 ms and 2.9 ms.
-//! One workgroup alone is as fast as blocks there up to 16,384 counts (0.14 ms); a graphics card likes blocks
-//! earlier, but has little to lose at such lengths.
+//! There, a single workgroup is as fast as blocks up to 16,384 counts (0.14 ms). A graphics card profits from blocks at
+//! shorter lengths, but the difference is small.
 //!
-//! # Why not the other way
+//! # Alternatives
 //!
 //! *Decoupled look-back* (one pass, each block waiting for its predecessor) reads memory once instead of twice, but
 //! needs forward progress between workgroups, which neither WebGPU nor a software driver promises.
@@ -31,9 +30,9 @@ use crate::{
     Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, bindings, gpu_struct, wgsl,
 };
 
-/// Up to this length one workgroup does it all.
+/// Up to this length one workgroup computes the whole scan.
 const SINGLE_MAX: u32 = 16_384;
-/// Up to this many blocks every workgroup adds up by itself what is before its block.
+/// Up to this many blocks every workgroup adds up the sums of the preceding blocks itself.
 const MOST_SUMS: u32 = 4096;
 /// Counts per invocation.
 const RUN: usize = 16;
@@ -75,7 +74,7 @@ bindings! {
     }
 }
 
-/// The value of `MOST` that leaves counts as they are.
+/// The value of `MOST` that leaves counts unchanged.
 const ANY: u32 = u32::MAX;
 
 static REDUCE: PassDesc = PassDesc {
@@ -111,7 +110,7 @@ static SPREAD: PassDesc = PassDesc {
     cpu: |_, slots| cpu::spread::<RUN, ANY, false>(slots.into()),
 };
 
-/// With sums that have been scanned.
+/// The variant for scanned sums.
 static SPREAD_SCANNED: PassDesc = PassDesc {
     label: "scan.spread_scanned",
     constants: &[("RUN", RUN as f64), ("MOST", ANY as f64), ("SCANNED", 1.0)],
@@ -158,7 +157,7 @@ pub(crate) static PASSES: [&PassDesc; 8] = [
     &FLAGS_SPREAD_SCANNED,
 ];
 
-/// The passes of one kind of scan. Counts above `MOST` count as `MOST`: 1 makes flags of them.
+/// The passes of one kind of scan. Counts above `MOST` are treated as `MOST`: 1 treats them as flags.
 #[derive(Debug)]
 struct Passes {
     block: u32,
@@ -184,7 +183,7 @@ static FLAGS: Passes = Passes {
     spread_scanned: &FLAGS_SPREAD_SCANNED,
 };
 
-/// Exclusive prefix sums of a fixed number of counts, with the buffers that takes.
+/// Exclusive prefix sums of a fixed number of counts, with the buffers of the scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Scan {
     len: u32,
@@ -193,7 +192,7 @@ pub struct Scan {
     levels: Option<Levels>,
 }
 
-/// The further buffers of a scan in blocks.
+/// The additional buffers of a scan in blocks.
 #[derive(Clone, Copy, Debug)]
 struct Levels {
     blocks: u32,
@@ -211,7 +210,7 @@ impl Scan {
         Self::with(executor, len, &COUNTS, SINGLE_MAX, MOST_SUMS)
     }
 
-    /// Prepares scans of `len` flags: each that is not 0 counts as one.
+    /// Prepares scans of `len` flags: every value other than 0 counts as 1.
     ///
     /// # Errors
     /// As [`Executor::create`].
@@ -250,11 +249,11 @@ impl Scan {
         self.len
     }
 
-    /// Appends: `starts[i]` becomes the sum of `counts[..i]` for every `i` up to and including the number of counts, so
-    /// the last one is the total. Sums wrap at 2^32.
+    /// Appends the scan: `starts[i]` becomes the sum of `counts[..i]` for every `i` up to and including the number of
+    /// counts, so the last element is the total. Sums wrap at 2^32.
     ///
     /// # Panics
-    /// If `counts` has fewer elements than this scan was made for, or `starts` not one more than that.
+    /// If `counts` has fewer elements than this scan was prepared for, or `starts` not one more than that.
     pub fn record(&self, recording: &mut Recording, counts: Buffer<u32>, starts: Buffer<u32>) {
         assert!(counts.len() >= self.len, "a scan of {} counts was given {counts:?}", self.len);
         assert!(starts.len() > self.len, "a scan of {} counts cannot write {starts:?}", self.len);
@@ -321,10 +320,10 @@ mod tests {
     };
 
     #[test]
-    fn a_dispatch_past_65_535_workgroups_is_right() {
+    fn dispatches_beyond_65_535_workgroups_are_correct() {
         let len = 65_537 * 256 + 3;
         let counts: Vec<u32> = (0..len).map(|i| i % 5).collect();
-        for (name, mut executor) in testing::executors("a_dispatch_past_65_535_workgroups_is_right") {
+        for (name, mut executor) in testing::executors("dispatches_beyond_65_535_workgroups_are_correct") {
             let input = executor.create_from("counts", &counts).unwrap();
             let starts = executor.create::<u32>("starts", counts.len() + 1).unwrap();
             let scan = Scan::with(&mut executor, len, &NARROW, 0, MOST_SUMS).unwrap();
@@ -333,7 +332,7 @@ mod tests {
             scan.record(&mut recording, input, starts);
             executor.run(&recording).unwrap();
             let starts = executor.read(starts).unwrap();
-            // Five counts that follow one another sum to 10.
+            // Five consecutive counts sum to 10.
             let expected = |i: u32| i / 5 * 10 + [0, 0, 1, 3, 6][i as usize % 5];
             let wrong = (0..=len).find(|&i| starts[i as usize] != expected(i));
             assert_eq!(wrong, None, "{name}");
@@ -341,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn two_dispatches_give_what_three_give() {
+    fn two_and_three_dispatches_agree() {
         let of_labels = |recording: &Recording| -> Vec<&'static str> {
             let label = |command: &Command| match command {
                 Command::Dispatch { pass, .. } => pass.label,
@@ -349,7 +348,7 @@ mod tests {
             };
             recording.commands.iter().map(label).collect()
         };
-        for (name, mut executor) in testing::executors("two_dispatches_give_what_three_give") {
+        for (name, mut executor) in testing::executors("two_and_three_dispatches_agree") {
             for len in [1, 4096, 4097, 50_000, 300_000 * 4] {
                 let counts: Vec<u32> = (0..len).map(|i| testing::noise(i) >> 8).collect();
                 let input = executor.create_from("counts", &counts).unwrap();

@@ -9,7 +9,7 @@ struct ScanParams {
 #bindings
 
 override RUN: u32 = 16u;
-override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
+override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
 
 @compute @workgroup_size(256)
 fn scan_reduce(
@@ -20,7 +20,7 @@ fn scan_reduce(
     let block = linear_group(group, groups);
     let first = block * 256u * RUN + lane;
     var sum = 0u;
-    // Neighbouring invocations read neighbouring words: the order of a whole block's sum is free.
+    // Neighbouring invocations read neighbouring words: the order of the sum over a block is arbitrary.
     for (var i = 0u; i < RUN; i++) {
         let at = first + i * 256u;
         if (at < params.len) {

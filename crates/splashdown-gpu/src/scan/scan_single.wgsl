@@ -8,7 +8,7 @@ struct ScanParams {
 #bindings
 
 const RUN: u32 = 16u;
-override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
+override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
 
 @compute @workgroup_size(256)
 fn scan_single(@builtin(local_invocation_index) lane: u32) {

@@ -9,11 +9,11 @@ struct ScanParams {
 #bindings
 
 override RUN: u32 = 16u;
-override MOST: u32 = 0xffffffffu; // 1 counts flags, whatever their value
-override SCANNED: u32 = 0u; // 1 if `sums` holds prefix sums already
+override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
+override SCANNED: u32 = 0u; // 1 if `sums` already contains prefix sums
 
-// A part of the sum of the blocks before this one: those of all invocations together are that sum. Neighbouring
-// invocations read neighbouring words, and every workgroup reads the same ones, so they come from a cache.
+// This invocation's part of the sum of the preceding blocks; the parts of all invocations add up to that sum.
+// Neighbouring invocations read neighbouring words, and all workgroups read the same words, so they are cached.
 fn part_before(block: u32, lane: u32) -> u32 {
     if (SCANNED == 1u) {
         return select(0u, sums[block], lane == 0u);

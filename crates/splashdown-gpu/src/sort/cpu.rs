@@ -1,8 +1,8 @@
-//! The same network on the CPU.
+//! The sorting network on the CPU.
 //!
-//! Not rayon's sort, which is several times faster: the network is here as the thesis's baseline, to be measured as
-//! such, and each of its passes must do on the CPU what it does on a GPU for any input. Blocks of 512 are sorted by the
-//! standard library, because the order is total: there is one result, however it is found.
+//! rayon's sort is several times faster. The network is the baseline of the thesis and is measured as such, and each of
+//! its passes must have the same result on the CPU as on a GPU for any input. Blocks of 512 are sorted by the standard
+//! library: the order is total, so the result is unique.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -45,14 +45,15 @@ pub(super) fn merge(SortBindings { params, pairs }: SortBindings<'_>) {
     });
 }
 
-/// One step over spans that are longer than a block.
+/// One step over spans longer than a block.
 pub(super) fn step(SortBindings { params, pairs }: SortBindings<'_>) {
     let SortParams { len, span, flip } = *params;
     let half = span as usize / 2;
     pairs[..len as usize].par_chunks_mut(span as usize).for_each(|part| {
         let (low, high) = part.split_at_mut(part.len().min(half));
         if flip == 1 {
-            // The first of `high` meets the last of `low`; where `high` is cut short, the first of `low` meet padding.
+            // The first element of `high` is compared with the last of `low`. If `high` is truncated, the first elements
+            // of `low` are compared with padding.
             let met = half - high.len();
             let low = low.get_mut(met..).unwrap_or_default();
             low.par_iter_mut().rev().zip(high).with_min_len(TASK).for_each(|(low, high)| compare(low, high));

@@ -1,29 +1,29 @@
-//! Bitonic sort of pairs of a key and a value: the neighbour search of the thesis, kept as a baseline.
+//! Bitonic sort of key-value pairs: the neighbour search of the thesis, retained as a baseline.
 //!
 //! # How it works
 //!
 //! Batcher's network (K. E. Batcher, *Sorting networks and their applications*, AFIPS 1968) in the form whose
-//! comparisons all point the same way: a merge first compares mirrored places of two sorted halves (a *flip*),
-//! then places half a span apart, a quarter, and so on. Since the smaller of two always goes to the front,
-//! padding of `u32::MAX` up to the next power of two never moves, and need not be there: comparisons with it
-//! are left out. So any length is sorted in place.
+//! comparisons all have the same direction: a merge first compares mirrored positions of two sorted halves (a *flip*),
+//! then positions half a span apart, a quarter, and so on. The smaller of two elements always moves to the front, so
+//! padding of `u32::MAX` up to the next power of two never moves. It is not stored, and comparisons with it are omitted,
+//! so any length is sorted in place.
 //!
-//! Everything inside blocks of 512 happens in workgroup memory; only longer spans take a dispatch per step: 36
-//! dispatches for 65,536 pairs, 78 for a million.
+//! Blocks of 512 are processed in workgroup memory; only longer spans take a dispatch per step: 36 dispatches for 65,536
+//! pairs, 78 for a million.
 //!
-//! Pairs are ordered by key, then by value. If the values differ (numbers of particles do), the order is total and the
-//! result repeats bit by bit.
+//! Pairs are ordered by key, then by value. If the values are distinct, as particle indices are, the order is total and
+//! the result is bit-identical in every run.
 //!
-//! # What it costs
+//! # Cost
 //!
 //! On 2 cores, by `cargo run --release -p splashdown-gpu --example primitives`: 65,536 pairs take 4 ms by the
 //! CPU side and 27 ms on software Vulkan (lavapipe of Mesa 22.3.6), where the scan of a counting sort takes 0.3
 //! ms.
 //!
-//! # Why not the other way
+//! # Alternatives
 //!
-//! It *is* the other way: n log² n comparisons, where a counting sort by cell (histogram, [scan](crate::scan), scatter)
-//! reads and writes everything twice. It stays because it is what the numbers of the thesis are compared with.
+//! A counting sort by cell (histogram, [scan](crate::scan), scatter) reads and writes everything twice, while this sort
+//! needs n log² n comparisons. This sort is retained for comparison with the figures of the thesis.
 
 mod cpu;
 
@@ -44,7 +44,7 @@ gpu_struct! {
         len: u32,
         /// Pairs in the two halves that a step compares.
         span: u32,
-        /// 1 if the step compares mirrored places.
+        /// 1 if the step compares mirrored positions.
         flip: u32,
     }
 }
@@ -106,7 +106,7 @@ pub(crate) static PASSES: [&PassDesc; 3] = [&BLOCKS, &MERGE, &STEP];
 pub struct Sort {
     len: u32,
     params: Buffer<SortParams>,
-    /// The numbers of a flip of 1024, 2048, ... pairs and of the straight step of as many.
+    /// The parameters of a flip of 1024, 2048, ... pairs and of the straight step of the same length.
     steps: Vec<[Buffer<SortParams>; 2]>,
 }
 
@@ -132,8 +132,8 @@ impl Sort {
         Ok(sort)
     }
 
-    /// Appends: the first pairs (key, value) of `pairs`, as many as this sort was made for, are put into ascending
-    /// order of keys, and where these are equal of values.
+    /// Appends the sort: the first `len` pairs (key, value) of `pairs` are sorted by ascending key, and by value for equal
+    /// keys.
     ///
     /// # Panics
     /// If `pairs` has fewer elements.
@@ -171,9 +171,9 @@ mod tests {
     use super::*;
     use crate::testing;
 
-    /// On any input, not only on the halves sorted before: a network compares the same places whatever they hold.
+    /// On any input, not only on sorted halves: a network compares the same positions independent of their contents.
     #[test]
-    fn every_step_does_the_same_on_both_executors() {
+    fn every_step_agrees_on_both_executors() {
         let len = 5000;
         let pairs: Vec<UVec2> = (0..len).map(|i| uvec2(testing::noise(i) % 999, i)).collect();
         let cases = [
@@ -185,7 +185,7 @@ mod tests {
             (&STEP, 8192, 1),
         ];
         let mut results: Vec<Vec<Vec<UVec2>>> = Vec::new();
-        for (_, mut executor) in testing::executors("every_step_does_the_same_on_both_executors") {
+        for (_, mut executor) in testing::executors("every_step_agrees_on_both_executors") {
             let run = |(pass, span, flip): (&'static PassDesc, u32, u32)| {
                 let buffer = executor.create_from("pairs", &pairs)?;
                 let params = executor.create_uniform("params", &SortParams { len, span, flip })?;
@@ -207,6 +207,6 @@ mod tests {
             assert!(result.iter().all(|after| *after != pairs), "a step changed nothing");
         }
         let distinct = results[0].iter().enumerate().all(|(i, a)| results[0][..i].iter().all(|b| a != b));
-        assert!(distinct, "two different steps gave the same");
+        assert!(distinct, "two different steps have the same result");
     }
 }

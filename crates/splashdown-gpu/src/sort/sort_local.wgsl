@@ -9,7 +9,7 @@ struct SortParams {
 
 #bindings
 
-// 1: sort each block of 512. 0: only the last merge, of spans from 512 down.
+// 1: sorts each block of 512. 0: only the last merge, of spans from 512 down.
 override WHOLE: u32;
 
 var<workgroup> local: array<vec2<u32>, 512>;

@@ -20,7 +20,7 @@ fn sort_step(
     let low = begin + i % half;
     let high = select(low + half, begin + params.span - 1u - i % half, params.flip == 1u);
     if (high >= params.len) {
-        return; // its partner is padding, which stays behind everything
+        return; // the partner is padding, which stays at the end
     }
     let a = pairs[low];
     let b = pairs[high];

@@ -1,5 +1,5 @@
-// Past 65,535 workgroups a dispatch has two dimensions: the number of an invocation, or of a workgroup, as if
-// it had one.
+// Beyond 65,535 workgroups a dispatch has two dimensions. These functions return the one-dimensional index of an
+// invocation or a workgroup.
 fn linear_index(invocation: vec3<u32>, groups: vec3<u32>, workgroup_size: u32) -> u32 {
     return invocation.y * groups.x * workgroup_size + invocation.x;
 }

@@ -46,7 +46,7 @@ fn expand_into<'a>(
                 let module = modules
                     .iter()
                     .find(|module| module.name == name)
-                    .ok_or_else(|| format!("it imports {name:?}, which is not among its modules"))?;
+                    .ok_or_else(|| format!("it imports {name:?}, which is not one of its modules"))?;
                 expand_into(module.source, modules, &[], seen, out)?;
             }
         } else if line.trim_end() == "#bindings" {
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_module_is_pasted_once_and_an_unknown_one_is_named() {
+    fn a_module_is_pasted_once_and_an_unknown_module_is_reported() {
         let modules = [
             WgslModule { name: "a", source: "#import b\nconst A = 1;" },
             WgslModule { name: "b", source: "const B = 2;" },

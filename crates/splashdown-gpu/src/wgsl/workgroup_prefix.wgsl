@@ -1,7 +1,7 @@
 // The prefix sums of one value per invocation over a workgroup of 256, with two barriers.
 //
-// Sixteen invocations sum sixteen rows of sixteen; the usual tree would need eight barriers, and barriers are what
-// software drivers are slow at. `half` is 0 or 1, in turn where a loop calls this: that saves a third barrier.
+// Sixteen invocations sum sixteen rows of sixteen. The usual tree needs eight barriers, which are slow on software
+// drivers. `half` is 0 or 1, alternating if called in a loop, which saves a third barrier.
 var<workgroup> prefix_values: array<u32, 512>;
 var<workgroup> prefix_rows: array<u32, 32>;
 
