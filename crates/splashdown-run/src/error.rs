@@ -1,4 +1,4 @@
-//! What can go wrong with a run and its files.
+//! The errors of this crate.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;
 
-/// Everything this crate's functions can fail with.
+/// An error of a run or its files.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -56,7 +56,7 @@ pub enum RunError {
 
     /// The run to resume has no frames left.
     #[error(
-        "frame {done} is done already and the run ends with frame {frames}: request more frames to extend it"
+        "frame {done} is already complete and the run ends with frame {frames}: request more frames to extend it"
     )]
     AlreadyFinished {
         /// The frame of the checkpoint.

@@ -9,10 +9,10 @@ use crate::{Reporter, RunFolder};
 
 /// Films show at most this many frames per second.
 const MAX_FRAME_RATE: f32 = 60.0;
-/// The frame rate of films of faster scenes, which are thus in slow motion.
+/// The frame rate of the films of scenes with a higher frame rate. These films are in slow motion.
 const SLOW_MOTION_RATE: f32 = 30.0;
 
-/// The frames per second of the film of a scene with this many.
+/// The frame rate of the film of a scene.
 pub fn frame_rate(scene_frame_rate: f32) -> f32 {
     if scene_frame_rate > MAX_FRAME_RATE { SLOW_MOTION_RATE } else { scene_frame_rate }
 }
@@ -40,7 +40,7 @@ pub(crate) fn start(
     (films, failures)
 }
 
-/// Starts films with the existing pictures of frames 0 to `last`; returns the number of missing pictures.
+/// Adds the existing pictures of frames 0 to `last` to the films. Returns the number of missing pictures.
 ///
 /// # Errors
 /// The writer's first failure.

@@ -30,11 +30,11 @@
 //!
 //! * Every file is complete or absent.
 //! * A [`RunRequest::resume`]d run is bit-identical to an uninterrupted one on the same device.
-//! * One run at a time writes into a folder.
+//! * At most one run at a time writes into a folder.
 
 #![cfg_attr(
     target_arch = "wasm32",
-    expect(dead_code, unused_imports, reason = "a page exports files, and has no folder to run into")
+    expect(dead_code, unused_imports, reason = "a web page exports single files and has no output folder")
 )]
 
 pub mod appearance;

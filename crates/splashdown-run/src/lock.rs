@@ -1,4 +1,4 @@
-//! One run at a time writes into a folder.
+//! The lock of an output folder: at most one run at a time writes into it.
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::RunError;
 
 /// Excludes other runs from an output folder until it is dropped. The operating system releases the lock when the
-/// process ends in any way; the empty file that may remain then locks nothing.
+/// process ends for any reason. An empty file may remain, which does not lock the folder.
 #[derive(Debug)]
 pub(crate) struct FolderLock {
     path: PathBuf,
@@ -18,7 +18,8 @@ impl FolderLock {
     /// Locks an existing folder. On a file system without locks no run is excluded.
     ///
     /// # Errors
-    /// [`RunError::FolderInUse`] while another run writes there; [`RunError::Lock`] if nothing can be written.
+    /// [`RunError::FolderInUse`] while another run writes into it; [`RunError::Lock`] if the lock file cannot be
+    /// created.
     pub fn take(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(".lock");
         loop {
@@ -39,8 +40,8 @@ impl FolderLock {
     }
 }
 
-/// False if a run that ended between opening and locking has removed the file: the next run would lock a new file of
-/// the same name.
+/// Whether the open file is still the one at this path. A run that ends between opening and locking removes the file;
+/// the next run would then create and lock a new file of the same name.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -50,7 +51,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// On other systems an open file cannot be removed.
+/// Always true: on other systems an open file cannot be removed.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -58,7 +59,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 
 impl Drop for FolderLock {
     fn drop(&mut self) {
-        // A leftover file does no harm.
+        // A file that cannot be removed does not lock the folder.
         let _ = fs::remove_file(&self.path);
     }
 }
@@ -84,7 +85,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_removed_file_is_no_lock() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_removed_lock_file_is_detected() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
         let path = folder.path().join(".lock");
         let file = std::fs::File::create(&path)?;

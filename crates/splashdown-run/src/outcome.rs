@@ -17,7 +17,7 @@ pub enum RunEnd {
     Failed(RunError),
 }
 
-/// What a run left behind.
+/// The result of a run and its files.
 #[derive(Debug)]
 #[non_exhaustive]
 #[must_use]
@@ -26,11 +26,11 @@ pub struct RunOutcome {
     pub end: RunEnd,
     /// Where the files are.
     pub folder: RunFolder,
-    /// Number of frames with complete files, the initial one and those before a resume included.
+    /// Number of frames with complete files, including the initial one and those before a resume.
     pub complete_frames: usize,
     /// The last frame that this run completed.
     pub last_frame: Option<CompleteFrame>,
-    /// The files of all frames, checkpoints and probes, those before a resume included.
+    /// The files of all frames, checkpoints and probes, including those before a resume.
     pub files: Vec<WrittenFile>,
     /// The films.
     pub films: Vec<WrittenFile>,

@@ -24,7 +24,7 @@ impl ProbeFiles {
         Ok(Self { logs: scene.probes.iter().map(create).collect::<Result<_, _>>()? })
     }
 
-    /// Continues files that had this many bytes each; what follows is cut off.
+    /// Continues existing files. Each is first truncated to its number of bytes at the checkpoint.
     ///
     /// # Errors
     /// [`IoError::Write`].

@@ -7,7 +7,7 @@ use splashdown_io::{Film, FilmOptions, FrameWriter, Job, Picture, prepare_folder
 
 use crate::{RunError, export, films};
 
-/// A recording in progress. Pictures already written stay whatever happens later.
+/// A recording in progress. Pictures already written remain if a later one fails.
 #[derive(Debug)]
 pub struct Recorder {
     folder: PathBuf,
@@ -20,7 +20,8 @@ pub struct Recorder {
 
 impl Recorder {
     /// Starts in a new folder of this name, numbered if the name is in use. The film has the frame rate of
-    /// [`films::frame_rate`]. If it cannot be started, for example without `ffmpeg`, the second part is the reason.
+    /// [`films::frame_rate`]. If the film cannot be started, for example without `ffmpeg`, the second value is the
+    /// reason.
     ///
     /// # Errors
     /// [`RunError::Io`] if nothing can be written.
@@ -91,20 +92,20 @@ mod tests {
     fn every_picture_is_written_and_nothing_is_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let name = folder.path().join("dam-break");
-        for round in 0..2 {
+        for recording in 0..2 {
             let (mut recorder, failure) = Recorder::start(&name, [16, 8], 30.0).unwrap();
             for shade in 0..3 {
                 recorder.add(vec![60 * shade; 16 * 8 * 4]).unwrap();
             }
             assert_eq!(recorder.frames(), 3);
-            let place = if round == 0 { name.clone() } else { folder.path().join("dam-break-2") };
-            assert_eq!(recorder.folder(), place);
+            let expected = if recording == 0 { name.clone() } else { folder.path().join("dam-break-2") };
+            assert_eq!(recorder.folder(), expected);
             recorder.finish().unwrap();
             for frame in 0..3 {
-                assert!(place.join(format!("picture_{frame:04}.png")).exists());
+                assert!(expected.join(format!("picture_{frame:04}.png")).exists());
             }
-            // Without ffmpeg there is a reason.
-            assert!(place.join("film.mp4").exists() || failure.is_some());
+            // Without ffmpeg there is no film but a reason.
+            assert!(expected.join("film.mp4").exists() || failure.is_some());
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `run.json`: the summary of a run beside its results, for programs and for later.
+//! `run.json`: the summary of a run in its output folder, for other programs and for later reference.
 
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ pub(crate) struct Numbers {
     particle_volume: f64,
 }
 
-/// How often a pass ran, and for how long in all.
+/// How often a pass ran, and its total time.
 #[derive(Debug, Serialize)]
 pub struct PassNumbers {
     count: u64,
@@ -125,7 +125,7 @@ impl Report {
         });
     }
 
-    /// Writes the file, complete or not at all.
+    /// Writes the file. It is complete or absent.
     ///
     /// # Errors
     /// [`IoError::Write`].

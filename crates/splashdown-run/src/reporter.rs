@@ -1,4 +1,4 @@
-//! How a run communicates with whoever started it.
+//! The interface by which a run reports to its caller and is stopped.
 
 use splashdown::{Progress, ProgressFn, Started};
 
@@ -44,7 +44,7 @@ pub trait Reporter {
 
 impl Reporter for () {}
 
-/// Whether a run shall stop.
+/// A request to stop a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// Continue.

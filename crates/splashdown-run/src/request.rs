@@ -1,4 +1,4 @@
-//! What to run.
+//! The scene or checkpoint to run, with its settings.
 
 use std::path::{Path, PathBuf};
 
@@ -67,7 +67,7 @@ impl RunRequest {
         self.settings.pictures_of(&self.scene)
     }
 
-    /// What the checkpoints of this run will note.
+    /// The notes in the checkpoints of this run.
     pub(crate) fn notes(&self) -> Notes {
         let mut notes = Notes::new(&self.settings);
         if let Some(FoundCheckpoint { notes: earlier, .. }) = &self.checkpoint {

@@ -1,4 +1,4 @@
-//! Runs by the library alone: stopping, resuming, and what a reporter receives.
+//! Runs by the library without the command line: stopping, resuming, and the calls to a reporter.
 
 use std::cell::Cell;
 use std::fs;
@@ -75,8 +75,8 @@ fn assert_finished(outcome: &RunOutcome) {
 #[test]
 fn a_stopped_run_resumes_bit_identically() -> Outcome {
     let folder = tempfile::tempdir()?;
-    let [straight, out] = ["straight", "out"].map(|name| folder.path().join(name));
-    assert_finished(&run(request(&straight)?, &mut (), &|| Stop::No)?);
+    let [uninterrupted, out] = ["uninterrupted", "out"].map(|name| folder.path().join(name));
+    assert_finished(&run(request(&uninterrupted)?, &mut (), &|| Stop::No)?);
 
     let mut log = Log::default();
     let polls = Cell::new(0);
@@ -98,10 +98,10 @@ fn a_stopped_run_resumes_bit_identically() -> Outcome {
     assert_eq!(log.warnings, [""; 0]);
     for frame in 0..5 {
         let name = format!("particles/particles_{frame:04}.ply");
-        assert!(fs::read(straight.join(&name))? == fs::read(out.join(&name))?, "{name}");
+        assert!(fs::read(uninterrupted.join(&name))? == fs::read(out.join(&name))?, "{name}");
     }
 
-    // The checkpoint is after the last requested frame.
+    // The checkpoint is later than the last requested frame.
     let mut settings = RunSettings::default();
     settings.frames = Some(frames - 1);
     let shorter = run(RunRequest::resume(&out, settings)?, &mut (), &|| Stop::No);

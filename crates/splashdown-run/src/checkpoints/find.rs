@@ -14,7 +14,7 @@ use crate::{RunError, RunFolder};
 pub struct FoundCheckpoint {
     /// The checkpoint.
     pub checkpoint: Checkpoint,
-    /// What the run that wrote it noted about its output.
+    /// The settings and the state of the files of the run that wrote it.
     pub(crate) notes: Notes,
     /// The output folder that contains it, if it is in one.
     pub root: Option<PathBuf>,
@@ -22,8 +22,8 @@ pub struct FoundCheckpoint {
     pub skipped: Vec<String>,
 }
 
-/// Finds the checkpoint that `path` names: a file, an output folder, or its folder of checkpoints. Of several the
-/// newest usable one is taken.
+/// Finds the checkpoint that `path` names: a file, an output folder, or its folder of checkpoints. In a folder the
+/// newest usable checkpoint is found.
 ///
 /// # Errors
 /// [`RunError::NothingToResume`], [`RunError::NoCheckpoint`], [`RunError::NoUsableCheckpoint`]; for a file also
@@ -57,7 +57,7 @@ pub fn find_checkpoint(path: &Path) -> Result<FoundCheckpoint, RunError> {
     Err(match (skipped.as_slice(), in_folder(&path).min()) {
         ([], None) => RunError::NoCheckpoint { path },
         ([], Some(file)) => {
-            let reason = format!("no run wrote it; name a file, as in `{}`", file.display());
+            let reason = format!("it is not the folder of a run; name a file, as in `{}`", file.display());
             RunError::NoUsableCheckpoint { path, reason }
         }
         (reasons, _) => RunError::NoUsableCheckpoint { path, reason: reasons.join("; ") },
@@ -86,7 +86,7 @@ fn read(path: &Path) -> Result<(Checkpoint, Notes), CheckpointError> {
     Ok((checkpoint, notes))
 }
 
-/// The checkpoints in a folder, whatever their names.
+/// All checkpoints in a folder, also those that no run has named.
 fn in_folder(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     files

@@ -12,11 +12,11 @@ use splashdown_io::{FrameWriter, Job, WrittenFile, prepare_folder};
 use crate::settings::Notes;
 use crate::{RunError, RunFolder};
 
-/// How many stay on the disk: a second one, in case the newest is damaged from outside.
+/// Number of checkpoints on the disk. The second is used if the newest is damaged.
 const COUNT: usize = 2;
 
-/// Takes checkpoints. Each is written when the files of all frames up to it are complete, so that a resumed run
-/// finds them.
+/// Takes and writes the checkpoints of a run. Each is written when the files of all frames up to it are complete, so
+/// that a resumed run finds them.
 #[derive(Debug)]
 pub(crate) struct CheckpointWriter {
     folder: RunFolder,
@@ -27,17 +27,17 @@ pub(crate) struct CheckpointWriter {
 }
 
 impl CheckpointWriter {
-    /// Takes one every so many frames.
+    /// Takes a checkpoint after every `every` frames; `None`: only when the run stops.
     pub fn new(folder: RunFolder, every: Option<u32>, notes: Notes) -> Self {
         Self { folder, every, notes, taken: VecDeque::new(), last: None }
     }
 
-    /// Whether one is due after this frame.
+    /// Whether a checkpoint is due after this frame.
     pub fn due(&self, frame: u32) -> bool {
         self.every.is_some_and(|every| frame.is_multiple_of(every) && frame > 0)
     }
 
-    /// Takes one after the run's last frame, unless that has been done.
+    /// Takes a checkpoint of the current frame, unless it is already taken.
     ///
     /// # Errors
     /// As [`Run::checkpoint`].
@@ -53,20 +53,21 @@ impl CheckpointWriter {
         Ok(())
     }
 
-    /// Queues those whose frames are complete.
+    /// Queues the checkpoints whose frames are complete.
     ///
     /// # Errors
     /// The writer's first failure.
     pub fn write(&mut self, complete: u32, writer: &FrameWriter) -> Result<(), RunError> {
         while let Some((frame, checkpoint)) = self.taken.pop_front_if(|(frame, _)| *frame <= complete) {
-            // Before writing, so that there are never more than `COUNT`. The remaining one is complete.
+            // Old checkpoints are removed before writing, so that there are never more than `COUNT`. The remaining one
+            // is complete.
             self.folder.remove_old_checkpoints(COUNT - 1);
             writer.submit(vec![Job::Bytes(self.folder.checkpoint(frame), checkpoint.to_bytes()?)])?;
         }
         Ok(())
     }
 
-    /// Writes the rest after the writer has ended, and returns their files.
+    /// Writes the remaining checkpoints after the writer has ended, and returns their files.
     ///
     /// # Errors
     /// [`RunError::Io`], [`RunError::Checkpoint`].

@@ -1,7 +1,7 @@
 //! Finding and removing the files of earlier runs.
 //!
-//! Failures to remove a file are ignored here: the file cannot be overwritten either, and that is reported with its
-//! name.
+//! Failures to remove a file are ignored here. Such a file cannot be overwritten either, and that failure is reported
+//! with its name.
 
 use std::fs;
 use std::io::Read;
@@ -20,12 +20,12 @@ impl RunFolder {
     pub(crate) fn remove_old_checkpoints(&self, count: usize) {
         let files = self.checkpoints();
         for old in &files[..files.len().saturating_sub(count)] {
-            // A leftover checkpoint does no harm.
+            // A checkpoint that cannot be removed is harmless.
             let _ = fs::remove_file(old);
         }
     }
 
-    /// Removes frames and checkpoints after this frame: a resumed run may end earlier than the one before.
+    /// Removes frames and checkpoints after this frame, because a resumed run may end earlier than the original run.
     pub(crate) fn remove_after(&self, frame: u32) {
         for series in numbered::ALL {
             for (_, path) in series.files(&self.root).filter(|(number, _)| *number > frame) {
@@ -46,8 +46,8 @@ impl RunFolder {
         numbered.chain(animated).filter_map(existing).collect()
     }
 
-    /// Removes the files of an earlier run, if the folder contains its report. Other files stay. Frames of two runs
-    /// in one series would be read as one. Returns the number of files removed.
+    /// Removes the files of an earlier run, if the folder contains its report. Other files remain. Without this, the
+    /// frames of both runs would be read as one series. Returns the number of files removed.
     pub(crate) fn remove_earlier(&self) -> usize {
         if !self.report().exists() {
             return 0;
@@ -78,7 +78,7 @@ impl RunFolder {
     }
 }
 
-/// Removes incomplete files that a killed run left below its folder.
+/// Removes the incomplete files of a killed run from its folder and the subfolders.
 pub(crate) fn remove_partial(root: &Path) {
     let folders = fs::read_dir(root).into_iter().flatten().flatten().map(|entry| entry.path());
     for folder in folders.filter(|path| path.is_dir()).chain([root.to_owned()]) {
@@ -92,7 +92,7 @@ pub(crate) fn remove_partial(root: &Path) {
     }
 }
 
-/// Whether a file is the table of a probe, whatever its name.
+/// Whether a file is the table of a probe. Its content decides, because the scene chooses the names.
 fn is_probe_table(path: &Path) -> bool {
     let mut start = [0; PROBE_HEADER.len()];
     let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));

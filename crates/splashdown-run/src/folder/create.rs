@@ -21,7 +21,7 @@ pub(crate) struct Subfolders {
 }
 
 impl Subfolders {
-    /// Those that the scene's output needs.
+    /// The subfolders that the scene's output needs.
     pub fn of(scene: &Scene, pictures: bool, checkpoints: bool) -> Self {
         let any = |wanted: fn(Format) -> bool| {
             scene.output.formats.iter().any(|&format| format.is_numbered() && wanted(format))

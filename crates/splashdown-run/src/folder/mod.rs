@@ -46,7 +46,7 @@ impl RunFolder {
         &self.root
     }
 
-    /// Particles of a frame. Endings are given without a dot.
+    /// Particles of a frame. `ending` has no dot.
     pub fn particles(&self, frame: u32, ending: &str) -> PathBuf {
         self.numbered("particles", "particles", frame, ending)
     }
@@ -150,7 +150,7 @@ mod tests {
     use splashdown::scene::PictureKind;
 
     #[test]
-    fn names_have_four_digits_or_as_many_as_needed() {
+    fn names_have_at_least_four_digits() {
         let folder = RunFolder::new("out".into(), 100);
         assert!(folder.particles(7, "ply").ends_with("particles/particles_0007.ply"));
         assert!(folder.picture_pattern(PictureKind::Surface).ends_with("surface_%04d.png"));

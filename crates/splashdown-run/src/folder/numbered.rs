@@ -8,7 +8,7 @@ use splashdown_io::Format;
 
 /// The folder of the checkpoints.
 pub const CHECKPOINTS: &str = "checkpoints";
-/// The stem of their names.
+/// The stem of the names of checkpoints.
 pub const CHECKPOINT: &str = "checkpoint";
 
 /// Files `STEM_NUMBER.ENDING` in a folder below the root.
@@ -16,7 +16,7 @@ pub const CHECKPOINT: &str = "checkpoint";
 pub struct Series {
     pub folder: &'static str,
     stems: &'static [&'static str],
-    /// Whether an ending, without its dot, is one of the series.
+    /// Whether files of the series can have this ending, given without a dot.
     has_ending: fn(&str) -> bool,
 }
 
@@ -94,6 +94,6 @@ mod tests {
         {
             assert!(ALL.iter().any(|series| (series.has_ending)(&format.ending[1..])), "{}", format.name);
         }
-        assert!(!ALL.iter().any(|series| (series.has_ending)("xyz")), "it is not written");
+        assert!(!ALL.iter().any(|series| (series.has_ending)("xyz")), "XYZ files are not written");
     }
 }

@@ -1,4 +1,5 @@
-//! Writing frames. The writer works beside the simulation; a frame is reported when all of its files are complete.
+//! Writing frames. The writer runs concurrently with the simulation. A frame is reported when all of its files are
+//! complete.
 
 mod tracker;
 
@@ -23,7 +24,7 @@ pub struct CompleteFrame {
     pub files: Vec<PathBuf>,
 }
 
-/// The numbers of a frame. Its arrays are freed as soon as they are written.
+/// The numbers of a frame without its arrays, which are freed as soon as they are written.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct FrameSummary {
@@ -131,8 +132,8 @@ impl FrameFiles {
         Ok(())
     }
 
-    /// Frames whose files have become complete since the last call, in order. With `no_pictures`, pictures that were
-    /// expected are no longer waited for.
+    /// Frames whose files have become complete since the last call, in order. With `no_pictures`, expected pictures that
+    /// are missing do not delay a frame.
     ///
     /// # Errors
     /// If the ParaView index cannot be written.
@@ -152,7 +153,7 @@ impl FrameFiles {
             failure.get_or_insert(error);
             Vec::new()
         });
-        // Whatever ended the run, the frames written so far become a whole USD file.
+        // However the run ended, the frames written so far form a complete USD file.
         for animated in [points.map(|points| points.finish()), surface.map(|surface| surface.finish())] {
             match animated {
                 Some(Ok(Some((path, bytes)))) => files.push(WrittenFile { path, bytes }),

@@ -1,4 +1,4 @@
-//! Which frames wait for which files.
+//! Tracks which frames still wait for which files.
 
 use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
@@ -45,12 +45,12 @@ impl Tracker {
         }
     }
 
-    /// Waits for the files of this frame.
+    /// Adds a frame whose files are queued.
     pub fn expect(&mut self, frame: CompleteFrame) {
         self.pending.push_back(frame);
     }
 
-    /// Frames whose files are all among those written.
+    /// Removes and returns the first frames whose files are all written.
     pub fn take(
         &mut self,
         written: &[WrittenFile],

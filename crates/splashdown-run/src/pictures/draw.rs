@@ -11,11 +11,11 @@ use splashdown_render::{
     Renderer, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 
-use super::Drawn;
+use super::FrameData;
 use crate::{RunError, appearance};
 
 /// Draws frames on a device.
-pub struct Artist {
+pub struct FrameRenderer {
     gpu: Arc<Gpu>,
     scene: Scene,
     kinds: Vec<PictureKind>,
@@ -26,7 +26,7 @@ pub struct Artist {
     bodies: Vec<PlacedBody>,
 }
 
-impl Artist {
+impl FrameRenderer {
     /// Prepares the device for the scene's pictures.
     ///
     /// # Errors
@@ -53,41 +53,41 @@ impl Artist {
     ///
     /// # Errors
     /// [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
-    pub fn draw(&mut self, drawn: &Drawn) -> Result<Vec<Arc<Picture>>, RunError> {
-        let pictures = self.pictures(drawn)?;
+    pub fn draw(&mut self, data: &FrameData) -> Result<Vec<Arc<Picture>>, RunError> {
+        let pictures = self.pictures(data)?;
         self.gpu.health("a picture")?;
         Ok(pictures)
     }
 
-    /// One picture per kind; all are submitted before the first is waited for.
-    fn pictures(&mut self, drawn: &Drawn) -> Result<Vec<Arc<Picture>>, RenderError> {
+    /// One picture per kind. All are submitted before waiting for the first.
+    fn pictures(&mut self, data: &FrameData) -> Result<Vec<Arc<Picture>>, RenderError> {
         let device = &self.gpu.device;
-        let Particles { positions, velocities, densities, pressures, .. } = &*drawn.particles;
+        let Particles { positions, velocities, densities, pressures, .. } = &*data.particles;
         let particles = match self.kinds.contains(&PictureKind::Particles) {
             true => Some(UploadedParticles::new(device, positions, velocities, densities, pressures)?),
             false => None,
         };
-        let surface = match &drawn.mesh {
+        let surface = match &data.mesh {
             Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
             None => None,
         };
-        let foam = match &drawn.foam {
+        let foam = match &data.foam {
             Some(foam) => {
                 let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
                 Some(UploadedFoam::new(device, &foam.positions, &foam.lifetimes, &foam.ids, &kinds)?)
             }
             None => None,
         };
-        let placed = self.bodies.iter().zip(&*drawn.bodies);
+        let placed = self.bodies.iter().zip(&*data.bodies);
         let bodies = (!self.bodies.is_empty()).then(|| {
             UploadedBodies::new(
                 device,
                 placed.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array())),
             )
         });
-        let caption = format!("{}   t = {:.3} s", self.scene.name, drawn.time);
+        let caption = format!("{}   t = {:.3} s", self.scene.name, data.time);
         let radius = self.scene.fluid.particle_radius();
-        let (camera, domain) = (appearance::camera(&self.scene, drawn.time), appearance::domain(&self.scene));
+        let (camera, domain) = (appearance::camera(&self.scene, data.time), appearance::domain(&self.scene));
         let mut empty = Frame::new(camera, domain).with_caption(&caption);
         empty.bodies = bodies.as_ref().map(UploadedBodies::buffers);
         empty.foam = foam.as_ref().map(|foam| DrawnFoam::new(foam.buffers(), radius));

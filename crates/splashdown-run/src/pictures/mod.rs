@@ -1,4 +1,4 @@
-//! Pictures of the frames, drawn by a thread beside the simulation.
+//! Pictures of the frames, drawn by a separate thread while the simulation continues.
 
 mod draw;
 
@@ -13,9 +13,9 @@ use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
 
 use crate::{RunError, RunFolder};
-use draw::Artist;
+use draw::FrameRenderer;
 
-/// Frames that wait while one is drawn.
+/// Number of frames that can wait while one is drawn.
 const QUEUE: usize = 1;
 
 /// Draws the frames of a run.
@@ -23,15 +23,15 @@ const QUEUE: usize = 1;
 pub(crate) struct Pictures {
     kinds: Vec<PictureKind>,
     folder: RunFolder,
-    queue: SyncSender<Drawn>,
+    queue: SyncSender<FrameData>,
     thread: JoinHandle<()>,
     failure: Arc<OnceLock<RunError>>,
     films: Vec<Arc<Film>>,
 }
 
-/// What a picture is drawn from.
+/// The data from which the pictures of a frame are drawn.
 #[derive(Debug)]
-struct Drawn {
+struct FrameData {
     index: u32,
     time: f64,
     particles: Arc<Particles>,
@@ -73,14 +73,14 @@ impl Pictures {
         folder: &RunFolder,
         writer: Arc<FrameWriter>,
     ) -> Result<Self, RunError> {
-        let artist = Artist::new(gpu, scene, bodies, kinds.clone())?;
+        let renderer = FrameRenderer::new(gpu, scene, bodies, kinds.clone())?;
         let destination =
             Destination { kinds: kinds.clone(), films: films.clone(), folder: folder.clone(), writer };
         let (queue, frames) = sync_channel(QUEUE);
         let failure = Arc::new(OnceLock::new());
         let report = Arc::clone(&failure);
         let body = move || {
-            if let Err(error) = draw_all(artist, &destination, &frames) {
+            if let Err(error) = draw_all(renderer, &destination, &frames) {
                 // Only this thread sets it, once.
                 let _ = report.set(error);
             }
@@ -99,7 +99,7 @@ impl Pictures {
 
     /// Queues a frame; blocks while [`QUEUE`] frames wait.
     pub fn submit(&self, frame: &splashdown::Frame) {
-        let drawn = Drawn {
+        let data = FrameData {
             index: frame.index,
             time: frame.time,
             particles: Arc::clone(&frame.particles),
@@ -108,7 +108,7 @@ impl Pictures {
             bodies: Arc::clone(&frame.bodies),
         };
         // If the thread has ended, `failure` contains the reason.
-        let _ = self.queue.send(drawn);
+        let _ = self.queue.send(data);
     }
 
     /// Why no more pictures are drawn.
@@ -116,7 +116,8 @@ impl Pictures {
         self.failure.get()
     }
 
-    /// Waits for the last picture. Returns the films, which still wait for the writer, and the failure, if any.
+    /// Waits for the last picture. Returns the films, whose last pictures the writer may still have to add, and the
+    /// failure, if any.
     pub fn finish(self) -> (Vec<Arc<Film>>, Option<RunError>) {
         drop(self.queue);
         let panicked = self.thread.join().is_err();
@@ -127,13 +128,17 @@ impl Pictures {
 }
 
 /// Draws until the queue is closed.
-fn draw_all(mut artist: Artist, destination: &Destination, frames: &Receiver<Drawn>) -> Result<(), RunError> {
+fn draw_all(
+    mut renderer: FrameRenderer,
+    destination: &Destination,
+    frames: &Receiver<FrameData>,
+) -> Result<(), RunError> {
     let Destination { kinds, films, folder, writer } = destination;
-    for drawn in frames {
-        let pictures = artist.draw(&drawn)?;
+    for data in frames {
+        let pictures = renderer.draw(&data)?;
         let mut jobs = Vec::new();
         for (i, (kind, picture)) in kinds.iter().zip(pictures).enumerate() {
-            jobs.push(Job::Png(folder.picture(*kind, drawn.index), Arc::clone(&picture)));
+            jobs.push(Job::Png(folder.picture(*kind, data.index), Arc::clone(&picture)));
             if let Some(film) = films.get(i) {
                 jobs.push(Job::Film(Arc::clone(film), picture));
             }

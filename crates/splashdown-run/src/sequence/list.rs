@@ -47,7 +47,7 @@ pub fn list(folder: &Path, accepts: impl Fn(&str) -> bool) -> Result<Vec<PathBuf
         .filter(|entry| accepts(&entry.file_name().to_string_lossy()))
         .map(|entry| entry.path())
         .filter(|path| path.is_file())
-        // As the user wrote it: without a leading `./`.
+        // Without the leading `./` of the current folder, which the user has not given.
         .map(|path| path.strip_prefix(".").map(Path::to_owned).unwrap_or(path))
         .collect();
     files.sort_by_cached_key(|file| natural(&file.to_string_lossy()));

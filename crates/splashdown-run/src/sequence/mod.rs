@@ -1,4 +1,4 @@
-//! Series of files: which files a pattern or a folder stands for, and the names of the files made from them.
+//! Series of files: the files that match a pattern or are in a folder, and the names of the files made from them.
 
 mod list;
 
@@ -17,7 +17,7 @@ pub struct Step {
     pub output: PathBuf,
 }
 
-/// The files that `given` stands for, each once, those of a pattern or folder in the order of their numbers.
+/// The files that `given` names, each once. The files of a pattern or folder are in the order of their numbers.
 ///
 /// # Errors
 /// [`RunError::Input`] if there is none, or a folder contains files with several of the `endings` (given with dots).
@@ -100,7 +100,7 @@ fn numbers(inputs: &[PathBuf]) -> Vec<String> {
     let own: Vec<String> = inputs.iter().filter_map(|input| last_number(&stem(input))).collect();
     let distinct: BTreeSet<&String> = own.iter().collect();
     if distinct.len() == inputs.len() {
-        // As wide as the widest, so that the output files sort by number.
+        // Numbers are padded to the longest, so that the output files sort by number.
         let width = own.iter().map(String::len).max().unwrap_or(0).max(4);
         return own.iter().map(|number| format!("{number:0>width$}")).collect();
     }

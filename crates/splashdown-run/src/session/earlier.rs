@@ -10,20 +10,20 @@ use splashdown_io::WrittenFile;
 use super::count_of;
 use crate::RunFolder;
 
-/// How many missing files are named.
+/// Number of missing files that a warning names.
 const NAMED: usize = 3;
 
 /// The files of the earlier frames.
 #[derive(Debug)]
 pub struct Earlier {
-    /// Those that exist.
+    /// The existing files.
     pub files: Vec<WrittenFile>,
     missing: Vec<PathBuf>,
 }
 
 impl Earlier {
     /// Looks for the files of the frames `since` to `last` that `scene` requests. Pictures count as missing only after
-    /// the first existing one: without a driver none was drawn.
+    /// the first existing one, because a run without a driver draws none.
     pub fn find(folder: &RunFolder, scene: &Scene, pictures: &[PictureKind], since: u32, last: u32) -> Self {
         let files = folder.files_up_to(last);
         let existing: HashSet<&Path> = files.iter().map(|file| file.path.as_path()).collect();

@@ -34,9 +34,9 @@ pub struct Session {
     probes: ProbeFiles,
     checkpoints: CheckpointWriter,
     pictures: Option<Pictures>,
-    /// Drawing has failed, and that was reported.
+    /// Whether drawing has failed and the failure is reported.
     pictures_failed: bool,
-    /// A failure to draw fails the run.
+    /// Whether a failure to draw fails the run.
     pictures_required: bool,
     report: Report,
     /// The last frame that the simulation has completed.
@@ -108,7 +108,7 @@ impl Session {
         Ok(())
     }
 
-    /// Reports a failure to draw, once, and frames whose files have become complete.
+    /// Reports the first failure to draw, and frames whose files have become complete.
     fn report_progress(&mut self, reporter: &mut dyn Reporter) -> Result<(), RunError> {
         if let Some(failure) = self.pictures.as_ref().and_then(Pictures::failure)
             && !self.pictures_failed

@@ -29,7 +29,7 @@ impl Session {
         let (device, frames) = (request.device(), request.last_frame());
         let RunRequest { out, timing, scene, settings, pictures_required, checkpoint: found } = request;
 
-        // A run resumed in its own folder continues the series of files; in another folder it starts new ones.
+        // A run resumed in its own folder continues the series of files. In another folder it starts new series.
         let old_root = found.as_ref().and_then(|found| found.root.clone());
         let root = out.or_else(|| old_root.clone());
         let root = root.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
@@ -100,7 +100,7 @@ impl Session {
             Err(error) => reporter.warning(&format!("no pictures: {error}. The run continues without them")),
             Ok(()) => {}
         }
-        // Nothing can refuse the run any more: from here on files of an earlier run are removed.
+        // All checks have passed. From here on the files of an earlier run are removed.
         match resumed_after {
             Some(frame) => {
                 session.folder.remove_after(frame);
@@ -194,7 +194,7 @@ fn warn_of_changes(scene: &Scene, reporter: &mut dyn Reporter) {
     {
         let file = path.display();
         reporter.warning(&format!(
-            "`{file}` has changed since the checkpoint; the resumed run uses the scene as it was. Start a new run for the changes"
+            "`{file}` has changed since the checkpoint; the resumed run uses the scene in the checkpoint. Start a new run to apply the changes"
         ));
     }
 }

@@ -9,7 +9,7 @@ use splashdown::scene::{Format, PictureKind, Scene};
 
 use crate::RunError;
 
-/// What to compute and write. `None` means: as the scene or, for a resumed run, its checkpoint says.
+/// What to compute and write. `None` selects the value of the scene or, in a resumed run, of its checkpoint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RunSettings {
@@ -57,7 +57,7 @@ impl RunSettings {
         }
     }
 
-    /// Changes the scene accordingly.
+    /// Applies the settings to the scene.
     pub(crate) fn apply_to(&self, scene: &mut Scene) {
         scene.surface.enabled &= self.surface;
         if let Some(formats) = &self.formats {
@@ -90,7 +90,7 @@ impl RunSettings {
     }
 }
 
-/// Each item once: two writers of one file would race.
+/// Each item once. A repeated format would write the same file twice at the same time.
 fn distinct<T: Copy + PartialEq>(items: &[T]) -> Vec<T> {
     items.iter().fold(Vec::new(), |mut found, &item| {
         if !found.contains(&item) {

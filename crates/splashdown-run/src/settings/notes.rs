@@ -28,7 +28,7 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    /// Notes with these settings.
+    /// The notes of a run with these settings.
     pub fn new(settings: &RunSettings) -> Self {
         let no_pictures = settings.pictures.as_ref().is_some_and(Vec::is_empty);
         let pictures = settings.pictures.as_ref().filter(|kinds| !kinds.is_empty());
@@ -45,10 +45,10 @@ impl Notes {
         }
     }
 
-    /// The notes in a checkpoint; the defaults if the window or a program made it.
+    /// The notes in a checkpoint. A checkpoint of the window or of another program has none, which gives the defaults.
     ///
     /// # Errors
-    /// [`CheckpointError::Malformed`] for values that no run can have stored.
+    /// [`CheckpointError::Malformed`] for values that no run stores.
     pub fn in_checkpoint(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let Some(notes) = checkpoint.notes() else { return Ok(Self::default()) };
         let checked = serde_json::from_str(notes).map_err(|error| error.to_string()).and_then(Self::checked);
@@ -59,7 +59,7 @@ impl Notes {
     pub fn settings(&self) -> RunSettings {
         let pictures = self.pictures.as_deref().map(choices::<PictureKind>);
         RunSettings {
-            // Every word is a device: at worst the name of an adapter that does not exist.
+            // Parsing cannot fail: an unknown word is the name of an adapter.
             device: self.device.as_ref().map(|word| word.parse().unwrap_or_default()),
             frames: self.frames,
             formats: self.formats.as_deref().map(choices::<Format>),
@@ -109,7 +109,7 @@ mod tests {
     use splashdown::Device;
 
     #[test]
-    fn settings_survive_a_checkpoint() {
+    fn settings_are_restored_from_notes() {
         let settings = [
             RunSettings::default(),
             RunSettings { pictures: Some(Vec::new()), surface: false, ..RunSettings::default() },
