@@ -13,7 +13,7 @@ const ALL: &str = "all";
 /// Checks that the format of a mesh supports attributes before anything is computed.
 ///
 /// # Errors
-/// [`Exit::Usage`] names the formats that do.
+/// [`Exit::Usage`]; the message lists the formats with attributes.
 pub fn check_format(wanted: &[String], out: &Path) -> Result<(), Failure> {
     if wanted.is_empty() || Format::of(out).is_some_and(Format::has_attributes) {
         return Ok(());
@@ -30,8 +30,8 @@ pub fn check_format(wanted: &[String], out: &Path) -> Result<(), Failure> {
 /// velocities, which are always interpolated.
 ///
 /// # Errors
-/// [`Exit::Usage`] names the attributes of the file.
-pub fn chosen<'a>(
+/// [`Exit::Usage`] for an unknown name; the message lists the attributes of the file.
+pub fn selected<'a>(
     particles: &'a Particles,
     wanted: &[String],
     file: &Path,
@@ -49,17 +49,17 @@ pub fn chosen<'a>(
         }
     }
     let everything = wanted.iter().any(|name| name == ALL);
-    let is_chosen = |attribute: &&Attribute| {
+    let is_selected = |attribute: &&Attribute| {
         !attribute.is_velocity() && (everything && !attribute.is_id() || wanted.contains(&attribute.name))
     };
-    Ok(all.iter().filter(is_chosen).collect())
+    Ok(all.iter().filter(is_selected).collect())
 }
 
 /// Interpolates the attributes to the vertices and adds them to the mesh.
 ///
 /// # Errors
 /// Those of [`interpolate`].
-pub fn put(
+pub fn add_interpolated(
     surface: &mut Mesh,
     attributes: &[&Attribute],
     positions: &[[f32; 3]],

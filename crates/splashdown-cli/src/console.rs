@@ -1,5 +1,5 @@
-//! Console output: results to stdout, everything else to stderr. A reader that closes the pipe early (`| head`) ends the
-//! output, not the run.
+//! Console output: results to stdout, everything else to stderr. If the reader closes the pipe early (`| head`), the
+//! output ends and the run continues.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -18,12 +18,11 @@ pub enum Verbosity {
     Verbose,
 }
 
-/// The first failure to write to stdout, except a closed pipe.
-static LOST: OnceLock<io::Error> = OnceLock::new();
+static OUTPUT_FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Why results are missing on stdout, if they are; for example a full disk. A closed pipe is no failure.
-pub fn lost() -> Option<&'static io::Error> {
-    LOST.get()
+/// The first failure to write to stdout, for example a full disk. A closed pipe is not a failure.
+pub fn output_failure() -> Option<&'static io::Error> {
+    OUTPUT_FAILURE.get()
 }
 
 /// Prints a line to stdout.
@@ -31,21 +30,22 @@ pub fn print(text: impl Display) {
     print_raw(format!("{text}\n").as_bytes());
 }
 
-/// Prints bytes to stdout. Every call flushes: other programs read along, and later failures would go unnoticed.
+/// Prints bytes to stdout. Every call flushes, so that a reading program receives the text at once and a failure is
+/// detected here.
 pub fn print_raw(text: &[u8]) {
     let mut out = io::stdout().lock();
     if let Err(error) = out.write_all(text).and_then(|()| out.flush())
         && error.kind() != ErrorKind::BrokenPipe
     {
-        // Only the first failure is kept.
-        let _ = LOST.set(error);
+        // Only the first failure is stored.
+        let _ = OUTPUT_FAILURE.set(error);
     }
 }
 
 /// Prints a JSON object on one line.
 pub fn print_json(value: &impl Serialize) {
     let Ok(mut line) = serde_json::to_vec(value) else {
-        // Structs of numbers and text always serialise; NaN becomes null.
+        // Serialisation of structs of numbers and text cannot fail; NaN becomes null.
         return;
     };
     line.push(b'\n');

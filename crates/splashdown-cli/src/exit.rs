@@ -1,4 +1,4 @@
-//! How the program ends: one error message and one exit code. `splashdown --help` lists the codes from here.
+//! Exit codes and error messages. `splashdown --help` lists the codes defined here.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -30,7 +30,7 @@ pub enum Exit {
     Interrupted = 130,
 }
 
-/// The codes for the help.
+/// The list of exit codes in the help.
 pub const HELP: &str = "\
 Exit codes:
     0  success
@@ -43,7 +43,7 @@ Exit codes:
        checkpoint cannot be used
   130  stopped by Ctrl-C (frames already written are complete)";
 
-/// Why the program ends early.
+/// An error that ends the program.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.

@@ -48,7 +48,7 @@ pub fn scaled(number: f64) -> String {
 
 /// About three significant digits without an exponent, for numbers that are not tiny.
 pub fn three_digits(number: f64) -> String {
-    // A number that rounds up to a power of ten has the decimals of that power.
+    // A number that rounds up to a power of ten gets as many decimals as that power.
     let decimals = match number.abs() {
         x if x >= 99.95 => 0,
         x if x >= 9.995 => 1,
@@ -98,7 +98,7 @@ mod tests {
     use super::{bytes, count, counted, duration, parse_count, scaled, three_digits, volume};
 
     #[test]
-    fn digits_come_in_threes() {
+    fn digits_are_grouped_in_threes() {
         assert_eq!(count(0), "0");
         assert_eq!(count(999), "999");
         assert_eq!(count(65_536), "65,536");
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn prefixes_do_not_round_past_themselves() {
+    fn numbers_that_round_up_get_the_next_prefix() {
         assert_eq!(scaled(999.96e3), "1.00 M");
         assert_eq!(scaled(5.214e6), "5.21 M");
         assert_eq!(scaled(12.0), "12.0 ");
@@ -117,14 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn nouns_follow_their_count() {
+    fn nouns_are_singular_or_plural() {
         assert_eq!(counted(1, "frame"), "1 frame");
         assert_eq!(counted(0, "frame"), "0 frames");
         assert_eq!(counted(66_560, "particle"), "66,560 particles");
     }
 
     #[test]
-    fn volumes_choose_their_units() {
+    fn volumes_have_suitable_units() {
         assert_eq!(volume(1.95e6), "1950000 m^3");
         assert_eq!(volume(0.2538), "254 l");
         assert_eq!(volume(1.2e-5), "12.0 ml");
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_choose_their_units() {
+    fn durations_have_suitable_units() {
         assert_eq!(duration(0.424), "0.42 s");
         assert_eq!(duration(151.2), "2 min 31 s");
         assert_eq!(duration(11_100.0), "3 h 5 min");
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_take_k_and_m() {
+    fn counts_accept_k_and_m() {
         assert_eq!(parse_count("64k"), Ok(65_536));
         assert_eq!(parse_count("1M"), Ok(1_048_576));
         assert_eq!(parse_count("8000"), Ok(8000));

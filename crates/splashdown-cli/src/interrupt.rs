@@ -22,7 +22,7 @@ impl Interrupt {
                 );
             }
         };
-        // Without a handler Ctrl-C ends the program at once. Every file on the disk is complete then, too.
+        // Without a handler Ctrl-C ends the program at once. Every file on the disk is complete in that case as well.
         if let Err(error) = ctrlc::set_handler(handler) {
             crate::console::note(format!("warning: Ctrl-C will stop without a summary: {error}"));
         }

@@ -7,7 +7,8 @@ use splashdown_run::CompleteFrame;
 
 use crate::exit::Failure;
 
-/// One line. The first eleven keys are always present, null if unknown; the others only where they apply.
+/// One line. The first eleven keys are always present, and null if unknown. The other keys are omitted if they do not
+/// apply.
 #[derive(Debug, Default, Serialize)]
 pub struct Line {
     /// started, progress, frame, warning, finished, interrupted or error.
@@ -44,10 +45,10 @@ pub struct Line {
     /// Particles times steps per second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub particle_steps_per_second: Option<f64>,
-    /// Particles that left through an open side, in all.
+    /// Total number of particles that left through an open side.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub escaped: Option<u32>,
-    /// Particles that became NaN or infinite, in all.
+    /// Total number of particles that became NaN or infinite.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub non_finite: Option<u32>,
     /// The device's name.
@@ -84,7 +85,7 @@ impl Line {
         }
     }
 
-    /// Between two frames.
+    /// The progress between two frames.
     pub fn progress(progress: &Progress) -> Self {
         Self {
             event: "progress",

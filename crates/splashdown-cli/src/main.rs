@@ -32,7 +32,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // This prints help and version, too. A closed pipe is no failure.
+            // This also prints help and version. A closed pipe is not a failure.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::Exit::Usage as u8));
         }
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
 
 /// Output that could not be written to stdout is an error.
 fn check_output(code: ExitCode) -> Result<ExitCode, Failure> {
-    match console::lost() {
+    match console::output_failure() {
         Some(error) if code == ExitCode::SUCCESS => {
             let message = format!(
                 "the standard output could not be written: {error}; the printed results are incomplete"
@@ -75,7 +75,7 @@ fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
         #[cfg(feature = "window")]
         Command::View(arguments) => commands::view::view(arguments)?,
         #[cfg(not(feature = "window"))]
-        Command::View(_) => return Err(commands::left_out("view", "window")),
+        Command::View(_) => return Err(commands::not_included("view", "window")),
         Command::Check(arguments) => commands::check::run(arguments)?,
         Command::Doctor(arguments) => commands::doctor::run(arguments),
         Command::Scenes(arguments) => commands::scenes::run(arguments)?,
@@ -83,7 +83,7 @@ fn dispatch(command: &Command) -> Result<ExitCode, Failure> {
         #[cfg(feature = "plot")]
         Command::Plot(arguments) => commands::plot::run(arguments)?,
         #[cfg(not(feature = "plot"))]
-        Command::Plot(_) => return Err(commands::left_out("plot", "plot")),
+        Command::Plot(_) => return Err(commands::not_included("plot", "plot")),
         Command::Bench(arguments) => commands::bench::run(arguments)?,
         Command::Completions(arguments) => commands::completions::run(arguments),
     }

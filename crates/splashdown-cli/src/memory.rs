@@ -1,4 +1,4 @@
-//! The memory of this machine, as far as the system reports it in a file (Linux), and whether a scene fits.
+//! The memory of this machine, where the system reports it in a file (Linux), and a check whether a scene fits.
 
 use splashdown::scene::Scene;
 use splashdown::{Device, memory_forecast};

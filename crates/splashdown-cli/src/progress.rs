@@ -67,8 +67,8 @@ impl Bar {
         let last_line = Mutex::new(Instant::now());
         ProgressFn::new(move |body, fraction| {
             bar.set_position((fraction.clamp(0.0, 1.0) * LENGTH as f32) as u64);
-            let text = format!("measuring the distances around {body:?}");
-            // Other threads have nothing different to report.
+            let text = format!("computing the distance field of {body:?}");
+            // If another thread is printing, this line is not needed.
             if let (true, Ok(mut last)) = (plain, last_line.try_lock())
                 && last.elapsed() >= PAUSE
             {
@@ -93,7 +93,7 @@ impl Bar {
     pub fn waiting(&self, what: &str) {
         self.bar.set_position(LENGTH);
         self.bar.set_message(what.to_owned());
-        // No more progress will come; the bar is drawn while files are written.
+        // No further progress arrives, so the bar is redrawn here.
         self.bar.tick();
     }
 
@@ -136,7 +136,7 @@ impl Speed {
         }
     }
 
-    /// Steps and simulated seconds per second, once there is enough to measure.
+    /// Steps and simulated seconds per second; `None` until the marks span 0.2 s.
     fn measure(&self) -> Option<(f64, f64)> {
         let (first, last) = (self.marks.front()?, self.marks.back()?);
         let wall = last.0.saturating_sub(first.0).as_secs_f64();
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_speed_is_that_of_the_last_seconds() {
+    fn the_speed_is_averaged_over_the_last_seconds() {
         let mut speed = Speed::default();
         speed.add(&at(0.0, 0));
         assert_eq!(speed.measure(), None);

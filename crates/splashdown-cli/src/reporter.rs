@@ -33,7 +33,7 @@ impl ConsoleReporter {
     /// The failure of the run.
     pub fn close(&self, outcome: RunOutcome, timing: bool) -> Result<ExitCode, Failure> {
         self.bar.clear();
-        let remains = remains(&outcome);
+        let results = partial_results(&outcome);
         let RunOutcome { end, folder, last_frame, files, films, .. } = outcome;
         let closing = films.iter().map(|film| film.path.clone()).chain([folder.report()]);
         let closing: Vec<String> = closing.map(|path| path.display().to_string()).collect();
@@ -49,12 +49,12 @@ impl ConsoleReporter {
                 Ok(ExitCode::SUCCESS)
             }
             RunEnd::Failed(error) => {
-                self.print_note(&remains);
+                self.print_note(&results);
                 Err(error.into())
             }
             _ => {
                 self.line(&Line::interrupted(last_frame.as_ref(), closing));
-                self.print(&format!("\nStopped. {remains}"));
+                self.print(&format!("\nStopped. {results}"));
                 self.print(&summary::files(folder.root(), &files, &films));
                 Ok(ExitCode::from(Exit::Interrupted as u8))
             }
@@ -88,7 +88,7 @@ impl Reporter for ConsoleReporter {
     }
 
     fn warning(&mut self, text: &str) {
-        // The warnings of a scene bring the word along.
+        // Warnings of a scene already start with this word.
         let text = text.trim_start_matches("warning: ");
         self.print_note(&format!("warning: {text}"));
         self.line(&Line::warning(text));
@@ -132,8 +132,8 @@ impl Reporter for ConsoleReporter {
     }
 }
 
-/// What an incomplete run has written, and how to resume it.
-fn remains(outcome: &RunOutcome) -> String {
+/// Describes the frames of an incomplete run, and how to resume it.
+fn partial_results(outcome: &RunOutcome) -> String {
     let folder = outcome.folder.root().display();
     let text = match outcome.complete_frames {
         0 => "No frame was completed.".to_owned(),

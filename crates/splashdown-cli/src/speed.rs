@@ -1,4 +1,4 @@
-//! Measuring speed: a dam break with any number of particles, and the wall time of its steps.
+//! Measuring speed: a dam break with a given number of particles, and the wall time of its steps.
 
 use std::fmt::Write;
 use std::time::Instant;
@@ -9,14 +9,14 @@ use splashdown::{Simulation, SimulationError};
 /// A power of two, so that the coordinates of the lattice and thus the counts are exact.
 const SPACING: f64 = 1.0 / 64.0;
 
-/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width. Its
-/// size grows with the number and its density of neighbours does not, so the cost per particle is comparable.
+/// A column of about `particles` particles, twice as deep as wide and high, in a tank of three times its width. The
+/// number of neighbours per particle does not depend on the size of the column, so the cost per particle is comparable.
 pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
     let side = (f64::from(particles) / 2.0).cbrt().round().max(1.0);
     let depth = (f64::from(particles) / (side * side)).round().max(1.0);
     let [width, height, depth] = [side, side, depth].map(|count| count * SPACING);
     // A domain has at least four spacings in every direction.
-    let least = 4.0 * SPACING;
+    let minimum = 4.0 * SPACING;
     let mut text = String::new();
     // Writing into a string cannot fail.
     let _ = write!(
@@ -25,14 +25,14 @@ pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
          [domain]\nmin = [0, 0, 0]\nmax = [{}, {}, {}]\nopen = [\"y_max\"]\n\
          [fluid]\nparticle_spacing = {SPACING}\n\
          [[fluid.block]]\nposition = [0, 0, 0]\nsize = [{width}, {height}, {depth}]\n",
-        (3.0 * width).max(least),
-        (2.0 * height).max(least),
-        depth.max(least),
+        (3.0 * width).max(minimum),
+        (2.0 * height).max(minimum),
+        depth.max(minimum),
     );
     Scene::parse(&text, "the benchmark's scene")
 }
 
-/// Simulates about `steps` steps and waits for their end; returns the wall time per step in s and the number of steps.
+/// Simulates about `steps` steps and waits until they end. Returns the wall time per step in s and the number of steps.
 ///
 /// # Errors
 /// Those of the simulation.
@@ -51,11 +51,13 @@ mod tests {
     use splashdown::scene::Derived;
 
     #[test]
-    fn the_scene_has_the_particles_asked_for() {
-        for (asked, tolerance) in [(1, 0.0), (8192, 0.0), (65_536, 0.0), (1_048_576, 0.005), (10_000, 0.02)] {
-            let scene = bench_scene(asked).expect("a valid scene");
-            let given = Derived::new(&scene).particles as f64;
-            assert!((given / f64::from(asked) - 1.0).abs() <= tolerance, "{asked} asked, {given} given");
+    fn the_scene_has_the_requested_number_of_particles() {
+        let cases = [(1, 0.0), (8192, 0.0), (65_536, 0.0), (1_048_576, 0.005), (10_000, 0.02)];
+        for (requested, tolerance) in cases {
+            let scene = bench_scene(requested).expect("a valid scene");
+            let count = Derived::new(&scene).particles as f64;
+            let error = (count / f64::from(requested) - 1.0).abs();
+            assert!(error <= tolerance, "{count} particles instead of {requested}");
         }
     }
 }

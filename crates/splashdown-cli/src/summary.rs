@@ -158,13 +158,13 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn files_of_a_kind_share_a_line() {
+    fn files_of_one_kind_share_a_line() {
         let file = |name: &str| WrittenFile { path: Path::new("out_1").join(name), bytes: 1000 };
         let written =
             [file("mesh/surface_0000.ply"), file("mesh/surface_0001.ply"), file("mesh/surface_0000.obj")];
         let text = files(Path::new("out_1"), &written, &[]);
         assert!(text.contains("mesh/surface_*.ply") && text.contains("2 files  2.00 kB"), "{text}");
-        // The columns are aligned also after a long name.
+        // The columns are also aligned after a long name.
         let long = [file("checkpoints/checkpoint_0010.splashdown"), file("mesh/surface_0000.ply")];
         let text = files(Path::new("out_1"), &long, &[]);
         let ends: Vec<_> = text.lines().skip(1).filter_map(|line| line.find("1 file")).collect();

@@ -1,4 +1,4 @@
-//! The window on a virtual X server: it opens, shows water, and reacts to keys and the mouse.
+//! Starts the window on a virtual X server and checks that it shows water and reacts to keys and the mouse.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -67,7 +67,7 @@ impl Screen {
     }
 }
 
-/// The left part, with the water and without panels, whose numbers change.
+/// The left part of the picture, which contains the water but no panels: the numbers in panels change.
 fn water(picture: &[[u8; 3]]) -> impl Iterator<Item = [u8; 3]> {
     let [width, height] = SIZE.map(|side| side as usize);
     let inside = move |i: &usize| {
@@ -123,14 +123,14 @@ fn the_window_shows_water_and_reacts() {
 
     let window = screen.tool(&["search", "--name", "Splashdown"]);
     screen.tool(&["windowfocus", window.lines().last().unwrap()]);
-    // It moves.
-    screen.until("a motion", |picture| differing(picture, &first) > 0.01);
+    // The water moves.
+    screen.until("motion", |picture| differing(picture, &first) > 0.01);
     // Paused, the picture stays the same: the control for all differences here.
     screen.tool(&["key", "space"]);
     std::thread::sleep(Duration::from_secs(2));
     let paused = screen.picture();
     std::thread::sleep(Duration::from_secs(1));
-    assert!(differing(&paused, &screen.picture()) < 0.001, "a paused picture moves");
+    assert!(differing(&paused, &screen.picture()) < 0.001, "the paused picture changes");
     // Another display mode.
     screen.tool(&["key", "1"]);
     let particles = screen.until("the particles", |picture| differing(picture, &paused) > 0.02);
@@ -139,7 +139,7 @@ fn the_window_shows_water_and_reacts() {
         screen.tool(&step.split(' ').collect::<Vec<_>>());
         std::thread::sleep(Duration::from_millis(400));
     }
-    screen.until("another side", |picture| differing(picture, &particles) > 0.05);
+    screen.until("a different view", |picture| differing(picture, &particles) > 0.05);
     // The scene is exported, and the command line accepts it.
     screen.tool(&["key", "ctrl+s"]);
     let exported = folder.path().join("dam-break-small.toml");

@@ -1,4 +1,4 @@
-//! The command line: one declaration defines the parser, the help and the completions of shells.
+//! The command line. One declaration defines the parser, the help and the shell completions.
 
 mod bench;
 mod plot;
@@ -58,7 +58,7 @@ pub enum Command {
     Completions(CompletionsArguments),
 }
 
-/// How much is printed.
+/// Options for the amount of output.
 #[derive(Debug, Args)]
 pub struct VerbosityArguments {
     /// Print errors only
@@ -70,7 +70,7 @@ pub struct VerbosityArguments {
 }
 
 impl VerbosityArguments {
-    /// As a level.
+    /// The verbosity that the options select.
     pub fn level(&self) -> Verbosity {
         match (self.quiet, self.verbose) {
             (true, _) => Verbosity::Quiet,
@@ -149,5 +149,5 @@ pub fn is_mesh_file(format: &Format) -> bool {
 
 fn words<C: Choice>(more: &[&'static str]) -> PossibleValuesParser {
     let words = C::ALL.iter().map(|&(_, word, about)| PossibleValue::new(word).help(about.trim()));
-    PossibleValuesParser::new(words.chain(more.iter().map(|word| PossibleValue::new(word).help("Nothing."))))
+    PossibleValuesParser::new(words.chain(more.iter().map(|word| PossibleValue::new(word).help("No files."))))
 }

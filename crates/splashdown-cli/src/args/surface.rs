@@ -16,8 +16,8 @@ fn after_help() -> String {
 Input formats:   {}
 Output formats:  {}
 Velocities of particles are interpolated to the vertices ({}). Other attributes
-(a number or a vector per particle) are interpolated with --attribute ({}). Several input
-files give meshes with the same numbers, in place of the star or before the ending.
+(a number or a vector per particle) are interpolated with --attribute ({}). With several
+input files, each mesh has the number of its input file, in place of * or before the ending.
 
 Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
 particle radius is half of the particle spacing.",
@@ -64,7 +64,7 @@ pub struct SurfaceArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub smoothing: u32,
     /// Remove components with less volume than N particles in the bulk; a single particle has 1 to 2
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = particles_of_a_blob)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = component_size)]
     pub min_blob: f64,
     /// Interpolate this attribute of the particles to the vertices, or `all` of them; may be repeated
     #[arg(short, long, value_name = "NAME|all")]
@@ -88,7 +88,7 @@ fn length(text: &str) -> Result<f32, String> {
 }
 
 /// A number of particles, which need not be whole.
-fn particles_of_a_blob(text: &str) -> Result<f64, String> {
+fn component_size(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|size: &f64| (0.0..=1e12).contains(size))

@@ -16,7 +16,7 @@ use crate::{console, human, scene_file};
 /// Duration of the measurement for the expected time.
 const MEASURE: Duration = Duration::from_millis(60);
 
-/// Numbers of particles that keep a CPU and a GPU busy.
+/// Numbers of particles sufficient to use a CPU and a GPU fully.
 const FEW: u64 = 4096;
 const MANY: u64 = 65_536;
 
@@ -158,7 +158,7 @@ fn measure_with(particles: u64, scene: &Scene, derived: &Derived, device: &Devic
     let mut small = bench_scene(particles as u32)?;
     small.solver = scene.solver.clone();
     let mut simulation = Simulation::new(&small, device)?;
-    // The first steps build pipelines and touch memory for the first time.
+    // The first steps also build pipelines and touch memory for the first time.
     seconds_per_step(&mut simulation, 2)?;
     let start = Instant::now();
     let mut best = f64::INFINITY;

@@ -122,8 +122,8 @@ fn cpu() -> Cpu {
     }
 }
 
-/// Bytes per particle of the demo in all buffers together, including its share of cells and surface. On the CPU no
-/// single buffer is the limit.
+/// Bytes per particle of the demo scene in all buffers together, including its share of cells and surface. On the CPU
+/// the total memory is the limit, not a single buffer.
 fn bytes_per_particle() -> Option<u64> {
     let (name, text) = presets().first()?;
     let scene = Scene::parse(text, name).ok()?;

@@ -17,7 +17,7 @@ use crate::exit::{Exit, Failure};
 
 /// The error for a command that this build does not include.
 #[cfg(not(all(feature = "plot", feature = "window")))]
-pub fn left_out(command: &str, feature: &str) -> Failure {
+pub fn not_included(command: &str, feature: &str) -> Failure {
     let message = format!(
         "this program was built without `splashdown {command}`: it needs the feature `{feature}`, which \
          `cargo build --release --package splashdown-cli` and `cargo install --path crates/splashdown-cli` include"

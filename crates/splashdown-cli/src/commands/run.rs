@@ -15,7 +15,7 @@ use crate::{memory, scene_file};
 /// Runs a scene, or resumes a run.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if arguments.verbosity.level() == Verbosity::Verbose {
-        // Fails only if a subscriber is set already.
+        // Fails only if a subscriber is already set.
         let _ = tracing_subscriber::fmt()
             .with_writer(std::io::stderr)
             .with_target(false)
@@ -42,7 +42,7 @@ fn execute(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     memory::check(request.scene(), &request.device())?;
     let mut reporter = ConsoleReporter::new(arguments.json, arguments.verbosity.level());
     let session = Session::start(request, &mut reporter)?;
-    // Ctrl-C during the start ends the program at once: no frame is lost.
+    // During the start Ctrl-C ends the program at once, because no frame can be lost yet.
     let interrupt = Interrupt::listen();
     let outcome = session.finish(&mut reporter, &|| interrupt.stop());
     reporter.close(outcome, arguments.timing)

@@ -38,9 +38,9 @@ struct Line<'a> {
     oriented: bool,
     velocities: bool,
     attributes: Vec<String>,
-    /// From particles in memory to the mesh in memory.
+    /// Time of the reconstruction, without reading and writing files.
     surface_seconds: f64,
-    /// In all, including reading and writing.
+    /// Total time, including reading and writing.
     seconds: f64,
     /// Resident bytes of this process before reading, and its peak so far, if the system reports them.
     start_memory: Option<u64>,
@@ -75,23 +75,23 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
         prepare_folder(folder)?;
     }
     let mut executor = arguments.device.device.executor()?;
-    let (mut open, mut last) = (Vec::new(), None);
+    let (mut failures, mut last) = (Vec::new(), None);
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
         let topology = match one(step, &params, arguments, &mut executor, place) {
             // The remaining files of a series are still processed.
             Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
-                open.push(failure.message);
+                failures.push(failure.message);
                 continue;
             }
             result => result?,
         };
         if !topology.is_watertight() {
-            open.push(format!("`{}` is {topology}", step.output.display()));
+            failures.push(format!("`{}` is {topology}", step.output.display()));
         }
         last = Some(topology);
     }
-    conclude(arguments, &steps, last, &open)
+    conclude(arguments, &steps, last, &failures)
 }
 
 /// Reads one file and writes its mesh; returns the mesh's topology.
@@ -105,10 +105,10 @@ fn one(
     let begun = Instant::now();
     let Step { input, output } = step;
     let particles = read(input, arguments)?;
-    let chosen = attributes::chosen(&particles, &arguments.attribute, input)?;
+    let selected = attributes::selected(&particles, &arguments.attribute, input)?;
     let read = Instant::now();
     let (mut surface, _) =
-        reconstruct(&particles.positions, params, executor).map_err(|error| of_input(error, input))?;
+        reconstruct(&particles.positions, params, executor).map_err(|error| input_failure(error, input))?;
     let surface_seconds = read.elapsed().as_secs_f64();
     let dropped_blobs = if arguments.min_blob > 0.0 {
         remove_small_components(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
@@ -119,7 +119,7 @@ fn one(
         let Particles { positions, velocities, .. } = &particles;
         surface.velocities = interpolate(&surface.vertices, positions, velocities, params)?;
     }
-    attributes::put(&mut surface, &chosen, &particles.positions, params)?;
+    attributes::add_interpolated(&mut surface, &selected, &particles.positions, params)?;
     let topology = surface.topology()?;
     write_mesh(output, &surface)?;
     let line = Line {
@@ -154,16 +154,17 @@ fn one(
 fn describe(line: &Line<'_>, surface: &Mesh) -> String {
     let (particles, triangles) =
         (human::counted(line.particles as u64, "particle"), human::count(surface.len() as u64));
-    let blobs = match line.dropped_blobs {
+    let removed = match line.dropped_blobs {
         0 => String::new(),
         count => format!(", {} removed", human::counted(count as u64, "small component")),
     };
     let velocities = line.velocities.then_some("velocities");
-    let carried: Vec<&str> =
+    let attributes: Vec<&str> =
         velocities.into_iter().chain(line.attributes.iter().map(String::as_str)).collect();
-    let carried = if carried.is_empty() { String::new() } else { format!(", with {}", carried.join(", ")) };
+    let attributes =
+        if attributes.is_empty() { String::new() } else { format!(", with {}", attributes.join(", ")) };
     format!(
-        "{}: {particles} -> {}: {triangles} triangles{carried}, volume {}{blobs} ({})",
+        "{}: {particles} -> {}: {triangles} triangles{attributes}, volume {}{removed} ({})",
         line.input.display(),
         line.output.display(),
         human::three_digits(line.volume),
@@ -179,10 +180,10 @@ fn conclude(
     arguments: &SurfaceArguments,
     steps: &[Step],
     last: Option<Topology>,
-    open: &[String],
+    failures: &[String],
 ) -> Result<(), Failure> {
-    if !open.is_empty() {
-        let message = format!("{} of {} meshes failed: {}", open.len(), steps.len(), open.join("; "));
+    if !failures.is_empty() {
+        let message = format!("{} of {} meshes failed: {}", failures.len(), steps.len(), failures.join("; "));
         return Err(Failure::new(Exit::Failed, message));
     }
     if !arguments.quiet && !arguments.json {
@@ -199,7 +200,7 @@ fn conclude(
     Ok(())
 }
 
-/// Unreadable input has another exit code than unwritable output.
+/// Reads a particle file. An unreadable input file has a different exit code from an unwritable output file.
 fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure> {
     let particles = match arguments.attribute[..] {
         [] => read_particles(path),
@@ -208,8 +209,9 @@ fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure>
     particles.map_err(|error| Failure::new(Exit::Scene, error.to_string()))
 }
 
-/// Assigns errors to the arguments or to the input file.
-fn of_input(error: SurfaceError, input: &Path) -> Failure {
+/// Adds the name of the input file to an error, and chooses the exit code by whether the arguments or the file cause
+/// it.
+fn input_failure(error: SurfaceError, input: &Path) -> Failure {
     let exit = match &error {
         SurfaceError::NoSurface { .. } | SurfaceError::Parameter { .. } => Exit::Usage,
         SurfaceError::TooLarge { .. } | SurfaceError::TooFar { .. } | SurfaceError::GridTooFine { .. } => {
@@ -223,7 +225,7 @@ fn of_input(error: SurfaceError, input: &Path) -> Failure {
 /// The given spacing, if it fits the particles of the first file.
 ///
 /// # Errors
-/// [`Exit::Usage`] if it does not, or none was given.
+/// [`Exit::Usage`] if it does not fit, or if none is given.
 fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure> {
     let first = &steps[0].input;
     let given = arguments.particle_spacing;

@@ -8,7 +8,7 @@ use plotters::style::register_font;
 
 use super::table::{Curve, unit};
 
-/// The font's name in SVG, which the program that shows the file resolves.
+/// The font family in SVG files. The program that displays the file chooses the font.
 const FONT: &str = "sans-serif";
 
 /// Readable on white and distinguishable with colour-vision deficiency (Okabe & Ito 2008).
@@ -130,7 +130,7 @@ fn draw_panel<DB: DrawingBackend>(
     for (curve, colour) in panel.curves.iter().zip(COLOURS.iter().cycle()) {
         let style = colour.stroke_width(2);
         let sample = move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style);
-        // Lines end at gaps, and a point between two gaps is a dot.
+        // A curve is interrupted at gaps. A single point between two gaps is drawn as a dot.
         let is_gap = |point: &(f64, f64)| !(point.0.is_finite() && point.1.is_finite());
         let mut runs: Vec<&[(f64, f64)]> = curve.points.split(is_gap).filter(|run| !run.is_empty()).collect();
         runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
@@ -151,14 +151,14 @@ fn draw_panel<DB: DrawingBackend>(
 
 /// The range of the finite numbers with a margin on both sides; for equal numbers a range around them; else 0 to 1.
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
-    // The range of larger numbers would be infinite.
+    // With larger numbers the width of the range would overflow.
     let finite = values.filter(|value| value.is_finite() && value.abs() < 1e300);
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
     if low > high {
         return 0.0..1.0;
     }
     let width = high - low;
-    // Numbers that differ by rounding only get a range that can be labelled.
+    // Numbers that differ only by rounding get a wider range, so that its labels differ.
     if width <= 1e-9 * low.abs().max(high.abs()).max(1e-30) {
         let around = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
         return low - around..high + around;
@@ -166,9 +166,9 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     low - margin * width..high + margin * width
 }
 
-/// The label of an axis, with enough digits to distinguish neighbours.
+/// A label of an axis, with enough digits to distinguish neighbouring labels.
 fn label(value: f64, width: f64) -> String {
-    // Sums of steps give almost zero instead of zero.
+    // The drawing library adds up steps, so that zero becomes a tiny number.
     let value = if value.abs() < 1e-9 * width { 0.0 } else { value };
     let largest = value.abs().max(width);
     if largest >= 1e6 || width < 1e-4 {
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_for_each_unit() {
+    fn curves_with_the_same_unit_share_a_panel() {
         let made = panels(vec![
             curve("a", "height (m)", &[(0.0, 1.0)]),
             curve("b", "pressure (Pa)", &[(0.0, 1.0)]),

@@ -17,10 +17,10 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Reads the curves of a file. A curve has the file's name, with the column's if there are several.
+/// Reads the curves of a file. A curve has the name of the file, and also that of its column if there are several.
 ///
 /// # Errors
-/// If the file cannot be read, or is not a table of numbers below names; the message names the line.
+/// If the file cannot be read, or is not a line of names followed by rows of numbers; the message contains the line.
 pub fn read(path: &Path) -> Result<Vec<Curve>, Failure> {
     let wrong = |reason: String| Failure::new(Exit::Scene, format!("`{}`: {reason}", path.display()));
     if path.is_dir() {
@@ -72,7 +72,7 @@ fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
     Ok(names.iter().enumerate().skip(1).map(curve).collect())
 }
 
-/// The line, from 1, of the record at this byte. The reader's position is before the blank lines that it skips.
+/// The line, from 1, of the record at this byte. The reader reports the position before the blank lines that it skips.
 fn line_at(text: &str, byte: u64) -> usize {
     let (before, rest) = text.split_at_checked(byte as usize).unwrap_or((text, ""));
     let skipped = rest.len() - rest.trim_start_matches(['\r', '\n']).len();

@@ -5,7 +5,7 @@ use std::io::Write;
 use crate::place::{Outcome, Place, SMALL, assert_refused, can_draw, lines, stderr, stdout};
 use splashdown_io::ply;
 
-/// Scene files that are refused with exit code 3, and a word that the message must contain.
+/// Scene files that are refused with exit code 3, and a word in the message.
 fn wrong_scenes() -> Vec<(&'static str, Vec<u8>, &'static str)> {
     let edit = |from: &str, to: &str| {
         assert!(SMALL.contains(from), "{from}");
@@ -30,7 +30,7 @@ fn wrong_scenes() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ("no block", edit("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.3, 0.3, 0.3]\n", ""), "block"),
         ("no particle", edit("size = [0.3, 0.3, 0.3]", "size = [0.001, 0.001, 0.001]"), "particle"),
         ("too many particles", edit("particle_spacing = 0.05", "particle_spacing = 0.0006"), "particles"),
-        ("a name that climbs out of the folder", edit("\"small\"", "\"../../x\""), "name"),
+        ("a name that leaves the output folder", edit("\"small\"", "\"../../x\""), "name"),
     ]
 }
 
@@ -51,7 +51,7 @@ fn wrong_scenes_are_refused_before_anything_is_written() -> Outcome {
 }
 
 #[test]
-fn a_missing_scene_and_a_folder_are_distinguished() -> Outcome {
+fn a_missing_scene_and_a_folder_have_different_messages() -> Outcome {
     let place = Place::new()?;
     assert_refused(
         &place.splashdown(&["run", "nowhere.toml"]).output()?,
@@ -66,7 +66,7 @@ fn a_missing_scene_and_a_folder_are_distinguished() -> Outcome {
 }
 
 #[test]
-fn a_hundred_million_particles_get_a_number_and_advice() -> Outcome {
+fn a_hundred_million_particles_are_refused_with_advice() -> Outcome {
     let place = Place::new()?;
     // 500 x 500 x 400 particles of 1 mm.
     let scene = SMALL
@@ -95,12 +95,12 @@ fn unwritable_folders_are_reported_before_the_first_step() -> Outcome {
 }
 
 #[test]
-fn more_particles_than_a_device_binds_are_refused_with_the_count_that_fits() -> Outcome {
+fn more_particles_than_fit_into_a_buffer_are_refused_with_the_largest_count() -> Outcome {
     let doctor = crate::place::splashdown(&["doctor"]).output()?;
     if !can_draw() || !stdout(&doctor).contains("llvmpipe") {
         let _ = writeln!(
             std::io::stderr(),
-            "SKIPPED: more_particles_than_a_device_binds_are_refused_with_the_count_that_fits: there is no llvmpipe"
+            "SKIPPED: more_particles_than_fit_into_a_buffer_are_refused_with_the_largest_count: there is no llvmpipe"
         );
         return Ok(());
     }
@@ -157,7 +157,7 @@ fn a_refused_run_leaves_the_frames_of_an_earlier_one() -> Outcome {
 #[test]
 fn frames_before_a_failure_stay_valid() -> Outcome {
     let place = Place::new()?;
-    // A folder where the third frame's file should go.
+    // A folder in place of the third frame's file.
     std::fs::create_dir_all(place.path("out/particles/particles_0002.ply/x"))?;
     let output = place.run_small(&["--frames", "4", "--json"]).output()?;
     assert_refused(&output, 5, &["particles_0002.ply", "folder"]);
@@ -179,7 +179,7 @@ fn frames_before_a_failure_stay_valid() -> Outcome {
 }
 
 #[test]
-fn a_reader_that_leaves_early_does_not_stop_the_run() -> Outcome {
+fn a_closed_pipe_does_not_stop_the_run() -> Outcome {
     use std::process::{Command, Stdio};
     let place = Place::new()?;
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("splashdown"));
@@ -211,7 +211,7 @@ mod linux {
     use std::process::{Command, Stdio};
 
     #[test]
-    fn without_a_driver_files_are_written_and_the_driver_is_named() -> Outcome {
+    fn without_a_driver_files_are_written_and_a_warning_says_what_to_install() -> Outcome {
         let place = Place::new()?;
         let run = |more: &[&str]| {
             let mut command = place.splashdown(&["run", "small.toml", "--out", "out", "--frames", "1"]);
@@ -238,7 +238,7 @@ mod linux {
     }
 
     #[test]
-    fn results_that_do_not_fit_on_the_disk_are_an_error() -> Outcome {
+    fn a_failure_to_write_to_stdout_is_an_error() -> Outcome {
         let place = Place::new()?;
         for arguments in [
             &["scenes"][..],
@@ -257,10 +257,10 @@ mod linux {
     }
 
     #[test]
-    fn a_full_disk_is_reported_and_complete_frames_stay() -> Outcome {
+    fn a_full_disk_is_reported_and_complete_frames_remain() -> Outcome {
         let place = Place::new()?;
         let Some(disk) = TinyDisk::mount(place.path("disk"), 128)? else {
-            eprintln!("SKIPPED: no small file system can be mounted here to fill up");
+            eprintln!("SKIPPED: a small file system cannot be mounted");
             return Ok(());
         };
         let arguments = [

@@ -1,4 +1,4 @@
-//! Stopping a run in every way, and resuming it.
+//! Stopping a run by a signal, by Ctrl-C and by a full disk, and resuming it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,7 +24,7 @@ motion = \"dynamic\"
 density = 500
 ";
 
-/// The files of a run by name, without its report, which contains wall times, and its checkpoints.
+/// The files of a run by name. The report is excluded because it contains wall times, and so are the checkpoints.
 fn results(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     let mut found = BTreeMap::new();
     for folder in ["particles", "mesh", "probes"] {
@@ -37,11 +37,11 @@ fn results(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     Ok(found)
 }
 
-fn assert_same(root: &Path, straight: &Path) -> Outcome {
-    let (mine, theirs) = (results(root)?, results(straight)?);
-    assert_eq!(mine.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
-    for (name, bytes) in &mine {
-        assert!(*bytes == theirs[name], "{name} differs from that of the uninterrupted run");
+fn assert_same(resumed: &Path, uninterrupted: &Path) -> Outcome {
+    let (resumed, uninterrupted) = (results(resumed)?, results(uninterrupted)?);
+    assert_eq!(resumed.keys().collect::<Vec<_>>(), uninterrupted.keys().collect::<Vec<_>>());
+    for (name, bytes) in &resumed {
+        assert!(*bytes == uninterrupted[name], "{name} differs from that of the uninterrupted run");
     }
     Ok(())
 }
@@ -70,10 +70,10 @@ fn a_killed_run_resumes_bit_identically() -> Outcome {
     place.write("more.toml", format!("{SMALL}{MORE}"))?;
     let run =
         ["run", "more.toml", "--device", "cpu", "--no-pictures", "--formats", "ply,vtu", "--frames", "40"];
-    let output = place.splashdown(&[&run[..], &["--out", "straight"]].concat()).output()?;
+    let output = place.splashdown(&[&run[..], &["--out", "uninterrupted"]].concat()).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
 
-    // Killed three times, at whatever it was doing then.
+    // The run is killed three times, at arbitrary points.
     let mut child = start(&place, &[&run[..], &["--out", "out", "--checkpoint-every", "1"]].concat())?;
     for frame in [5, 12, 20] {
         await_file(&place.path(&format!("out/checkpoints/checkpoint_{frame:04}.splashdown")));
@@ -82,9 +82,9 @@ fn a_killed_run_resumes_bit_identically() -> Outcome {
         child = start(&place, &["run", "--resume", "out"])?;
     }
     assert!(child.wait()?.success());
-    assert_same(&place.path("out"), &place.path("straight"))?;
+    assert_same(&place.path("out"), &place.path("uninterrupted"))?;
 
-    // The last two checkpoints stay, and no incomplete file does.
+    // The last two checkpoints remain, and no incomplete file.
     let mut names: Vec<_> = fs::read_dir(place.path("out/checkpoints"))?
         .map(|entry| entry.map(|entry| entry.file_name().to_string_lossy().into_owned()))
         .collect::<Result<_, _>>()?;
@@ -95,14 +95,9 @@ fn a_killed_run_resumes_bit_identically() -> Outcome {
     let output = place.splashdown(&["run", "--resume", "out", "--frames", "41"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(place.path("out/particles/particles_0041.ply").exists());
-    // The control: the extended run is not the same.
-    assert!(assert_same_names(&place)?, "a frame more is a file more");
+    // Control: the extended run has more files.
+    assert!(results(&place.path("out"))?.len() > results(&place.path("uninterrupted"))?.len());
     Ok(())
-}
-
-/// True if the longer run has more files than the straight one.
-fn assert_same_names(place: &Place) -> Result<bool, std::io::Error> {
-    Ok(results(&place.path("out"))?.len() > results(&place.path("straight"))?.len())
 }
 
 #[test]
@@ -128,14 +123,14 @@ fn ctrl_c_writes_a_checkpoint_and_prints_how_to_resume() -> Outcome {
 }
 
 #[test]
-fn a_run_stopped_by_a_full_disk_resumes_when_there_is_room() -> Outcome {
+fn a_run_stopped_by_a_full_disk_resumes_when_space_is_available() -> Outcome {
     let place = Place::new()?;
     let Some(disk) = TinyDisk::mount(place.path("disk"), 256)? else {
-        eprintln!("SKIPPED: no small file system can be mounted here to fill up");
+        eprintln!("SKIPPED: a small file system cannot be mounted");
         return Ok(());
     };
     let run = ["run", "small.toml", "--device", "cpu", "--no-pictures", "--no-surface", "--frames", "40"];
-    let output = place.splashdown(&[&run[..], &["--out", "straight"]].concat()).output()?;
+    let output = place.splashdown(&[&run[..], &["--out", "uninterrupted"]].concat()).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let output =
         place.splashdown(&[&run[..], &["--out", "disk/out", "--checkpoint-every", "2"]].concat()).output()?;
@@ -147,13 +142,13 @@ fn a_run_stopped_by_a_full_disk_resumes_when_there_is_room() -> Outcome {
     for frame in [0, 7, 40] {
         let name = format!("particles/particles_{frame:04}.ply");
         let read = |root: &str| fs::read(place.path(root).join(&name));
-        assert!(read("disk/out")? == read("straight")?, "{name}");
+        assert!(read("disk/out")? == read("uninterrupted")?, "{name}");
     }
     Ok(())
 }
 
 #[test]
-fn what_cannot_be_resumed_is_refused() -> Outcome {
+fn unusable_paths_and_checkpoints_are_refused() -> Outcome {
     let place = Place::new()?;
     let resume = |what: &str| place.splashdown(&["run", "--resume", what]).output();
     assert_refused(&resume("nowhere")?, 5, &["nowhere"]);
@@ -164,19 +159,19 @@ fn what_cannot_be_resumed_is_refused() -> Outcome {
     assert_refused(&both, 2, &["cannot be used with"]);
     assert_refused(&place.splashdown(&["run"]).output()?, 2, &["SCENE"]);
 
-    // A finished run is not restarted, however its folder is spelled.
+    // A finished run is not restarted, also if another spelling names its folder.
     let done = place.run_small(&["--checkpoint-every", "1"]).output()?;
     assert!(done.status.success(), "{}", stderr(&done));
     let shorter =
         place.splashdown(&["run", "--resume", "out", "--out", "./out", "--frames", "2"]).output()?;
-    assert_refused(&shorter, 2, &["frame 2 is done already", "--frames"]);
+    assert_refused(&shorter, 2, &["frame 2 is already complete", "--frames"]);
     let longer = place.splashdown(&["run", "--resume", "out", "--out", "./out", "--frames", "3"]).output()?;
     assert!(longer.status.success() && stderr(&longer).contains("after frame 2"), "{}", stderr(&longer));
     for frame in 0..=3 {
         assert!(place.path(&format!("out/particles/particles_000{frame}.ply")).exists(), "frame {frame}");
     }
 
-    // A truncated checkpoint is skipped in favour of the one before it; alone it is refused.
+    // A truncated checkpoint given as a file is refused. Given its folder, the previous checkpoint is used.
     let output = place.run_small(&["--frames", "4", "--checkpoint-every", "2"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let newest = place.path("out/checkpoints/checkpoint_0004.splashdown");

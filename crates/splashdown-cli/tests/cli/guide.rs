@@ -1,4 +1,5 @@
-//! The commands, options, formats and exit codes in the README and the user guide are those of the program.
+//! Checks that the program accepts the commands in the README and the user guide, and that the options, formats and
+//! exit codes in the guide equal those in the help.
 
 use std::error::Error;
 use std::fs;
@@ -23,7 +24,8 @@ fn page(name: &str) -> Result<String, Box<dyn Error>> {
     Ok(fs::read_to_string(repository().join("docs/guide/src").join(name))?)
 }
 
-/// The arguments of a shell line that calls the program: quotes are removed, comments, pipes and redirections end it.
+/// The arguments of a shell line that calls the program. Quotes are removed. A comment, a pipe or a redirection ends
+/// the arguments.
 fn arguments(line: &str) -> Option<Vec<String>> {
     let rest = line.trim().strip_prefix("splashdown ")?;
     let mut words = vec![String::new()];
@@ -56,7 +58,8 @@ fn commands(text: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// The program parses all arguments before `--help`, so a wrong option is an error and nothing is executed.
+/// Whether the program accepts the arguments. It parses those before `--help`, so that a wrong option is an error, and
+/// executes nothing.
 fn is_accepted(command: &[String]) -> Result<bool, Box<dyn Error>> {
     let words: Vec<&str> = command.iter().map(String::as_str).chain(["--help"]).collect();
     Ok(splashdown(&words).output()?.status.success())
@@ -83,7 +86,7 @@ fn every_command_is_accepted() -> Outcome {
     Ok(())
 }
 
-/// Controls: wrong options and commands are found.
+/// Control: wrong options and commands are detected.
 #[test]
 fn wrong_commands_are_refused() -> Outcome {
     let text =
@@ -97,7 +100,7 @@ fn wrong_commands_are_refused() -> Outcome {
 }
 
 #[test]
-fn options_and_exit_codes_are_those_of_the_help() -> Outcome {
+fn options_and_exit_codes_equal_those_of_the_help() -> Outcome {
     let text = page("command-line.md")?;
     let help = stdout(&splashdown(&["run", "--help"]).output()?);
     let table = text
@@ -108,7 +111,7 @@ fn options_and_exit_codes_are_those_of_the_help() -> Outcome {
     let options: Vec<&str> = table.split(['`', ' ', ',']).filter(|word| word.starts_with("--")).collect();
     assert!(options.len() >= 10, "{options:?}");
     for option in options {
-        assert!(help.contains(option), "the guide has {option}, the help has not");
+        assert!(help.contains(option), "the guide has {option}, but the help does not");
     }
     let codes = stdout(&splashdown(&["--help"]).output()?);
     let codes = codes.split("Exit codes:").nth(1).ok_or("no codes")?;
@@ -119,7 +122,7 @@ fn options_and_exit_codes_are_those_of_the_help() -> Outcome {
 }
 
 #[test]
-fn formats_are_those_of_the_help() -> Outcome {
+fn formats_equal_those_of_the_help() -> Outcome {
     let text = page("other-programs.md")?;
     let help = stdout(&splashdown(&["run", "--help"]).output()?);
     let formats = help.split("--formats <LIST>").nth(1).and_then(|rest| rest.split("--no-surface").next());

@@ -1,4 +1,4 @@
-//! The command line as a user sees it.
+//! Tests of the command line. They start the program and check its output, exit codes and files.
 
 mod bad_input;
 #[cfg(target_os = "linux")]

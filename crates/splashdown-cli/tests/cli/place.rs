@@ -1,4 +1,4 @@
-//! What the tests of the command line share: a small scene, the program, and what it printed.
+//! Shared by the tests of the command line: a small scene, a temporary folder, the program, and its output.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 /// A result that a test can return.
 pub type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// 216 particles in a box, two frames of 5 ms: a fraction of a second.
+/// 216 particles in a box and two frames of 5 ms, which take a fraction of a second.
 pub const SMALL: &str = "\
 [scene]
 name = \"small\"
@@ -80,7 +80,7 @@ pub fn splashdown(arguments: &[&str]) -> Command {
     command
 }
 
-/// What came on stdout.
+/// The text on stdout.
 pub fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
@@ -105,7 +105,7 @@ pub fn names(folder: &Path) -> std::io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// One clear error: the exit code, no panic, and a message on stderr that says all this.
+/// Asserts one clear error: the exit code, no panic, and an error message on stderr that contains all words.
 pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
     let text = stderr(output);
     assert_eq!(output.status.code(), Some(code), "{text}");
@@ -116,25 +116,28 @@ pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
     }
 }
 
-/// True if something can draw here. Where a driver is promised (`CI=true`) it must be there.
+/// Whether a driver can draw. With `CI=true` a missing driver is a failure.
 pub fn can_draw() -> bool {
     let output = splashdown(&["doctor", "--json"]).output();
     let doctor = output.ok().and_then(|output| serde_json::from_slice::<Value>(&output.stdout).ok());
     let found = doctor.is_some_and(|doctor| doctor["draws_on"].is_string());
     if !found {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI=true, and there is no driver to draw with");
+        assert!(
+            std::env::var("CI").as_deref() != Ok("true"),
+            "with CI=true a driver that can draw is required"
+        );
         eprintln!("SKIPPED: no driver to draw pictures with");
     }
     found
 }
 
-/// A small file system; gone when dropped.
+/// A small file system, unmounted when dropped.
 #[cfg(target_os = "linux")]
 pub struct TinyDisk(pub PathBuf);
 
 #[cfg(target_os = "linux")]
 impl TinyDisk {
-    /// Of this many KiB; `None` where none can be mounted.
+    /// Mounts a file system of `size` KiB; `None` if that is not possible.
     pub fn mount(folder: PathBuf, size: u32) -> std::io::Result<Option<Self>> {
         std::fs::create_dir(&folder)?;
         let mount = Command::new("mount")

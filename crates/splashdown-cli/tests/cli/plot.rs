@@ -23,12 +23,15 @@ fn tables_become_pictures() -> Outcome {
     assert!(output.status.success(), "{}", stderr(&output));
     let picture = image::open(place.path("plot.png"))?.to_rgb8();
     assert_eq!(picture.dimensions(), (400, 300));
-    assert!(picture.pixels().filter(|pixel| pixel.0 == [0, 114, 178]).count() > 100, "a line in its colour");
+    assert!(
+        picture.pixels().filter(|pixel| pixel.0 == [0, 114, 178]).count() > 100,
+        "a curve in the first colour"
+    );
     Ok(())
 }
 
 #[test]
-fn what_cannot_be_plotted_is_refused() -> Outcome {
+fn invalid_tables_and_outputs_are_refused() -> Outcome {
     let place = Place::new()?;
     fs::write(place.path("good.csv"), "time (s),height (m)\n0,0.5\n")?;
     fs::write(place.path("bad.csv"), "time (s),height (m)\n0,0.5\n0.1,high\n")?;

@@ -1,4 +1,4 @@
-//! Resuming a run: what may be named, what is reported, and that two runs do not write into one folder.
+//! Resuming a run: the accepted paths, the reported changes, and the lock of the output folder.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -9,7 +9,7 @@ use splashdown_io::Archive;
 
 use crate::place::{Outcome, Place, assert_refused, stderr};
 
-/// A finished run of two frames with a checkpoint of each, in `out`.
+/// A finished run of two frames in `out`, with a checkpoint after each.
 fn two_frames() -> Result<Place, Box<dyn std::error::Error>> {
     let place = Place::new()?;
     let output = place.run_small(&["--frames", "2", "--checkpoint-every", "1"]).output()?;
@@ -41,24 +41,24 @@ fn two_runs_do_not_write_into_one_folder() -> Outcome {
         std::thread::sleep(Duration::from_millis(5));
     }
     let refused = place.run_small(&[]).output()?;
-    // Another folder is free.
-    let beside =
+    // A run in another folder is accepted.
+    let other =
         place.splashdown(&["run", "small.toml", "--out", "b", "-d", "cpu", "--no-pictures"]).output()?;
     first.kill()?;
     first.wait()?;
     assert_refused(&refused, 2, &["another run is writing into `out`", "--out"]);
-    assert!(beside.status.success(), "{}", stderr(&beside));
+    assert!(other.status.success(), "{}", stderr(&other));
     // An incomplete file of the killed run is removed with its frames.
-    let half = place.write("out/particles/.particles_0007.ply.1-2.partial", "ply")?;
-    // The lock of a killed run does not block, and a finished run leaves none.
+    let partial = place.write("out/particles/.particles_0007.ply.1-2.partial", "ply")?;
+    // The lock file of a killed run does not lock, and a finished run removes its lock file.
     let output = place.run_small(&[]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    assert!(!place.path("out/.lock").exists() && !half.exists());
+    assert!(!place.path("out/.lock").exists() && !partial.exists());
     Ok(())
 }
 
 #[test]
-fn the_folder_of_the_checkpoints_and_a_file_in_it_name_the_run_too() -> Outcome {
+fn a_run_is_found_by_its_checkpoint_folder_or_a_file_in_it() -> Outcome {
     let place = two_frames()?;
     let named = ["out/checkpoints", "out/checkpoints/", "out/checkpoints/checkpoint_0004.splashdown"];
     for (name, frames) in named.iter().zip(["3", "4", "5"]) {
@@ -66,12 +66,12 @@ fn the_folder_of_the_checkpoints_and_a_file_in_it_name_the_run_too() -> Outcome 
         assert!(output.status.success(), "{name}: {}", stderr(&output));
         assert!(place.path(&format!("out/particles/particles_000{frames}.ply")).exists(), "{name}");
     }
-    // From inside.
+    // From inside the folder of checkpoints.
     let mut inside = place.splashdown(&["run", "--resume", ".", "--frames", "6"]);
     let output = inside.current_dir(place.path("out/checkpoints")).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(place.path("out/particles/particles_0006.ply").exists());
-    // A copied checkpoint has to be named itself.
+    // A copied checkpoint is outside the folder of a run; its file must be named.
     fs::create_dir(place.path("copies"))?;
     fs::copy(place.path("out/checkpoints/checkpoint_0006.splashdown"), place.path("copies/mine.splashdown"))?;
     let output = place.splashdown(&["run", "--resume", "copies"]).output()?;
@@ -85,7 +85,7 @@ fn a_change_of_the_device_is_reported() -> Outcome {
     let longer = |frames: &str, more: &[&str]| {
         place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
     };
-    let asked = |frame: u32| -> Result<Value, Box<dyn std::error::Error>> {
+    let requested_device = |frame: u32| -> Result<Value, Box<dyn std::error::Error>> {
         let archive =
             Archive::read(&place.path(&format!("out/checkpoints/checkpoint_000{frame}.splashdown")))?;
         Ok(serde_json::from_str::<Value>(archive.text("notes.json")?)?["device"].clone())
@@ -93,11 +93,11 @@ fn a_change_of_the_device_is_reported() -> Outcome {
     change(&place, "about.json", |text| text.replace("\"CPU\"", "\"Abacus\""))?;
     let output = longer("3", &[])?;
     assert!(stderr(&output).contains("made on Abacus, and the run continues on CPU"), "{}", stderr(&output));
-    assert_eq!(asked(3)?, "cpu");
-    // The control: the same device is not reported.
+    assert_eq!(requested_device(3)?, "cpu");
+    // Control: the same device is not reported.
     let output = longer("4", &["--device", "auto"])?;
     assert!(output.status.success(), "{}", stderr(&output));
-    assert_eq!(asked(4)?, "auto");
+    assert_eq!(requested_device(4)?, "auto");
     if stderr(&output).contains("on CPU (") {
         assert!(!stderr(&output).contains("was made on"), "{}", stderr(&output));
     }
@@ -105,23 +105,23 @@ fn a_change_of_the_device_is_reported() -> Outcome {
 }
 
 #[test]
-fn missing_files_are_reported_and_all_are_counted() -> Outcome {
+fn missing_files_are_reported_and_existing_files_are_counted() -> Outcome {
     let place = Place::new()?;
     let report = |root: &str| -> Result<Value, Box<dyn std::error::Error>> {
         Ok(serde_json::from_slice(&fs::read(place.path(root).join("run.json"))?)?)
     };
     let run = ["run", "small.toml", "--device", "cpu", "--no-pictures", "--checkpoint-every", "1"];
-    for (root, frames) in [("straight", "4"), ("out", "2")] {
+    for (root, frames) in [("uninterrupted", "4"), ("out", "2")] {
         let output = place.splashdown(&[&run[..], &["--out", root, "--frames", frames]].concat()).output()?;
         assert!(output.status.success(), "{}", stderr(&output));
     }
     let output = place.splashdown(&["run", "--resume", "out", "--frames", "4"]).output()?;
     assert!(!stderr(&output).contains("cannot be found"), "{}", stderr(&output));
     // Five frames of particles and surface, two checkpoints.
-    assert_eq!(report("straight")?["files"], 12);
+    assert_eq!(report("uninterrupted")?["files"], 12);
     assert_eq!(report("out")?["files"], 12);
 
-    // Other formats are requested from here on: earlier frames do not have them.
+    // From here on other formats are requested. Earlier frames do not have them, and no warning appears.
     let longer = |frames: &str, more: &[&str]| {
         place.splashdown(&[&["run", "--resume", "out", "--frames", frames], more].concat()).output()
     };
@@ -138,7 +138,7 @@ fn missing_files_are_reported_and_all_are_counted() -> Outcome {
 }
 
 #[test]
-fn notes_that_no_run_can_have_stored_are_refused() -> Outcome {
+fn invalid_notes_in_a_checkpoint_are_refused() -> Outcome {
     let place = two_frames()?;
     let wrong = [
         ("words", "notes.json"),
@@ -154,7 +154,7 @@ fn notes_that_no_run_can_have_stored_are_refused() -> Outcome {
         let output = place.splashdown(&["run", "--resume", newest, "--frames", "3"]).output()?;
         assert_refused(&output, 5, &["checkpoint_0002", "notes.json", word]);
     }
-    // The one before it is used.
+    // The previous checkpoint is used.
     let output = place.splashdown(&["run", "--resume", "out"]).output()?;
     assert!(output.status.success() && stderr(&output).contains("skipped"), "{}", stderr(&output));
     Ok(())

@@ -1,4 +1,4 @@
-//! Whole runs of a small scene, as a user sees them.
+//! Complete runs of a small scene: files, console output and JSON lines.
 
 use std::fs;
 
@@ -44,7 +44,7 @@ fn a_run_leaves_complete_frames_and_a_summary() -> Outcome {
         assert!(place.path(&format!("out/mesh/surface_000{frame}.obj")).exists());
     }
     assert!(particles.iter().all(|particles| particles.len() == 216 && particles.check().is_ok()));
-    // Control: the frames are different ones.
+    // Control: the frames differ.
     assert_ne!(particles[0].positions, particles[2].positions);
     let series = fs::read_to_string(place.path("out/particles/particles.pvd"))?;
     assert_eq!(series.matches(".vtu\"").count(), 3, "{series}");
@@ -72,7 +72,7 @@ fn spray_foam_and_bubbles_have_separate_files() -> Outcome {
         Ok(particles.len())
     };
     for kind in ["spray", "foam", "bubbles"] {
-        // A column at rest makes none, a falling one makes some.
+        // A column at rest generates none, a collapsing one generates some.
         assert_eq!(count(kind, 0)?, 0);
         assert!(count(kind, 5)? > 0, "there are no {kind}");
     }
@@ -110,7 +110,7 @@ fn every_json_line_has_every_key() -> Outcome {
 }
 
 #[test]
-fn the_same_scene_gives_the_same_bytes_with_any_number_of_threads() -> Outcome {
+fn results_are_bit_identical_with_any_number_of_threads() -> Outcome {
     let place = Place::new()?;
     let run = |out: &str, threads: &str, more: &[&str]| {
         let mut command =
@@ -138,7 +138,7 @@ fn the_same_scene_gives_the_same_bytes_with_any_number_of_threads() -> Outcome {
 }
 
 #[test]
-fn options_choose_what_is_written() -> Outcome {
+fn options_select_the_files_written() -> Outcome {
     let place = Place::new()?;
     let output = place.run_small(&["--no-surface", "--frames", "1", "--formats", "vtu"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
@@ -154,7 +154,7 @@ fn options_choose_what_is_written() -> Outcome {
         "{}",
         stderr(&output)
     );
-    assert_eq!(names(&place.path("out"))?, ["run.json"], "the earlier run is gone");
+    assert_eq!(names(&place.path("out"))?, ["run.json"], "the files of the earlier run are removed");
 
     let output = place.run_small(&["--timing", "--frames", "1", "--formats", "none"]).output()?;
     assert!(stdout(&output).contains("| pass |"), "{}", stdout(&output));
@@ -199,7 +199,7 @@ fn pictures_and_films_are_made() -> Outcome {
 }
 
 #[test]
-fn without_ffmpeg_there_are_pictures_and_the_command_for_later() -> Outcome {
+fn without_ffmpeg_pictures_are_written_and_its_command_is_printed() -> Outcome {
     if !can_draw() {
         return Ok(());
     }
@@ -227,7 +227,7 @@ fn without_ffmpeg_there_are_pictures_and_the_command_for_later() -> Outcome {
 }
 
 #[test]
-fn the_benchmark_takes_scenes_and_numbers_of_threads() -> Outcome {
+fn the_benchmark_accepts_a_scene_and_numbers_of_threads() -> Outcome {
     let place = Place::new()?;
     let words = ["bench", "--scene", "small.toml", "--steps", "2", "--device", "cpu", "--threads", "1,2"];
     let output = place.splashdown(&[&words[..], &["--json", "--no-passes"]].concat()).output()?;
@@ -244,7 +244,10 @@ fn the_benchmark_takes_scenes_and_numbers_of_threads() -> Outcome {
         );
         // The roofline counts the dispatches even if the passes are not reported.
         assert!(row["dispatches_per_step"].as_f64().is_some_and(|count| count > 4.0), "{row}");
-        let ratio = row["support_radius"].as_f64().zip(row["spacing"].as_f64()).map(|(h, s)| h / s);
+        let ratio = row["support_radius"]
+            .as_f64()
+            .zip(row["spacing"].as_f64())
+            .map(|(radius, spacing)| radius / spacing);
         assert!(ratio.is_some_and(|ratio| (ratio - 2.0).abs() < 1e-5), "{row}");
     }
     let output = place.splashdown(&words).output()?;
@@ -285,7 +288,7 @@ fn each_probe_has_a_table_with_units() -> Outcome {
     let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n\
                  [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n";
     fs::write(place.path("small.toml"), format!("{scene}\n{probe}"))?;
-    // A table of an earlier run, and an unrelated file.
+    // A table of an earlier run, which is removed, and an unrelated file, which is not.
     fs::create_dir_all(place.path("out/probes"))?;
     fs::write(place.path("out/run.json"), "{}")?;
     fs::write(place.path("out/probes/old.csv"), "time (s),height (m)\n0.1,0.2\n")?;
@@ -337,11 +340,14 @@ fn every_format_contains_the_same_frames() -> Outcome {
             assert!((other.volume() / mesh.volume() - 1.0).abs() < 1e-5, "{ending}");
         }
         assert!(fs::metadata(file("mesh/surface_#.vtk"))?.len() > 1000);
-        // The water falls, and so do the vertices.
+        // The vertices fall at about the same speed as the particles.
         let mean = |values: &[[f32; 3]]| values.iter().map(|v| v[1]).sum::<f32>() / values.len() as f32;
-        let (water, skin) = (mean(&particles.velocities), mean(&mesh.velocities));
-        assert!((water - skin).abs() < 0.1 + 0.3 * water.abs(), "frame {frame}: {water} and {skin} m/s");
-        assert_eq!(frame > 0, skin < -0.01, "frame {frame}: {skin} m/s");
+        let (fluid, surface) = (mean(&particles.velocities), mean(&mesh.velocities));
+        assert!(
+            (fluid - surface).abs() < 0.1 + 0.3 * fluid.abs(),
+            "frame {frame}: {fluid} and {surface} m/s"
+        );
+        assert_eq!(frame > 0, surface < -0.01, "frame {frame}: {surface} m/s");
     }
     for name in ["surface.usda", "particles.usda"] {
         let text = fs::read_to_string(place.path(&format!("out/{name}")))?;

@@ -1,9 +1,9 @@
-//! `splashdown surface` against splashsurf, program against program, with equal parameters.
+//! Compares `splashdown surface` with the program splashsurf, with equal parameters.
 //!
-//! Smoothed meshes are not quite the same: splashsurf 0.14 mixes the mean of the neighbours with where the
-//! vertex was a round before (its buffers are swapped first), the paper that both follow with where it is.
-//! After 10 rounds the volumes of this small block differ by half a per cent; of 64,000 particles in mid-splash
-//! by a fifth after 20.
+//! Smoothed meshes differ. Both programs implement the same paper, in which an iteration blends the current position
+//! of a vertex with the mean of its neighbours. splashsurf 0.14 swaps its buffers first and uses the position of the
+//! previous iteration. After 10 iterations the volumes of this small block differ by 0.5 %; after 20 iterations those
+//! of 64,000 splashing particles differ by 20 %.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,10 +17,10 @@ use crate::place::{Outcome, Place, stderr};
 const SPACING: f32 = 0.05;
 const CELL: f32 = 0.5 * SPACING;
 
-/// The exit code by which the script says that a package is not installed.
+/// The exit code of the script if a package is not installed.
 const MISSING: i32 = 77;
 
-/// A block whose particles have left their lattice, with drops above it.
+/// A block of particles, displaced at random from their lattice, with drops above it.
 fn fluid() -> Particles {
     let mut state = 1_u32;
     let mut unit = move || {
@@ -33,7 +33,8 @@ fn fluid() -> Particles {
     Particles::from_positions(positions)
 }
 
-/// As in the tests of `splashdown-io`: the environment of `cargo xtask`, one that is named, or the system's.
+/// The Python interpreter, as in the tests of `splashdown-io`: `SPLASHDOWN_PYTHON`, the environment of `cargo xtask`, or
+/// the system's.
 fn python() -> PathBuf {
     if let Some(named) = std::env::var_os("SPLASHDOWN_PYTHON") {
         return named.into();
@@ -43,7 +44,8 @@ fn python() -> PathBuf {
     made.into_iter().find(|path| path.exists()).unwrap_or_else(|| "python3".into())
 }
 
-/// Distance in cells and ratio of volumes of our mesh and theirs; `None` where Python or a package is missing.
+/// Distance in cells between our mesh and that of splashsurf, and the ratio of their volumes; `None` if Python or a
+/// package is missing.
 fn compare(
     place: &Place,
     smoothing: u32,
@@ -67,27 +69,28 @@ fn compare(
 }
 
 #[test]
-fn the_surface_is_splashsurfs() -> Outcome {
+fn the_surface_equals_that_of_splashsurf() -> Outcome {
     let place = Place::new()?;
     write_particles(&place.path("fluid.ply"), &fluid())?;
     let spacing = SPACING.to_string();
     for smoothing in [0, 10] {
-        let rounds = smoothing.to_string();
-        let arguments = ["surface", "fluid.ply", "-o", "mesh.ply", "-s", &spacing, "--smoothing", &rounds];
+        let iterations = smoothing.to_string();
+        let arguments =
+            ["surface", "fluid.ply", "-o", "mesh.ply", "-s", &spacing, "--smoothing", &iterations];
         let output = place.splashdown(&[&arguments[..], &["--device", "cpu"]].concat()).output()?;
         assert!(output.status.success(), "{}", stderr(&output));
         let Some((distance, volume)) = compare(&place, smoothing, "0.6")? else {
             let _ = writeln!(
                 std::io::stderr(),
-                "SKIPPED: the_surface_is_splashsurfs: pysplashsurf and vtk are not installed; `cargo xtask test` \
-                 installs what it can"
+                "SKIPPED: the_surface_equals_that_of_splashsurf: pysplashsurf and vtk are not installed; `cargo xtask test` \
+                 installs them if possible"
             );
             return Ok(());
         };
         eprintln!("smoothing {smoothing}: {distance} cells, volume ratio {volume}");
         assert!(distance < 0.5, "smoothing {smoothing}: {distance} cells");
         assert!((volume - 1.0).abs() < 0.01, "smoothing {smoothing}: volume ratio {volume}");
-        // Controls: the level a tenth of a spacing farther out, and the other smoothing.
+        // Controls: a surface about 0.1 spacings farther out, and the other number of iterations.
         let Some((_, volume)) = compare(&place, smoothing, "0.5")? else { return Ok(()) };
         assert!((volume - 1.0).abs() > 0.01, "the control's volume ratio is {volume}");
         let Some((distance, _)) = compare(&place, 10 - smoothing, "0.6")? else { return Ok(()) };

@@ -12,7 +12,7 @@ const SPACING: f32 = 0.02;
 /// Particles, mesh, options, exit code, words of the message.
 type Case<'a> = (&'a str, &'a str, &'a [&'a str], i32, &'a [&'a str]);
 
-/// A block of 12 x 12 x 12 particles at a place, all of which move with one velocity.
+/// A block of 12 x 12 x 12 particles with its lowest corner at `at`, all with the same velocity.
 fn block(at: [f32; 3]) -> Particles {
     let places = (0..12 * 12 * 12).map(|i| [i % 12, i / 12 % 12, i / 144].map(|c| SPACING * c as f32));
     let positions: Vec<_> = places.map(|p| std::array::from_fn(|axis| at[axis] + p[axis])).collect();
@@ -101,8 +101,8 @@ fn attributes_of_particles_are_interpolated_to_the_vertices() -> Outcome {
     assert_eq!(names[6..], ["temperature", "force_x", "force_y", "force_z"]);
     let mut off = 0.0_f32;
     for row in &rows {
-        // A constant attribute stays constant; one with a slope of 100 has an error from the distance to the
-        // particles.
+        // A constant attribute is interpolated exactly. One with a slope of 100 has an error that depends on the
+        // distance to the particles.
         let force = [row[7] - 1.0, row[8] + 2.0, row[9] - 0.5];
         assert!(force.iter().all(|off| off.abs() < 1e-5), "{row:?}");
         off = off.max((row[6] - 290.0 - 100.0 * row[0]).abs());
@@ -125,7 +125,7 @@ fn attributes_of_particles_are_interpolated_to_the_vertices() -> Outcome {
 }
 
 #[test]
-fn a_series_becomes_a_series() -> Outcome {
+fn a_series_of_particle_files_gives_a_series_of_meshes() -> Outcome {
     let place = Place::new()?;
     fs::create_dir(place.path("frames"))?;
     for number in [9, 10, 11] {
@@ -195,6 +195,6 @@ fn errors_are_reported_before_anything_is_written() -> Outcome {
     // `--force` accepts it.
     let forced = ["surface", "block.ply", "-o", "m.ply", "-s", "0.01", "--force", "--device", "cpu"];
     assert!(place.splashdown(&forced).output()?.status.success());
-    assert!(ply::read_mesh(&place.path("m.ply"))?.topology()?.components > 1000, "balls that do not touch");
+    assert!(ply::read_mesh(&place.path("m.ply"))?.topology()?.components > 1000, "one sphere per particle");
     Ok(())
 }

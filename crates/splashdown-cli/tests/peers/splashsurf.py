@@ -2,8 +2,7 @@
 
 usage: splashsurf.py PARTICLES SPACING CELL ITERATIONS LEVEL MESH
 
-Prints JSON: the largest distance of a vertex of one from the other's triangles, in cells, both ways, and the volumes. The
-distances and volumes are VTK's.
+Prints JSON: the Hausdorff distance of the two meshes in cells, and their volumes. VTK computes both.
 """
 
 import json

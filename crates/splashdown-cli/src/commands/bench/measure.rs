@@ -15,21 +15,22 @@ use crate::exit::{Exit, Failure};
 use crate::memory;
 use crate::speed::seconds_per_step;
 
-/// Steps before the first measurement: the lattice relaxes, pipelines are compiled, buffers grow to their size.
+/// Steps before the first measurement. The lattice relaxes, pipelines are compiled and buffers grow to their final
+/// size in them.
 pub const WARM_UP: u32 = 30;
 
-/// Number of measurements. Their median is reported, because other programs disturb some of them.
+/// Number of measurements. Their median is reported, because other programs slow some of them down.
 const ROUNDS: usize = 5;
 
-/// Duration of all rounds of one size together.
+/// Total duration of the rounds of one size.
 const BUDGET: Duration = Duration::from_secs(2);
 
-/// Steps in which dispatches are counted if passes are not measured.
+/// Number of steps in which dispatches are counted if passes are not measured.
 const COUNTED: u32 = 2;
 
-/// The least memory traffic and arithmetic of a step per particle with about 28 neighbours: every array once, in a
-/// step whose passes are fused as far as possible; and the arithmetic of distance tests, density and forces.
-/// docs/performance.md derives both.
+/// Lower bounds of the memory traffic in bytes and of the arithmetic operations, per particle and step, with about 28
+/// neighbours. The bytes count every array once, in a step whose passes are fused as far as possible. The operations
+/// are those of distance tests, density and forces. docs/performance.md derives both.
 const LEAST_BYTES: f64 = 192.0;
 const LEAST_OPERATIONS: f64 = 6047.0;
 /// Number of particles in the sample for the mean number of neighbours.
@@ -65,12 +66,12 @@ pub struct Row {
     pub roofline_seconds: f64,
     /// `seconds_per_step` over `roofline_seconds`.
     pub over_roofline: f64,
-    /// The limits that make the roofline.
+    /// The measured limits from which the roofline is computed.
     pub copy_bytes_per_second: f64,
     pub flops: f64,
     pub dispatch_seconds: f64,
     pub dispatches_per_step: f64,
-    /// Steps that the passes' numbers are the sums of.
+    /// Number of steps over which the numbers of the passes are summed.
     pub timed_steps: u64,
     pub passes: BTreeMap<&'static str, PassNumbers>,
     #[serde(skip)]
@@ -92,7 +93,7 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
     };
     if unchecked && executor.gpu().is_none() {
         let message = format!(
-            "--unchecked-shaders needs a GPU, and `{device}` is none: leave it out, or choose another --device"
+            "--unchecked-shaders needs a GPU, and `{device}` is not one: leave it out, or choose another --device"
         );
         return Err(Failure::new(Exit::Usage, message));
     }
@@ -108,8 +109,8 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
     }
     rounds.sort_by(f64::total_cmp);
     let seconds = rounds[ROUNDS / 2];
-    // After the rounds, because timestamps around every pass cost a little on a GPU. The roofline needs the number of
-    // dispatches in any case.
+    // Passes are timed after the rounds, because timestamps around every pass take some time on a GPU. The roofline
+    // needs the number of dispatches in any case.
     let mut timed_steps = 0;
     if simulation.enable_timing() {
         let steps = if arguments.no_passes { COUNTED.min(steps) } else { steps };
@@ -120,7 +121,7 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
     let dispatches: u64 = timings.passes.values().map(|time| time.count).sum();
     let dispatches = if timed_steps > 0 { dispatches as f64 / f64::from(timed_steps) } else { 0.0 };
     let (bytes, operations) = (LEAST_BYTES * count as f64, LEAST_OPERATIONS * count as f64);
-    // With the present number of dispatches; fewer would lower it.
+    // For the current number of dispatches. Fewer dispatches would lower it.
     let roofline_seconds = roofline.seconds(bytes, operations, dispatches);
     let support_radius = simulation.params().support_radius;
     let positions = simulation.particles()?.positions;
@@ -157,7 +158,7 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
 
 /// The mean number of neighbours within the support radius, over a sample of particles.
 fn neighbours(positions: &[[f32; 3]], support_radius: f32) -> f64 {
-    // Regular strides would resonate with the lattice and sample the particles of one wall.
+    // A regular stride could be a multiple of the lattice's period and sample only particles at one wall.
     let golden = |k: usize| ((k as f64 * 0.618_033_988_75).fract() * positions.len() as f64) as usize;
     let sampled: BTreeSet<usize> = (0..SAMPLED).map(golden).collect();
     let (mut found, mut count) = (0_u64, 0_u64);
@@ -180,19 +181,19 @@ mod tests {
     fn neighbours_on_a_lattice_are_counted() {
         let lattice: Vec<[f32; 3]> =
             (0..27).map(|i| [(i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32]).collect();
-        // The middle has six, a face five, an edge four, a corner three.
+        // The central particle has six neighbours, one on a face five, on an edge four, at a corner three.
         assert!((neighbours(&lattice, 1.1) - (6.0 + 6.0 * 5.0 + 12.0 * 4.0 + 8.0 * 3.0) / 27.0).abs() < 1e-9);
         assert_eq!(neighbours(&lattice[..1], 1.1), 0.0);
         assert_eq!(neighbours(&[], 1.1), 0.0);
     }
 
     #[test]
-    fn the_sample_does_not_resonate_with_a_lattice() {
+    fn the_sample_does_not_alias_with_a_lattice() {
         let side = 32;
         let lattice: Vec<[f32; 3]> = (0..side * side * side)
             .map(|i| [i % side, i / side % side, i / side / side].map(|c| c as f32))
             .collect();
-        // Of the six, what the faces lack on average.
+        // Six, minus the neighbours that particles on the faces lack.
         let mean = 6.0 * (side - 1) as f64 / side as f64;
         let found = neighbours(&lattice, 1.1);
         assert!((found - mean).abs() < 0.1, "{found} instead of {mean}");

@@ -15,8 +15,10 @@ use crate::speed::bench_scene;
 use crate::{console, human, memory, scene_file};
 use measure::{Row, measure};
 
-/// Sizes of `--compare` as powers of two, and the longest step that is measured in s.
+/// The smallest and the largest size of `--compare` as powers of two.
 const COMPARED: (u32, u32) = (13, 30);
+
+/// `--compare` does not measure longer steps than this, in s.
 const LONGEST_STEP: f64 = 2.0;
 
 /// A size that was not measured, in the JSON output.
@@ -44,7 +46,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The rows of one number of threads.
+/// Measures all sizes with the current number of threads.
 fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let device = &arguments.device.device;
     let roofline = Roofline::measure(&mut device.executor()?)?;
@@ -61,7 +63,7 @@ fn all_sizes(arguments: &BenchArguments, rows: &mut Vec<Row>) -> Result<(), Fail
                 .map_err(Failure::from)
                 .and_then(|scene| one_size(scene, arguments, roofline, rows)),
         };
-        // A comparison ends at the first size that the device refuses.
+        // A comparison ends at the first size that does not fit the device or takes too long.
         match outcome {
             Err(failure) if arguments.compare && rows.len() > before => {
                 missing(particles, &failure.message, arguments.json);
@@ -87,7 +89,7 @@ fn one_size(
     if arguments.json {
         console::print_json(&row);
     } else {
-        // The heading is for the rows of one number of threads.
+        // All rows with the same number of threads share a heading.
         if rows.last().is_none_or(|last| last.device != row.device) {
             console::print(page::header(&row, !rows.is_empty()));
         }
@@ -107,7 +109,7 @@ fn too_large(particles: u32, rows: &[Row], device: &Device) -> Option<String> {
     memory::check(&bench_scene(particles).ok()?, device).err().map(|error| error.message)
 }
 
-/// Prints where and why a comparison ends.
+/// Prints the size at which a comparison ends, and the reason.
 fn missing(particles: u32, error: &str, json: bool) {
     if json {
         console::print_json(&Missing { particles, error });

@@ -1,4 +1,4 @@
-//! The rows as Markdown.
+//! The measurements as Markdown.
 
 use super::measure::{Row, WARM_UP};
 use crate::{human, summary};
