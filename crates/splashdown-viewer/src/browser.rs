@@ -1,4 +1,4 @@
-//! What the program shares with the web page around it: the address, dropped files, figures, a checkpoint.
+//! Data exchanged with the web page: the address, dropped files, figures, and a checkpoint.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub(crate) fn take_rescue() -> Option<Checkpoint> {
 pub(crate) fn set_address(rest: &str) -> String {
     let Some(window) = web_sys::window() else { return String::new() };
     let path = window.location().pathname().unwrap_or_default();
-    // In a frame without access to the history the address stays.
+    // In a frame without access to the history the address remains unchanged.
     let _ = window.history().and_then(|history| {
         history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("{path}{rest}")))
     });
@@ -53,7 +53,7 @@ pub(crate) fn set_address(rest: &str) -> String {
 pub(crate) fn share(text: &str) -> String {
     let address = set_address(&format!("#toml={}", String::from(js_sys::encode_uri_component(text))));
     if let Some(window) = web_sys::window() {
-        // Without access to the clipboard the address bar still shows it.
+        // Without access to the clipboard, only the address bar contains the address.
         let copied = window.navigator().clipboard().write_text(&address);
         wasm_bindgen_futures::spawn_local(async move {
             let _ = wasm_bindgen_futures::JsFuture::from(copied).await;

@@ -8,7 +8,7 @@ use splashdown_render::Camera;
 const ORBIT: f32 = 0.3;
 /// Width over height of the pictures for which scenes set their cameras.
 const REFERENCE_ASPECT: f32 = 16.0 / 9.0;
-/// Lengths of the view per second of flight.
+/// Speed of flight per second, relative to the distance from the target.
 const FLIGHT: f32 = 0.8;
 
 /// A camera on a sphere around a point.
@@ -18,7 +18,7 @@ pub struct Orbit {
     pub target: Vec3,
     /// Distance of the eye from it, in m.
     pub distance: f32,
-    /// Degrees around the y axis; 0 stands on the +z side, 90 on the +x side.
+    /// Degrees around the y axis; the camera is on the +z side at 0 and on the +x side at 90.
     pub azimuth: f32,
     /// Degrees above the horizon.
     pub elevation: f32,
@@ -48,8 +48,8 @@ impl Orbit {
         Camera::orbit(self.target.into(), self.distance, self.azimuth, self.elevation, angle)
     }
 
-    /// Vertical angle of view in degrees. A narrower picture than the reference shows the same width, and therefore
-    /// more height.
+    /// Vertical angle of view in degrees. A picture that is narrower than the reference shows the same width, and
+    /// therefore a larger height.
     fn vertical_angle(&self, aspect_ratio: f32) -> f32 {
         let wider = (REFERENCE_ASPECT / aspect_ratio.clamp(0.1, 10.0)).max(1.0);
         (2.0 * (self.half_height() * wider).atan().to_degrees()).min(150.0)
@@ -72,7 +72,7 @@ impl Orbit {
         self.elevation = (self.elevation + ORBIT * drag.y).clamp(-89.0, 89.0);
     }
 
-    /// Pans with the mouse: a point at the target's distance stays under it. `size` is the picture's, in points.
+    /// Pans so that a point at the distance of the target stays under the mouse. `size` is that of the picture, in points.
     pub fn pan(&mut self, drag: Vec2, size: Vec2) {
         let [right, up, _] = self.axes();
         let scale = self.metres_per_point(size);
@@ -87,11 +87,11 @@ impl Orbit {
         }
     }
 
-    /// Flies for `seconds`: right, up and ahead in [-1, 1].
+    /// Flies for `seconds`. The components of `direction` are right, up and ahead, in [-1, 1].
     pub fn fly(&mut self, direction: Vec3, seconds: f32) {
         let [right, _, forward] = self.axes();
-        let way = direction.x * right + direction.y * Vec3::Y + direction.z * forward;
-        self.target += FLIGHT * self.distance.max(0.2 * self.extent) * seconds * way;
+        let direction = direction.x * right + direction.y * Vec3::Y + direction.z * forward;
+        self.target += FLIGHT * self.distance.max(0.2 * self.extent) * seconds * direction;
         self.clamp_target();
     }
 
@@ -134,20 +134,20 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_goes_through_what_is_projected_onto_its_point() {
+    fn a_ray_passes_through_the_point_projected_onto_its_pixel() {
         let (orbit, size) = (orbit(), Vec2::new(640.0, 360.0));
         let seen = Vec3::new(0.5, 0.1, 0.2);
         let [x, y] = orbit.camera(640.0 / 360.0).project(seen.into(), [640, 360]).unwrap().unwrap();
         let (eye, direction) = orbit.ray(Vec2::new(x, y), size);
         let off = (seen - eye).cross(direction).length();
         assert!(off < 1e-4, "{off}");
-        // In a narrow picture too.
+        // Also in a narrow picture.
         let [x, y] = orbit.camera(0.5).project(seen.into(), [300, 600]).unwrap().unwrap();
         let (eye, direction) = orbit.ray(Vec2::new(x, y), Vec2::new(300.0, 600.0));
         let off = (seen - eye).cross(direction).length();
         assert!(off < 1e-4, "{off}");
         let [x, y] = orbit.camera(640.0 / 360.0).project(seen.into(), [640, 360]).unwrap().unwrap();
-        // Control: another point's ray does not.
+        // Control: the ray of another pixel does not.
         let (eye, direction) = orbit.ray(Vec2::new(x + 5.0, y), size);
         assert!((seen - eye).cross(direction).length() > 1e-3);
     }

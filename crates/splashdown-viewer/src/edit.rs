@@ -10,7 +10,7 @@ use splashdown::scene::{Body, BoundaryKind, Emitter, MeshShape, MeshSource, Moti
 const DENSITY_RATIO: f32 = 0.5;
 /// Size of added bodies over the smallest edge of the domain.
 const SIZE: f32 = 0.2;
-/// How long a tap can run, in s.
+/// The minimum duration for which a tap has particles, in s.
 const TAP_TIME: f32 = 60.0;
 /// The tap's name.
 const TAP: &str = "tap";
@@ -41,8 +41,8 @@ pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
 
 /// Opens or closes a tap over the middle of the domain; returns whether it is open now.
 pub fn turn_tap(scene: &mut Scene) -> bool {
-    if let Some(place) = scene.emitters.iter().position(|emitter| emitter.name == TAP) {
-        scene.emitters.remove(place);
+    if let Some(index) = scene.emitters.iter().position(|emitter| emitter.name == TAP) {
+        scene.emitters.remove(index);
         return false;
     }
     let (size, spacing) = (scene.domain.size(), scene.fluid.particle_spacing);
@@ -51,7 +51,7 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     let center = scene.domain.center();
     // Particles are allocated in advance for the duration of the scene.
     scene.duration = scene.duration.max(TAP_TIME);
-    let most = (2 * splashdown::check::count(scene)).clamp(20_000, 500_000) as u32;
+    let max_particles = (2 * splashdown::check::count(scene)).clamp(20_000, 500_000) as u32;
     scene.emitters.push(Emitter {
         name: TAP.to_owned(),
         outlet: Outlet::Disc { radius },
@@ -60,7 +60,7 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
         speed: (0.25 * size.y * 9.81).sqrt(),
         start: 0.0,
         end: None,
-        max_particles: Some(most),
+        max_particles: Some(max_particles),
     });
     true
 }
@@ -74,7 +74,7 @@ fn added_size(scene: &Scene) -> f32 {
     (SIZE * scene.domain.size().min_element()).max(5.0 * scene.fluid.particle_spacing)
 }
 
-/// `middle` is the middle of the scaled mesh, from its origin.
+/// Adds a dynamic body. `middle` is the middle of the scaled mesh, relative to its origin.
 fn add_body(
     scene: &mut Scene,
     name: &str,
@@ -89,13 +89,19 @@ fn add_body(
         number += 1;
     }
     let (low, size) = (scene.domain.min, scene.domain.size());
-    // Golden angles: successive bodies do not collide.
+    // Successive bodies are placed at multiples of the golden angle, so that they do not collide.
     let angle = 2.399_963 * number as f32;
-    let aside = Vec3::new(0.2 * size.x * angle.cos(), 0.0, 0.2 * size.z * angle.sin());
-    let place = low + Vec3::new(0.5, 0.8, 0.5) * size + aside;
+    let offset = Vec3::new(0.2 * size.x * angle.cos(), 0.0, 0.2 * size.z * angle.sin());
+    let position = low + Vec3::new(0.5, 0.8, 0.5) * size + offset;
     scene.bodies.push(Body {
         name: format!("{name}-{number}"),
-        mesh: MeshSource { shape, scale, up: UpAxis::Y, position: place - middle, rotation: Quat::IDENTITY },
+        mesh: MeshSource {
+            shape,
+            scale,
+            up: UpAxis::Y,
+            position: position - middle,
+            rotation: Quat::IDENTITY,
+        },
         motion: Motion::Dynamic {
             density: DENSITY_RATIO * scene.fluid.material.rest_density,
             velocity: Vec3::ZERO,
@@ -129,9 +135,9 @@ mod tests {
         let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
         let stats = simulation.advance(0.05).unwrap();
         assert!(stats.emitted > 0, "{stats:?}");
-        let places: Vec<Vec3> =
+        let positions: Vec<Vec3> =
             simulation.body_states().unwrap().iter().map(|state| state.position).collect();
-        assert!(places[0].distance(places[1]) > added_size(&scene), "{places:?}");
+        assert!(positions[0].distance(positions[1]) > added_size(&scene), "{positions:?}");
         assert!(!turn_tap(&mut scene));
         assert!(scene.emitters.is_empty());
     }

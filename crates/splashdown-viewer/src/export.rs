@@ -1,40 +1,41 @@
-//! Exported files: on a desktop in the current folder, where nothing is overwritten; on a web page in the downloads.
+//! Exporting files. On a desktop they are written into the current folder and never overwrite a file; on a web page they
+//! are downloads.
 
 use splashdown::Checkpoint;
 use splashdown_io::{Mesh, Picture};
 use splashdown_run::export;
 
-/// Exports a picture as PNG; returns its place in words.
+/// Exports a picture as PNG; returns a description of its location.
 ///
 /// # Errors
-/// A sentence with the file's name.
+/// A message with the file's name.
 pub fn picture(name: &str, [width, height]: [u32; 2], rgba: Vec<u8>) -> Result<String, String> {
     let bytes = export::png(&Picture { width, height, rgba }).map_err(|error| error.to_string())?;
     file(name, "image/png", &bytes)
 }
 
-/// Exports a mesh as PLY; returns its place in words.
+/// Exports a mesh as PLY; returns a description of its location.
 ///
 /// # Errors
-/// A sentence with the file's name.
+/// A message with the file's name.
 pub fn mesh(name: &str, mesh: &Mesh) -> Result<String, String> {
     let bytes = export::ply(mesh).map_err(|error| error.to_string())?;
     file(name, "application/octet-stream", &bytes)
 }
 
-/// Exports a checkpoint; returns its place in words.
+/// Exports a checkpoint; returns a description of its location.
 ///
 /// # Errors
-/// A sentence with the file's name.
+/// A message with the file's name.
 pub fn checkpoint(name: &str, checkpoint: &Checkpoint) -> Result<String, String> {
     let bytes = checkpoint.to_bytes().map_err(|error| error.to_string())?;
     file(name, "application/octet-stream", &bytes)
 }
 
-/// Exports a text; returns its place in words.
+/// Exports a text; returns a description of its location.
 ///
 /// # Errors
-/// A sentence with the file's name.
+/// A message with the file's name.
 pub fn text(name: &str, text: &str) -> Result<String, String> {
     file(name, "text/plain", text.as_bytes())
 }

@@ -4,9 +4,9 @@
 //! panels (egui)  --Action-->  app  --Command-->  engine (thread or task)  --Snapshot-->  picture (splashdown-render)
 //! ```
 //!
-//! Four parts form a loop, and each knows only the next. The panels change [`state::State`] and request actions. The
-//! app executes them. The engine simulates beside the window and publishes snapshots. The picture draws the newest
-//! snapshot. The window therefore stays responsive however slow the simulation is.
+//! Four parts form a loop, and each depends only on the next. The panels change [`state::State`] and request actions. The
+//! app executes them. The engine simulates concurrently with the window and publishes snapshots. The picture draws the
+//! newest snapshot. The window therefore stays responsive if the simulation is slow.
 
 mod app;
 #[cfg(target_arch = "wasm32")]

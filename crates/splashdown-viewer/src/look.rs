@@ -3,7 +3,7 @@
 use splashdown::scene::ColourBy;
 use splashdown_render::{Axis, ColourMap};
 
-/// What is drawn of the fluid.
+/// How the fluid is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DisplayMode {
     /// Particles as spheres, coloured by a quantity.

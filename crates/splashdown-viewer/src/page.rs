@@ -15,8 +15,8 @@ thread_local! {
     static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
 }
 
-/// Starts or restarts the program on a canvas. After the device was lost it resumes from a checkpoint of some seconds
-/// before. `scene` is the name of a built-in scene, or the text of a scene file.
+/// Starts or restarts the program on a canvas. After the device was lost it resumes from the last backup, which is some
+/// seconds old. `scene` is the name of a built-in scene, or the text of a scene file.
 ///
 /// # Errors
 /// A message about the scene or the missing device.

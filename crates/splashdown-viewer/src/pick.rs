@@ -6,8 +6,8 @@ use splashdown::scene::Motion;
 
 use crate::engine::{Grip, Opened};
 
-/// The dynamic body that a ray (a point in m and a unit vector) hits before any other body, held at the hit; and the
-/// distance from the ray's start in m.
+/// The dynamic body that a ray (a point in m and a unit vector) hits before any other body, held at the point of the hit,
+/// and the distance of that point from the start of the ray in m.
 pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, Vec3)) -> Option<(Grip, f32)> {
     let mut nearest: Option<(usize, f32)> = None;
     for (number, (body, state)) in opened.bodies.iter().zip(states).enumerate() {
@@ -29,7 +29,7 @@ pub fn body(opened: &Opened, states: &[BodyState], (origin, direction): (Vec3, V
     dynamic.then_some((Grip { body: number, anchor, target }, distance))
 }
 
-/// Where a ray hits a triangle, if it does (Moeller and Trumbore 1997).
+/// The distance at which a ray hits a triangle, if it does (Moeller and Trumbore 1997).
 fn hit(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (along, across) = (b - a, c - a);
     let p = direction.cross(across);

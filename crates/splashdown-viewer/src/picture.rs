@@ -23,8 +23,8 @@ pub struct Picture {
     gpu: Arc<Gpu>,
     renderer: Renderer,
     target: Option<Target>,
-    stage: Option<Stage>,
-    placed: Option<Placed>,
+    scene_bodies: Option<SceneBodies>,
+    placed: Option<PlacedBodies>,
     timing: bool,
 }
 
@@ -35,27 +35,27 @@ struct Target {
 }
 
 /// The bodies of a scene.
-struct Stage {
+struct SceneBodies {
     /// The meshes from which `bodies` was made.
     meshes: Arc<[BodyMesh]>,
     bodies: Vec<PlacedBody>,
 }
 
-/// The bodies at their last position, which most pictures reuse.
-struct Placed {
+/// The bodies at their last positions. Pictures reuse them while no body moves.
+struct PlacedBodies {
     states: Vec<BodyState>,
     uploaded: UploadedBodies,
 }
 
 impl Picture {
-    /// Creates the renderer. Software drivers draw without multisampling, which is their largest cost.
+    /// Creates the renderer. Software drivers draw without multisampling, which would dominate their cost.
     ///
     /// # Errors
     /// As [`Renderer::new`].
     pub fn new(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
         let samples = if gpu.is_software() { 1 } else { 4 };
         let renderer = Renderer::new(&gpu.device, &gpu.queue, FORMAT, samples)?;
-        Ok(Self { gpu, renderer, target: None, stage: None, placed: None, timing: false })
+        Ok(Self { gpu, renderer, target: None, scene_bodies: None, placed: None, timing: false })
     }
 
     /// Draws into a texture of this size in pixels.
@@ -69,7 +69,7 @@ impl Picture {
         look: &Look,
         camera: Camera,
     ) -> Result<(), RenderError> {
-        self.place(snapshot)?;
+        self.place_bodies(snapshot)?;
         if self.target.as_ref().is_none_or(|target| target.size != size) {
             self.target = Some(self.texture(size));
         }
@@ -102,7 +102,7 @@ impl Picture {
                 let position = low + look.slice_at * (high - low);
                 frame.slice = Some(DrawnSlice::new(drawn.particles(), axis, position, radius, colouring));
             }
-            // Until the first surface is extracted, the screen-space liquid.
+            // The screen-space liquid is drawn until the first surface is extracted.
             (DisplayMode::Fluid | DisplayMode::Surface | DisplayMode::Mesh, _) => {
                 let (buffers, liquid) = (drawn.particles(), appearance::liquid(scene));
                 frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
@@ -144,33 +144,35 @@ impl Picture {
         splashdown_gpu::block_on(pixels::read(Arc::clone(&self.gpu), texture, size))
     }
 
-    fn place(&mut self, snapshot: &Snapshot) -> Result<(), RenderError> {
+    /// Uploads the bodies if the scene has changed or a body has moved.
+    fn place_bodies(&mut self, snapshot: &Snapshot) -> Result<(), RenderError> {
         let opened = &snapshot.opened;
-        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.meshes, &opened.bodies)) {
+        if self.scene_bodies.as_ref().is_none_or(|scene| !Arc::ptr_eq(&scene.meshes, &opened.bodies)) {
             let bodies = opened.bodies.iter().map(|body| {
                 let colour = body.colour.unwrap_or(PlacedBody::COLOUR);
                 PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
             });
             let bodies = bodies.collect::<Result<_, _>>()?;
-            self.stage = Some(Stage { meshes: Arc::clone(&opened.bodies), bodies });
+            self.scene_bodies = Some(SceneBodies { meshes: Arc::clone(&opened.bodies), bodies });
             self.placed = None;
         }
-        let Some(stage) = self.stage.as_ref().filter(|stage| stage.bodies.len() == snapshot.bodies.len())
+        let Some(scene) =
+            self.scene_bodies.as_ref().filter(|scene| scene.bodies.len() == snapshot.bodies.len())
         else {
             self.placed = None;
             return Ok(());
         };
-        let still = |placed: &Placed| {
+        let is_unchanged = |placed: &PlacedBodies| {
             let mut both = placed.states.iter().zip(&snapshot.bodies);
             both.all(|(a, b)| a.position == b.position && a.orientation == b.orientation)
         };
-        if stage.bodies.is_empty() || self.placed.as_ref().is_some_and(still) {
+        if scene.bodies.is_empty() || self.placed.as_ref().is_some_and(is_unchanged) {
             return Ok(());
         }
-        let bodies = stage.bodies.iter().zip(&snapshot.bodies);
+        let bodies = scene.bodies.iter().zip(&snapshot.bodies);
         let placed =
             bodies.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array()));
-        self.placed = Some(Placed {
+        self.placed = Some(PlacedBodies {
             states: snapshot.bodies.clone(),
             uploaded: UploadedBodies::new(&self.gpu.device, placed),
         });

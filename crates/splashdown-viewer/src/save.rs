@@ -9,7 +9,7 @@ use crate::camera::Orbit;
 /// The text of the scene's file with the changes; comments and order are preserved.
 ///
 /// # Errors
-/// A sentence, if a scene file cannot express the changes, such as removed bodies.
+/// A message, if a scene file cannot express the changes, such as removed bodies.
 pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let source =
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
@@ -24,7 +24,7 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
         tables(&mut document, "emitter").push(emitter_table(emitter)?);
     }
     let written = document.to_string();
-    // The text must read back as the same scene.
+    // Reading the text must give the same scene.
     let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
     read.camera = scene.camera;
     read.source.clone_from(&scene.source);
@@ -68,8 +68,8 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
     let (a, b) = (&old.surface, &new.surface);
     set("surface", "cell_size", a.cell_size != b.cell_size || old.fluid != new.fluid, number(b.cell_size));
     set("foam", "enabled", old.foam.enabled != new.foam.enabled, value(new.foam.enabled));
-    let rounds = value(i64::from(b.smoothing_iterations));
-    set("surface", "smoothing_iterations", a.smoothing_iterations != b.smoothing_iterations, rounds);
+    let iterations = value(i64::from(b.smoothing_iterations));
+    set("surface", "smoothing_iterations", a.smoothing_iterations != b.smoothing_iterations, iterations);
 }
 
 fn camera(document: &mut DocumentMut, orbit: &Orbit) {
@@ -87,7 +87,8 @@ fn tables<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut ArrayOfTable
     if !item.is_array_of_tables() {
         *item = Item::ArrayOfTables(std::mem::take(item).into_array_of_tables().unwrap_or_default());
     }
-    item.as_array_of_tables_mut().unwrap_or_else(|| unreachable!("it was just made an array of tables"))
+    item.as_array_of_tables_mut()
+        .unwrap_or_else(|| unreachable!("the item was just replaced by an array of tables"))
 }
 
 fn body_table(body: &Body) -> Result<Table, String> {
@@ -123,13 +124,13 @@ fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
     table.insert("position", vector(emitter.position));
     table.insert("direction", vector(emitter.direction));
     table.insert("speed", number(emitter.speed));
-    if let Some(most) = emitter.max_particles {
-        table.insert("max_particles", value(i64::from(most)));
+    if let Some(max_particles) = emitter.max_particles {
+        table.insert("max_particles", value(i64::from(max_particles)));
     }
     Ok(table)
 }
 
-/// The shortest decimal that reads back as the same number.
+/// The number with the shortest decimal notation that gives the same `f32`.
 fn shortest(x: f32) -> f64 {
     x.to_string().parse().unwrap_or(f64::from(x))
 }
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn inexpressible_changes_are_refused() {
+    fn changes_that_a_scene_file_cannot_express_are_refused() {
         let (name, text) = presets()[0];
         let mut changed = Scene::parse(text, name).unwrap();
         changed.domain.max.x *= 2.0;

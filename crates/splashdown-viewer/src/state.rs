@@ -1,4 +1,4 @@
-//! The state of the window, without a device, so that panels can be tested without one.
+//! The state of the window. It needs no device, so that panels can be tested without one.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::camera::Orbit;
 use crate::engine::Grip;
 use crate::look::Look;
 
-/// What dragging the mouse does.
+/// The effect of dragging the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
     /// Orbits the camera.
@@ -39,7 +39,7 @@ impl Tool {
         }
     }
 
-    /// What it does.
+    /// Its explanation.
     pub fn hint(self) -> &'static str {
         match self {
             Self::Orbit => "Drag to orbit the camera; right button to pan, wheel or pinch to zoom",
@@ -132,7 +132,7 @@ pub struct Figures {
     pub playing: bool,
     /// Particles.
     pub particles: u32,
-    /// Mean height of the particles in m, updated now and then; NaN while unknown.
+    /// Mean height of the particles in m, updated twice per second; NaN while unknown.
     pub mean_height: f32,
     /// Triangles of the surface, if there is one.
     pub triangles: Option<u32>,
@@ -207,7 +207,7 @@ pub struct State {
     pub orbit: Orbit,
     /// The mouse tool.
     pub tool: Tool,
-    /// Whether the simulation shall run.
+    /// Whether the user has started the simulation and not paused it.
     pub playing: bool,
     /// Simulated seconds per second.
     pub time_scale: f32,

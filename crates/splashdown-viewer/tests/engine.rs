@@ -1,4 +1,4 @@
-//! The engine without a window: commands and their effects, on software Vulkan.
+//! The effects of commands to the engine, without a window, on software Vulkan.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -52,8 +52,8 @@ fn start(gpu: &Arc<Gpu>, simulate: Simulate) -> Engine {
 }
 
 #[test]
-fn it_plays_pauses_steps_and_restarts() {
-    let Some(gpu) = testing::gpu_or_skip("it_plays_pauses_steps_and_restarts") else { return };
+fn the_engine_plays_pauses_steps_and_restarts() {
+    let Some(gpu) = testing::gpu_or_skip("the_engine_plays_pauses_steps_and_restarts") else { return };
     for simulate in [Simulate::OnCpu, Simulate::WhereDrawn] {
         let mut engine = start(&gpu, simulate);
         let (first, _) = until(&mut engine, |_| true);
@@ -129,7 +129,7 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
         .count()
 }
 
-/// One surface is copied, the other drawn in place by an indirect call.
+/// The surface of the CPU is copied. That of the GPU is drawn in place by an indirect call.
 #[test]
 fn both_devices_show_the_same_surface() {
     let Some(gpu) = testing::gpu_or_skip("both_devices_show_the_same_surface") else { return };

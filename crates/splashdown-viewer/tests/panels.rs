@@ -1,4 +1,4 @@
-//! The panels without a device: clicks, keys and drags give the right actions.
+//! The panels, without a device: clicks, keys and drags request the right actions.
 
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -34,7 +34,7 @@ fn actions(window: &mut Harness<'_, Both>) -> Vec<Action> {
 }
 
 #[test]
-fn buttons_do_what_they_say() {
+fn buttons_request_their_actions() {
     let mut window = wide();
     assert_eq!(actions(&mut window), []);
     for (label, action) in [
@@ -74,7 +74,7 @@ fn foam_belongs_to_the_scene_and_is_exported_with_it() {
 }
 
 #[test]
-fn keys_do_what_the_help_says() {
+fn keys_request_the_actions_in_the_help() {
     let mut window = wide();
     for (key, action) in [
         (Key::Space, Action::Play(false)),
@@ -108,7 +108,7 @@ fn keys_do_what_the_help_says() {
 }
 
 #[test]
-fn the_solver_is_changed_and_its_models_follow() {
+fn changing_the_solver_changes_its_models() {
     let mut window = wide();
     window.get_by_label("with surface tension").click();
     assert_eq!(actions(&mut window), [Action::Change]);
@@ -150,11 +150,11 @@ fn dragging_orbits_the_camera_or_moves_the_water() {
     else {
         panic!("{dragged:?}")
     };
-    // To the right of the picture.
+    // The velocity points to the right of the picture.
     assert!(velocity.dot(after.axes()[0]) > 0.0, "{velocity}");
     window.drop_at(egui::pos2(360.0, 320.0));
     assert!(actions(&mut window).contains(&Action::Release));
-    assert_eq!(window.state().0.orbit, after, "dragging water turned the camera");
+    assert_eq!(window.state().0.orbit, after, "dragging water moved the camera");
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn a_narrow_window_starts_with_hidden_controls() {
 }
 
 #[test]
-fn errors_stay_and_messages_disappear() {
+fn errors_remain_and_messages_disappear() {
     let mut window = wide();
     window.state_mut().0.notify("nothing is left", true, 0.0);
     window.state_mut().0.notify("the picture is in a.png", false, -100.0);
@@ -191,7 +191,7 @@ fn a_scene_without_water_at_the_start_keeps_its_spacing() {
     drag_count(&mut window);
     assert_eq!(actions(&mut window), []);
     assert_eq!(window.state().0.scene.fluid.particle_spacing, spacing);
-    // Control: one that starts with water does not.
+    // Control: the slider works in a scene that starts with water.
     let mut other = wide();
     drag_count(&mut other);
     assert!(actions(&mut other).contains(&Action::Restart));

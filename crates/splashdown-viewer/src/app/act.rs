@@ -9,11 +9,11 @@ use crate::edit;
 use crate::engine::{Command, Purpose};
 use crate::state::Action;
 
-/// Rate at which water assumes the velocity of the mouse, in 1/s.
+/// Rate at which the water approaches the velocity of the mouse, in 1/s.
 const MOUSE_FORCE_RATE: f32 = 14.0;
 /// Radius of the mouse force over the smallest edge of the domain.
 const MOUSE_FORCE_SIZE: f32 = 0.16;
-/// Checkpoints in the menu of files.
+/// Number of recent checkpoints that the gallery lists.
 const MENU_FILES: usize = 8;
 
 impl Viewer {
@@ -59,7 +59,7 @@ impl Viewer {
                 let scene = &self.state.scene;
                 let radius = (MOUSE_FORCE_SIZE * scene.domain.size().min_element())
                     .max(3.0 * scene.fluid.particle_spacing);
-                // Faster motion would tear the water apart.
+                // The velocity is limited, because a faster motion would scatter the particles.
                 let velocity = velocity.clamp_length_max(3.0 * scene.domain.size().max_element());
                 let force = MouseForce::new(ray.0, ray.1, velocity, radius, MOUSE_FORCE_RATE);
                 self.engine.send(Command::MouseForce(Some(force)));
@@ -84,7 +84,7 @@ impl Viewer {
             Action::Screenshot => self.screenshot(now),
             Action::SaveScene => self.save_scene(now),
             Action::SaveMesh => {
-                self.seen.exporting = true;
+                self.requested.exporting = true;
                 self.engine.send(Command::Export);
             }
             Action::SaveCheckpoint => self.checkpoint(Purpose::Export, now),

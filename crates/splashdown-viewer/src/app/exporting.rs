@@ -20,7 +20,7 @@ impl Viewer {
         self.report_export("the picture", exported, now);
     }
 
-    /// On a page the picture arrives asynchronously.
+    /// On a web page the picture is read asynchronously.
     #[cfg(target_arch = "wasm32")]
     pub(super) fn screenshot(&mut self, now: f64) {
         self.draw_full_size();
@@ -29,23 +29,23 @@ impl Viewer {
         self.state.notify(format!("the picture was written to your downloads, as {name}"), false, now);
         wasm_bindgen_futures::spawn_local(async move {
             if let Some(rgba) = pixels::read(gpu, texture, size).await {
-                // The notification is shown already; the browser reports failures.
+                // The notification is already shown; the browser reports failures.
                 let _ = export::picture(&name, size, rgba);
             }
         });
     }
 
-    /// Draws at full resolution what is displayed at lower resolution while the water moves. The next picture of the
-    /// window is redrawn.
+    /// Draws the displayed picture again at full resolution, because a software driver displays a lower one while the
+    /// simulation runs. The window draws its next picture in any case.
     fn draw_full_size(&mut self) {
         let Some(drawn) = self.drawn.take() else { return };
         let aspect = self.size[0] as f32 / self.size[1] as f32;
-        // An error was reported when the picture was drawn for the window.
+        // An error was already reported when the window drew the picture.
         let _ = self.picture.draw(self.size, &drawn.snapshot, &drawn.look, drawn.camera.camera(aspect));
     }
 
     pub(super) fn save_scene(&mut self, now: f64) {
-        // In the folder of the original file: mesh paths are relative to it.
+        // The file goes into the folder of the original file, because mesh paths are relative to it.
         let folder = self.state.scene.source.as_deref().and_then(std::path::Path::parent);
         let name = folder.unwrap_or(std::path::Path::new("")).join(format!("{}.toml", self.state.scene.name));
         let name = name.to_string_lossy().into_owned();
@@ -66,7 +66,8 @@ impl Viewer {
         }
     }
 
-    /// After the device was lost: on a desktop the backup is written into a file, a page restarts with it.
+    /// Uses the backup after the device was lost: on a desktop it is written into a file, and a web page restarts from
+    /// it.
     pub(super) fn save_rescue(&mut self, now: f64) {
         let Some(checkpoint) = self.rescue.take() else { return };
         #[cfg(target_arch = "wasm32")]
@@ -109,7 +110,7 @@ impl Viewer {
 
     pub(super) fn report_export(&mut self, what: &str, exported: Result<String, String>, now: f64) {
         match exported {
-            Ok(place) => self.state.notify(format!("{what} was written to {place}"), false, now),
+            Ok(path) => self.state.notify(format!("{what} was written to {path}"), false, now),
             Err(reason) => self.state.notify(format!("{what} was not written: {reason}"), true, now),
         }
     }

@@ -83,7 +83,7 @@ impl Viewer {
 
     /// Resumes from a checkpoint, at its time.
     pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), String> {
-        // The running simulation is replaced only by a usable checkpoint.
+        // An unusable checkpoint does not replace the running simulation.
         checkpoint.check().map_err(|error| error.to_string())?;
         let scene = checkpoint.scene().map_err(|error| error.to_string())?;
         self.state.open(scene);
@@ -99,7 +99,7 @@ fn ending(path: &Path) -> String {
     path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// On a page only the name of a file is known, not its folder.
+/// Reads a scene file. On a web page only the name of a file is known, not its folder.
 fn open_scene(path: &Path, bytes: &[u8]) -> Result<Scene, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| format!("it is not text: {error}"))?;
     let scene = match cfg!(target_arch = "wasm32") {

@@ -12,14 +12,14 @@ use crate::engine::{Command, Message, Purpose};
 use crate::{edit, export, pick};
 
 impl Viewer {
-    /// Requests what the display mode needs.
+    /// Requests the data that the display mode needs.
     pub(super) fn request_displayed_data(&mut self) {
         let surface = self.state.look.mode.needs_surface();
-        if std::mem::replace(&mut self.seen.wants_surface, surface) != surface {
+        if std::mem::replace(&mut self.requested.wants_surface, surface) != surface {
             self.engine.send(Command::Surface(surface));
         }
         let timing = self.state.shown.timings;
-        if std::mem::replace(&mut self.seen.wants_timing, timing) != timing {
+        if std::mem::replace(&mut self.requested.wants_timing, timing) != timing {
             self.engine.send(Command::Timing(timing));
         }
         let times = self.picture.time_passes(timing);
@@ -55,7 +55,7 @@ impl Viewer {
                 Message::Checkpoint(checkpoint, Purpose::Rescue) => self.rescue = Some(checkpoint),
                 Message::Preparing(body, part) => self.state.preparing = (part < 1.0).then_some((body, part)),
                 Message::Exported(mesh) => {
-                    if std::mem::take(&mut self.seen.exporting) {
+                    if std::mem::take(&mut self.requested.exporting) {
                         let name = format!("{}.ply", self.state.scene.name);
                         let exported = export::mesh(&name, &mesh);
                         self.report_export("the mesh", exported, now);
@@ -73,7 +73,7 @@ impl Viewer {
         }
         let Some(snapshot) = self.engine.snapshot() else { return };
         let figures = &mut self.state.figures;
-        figures.frames_per_second = self.seen.frames_per_second;
+        figures.frames_per_second = self.requested.frames_per_second;
         figures.steps_per_second = snapshot.steps_per_second;
         figures.speed = snapshot.speed;
         figures.time = snapshot.stats.time;
@@ -89,7 +89,7 @@ impl Viewer {
         figures.device.clone_from(&snapshot.opened.device);
     }
 
-    /// Reverts changes that were refused.
+    /// Replaces the scene with changes by the scene being simulated.
     fn revert_edits(&mut self) {
         if let Some(snapshot) = self.engine.snapshot() {
             self.state.scene = snapshot.opened.scene.clone();

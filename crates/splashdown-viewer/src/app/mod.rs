@@ -34,8 +34,8 @@ pub struct Viewer {
     picture: Picture,
     texture: Option<TextureId>,
     state: State,
-    seen: Seen,
-    drawn: Option<Drawn>,
+    requested: Requested,
+    drawn: Option<PictureContent>,
     /// A recent checkpoint, in case the device is lost.
     rescue: Option<Box<Checkpoint>>,
     /// The picture's size in pixels at full resolution.
@@ -44,24 +44,24 @@ pub struct Viewer {
     recording: Option<recording::Recording>,
 }
 
-/// The content of the picture.
-struct Drawn {
+/// All data that determine the picture.
+struct PictureContent {
     snapshot: Arc<Snapshot>,
     size: [u32; 2],
     look: Look,
     camera: Orbit,
 }
 
-impl Drawn {
-    fn is(&self, other: &Self) -> bool {
+impl PictureContent {
+    fn equals(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.snapshot, &other.snapshot)
             && (self.size, self.look, self.camera) == (other.size, other.look, other.camera)
     }
 }
 
-/// What was requested from the engine.
+/// What was requested from the engine, and the rate of pictures.
 #[derive(Default)]
-struct Seen {
+struct Requested {
     wants_surface: bool,
     wants_timing: bool,
     frames_per_second: f32,
@@ -99,7 +99,7 @@ impl Viewer {
             picture,
             texture: None,
             state: State::new(scene),
-            seen: Seen::default(),
+            requested: Requested::default(),
             drawn: None,
             rescue: None,
             size: [1, 1],
@@ -125,10 +125,10 @@ impl Viewer {
         }
         self.request_displayed_data();
         self.request_rescue(&ctx);
-        // A software driver draws at half resolution while the simulation runs.
         self.size = viewport.size;
         #[cfg(not(target_arch = "wasm32"))]
         self.record(&ctx);
+        // A software driver draws at half resolution while the simulation runs.
         let coarse = self.gpu.is_software() && self.state.playing;
         let size = viewport.size.map(|side| if coarse { side.div_ceil(2) } else { side });
         self.draw(size, render_state, &ctx);
@@ -136,18 +136,18 @@ impl Viewer {
         #[cfg(target_arch = "wasm32")]
         crate::browser::set_figures(self.state.figures.to_json());
         let passed = ctx.input(|input| input.stable_dt).max(1e-4);
-        self.seen.frames_per_second += 0.1 * (1.0 / passed - self.seen.frames_per_second);
+        self.requested.frames_per_second += 0.1 * (1.0 / passed - self.requested.frames_per_second);
         if self.state.playing {
             ctx.request_repaint();
         }
     }
 
-    /// Requests a backup now and then: a device may be lost by a driver update, when the machine sleeps, or when a
-    /// browser needs the memory.
+    /// Requests a backup at regular intervals. A device may be lost by a driver update, when the machine sleeps, or when
+    /// a browser needs the memory.
     fn request_rescue(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
-        if self.state.playing && now - self.seen.rescue_requested > RESCUE_INTERVAL {
-            self.seen.rescue_requested = now;
+        if self.state.playing && now - self.requested.rescue_requested > RESCUE_INTERVAL {
+            self.requested.rescue_requested = now;
             self.checkpoint(Purpose::Rescue, now);
         }
     }
@@ -168,9 +168,9 @@ impl Viewer {
         let Some(snapshot) = self.engine.snapshot() else { return };
         let mut camera = self.state.orbit;
         camera.target -= self.state.shaking.map_or(Vec3::ZERO, |shaking| shaking.offset);
-        // Nothing has changed since the last picture.
-        let shown = Drawn { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
-        if self.drawn.as_ref().is_some_and(|drawn| drawn.is(&shown)) {
+        let content = PictureContent { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
+        // An unchanged picture is not drawn again.
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.equals(&content)) {
             return;
         }
         let aspect = size[0] as f32 / size[1] as f32;
@@ -181,7 +181,7 @@ impl Viewer {
             self.state.notify(error.to_string(), true, now);
             return;
         }
-        self.drawn = Some(shown);
+        self.drawn = Some(content);
         let Some(view) = self.picture.view() else { return };
         if self.texture.is_some() && before.as_ref() == Some(view) {
             return;

@@ -19,8 +19,8 @@ impl Viewer {
         if let Some(recording) = self.recording.take() {
             self.state.recorded = None;
             let recorder = recording.recorder;
-            let place = format!("{} ({} pictures)", recorder.folder().display(), recorder.frames());
-            let exported = recorder.finish().map(|()| place).map_err(|error| error.to_string());
+            let folder = format!("{} ({} pictures)", recorder.folder().display(), recorder.frames());
+            let exported = recorder.finish().map(|()| folder).map_err(|error| error.to_string());
             self.report_export("the film", exported, now);
             return;
         }

@@ -24,7 +24,7 @@ pub struct Grip {
     pub target: Vec3,
 }
 
-/// What a checkpoint is for.
+/// The purpose of a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// A file for the user.

@@ -67,7 +67,7 @@ impl DrawnMesh {
     }
 }
 
-/// Makes copies, and reuses those that the window no longer holds.
+/// Makes copies, and reuses those that the window no longer uses.
 pub(super) struct Copies {
     gpu: Arc<Gpu>,
     pool: Vec<Arc<Drawn>>,
@@ -78,8 +78,8 @@ impl Copies {
         Self { gpu, pool: Vec::new() }
     }
 
-    /// Copies the particles after all work submitted so far, the surface extracted last, and the given number of foam
-    /// particles.
+    /// Copies the particles, the last extracted surface, and the given number of foam particles. The copy is executed
+    /// after all work submitted so far.
     pub fn take(
         &mut self,
         simulation: &mut Simulation,
@@ -116,8 +116,8 @@ impl Copies {
                 (copy.take(foam.pool(), count as usize, old, Use::STORAGE), count)
             }),
             mesh: surface.map(|(surface, stats)| {
-                if let Some(own) = shared(copy.executor, surface, stats) {
-                    return own;
+                if let Some(shared) = shared(copy.executor, surface, stats) {
+                    return shared;
                 }
                 let (vertices, triangles) = (stats.vertices as usize, 3 * stats.triangles as usize);
                 let (v, n, i) = match mesh.take() {
@@ -142,15 +142,15 @@ impl Copies {
         drawn
     }
 
-    /// A copy that the window no longer holds.
+    /// A copy that the window no longer uses.
     fn reuse(&mut self) -> Option<Drawn> {
         let free = self.pool.iter().position(|drawn| Arc::strong_count(drawn) == 1)?;
         Arc::into_inner(self.pool.swap_remove(free))
     }
 }
 
-/// The simulation's own surface, if it is on the device that draws. One submission changes it as a whole, so a consistent
-/// surface is drawn, possibly a newer one than that of the snapshot.
+/// The simulation's own surface, if it is on the device that draws. One submission replaces the whole surface, so the
+/// drawn surface is consistent; it may be newer than the snapshot.
 fn shared(executor: &Executor, surface: &Surface, stats: SurfaceStats) -> Option<DrawnMesh> {
     let buffer = |id| executor.wgpu_buffer(id).cloned();
     Some(DrawnMesh {
@@ -181,7 +181,7 @@ impl Copy<'_> {
         let to = old.filter(|old| old.size() >= bytes).unwrap_or_else(|| {
             self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("snapshot"),
-                // With room to grow, and never empty.
+                // A quarter larger than required, so that a growing simulation rarely reallocates; never empty.
                 size: (bytes + bytes / 4).next_multiple_of(16).max(16),
                 usage: usage | Use::COPY_DST,
                 mapped_at_creation: false,

@@ -1,4 +1,4 @@
-//! The queue of commands, and sleeping while it is empty.
+//! The queue of commands. The engine sleeps while it is empty.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -22,7 +22,7 @@ impl Inbox {
         self.wake();
     }
 
-    /// All commands except those that the next one supersedes: a slider sends many.
+    /// Removes and returns all commands, without those that the next one supersedes: a slider sends many.
     pub fn take(&self) -> Vec<Command> {
         let mut commands = std::mem::take(&mut *lock(&self.commands));
         let superseded: Vec<bool> = (0..commands.len())
@@ -66,7 +66,7 @@ impl Inbox {
     }
 }
 
-/// Whether the second command makes the first irrelevant.
+/// Whether the first command has no effect if the second follows.
 fn is_superseded(command: &Command, next: &Command) -> bool {
     use Command as C;
     matches!(

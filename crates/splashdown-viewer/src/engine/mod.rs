@@ -1,4 +1,5 @@
-//! The simulation beside the window. It receives commands and publishes snapshots; neither side waits for the other.
+//! The simulation, which runs concurrently with the window. It receives commands and publishes snapshots. Neither side
+//! waits for the other.
 //!
 //! On a desktop the engine runs on its own thread, on a web page as a task between two frames. Both run the same code
 //! (`work`); the differences are here and in `inbox.rs`.
@@ -31,7 +32,7 @@ struct Outbox {
     messages: Arc<Mutex<Vec<Message>>>,
 }
 
-/// The window's handle of the engine. Dropping it stops the engine.
+/// The handle by which the window controls the engine. Dropping it stops the engine.
 pub struct Engine {
     inbox: Arc<Inbox>,
     outbox: Arc<Mutex<Outbox>>,
@@ -73,7 +74,7 @@ impl Engine {
         self.inbox.put(command);
     }
 
-    /// Called once per frame: the engine then takes the next snapshot. On a web page it works between two frames.
+    /// Must be called once per frame. The engine then takes the next snapshot. On a web page it works between two frames.
     pub fn picture_drawn(&mut self) {
         lock(&self.outbox).is_seen = true;
         self.inbox.wake();
@@ -105,7 +106,7 @@ impl Drop for Engine {
         self.send(Command::Quit);
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(thread) = self.thread.take() {
-            // Buffers must be freed before the device. A panic has been reported already.
+            // Buffers must be freed before the device. A panic is already reported.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,5 @@
-//! How much to simulate next: real time if the machine is fast enough, else as much as keeps the window responsive.
+//! The simulated time of the next tick: real time if the machine is fast enough, else as much as keeps the window
+//! responsive.
 
 use std::time::Duration;
 
@@ -8,7 +9,7 @@ use web_time::Instant;
 const MAX_TICK: f64 = 0.03;
 /// Duration of a tick on a fast machine, in s of wall time.
 const TICK: f64 = 1.0 / 120.0;
-/// The largest delay that is caught up with, in s of wall time.
+/// The largest delay that later ticks make up for, in s of wall time.
 const MAX_DELAY: f64 = 0.05;
 
 /// Turns wall time into simulated time.
@@ -41,19 +42,19 @@ impl Pace {
         self.due = 0.0;
     }
 
-    /// Simulated seconds to compute now, if a tick is due; `least` is the duration of a step.
-    pub fn tick(&mut self, now: Instant, least: f64) -> Option<f64> {
+    /// Simulated seconds to compute now, if a tick is due; `dt` is the duration of a step.
+    pub fn tick(&mut self, now: Instant, dt: f64) -> Option<f64> {
         let passed = self.last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64());
-        // In slow motion a tick may be shorter than a step.
-        let shortest = (TICK * self.scale).max(least);
+        // In slow motion TICK may be shorter than a step.
+        let shortest = (TICK * self.scale).max(dt);
         self.due = (self.due + passed * self.scale).min((MAX_DELAY * self.scale).max(shortest));
         if self.due < shortest {
             return None;
         }
-        // With a slow driver the simulation still gets half of the time.
+        // If drawing is slow, the simulation still gets half of the time.
         let longest_tick = self.between.max(MAX_TICK);
         let affordable = if self.cost > 0.0 { longest_tick / self.cost } else { shortest };
-        let tick = self.due.min(affordable).max(least);
+        let tick = self.due.min(affordable).max(dt);
         self.due -= tick;
         Some(tick)
     }
@@ -65,7 +66,7 @@ impl Pace {
         self.between = (0.8 * self.between + 0.2 * between.as_secs_f64()).min(0.25);
     }
 
-    /// Forgets the recorded times, for another scene.
+    /// Clears the recorded times, for another scene.
     pub fn reset(&mut self) {
         self.cost = 0.0;
         self.pause();
@@ -97,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_machine_keeps_time_and_a_slow_one_slows_down_in_short_ticks() {
+    fn a_fast_machine_runs_in_real_time_and_a_slow_one_in_short_ticks() {
         let (fast, _) = run(1.0, 0.2, 0.0, 2.0);
         assert!((fast - 2.0).abs() < 0.05, "{fast}");
         let (slow_motion, _) = run(0.1, 0.2, 0.0, 2.0);
@@ -106,12 +107,12 @@ mod tests {
         let (slower, _) = run(1e-4 / 1.5, 0.2, 0.0, 6.0);
         assert!((slower - 4e-4).abs() < 1.1e-4, "{slower}");
         let (slow, longest) = run(1.0, 20.0, 0.0, 5.0);
-        // As fast as the machine can, in short ticks.
+        // The simulation runs as fast as the machine allows, in short ticks.
         assert!((slow - 5.0 / 20.0).abs() < 0.02, "{slow}");
         assert!(longest < 0.2, "{longest}");
         // Slow pictures leave half of the time.
-        let (beside, longest) = run(1.0, 20.0, 0.1, 5.0);
-        assert!((beside - 2.5 / 20.0).abs() < 0.02, "{beside}");
+        let (half, longest) = run(1.0, 20.0, 0.1, 5.0);
+        assert!((half - 2.5 / 20.0).abs() < 0.02, "{half}");
         assert!(longest < 0.2, "{longest}");
     }
 }

@@ -41,7 +41,7 @@ pub struct Snapshot {
     pub timings: Arc<Timings>,
     /// Number of steps in `timings`.
     pub timed_steps: u64,
-    /// Whether the clock runs.
+    /// Whether the simulation is running, not paused.
     pub playing: bool,
 }
 

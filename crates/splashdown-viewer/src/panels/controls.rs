@@ -8,7 +8,7 @@ use super::gravity;
 use crate::look::DisplayMode;
 use crate::state::{Action, State};
 
-/// The number of particles cannot be changed in scenes that start with fewer.
+/// The number of particles cannot be changed in scenes that start with fewer particles than this.
 const MIN_PARTICLES: u64 = 20;
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -107,7 +107,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                     Method::Wcsph => 7.0,
                     Method::Mueller2003 => 1.0,
                 };
-                // Each method has its own model.
+                // Each method has its own model of surface tension.
                 if solver.surface_tension != SurfaceTension::None {
                     solver.surface_tension = tension_of(method);
                 }
@@ -116,10 +116,10 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
     });
     let mut tension = solver.surface_tension != SurfaceTension::None;
-    let box_of_tension = ui.checkbox(&mut tension, "with surface tension").on_hover_text(
+    let checkbox = ui.checkbox(&mut tension, "with surface tension").on_hover_text(
         "Akinci, Akinci and Teschner 2013, or Müller, Charypar and Gross 2003: forms drops and films",
     );
-    if box_of_tension.changed() {
+    if checkbox.changed() {
         solver.surface_tension = if tension { tension_of(solver.method) } else { SurfaceTension::None };
         changed = true;
     }
@@ -133,7 +133,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         &mut solver.artificial_viscosity,
         0.0..=0.5,
         "damping",
-        "Factor alpha of Monaghan's artificial viscosity: 0 is lively and noisy, 0.1 is calm",
+        "Factor alpha of Monaghan's artificial viscosity: 0 does not damp noise, 0.1 damps strongly",
     );
     slider(&mut solver.wall_friction, 0.0..=1.0, "wall friction", "0: free slip, 1: no slip");
     if changed {
@@ -191,10 +191,10 @@ fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
     } else if look.mode.needs_surface() {
         let surface = &mut state.scene.surface;
-        let rounds = Slider::new(&mut surface.smoothing_iterations, 0..=25)
+        let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
             .clamping(SliderClamping::Edits)
             .text("smoothing");
-        let rounds = ui.add(rounds).on_hover_text("Smoothing iterations of the mesh");
+        let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
         let spacing = state.scene.fluid.particle_spacing;
         let mut cell = surface.cell_size / spacing;
         let size = ui
@@ -203,7 +203,7 @@ fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if size.changed() {
             surface.cell_size = cell * spacing;
         }
-        if size.changed() || rounds.changed() {
+        if size.changed() || iterations.changed() {
             actions.push(Action::Change);
         }
     }
@@ -225,7 +225,7 @@ fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
                 actions.push(action);
             }
         }
-        // Only a web page has an address.
+        // Only a web page has an address that a link can open.
         if cfg!(target_arch = "wasm32")
             && ui.button("Link").on_hover_text("A link that opens the scene with its changes").clicked()
         {

@@ -35,7 +35,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     if ctx.egui_wants_keyboard_input() {
         return;
     }
-    // The modifiers at the time of the key event: with slow frames those at the end of the frame may differ.
+    // The modifiers are those of the key event. Those at the end of a slow frame may differ.
     let struck = |wanted: Key, command: bool| {
         ctx.input(|input| {
             input.events.iter().any(|event| match event {

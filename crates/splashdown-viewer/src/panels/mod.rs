@@ -18,7 +18,8 @@ pub use viewport::Viewport;
 /// Windows narrower than this, in points, start with hidden controls.
 const NARROW: f32 = 700.0;
 
-/// Shows all panels. `picture` is the texture in the middle. Returns the size for the next picture and the actions.
+/// Shows all panels. `picture` is the texture in the middle. Returns the viewport, which determines the size of the next
+/// picture, and the requested actions.
 pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
     let mut actions = Vec::new();
     help::keys(ui.ctx(), state, &mut actions);

@@ -1,4 +1,4 @@
-//! Notifications: messages disappear after a while, errors when they are closed.
+//! Notifications. Messages disappear after some seconds, errors when the user closes them.
 
 use egui::{Align2, Area, Color32, Context, Frame, Id, ProgressBar, Rect, RichText};
 
@@ -41,6 +41,6 @@ pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
     if let Some(number) = closed {
         state.notes.remove(number);
     }
-    // Messages disappear without any input.
+    // Without a repaint, a message would remain until the next input.
     ctx.request_repaint_after(std::time::Duration::from_millis(500));
 }

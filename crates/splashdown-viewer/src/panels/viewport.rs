@@ -10,7 +10,7 @@ const TILT: f32 = 0.25;
 /// Rate at which a shaken tank follows the mouse, in 1/s.
 const SHAKE_RATE: f32 = 12.0;
 
-/// Where the picture is.
+/// The position and size of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Viewport {
     /// The rectangle in points.
@@ -47,9 +47,9 @@ pub(super) fn show(
         Tool::Tilt => tilt(&response, drag, state, actions),
         Tool::Shake if by(PointerButton::Primary) => {
             let [right, up, _] = state.orbit.axes();
-            let way = state.orbit.metres_per_point(size_of(rect)) * (drag.x * right - drag.y * up);
+            let motion = state.orbit.metres_per_point(size_of(rect)) * (drag.x * right - drag.y * up);
             let gravity = state.scene.gravity;
-            state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).target += way;
+            state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).target += motion;
         }
         Tool::Shake => {}
         Tool::Orbit => {}
@@ -81,7 +81,8 @@ fn zoom(ui: &Ui, response: &Response, state: &mut State) {
     }
 }
 
-/// The mouse force acts in the plane through the camera's target; a held body stays at its distance.
+/// Drags water or a body. The mouse force acts in the plane through the camera's target. A held body keeps its distance
+/// from the camera.
 fn drag_fluid(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
     let size = size_of(response.rect);
     let place = response.interact_pointer_pos().map(|at| at - response.rect.min);
@@ -126,8 +127,8 @@ fn tilt(response: &Response, drag: Vec2, state: &mut State, actions: &mut Vec<Ac
     }
 }
 
-/// The tank follows the mouse by a critically damped spring, and its acceleration acts on the fluid. It returns to
-/// its place, so that its net displacement is zero.
+/// Moves the shaken tank. A critically damped spring pulls it towards the mouse, and its acceleration acts on the fluid.
+/// When released, the tank returns to its original position.
 fn shake(ui: &Ui, held: bool, state: &mut State, actions: &mut Vec<Action>) {
     let Some(shaking) = &mut state.shaking else { return };
     if !held {

@@ -18,7 +18,7 @@ use super::pace::Pace;
 use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, lock};
 use meter::Meter;
 
-/// Wall time in s of steps submitted at once; the window draws in between.
+/// Wall time in s of the steps submitted at once. The window can draw between two submissions.
 const BATCH: f64 = 0.008;
 /// Sleep while no tick is due.
 const SHORT_SLEEP: Duration = Duration::from_millis(2);
@@ -37,7 +37,7 @@ pub(super) struct Worker {
     simulation: Option<Simulation>,
     surface: Option<Surface>,
     foam: Option<Foam>,
-    /// Foam of the previous simulation or of a checkpoint, to continue with.
+    /// Foam of the previous simulation or of a checkpoint, with which the next simulation starts.
     saved_foam: Option<KeptFoam>,
     opened: Option<Arc<Opened>>,
     playing: bool,
@@ -276,7 +276,7 @@ impl Worker {
             simulation.set_steps_at_once((BATCH / per_step.max(1e-7)) as u32);
         }
         self.meter.count(steps, f64::from(seconds), simulation).await?;
-        // No new snapshot is needed before the window has drawn the last one.
+        // A new snapshot is only needed after the window has drawn the last one.
         let wanted = lock(&self.outbox).is_seen || !self.playing;
         let shown = if wanted { self.show().await } else { Ok(()) };
         self.pace.record(f64::from(seconds), stepped, begun.elapsed() - stepped);
