@@ -4,7 +4,7 @@
 //! the disk; compressed arrays (`numpy.savez_compressed`) are read.
 //!
 //! Arrays written: `positions` and `velocities` (float32, N x 3), `densities` and `pressures` (float32, N), `ids`
-//! (uint32, N), where present. Arrays of any number type are read; others are skipped.
+//! (uint32, N), where present, and other attributes by their names (float32). Arrays of any number type are read; others are skipped.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -14,8 +14,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
-use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
+use crate::data::{Attribute, Particles};
 use crate::error::IoError;
 use crate::input::{MOST, regular};
 use crate::npy::{self, Layout};
@@ -26,19 +26,22 @@ const POSITIONS: [&str; 7] = ["positions", "position", "points", "particles", "p
 pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
     particles.check()?;
     let count = particles.len();
-    let arrays: [(&str, &str, usize, &[u8]); 5] = [
+    let fields: [(&str, &str, usize, &[u8]); 5] = [
         ("positions", "<f4", 3, bytemuck::cast_slice(&particles.positions)),
         ("velocities", "<f4", 3, bytemuck::cast_slice(&particles.velocities)),
         ("densities", "<f4", 1, bytemuck::cast_slice(&particles.densities)),
         ("pressures", "<f4", 1, bytemuck::cast_slice(&particles.pressures)),
         ("ids", "<u4", 1, bytemuck::cast_slice(&particles.ids)),
     ];
+    let names: Vec<String> = particles.other_attributes().map(file_name).collect();
+    let others = particles.other_attributes().zip(&names).map(|(attribute, name)| {
+        (name.as_str(), "<f4", attribute.components, bytemuck::cast_slice(&attribute.values))
+    });
+    let fields = fields.into_iter().filter(|&(name, _, _, data)| !data.is_empty() || name == "positions");
+    let arrays = fields.chain(others);
     atomic::write_file(path, |file: &mut BufWriter<File>| {
         let mut archive = ZipWriter::new(file);
         for (name, kind, columns, data) in arrays {
-            if data.is_empty() && name != "positions" {
-                continue;
-            }
             let options = SimpleFileOptions::default()
                 .compression_method(CompressionMethod::Stored)
                 .large_file(data.len() as u64 > u64::from(u32::MAX) - 1024);
@@ -48,6 +51,11 @@ pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64,
         }
         archive.finish().map(drop).map_err(io::Error::other)
     })
+}
+
+/// The name of an attribute without characters that separate folders, because every array is a file of the archive.
+fn file_name(attribute: &Attribute) -> String {
+    attribute.word().replace(['/', '\\'], "_")
 }
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {

@@ -40,6 +40,40 @@ fn every_format_returns_all_attributes() {
 }
 
 #[test]
+fn attributes_without_a_field_are_written_and_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = common::particles(1500);
+    let scalar = |name: &str| Attribute {
+        name: name.to_owned(),
+        components: 1,
+        values: (0..1500).map(|i| i as f32 - 0.25).collect(),
+    };
+    let vector = Attribute {
+        name: "angular velocity".to_owned(),
+        components: 3,
+        values: (0..4500).map(|i| 0.5 * i as f32).collect(),
+    };
+    let odd = "a<b>\"/&'";
+    // `rho` is the density, which has a field: files store the field and not the attribute.
+    let given = bare.clone().with_attributes(vec![scalar("temperature"), vector, scalar("rho"), scalar(odd)]);
+    for ending in ["ply", "vtk", "vtu", "bgeo", "npz"] {
+        let path = folder.path().join(format!("more.{ending}"));
+        write_particles(&path, &given).unwrap();
+        let read = read_particles_with_attributes(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(attribute(&read, "temperature").values, given.attributes[0].values, "{ending}");
+        let vector = attribute(&read, "angular_velocity");
+        assert_eq!((vector.components, &vector.values), (3, &given.attributes[1].values), "{ending}");
+        assert!(read.attributes.iter().all(|attribute| attribute.name != "rho"), "{ending}");
+        assert_eq!(
+            read.attributes.len(),
+            4 + 3,
+            "{ending}: velocity, density, pressure, id and three others"
+        );
+        assert!(read_particles(&path).unwrap() == bare, "{ending}");
+    }
+}
+
+#[test]
 fn attributes_of_any_name_and_type_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {

@@ -1,5 +1,6 @@
 //! The writer, without compression, which takes longer than writing.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use crate::data::Particles;
@@ -7,9 +8,12 @@ use crate::data::Particles;
 /// Points per write.
 const ROWS: usize = 2048;
 
+/// Characters of an attribute's name, whose bytes are counted in 16 bits.
+const LONGEST_NAME: usize = 1000;
+
 /// An attribute as described in the header, with its data.
 struct Attribute<'a> {
-    name: &'static str,
+    name: Cow<'static, str>,
     /// 0: float, 1: integer, 5: vector.
     kind: i32,
     components: usize,
@@ -17,13 +21,14 @@ struct Attribute<'a> {
 }
 
 /// Writes particles to `out`. Attributes that are present become `v` (Houdini's name of the velocity, used for motion
-/// blur), `density`, `pressure` and `id`.
+/// blur), `density`, `pressure` and `id`; other attributes keep their names.
 ///
 /// # Errors
 /// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
     particles.check()?;
-    let attribute = |name, kind, components, words| Attribute { name, kind, components, words };
+    let attribute =
+        |name, kind, components, words| Attribute { name: Cow::Borrowed(name), kind, components, words };
     let mut attributes = vec![
         attribute("v", 5, 3, bytemuck::cast_slice(&particles.velocities)),
         attribute("density", 0, 1, bytemuck::cast_slice(&particles.densities)),
@@ -31,6 +36,12 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         attribute("id", 1, 1, bytemuck::cast_slice(&particles.ids)),
     ];
     attributes.retain(|attribute| !attribute.words.is_empty());
+    attributes.extend(particles.other_attributes().map(|attribute| Attribute {
+        name: Cow::Owned(attribute.word().chars().take(LONGEST_NAME).collect()),
+        kind: if attribute.components == 3 { 5 } else { 0 },
+        components: attribute.components,
+        words: bytemuck::cast_slice(&attribute.values),
+    }));
 
     out.write_all(b"BgeoV")?;
     // Version; points, primitives, groups of both; attributes of points, vertices, primitives and the whole.

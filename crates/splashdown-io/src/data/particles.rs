@@ -1,6 +1,7 @@
 //! Particles in host memory, as plain arrays.
 
 use super::Attribute;
+use super::columns::Column;
 use crate::error::IoError;
 
 /// A set of particles, one array per attribute. The order of the particles is arbitrary; `ids` identify them.
@@ -21,7 +22,8 @@ pub struct Particles {
     /// Pressures in Pa.
     pub pressures: Vec<f32>,
     /// All attributes of a file, as read by
-    /// [`read_particles_with_attributes`](crate::read_particles_with_attributes). They are not written.
+    /// [`read_particles_with_attributes`](crate::read_particles_with_attributes). PLY, VTK, VTU, BGEO and NPZ files
+    /// store those that have no field above.
     pub attributes: Vec<Attribute>,
 }
 
@@ -60,6 +62,13 @@ impl Particles {
     #[must_use]
     pub fn with_attributes(self, attributes: Vec<Attribute>) -> Self {
         Self { attributes, ..self }
+    }
+
+    /// The attributes without a field, which files store under their names.
+    pub(crate) fn other_attributes(&self) -> impl Iterator<Item = &Attribute> {
+        self.attributes.iter().filter(|attribute| {
+            !attribute.values.is_empty() && Column::named(&attribute.name, attribute.components).is_none()
+        })
     }
 
     /// Number of particles.

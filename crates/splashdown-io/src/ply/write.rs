@@ -23,6 +23,8 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         (bytes(&particles.ids), 4, "uint id"),
     ];
     columns.extend(optional.into_iter().filter(|column| !column.0.is_empty()));
+    let names: Vec<String> = particles.other_attributes().map(properties).collect();
+    columns.extend(attribute_columns(particles.other_attributes(), &names));
 
     begin(out)?;
     element(out, "vertex", particles.len(), &columns)?;
@@ -44,9 +46,7 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
         columns.push((bytes(&mesh.velocities), 12, "float vx vy vz"));
     }
     let names: Vec<String> = mesh.attributes.iter().map(properties).collect();
-    for (attribute, names) in mesh.attributes.iter().zip(&names) {
-        columns.push((bytes(&attribute.values), 4 * attribute.components, names));
-    }
+    columns.extend(attribute_columns(mesh.attributes.iter(), &names));
 
     begin(out)?;
     element(out, "vertex", mesh.vertices.len(), &columns)?;
@@ -77,6 +77,16 @@ fn properties(attribute: &Attribute) -> String {
         3 => format!("float {name}_x {name}_y {name}_z"),
         _ => format!("float {name}"),
     }
+}
+
+/// The columns of attributes with these types and names.
+fn attribute_columns<'a>(
+    attributes: impl Iterator<Item = &'a Attribute>,
+    names: &'a [String],
+) -> impl Iterator<Item = (&'a [u8], usize, &'a str)> {
+    attributes
+        .zip(names)
+        .map(|(attribute, names)| (bytes(&attribute.values), 4 * attribute.components, names.as_str()))
 }
 
 fn bytes<T: bytemuck::NoUninit>(values: &[T]) -> &[u8] {

@@ -4,6 +4,7 @@
 
 use std::io::{self, Write};
 
+use crate::data::Attribute;
 use crate::data::Mesh;
 use crate::data::Particles;
 
@@ -15,7 +16,7 @@ const VTK_VERTEX: u32 = 1;
 const VTK_TRIANGLE: u32 = 5;
 
 /// Writes particles to `out`. Each particle is a cell, as in a VTU file; attributes that are present become the point
-/// arrays `velocity`, `density`, `pressure` and `id`.
+/// arrays `velocity`, `density`, `pressure` and `id`, other attributes those of their names.
 ///
 /// # Errors
 /// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
@@ -28,7 +29,8 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     vectors(out, "VECTORS velocity", &particles.velocities)?;
     scalars(out, "density float", bytemuck::cast_slice(&particles.densities))?;
     scalars(out, "pressure float", bytemuck::cast_slice(&particles.pressures))?;
-    scalars(out, "id unsigned_int", &particles.ids)
+    scalars(out, "id unsigned_int", &particles.ids)?;
+    particles.other_attributes().try_for_each(|attribute| array(out, attribute))
 }
 
 /// Writes a mesh to `out`. Normals and velocities that are present become the point arrays `normals` and `velocity`,
@@ -44,14 +46,7 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     // `meshio` cannot read the keyword `NORMALS`.
     vectors(out, "VECTORS normals", &mesh.normals)?;
     vectors(out, "VECTORS velocity", &mesh.velocities)?;
-    for attribute in &mesh.attributes {
-        let name = attribute.word();
-        match attribute.values.as_chunks() {
-            (values, []) if attribute.components == 3 => vectors(out, &format!("VECTORS {name}"), values)?,
-            _ => scalars(out, &format!("{name} float"), bytemuck::cast_slice(&attribute.values))?,
-        }
-    }
-    Ok(())
+    mesh.attributes.iter().try_for_each(|attribute| array(out, attribute))
 }
 
 fn begin(out: &mut dyn Write, points: &[[f32; 3]]) -> io::Result<()> {
@@ -72,6 +67,15 @@ fn cells(
     words(out, list)?;
     writeln!(out, "CELL_TYPES {count}")?;
     words(out, std::iter::repeat_n(kind, count))
+}
+
+/// Writes an attribute as a point array of its name.
+fn array(out: &mut dyn Write, attribute: &Attribute) -> io::Result<()> {
+    let name = attribute.word();
+    match attribute.values.as_chunks() {
+        (values, []) if attribute.components == 3 => vectors(out, &format!("VECTORS {name}"), values),
+        _ => scalars(out, &format!("{name} float"), bytemuck::cast_slice(&attribute.values)),
+    }
 }
 
 fn vectors(out: &mut dyn Write, what: &str, values: &[[f32; 3]]) -> io::Result<()> {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::data::Particles;
+use crate::data::{Attribute, Particles};
 
 /// Numbers of generated connectivity per write.
 const CHUNK: usize = 4096;
@@ -11,20 +11,25 @@ const CHUNK: usize = 4096;
 const VTK_VERTEX: u8 = 1;
 
 /// Writes particles to `out`. Attributes that are present become the point arrays `velocity`, `density`, `pressure` and
-/// `id`.
+/// `id`, other attributes those of their names.
 ///
 /// # Errors
 /// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
     particles.check()?;
     let count = particles.len();
+    let names: Vec<String> = particles.other_attributes().map(xml_name).collect();
+    let others = particles
+        .other_attributes()
+        .zip(&names)
+        .map(|(attribute, name)| Array::of(name, "Float32", attribute.components as u32, &attribute.values));
     let point_data = [
         Array::of("velocity", "Float32", 3, &particles.velocities),
         Array::of("density", "Float32", 1, &particles.densities),
         Array::of("pressure", "Float32", 1, &particles.pressures),
         Array::of("id", "UInt32", 1, &particles.ids),
     ];
-    let point_data = point_data.iter().filter(|array| array.bytes() > 0);
+    let point_data: Vec<_> = point_data.into_iter().filter(|array| array.bytes() > 0).chain(others).collect();
     let points = Array::of("Points", "Float32", 3, &particles.positions);
     let cells = [
         Array { name: "connectivity", kind: "Int32", components: 1, data: Data::Range { first: 0, count } },
@@ -44,7 +49,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
          header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">"
     )?;
     writeln!(out, "<PointData>")?;
-    for array in point_data.clone() {
+    for array in &point_data {
         array.declare(out, &mut offset)?;
     }
     writeln!(out, "</PointData>\n<Points>")?;
@@ -55,15 +60,20 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     }
     // Offsets are relative to the byte after the underscore.
     write!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
-    for array in point_data.chain([&points]).chain(&cells) {
+    for array in point_data.iter().chain([&points]).chain(&cells) {
         array.append(out)?;
     }
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
+/// The name of an attribute without characters that have a meaning in XML.
+fn xml_name(attribute: &Attribute) -> String {
+    attribute.word().replace(['<', '>', '&', '"'], "_")
+}
+
 /// An array of the file: declared in the XML, appended after it.
 struct Array<'a> {
-    name: &'static str,
+    name: &'a str,
     kind: &'static str,
     components: u32,
     data: Data<'a>,
@@ -78,7 +88,7 @@ enum Data<'a> {
 
 impl<'a> Array<'a> {
     fn of<T: bytemuck::NoUninit>(
-        name: &'static str,
+        name: &'a str,
         kind: &'static str,
         components: u32,
         values: &'a [T],

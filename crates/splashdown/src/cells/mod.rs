@@ -30,7 +30,7 @@ use splashdown_gpu::{
     Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, buffer_set,
 };
 
-use crate::state::{Array, CarriedArrays, Fields, Update, end_step};
+use crate::state::{CarriedArrays, Fields, Reordered, Update, end_step};
 
 /// `row_range`: traversal of neighbours on the GPU.
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
@@ -124,12 +124,10 @@ impl Cells {
     /// persistent ones.
     pub fn record_store(&self, recording: &mut Recording, fields: &Fields) {
         let buffers = fields.buffers();
-        for carried in fields.carried.iter().filter(|carried| carried.quantity.update == Update::Constant) {
-            if let Some((pass, buffers)) =
-                bound(&buffers, carried, [&store_carried::SCALAR, &store_carried::VECTOR])
-            {
-                recording.dispatch(pass, self.all(), &buffers);
-            }
+        let constant = fields.carried.iter().filter(|carried| carried.quantity.update == Update::Constant);
+        for arrays in constant.filter_map(CarriedArrays::reordered) {
+            let (pass, buffers) = bound(&buffers, arrays, [&store_carried::SCALAR, &store_carried::VECTOR]);
+            recording.dispatch(pass, self.all(), &buffers);
         }
     }
 
@@ -163,12 +161,10 @@ impl Cells {
             }
         }
         recording.dispatch(&reorder::REORDER, self.all(), &buffers.clone().with("sorted_ids", sorted_ids));
-        for carried in fields.carried.iter().filter(|carried| carried.quantity.update.needs_reordering()) {
-            if let Some((pass, buffers)) =
-                bound(&buffers, carried, [&reorder_carried::SCALAR, &reorder_carried::VECTOR])
-            {
-                recording.dispatch(pass, self.all(), &buffers);
-            }
+        for arrays in fields.carried.iter().filter_map(CarriedArrays::reordered) {
+            let (pass, buffers) =
+                bound(&buffers, arrays, [&reorder_carried::SCALAR, &reorder_carried::VECTOR]);
+            recording.dispatch(pass, self.all(), &buffers);
         }
     }
 
@@ -178,20 +174,19 @@ impl Cells {
     }
 }
 
-/// The variant of a pass for the type of a carried quantity, and the buffers with its arrays; `None` if the quantity has
-/// no pass of its own.
+/// The variant of a pass for the type of a carried quantity, and the buffers with its arrays.
 fn bound(
     buffers: &BufferSet,
-    carried: &CarriedArrays,
+    arrays: Reordered,
     [scalar, vector]: [&'static PassDesc; 2],
-) -> Option<(&'static PassDesc, BufferSet)> {
-    match (carried.persistent, carried.sorted?) {
-        (Array::F32(persistent), Array::F32(sorted)) => {
-            Some((scalar, buffers.clone().with("carried", persistent).with("sorted_carried", sorted)))
+) -> (&'static PassDesc, BufferSet) {
+    let buffers = buffers.clone();
+    match arrays {
+        Reordered::Scalar { persistent, sorted } => {
+            (scalar, buffers.with("carried", persistent).with("sorted_carried", sorted))
         }
-        (Array::Vec4(persistent), Array::Vec4(sorted)) => {
-            Some((vector, buffers.clone().with("carried", persistent).with("sorted_carried", sorted)))
+        Reordered::Vector { persistent, sorted } => {
+            (vector, buffers.with("carried", persistent).with("sorted_carried", sorted))
         }
-        _ => None,
     }
 }

@@ -13,7 +13,7 @@ use crate::passes::{
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method};
-use crate::state::{Array, Fields};
+use crate::state::{CarriedArrays, Fields, Reordered};
 
 /// The couplings of a simulation.
 #[derive(Clone, Copy, Default)]
@@ -181,11 +181,10 @@ impl<'a> Step<'a> {
         let StepRecorder { recording, fields, .. } = &mut self.recorder;
         recording.copy(fields.sorted_positions, fields.positions);
         recording.copy(fields.sorted_velocities, fields.velocities);
-        for carried in fields.carried.iter().filter(|carried| carried.quantity.update.needs_reordering()) {
-            match (carried.sorted, carried.persistent) {
-                (Some(Array::F32(sorted)), Array::F32(persistent)) => recording.copy(sorted, persistent),
-                (Some(Array::Vec4(sorted)), Array::Vec4(persistent)) => recording.copy(sorted, persistent),
-                _ => {}
+        for arrays in fields.carried.iter().filter_map(CarriedArrays::reordered) {
+            match arrays {
+                Reordered::Scalar { persistent, sorted } => recording.copy(sorted, persistent),
+                Reordered::Vector { persistent, sorted } => recording.copy(sorted, persistent),
             }
         }
         if self.scheme.is_density_integrated {

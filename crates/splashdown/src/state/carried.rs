@@ -331,6 +331,25 @@ pub struct CarriedArrays {
     pub sorted: Option<Array>,
 }
 
+/// Persistent and sorted array of a quantity that passes of their own reorder.
+#[derive(Clone, Copy)]
+pub enum Reordered {
+    /// Of [`Kind::F32`].
+    Scalar {
+        /// Between steps.
+        persistent: Buffer<f32>,
+        /// In the order of the cells.
+        sorted: Buffer<f32>,
+    },
+    /// Of [`Kind::Vec4`].
+    Vector {
+        /// Between steps.
+        persistent: Buffer<Vec4>,
+        /// In the order of the cells.
+        sorted: Buffer<Vec4>,
+    },
+}
+
 impl CarriedArrays {
     /// Creates the arrays of every row for `n` particles.
     ///
@@ -348,6 +367,25 @@ impl CarriedArrays {
             Ok(Self { quantity, persistent, sorted })
         };
         table.iter().map(create).collect()
+    }
+
+    /// The arrays if passes of their own reorder the quantity.
+    pub fn reordered(&self) -> Option<Reordered> {
+        if !self.quantity.update.needs_reordering() {
+            return None;
+        }
+        match (self.persistent, self.sorted) {
+            (Array::F32(persistent), Some(Array::F32(sorted))) => {
+                Some(Reordered::Scalar { persistent, sorted })
+            }
+            (Array::Vec4(persistent), Some(Array::Vec4(sorted))) => {
+                Some(Reordered::Vector { persistent, sorted })
+            }
+            _ => unreachable!(
+                "the carried quantity {} has no sorted array, or a type without a pass that reorders it",
+                self.quantity.name
+            ),
+        }
     }
 
     /// Adds the arrays to a set, under their labels.
