@@ -12,7 +12,8 @@ mod params;
 mod step;
 
 pub use carried::{
-    Array, CARRIED, Carried, CarriedArrays, Initial, Kind, Update, Values, bits, bytes_per_particle,
+    Array, CARRIED, Carried, CarriedArrays, Initial, Kind, Reordered, Update, Values, bits,
+    bytes_per_particle,
 };
 #[cfg(test)]
 pub(crate) use carried::{DENSITIES, IDS, POSITIONS, VELOCITIES};
