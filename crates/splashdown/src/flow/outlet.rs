@@ -191,7 +191,7 @@ mod tests {
             end: None,
             max_particles: None,
         };
-        let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], shake: None };
+        let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], oscillation: None };
         // A square whose edge is an even or odd number of spacings is filled to its rim.
         for (spacing, count) in [(0.01, 100), (0.02, 25)] {
             let (nozzle, layer) = nozzle_in(&emitter, &domain, spacing, 2.0 * spacing).unwrap();

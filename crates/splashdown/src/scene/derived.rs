@@ -164,8 +164,8 @@ fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
         .chain(others)
         .filter(|speed| speed.is_finite())
         .fold(0.0, f32::max);
-    let shake = scene.domain.shake.map_or(0.0, |shake| shake.max_speed());
-    let driven = (4.0 * scene.gravity.length() * head + fastest * fastest).sqrt() + shake;
+    let oscillation = scene.domain.oscillation.map_or(0.0, |oscillation| oscillation.max_speed());
+    let driven = (4.0 * scene.gravity.length() * head + fastest * fastest).sqrt() + oscillation;
     let material = &scene.fluid.material;
     let capillary = match scene.solver.surface_tension {
         SurfaceTension::None => 0.0,

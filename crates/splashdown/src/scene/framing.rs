@@ -68,8 +68,12 @@ mod tests {
 
     #[test]
     fn every_corner_is_in_view_and_nearer_it_is_not() {
-        let domain =
-            Domain { min: Vec3::ZERO, max: Vec3::new(2.0, 1.0, 0.8), closed: [[true; 2]; 3], shake: None };
+        let domain = Domain {
+            min: Vec3::ZERO,
+            max: Vec3::new(2.0, 1.0, 0.8),
+            closed: [[true; 2]; 3],
+            oscillation: None,
+        };
         let mut camera = Camera {
             target: domain.center(),
             distance: 0.0,

@@ -74,6 +74,6 @@ pub use things::{
 };
 pub use types::{
     Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format,
-    KernelKind, Material, Method, NegativePressure, Output, PictureKind, Scene, Shake, Shape, Solver, Sort,
-    SurfaceSettings, SurfaceTension,
+    KernelKind, Material, Method, NegativePressure, Oscillation, Output, PictureKind, Scene, Shape, Solver,
+    Sort, SurfaceSettings, SurfaceTension,
 };

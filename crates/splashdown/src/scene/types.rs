@@ -81,7 +81,7 @@ pub struct Domain {
     /// `closed[axis][side]`, axis x, y, z, side 0 = min, 1 = max: whether a wall stands there.
     pub closed: [[bool; 2]; 3],
     /// How the whole tank moves, if it does.
-    pub shake: Option<Shake>,
+    pub oscillation: Option<Oscillation>,
 }
 
 impl Domain {
@@ -97,16 +97,16 @@ impl Domain {
 }
 
 /// A harmonic motion of the tank: its position is `amplitude * sin(2 pi t / period)`. The simulation runs in
-/// the tank's frame, where the fluid feels [`Shake::acceleration`].
+/// the tank's frame, where the fluid feels [`Oscillation::acceleration`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shake {
+pub struct Oscillation {
     /// Amplitude in m, per axis.
     pub amplitude: Vec3,
     /// Period in s.
     pub period: f32,
 }
 
-impl Shake {
+impl Oscillation {
     /// Inertial acceleration of the fluid in the tank's frame at time `t` (s), in m/s^2: minus the tank's own
     /// acceleration.
     pub fn acceleration(&self, t: f64) -> Vec3 {

@@ -11,10 +11,11 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     let derived = Derived::without_particles(scene);
     let support_radius = derived.support_radius;
     let rest_density = material.rest_density;
-    let (shake, shake_rate) = scene.domain.shake.map_or_else(Default::default, |shake| {
-        let rate = std::f32::consts::TAU / shake.period;
-        (shake.amplitude * rate * rate, rate)
-    });
+    let (oscillation, oscillation_rate) =
+        scene.domain.oscillation.map_or_else(Default::default, |oscillation| {
+            let rate = std::f32::consts::TAU / oscillation.period;
+            (oscillation.amplitude * rate * rate, rate)
+        });
     let closed = scene.domain.closed.as_flattened();
     let scheme = Scheme::new(scene);
     let numerical_viscosity = match solver.method {
@@ -28,8 +29,8 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         particle_spacing: scene.fluid.particle_spacing,
         domain_max: scene.domain.max,
         particle_mass: derived.particle_mass,
-        shake,
-        shake_rate,
+        oscillation,
+        oscillation_rate,
         rest_density,
         sound_speed: derived.sound_speed,
         wall_offset: scene.fluid.particle_spacing * wall_offset(scheme.walls(), solver.support_ratio),

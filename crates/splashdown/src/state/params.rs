@@ -21,10 +21,10 @@ gpu_struct! {
         domain_max: Vec3,
         /// Mass of a particle in kg.
         particle_mass: f32,
-        /// Amplitude of the inertial acceleration in a shaken tank, in m/s^2.
-        shake: Vec3,
-        /// Angular frequency of the shaking in rad/s.
-        shake_rate: f32,
+        /// Amplitude of the inertial acceleration in an oscillating domain, in m/s^2.
+        oscillation: Vec3,
+        /// Angular frequency of the oscillation in rad/s.
+        oscillation_rate: f32,
         /// Density at rest in kg/m^3.
         rest_density: f32,
         /// Numerical speed of sound in m/s.
@@ -84,8 +84,8 @@ impl Params {
         x.cmplt(self.domain_min).any() || x.cmpgt(self.domain_max).any()
     }
 
-    /// Gravity and the inertial acceleration of the shaken tank, in m/s^2, at a time in seconds.
+    /// Gravity and the inertial acceleration of the oscillating domain, in m/s^2, at a time in seconds.
     pub fn body_acceleration(&self, time: f32) -> Vec3 {
-        self.gravity + self.shake * (self.shake_rate * time).sin()
+        self.gravity + self.oscillation * (self.oscillation_rate * time).sin()
     }
 }

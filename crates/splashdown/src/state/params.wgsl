@@ -7,8 +7,8 @@ struct Params {
     particle_spacing: f32,
     domain_max: vec3<f32>,
     particle_mass: f32,
-    shake: vec3<f32>,
-    shake_rate: f32,
+    oscillation: vec3<f32>,
+    oscillation_rate: f32,
     rest_density: f32,
     sound_speed: f32,
     wall_offset: f32,
@@ -43,5 +43,5 @@ fn pressure_at(density: f32) -> f32 {
 }
 
 fn body_acceleration(time: f32) -> vec3<f32> {
-    return params.gravity + params.shake * sin(params.shake_rate * time);
+    return params.gravity + params.oscillation * sin(params.oscillation_rate * time);
 }

@@ -233,7 +233,7 @@ fn push_error(world: &World, wall: &Wall, i: usize) -> f64 {
     let push = density.y.abs() * (1.0 / density.x + density.x / 1e6) / 500.0;
     // The pressure force depends on the slope's error over H; body forces on the density's error and on slope times
     // distance over H.
-    let body = 2.0 * f64::from(p.gravity.length() + p.shake.length());
+    let body = 2.0 * f64::from(p.gravity.length() + p.oscillation.length());
     WALL_TABLE[wall.near] * (push * 500.0 / support + body)
 }
 

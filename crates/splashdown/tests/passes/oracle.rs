@@ -84,14 +84,14 @@ struct C {
 
 fn constants(world: &World) -> C {
     let p = &world.params;
-    let phase = f64::from(p.shake_rate) * f64::from(world.state.time);
+    let phase = f64::from(p.oscillation_rate) * f64::from(world.state.time);
     C {
         support: p.support_radius.into(),
         mass: p.particle_mass.into(),
         rest: p.rest_density.into(),
         sound: p.sound_speed.into(),
         spacing: p.particle_spacing.into(),
-        body: p.gravity.as_dvec3() + p.shake.as_dvec3() * phase.sin(),
+        body: p.gravity.as_dvec3() + p.oscillation.as_dvec3() * phase.sin(),
         dt: world.state.dt.into(),
     }
 }

@@ -58,7 +58,7 @@ fn the_reference_speed_follows_from_the_driving_forces() {
     assert!(near(speed(&changed("frame_rate = 25", "gravity = [9.81, 0, 0]")), 6.26418));
     // An oscillating domain adds 2 pi 0.1 / 0.5.
     assert!(near(
-        speed(&changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]")),
+        speed(&changed("[fluid]", "oscillation = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]")),
         4.42945 + 1.25664
     ));
     // No driving force; then surface tension alone: sqrt(2 * 0.07274 / (998.2 * 0.05)).
@@ -91,12 +91,12 @@ fn the_frame_count_is_free_of_rounding_errors() {
 
 #[test]
 fn an_oscillating_domain_adds_the_opposite_acceleration() {
-    let text = changed("[fluid]", "shake = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]");
+    let text = changed("[fluid]", "oscillation = { amplitude = [0.1, 0, 0], period = 0.5 }\n[fluid]");
     let scene: Scene = parse(&text).expect("valid");
-    let shake = scene.domain.shake.expect("the domain oscillates");
+    let oscillation = scene.domain.oscillation.expect("the domain oscillates");
     let place = |t: f64| 0.1 * (std::f64::consts::TAU * t / 0.5).sin();
     let (t, step) = (0.13, 1e-4);
     let tank = (place(t + step) - 2.0 * place(t) + place(t - step)) / (step * step);
-    assert!((f64::from(shake.acceleration(t).x) + tank).abs() < 1e-3 * tank.abs());
-    assert_eq!(shake.acceleration(t) * Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO);
+    assert!((f64::from(oscillation.acceleration(t).x) + tank).abs() < 1e-3 * tank.abs());
+    assert_eq!(oscillation.acceleration(t) * Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO);
 }

@@ -20,7 +20,7 @@ use super::keys::{ROOT, Side};
 use super::reader::{Read, Reader, Reported, Section};
 use super::slot::BuiltSlot;
 use super::source::Source;
-use super::types::{Domain, Fluid, Scene, Shake};
+use super::types::{Domain, Fluid, Oscillation, Scene};
 
 /// Most frames of a run.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -209,9 +209,9 @@ fn read_domain(section: &Section<'_>) -> Part<Domain> {
     let min = section.numbers("min");
     let max = section.numbers("max");
     let open = section.choices::<Side>("open");
-    let shake = section
-        .section("oscillation")
-        .and_then(|shake| if shake.exists() { read_shake(&shake).map(Some) } else { Ok(None) });
+    let oscillation = section.section("oscillation").and_then(|oscillation| {
+        if oscillation.exists() { read_oscillation(&oscillation).map(Some) } else { Ok(None) }
+    });
     let (min, max): (Vec3, Vec3) = (needed(min)?.into(), needed(max)?.into());
     let mut closed = [[true; 2]; 3];
     for (axis, side) in open?.unwrap_or_default().into_iter().map(Side::place) {
@@ -228,13 +228,13 @@ fn read_domain(section: &Section<'_>) -> Part<Domain> {
             "max is a corner, not a size",
         ));
     }
-    Ok(Domain { min, max, closed, shake: shake? })
+    Ok(Domain { min, max, closed, oscillation: oscillation? })
 }
 
-fn read_shake(section: &Section<'_>) -> Part<Shake> {
+fn read_oscillation(section: &Section<'_>) -> Part<Oscillation> {
     let amplitude = section.numbers("amplitude");
     let period = section.number("period");
-    Ok(Shake { amplitude: needed(amplitude)?.into(), period: needed(period)? })
+    Ok(Oscillation { amplitude: needed(amplitude)?.into(), period: needed(period)? })
 }
 
 /// The value of a key that a certain shape needs.

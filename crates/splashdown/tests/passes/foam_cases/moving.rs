@@ -19,8 +19,8 @@ pub(super) fn advect() -> Case {
     let pool = diffuse(&world, n);
     let dt = f64::from(now.dt);
     let p = &world.params;
-    let phase = f64::from(p.shake_rate) * (f64::from(now.time) - dt / 2.0);
-    let pull = p.gravity.as_dvec3() + p.shake.as_dvec3() * phase.sin();
+    let phase = f64::from(p.oscillation_rate) * (f64::from(now.time) - dt / 2.0);
+    let pull = p.gravity.as_dvec3() + p.oscillation.as_dvec3() * phase.sin();
     let mut expected = vec![f64::NAN; 8 * n as usize];
     let mut alive = vec![7; n as usize];
     let mut edge = vec![false; n as usize];
