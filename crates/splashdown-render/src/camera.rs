@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_target_is_projected_to_the_middle_and_up_is_up() {
+    fn the_target_is_projected_to_the_middle_and_up_points_upwards() {
         for elevation in [-80.0, 0.0, 35.0, 90.0] {
             let camera = Camera::orbit([0.3, -0.2, 0.1], 4.0, 25.0, elevation, 45.0);
             let middle = camera.project([0.3, -0.2, 0.1], [640, 480]).unwrap().unwrap();

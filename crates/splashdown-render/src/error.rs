@@ -2,7 +2,7 @@
 
 use crate::Ticket;
 
-/// Why a picture could not be drawn.
+/// The reason why a picture could not be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -55,7 +55,7 @@ pub enum RenderError {
     #[error("a frame has either a surface or liquid particles; set one of the two to None")]
     TwoLiquids,
     /// A buffer is too short for the number of elements.
-    #[error("the buffer of {what} holds {given} bytes, {needed} are needed")]
+    #[error("the buffer of {what} has {given} bytes, but {needed} are required")]
     BufferTooShort {
         /// Which buffer.
         what: &'static str,
@@ -66,7 +66,7 @@ pub enum RenderError {
     },
     /// A buffer is larger than the largest storage binding.
     #[error(
-        "the buffer of {what} holds {given} bytes, the largest storage binding of this device is {limit} bytes; draw \
+        "the buffer of {what} has {given} bytes, but the largest storage binding of this device is {limit} bytes; draw \
          the surface without lines"
     )]
     BufferTooLong {

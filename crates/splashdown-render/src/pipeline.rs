@@ -1,5 +1,5 @@
-//! Construction of render pipelines and bind groups. Each user specifies only what differs from the
-//! defaults.
+//! Construction of render pipelines and bind groups. Each pass specifies only the settings that
+//! differ from the defaults.
 
 use crate::shader::Shader;
 use wgpu::{

@@ -22,15 +22,17 @@ use wgpu::{
     TextureFormat, TextureView,
 };
 
-/// Most passes of a picture that are measured; a picture has less than half as many.
+/// The largest number of passes of a picture that are measured. A picture has less than half as
+/// many.
 const MEASURED_PASSES: u32 = 32;
-/// Most pictures whose times have not arrived; further ones are not measured.
+/// The largest number of pictures whose times have not been read back. Further pictures are not
+/// measured.
 const MEASURED_PICTURES: usize = 4;
 
 /// Time that a pass of a picture took on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// The label of the pass, which graphics debuggers show too.
+    /// The label of the pass, which graphics debuggers also show.
     pub label: &'static str,
     /// Milliseconds, the sum over all passes of that label.
     pub milliseconds: f32,
@@ -42,8 +44,8 @@ pub struct PassTime {
 ///
 /// 1. the shadow of the fluid on the floor (256 x 256, blurred);
 /// 2. the sums of a slice;
-/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid, bubbles too,
-///    and the result is copied to a texture that the liquid refracts;
+/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid also bubbles,
+///    and the result is resolved to a texture that the liquid refracts;
 /// 4. with a liquid, its thickness, and then its surface from a mesh or from smoothed distances;
 /// 5. wireframe, foam and spray, and the near edges; all samples are resolved into the target;
 /// 6. colour bar and caption.
@@ -66,7 +68,7 @@ pub struct Renderer {
     overlay: Overlay,
     targets: Option<Targets>,
     timer: Option<PassTimer>,
-    /// Of the latest picture whose times have arrived.
+    /// The times of the latest picture that have been read back.
     pass_times: Vec<PassTime>,
 }
 
@@ -170,7 +172,7 @@ impl Renderer {
             self.targets = Some(Targets::new(&self.device, size, self.format, self.sample_count));
         }
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
-        // Makes room in the timer for this picture.
+        // Collects the times read back so far, so that the timer can measure this picture.
         self.pass_times();
         let Some(targets) = &self.targets else { return Ok(()) };
 
@@ -204,7 +206,7 @@ impl Renderer {
         };
         if has_liquid {
             scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Store));
-            // Beyond all bodies, and representable as a 16-bit float.
+            // Larger than any distance, and representable as a 16-bit float.
             let no_body = Color { r: 60_000.0, ..Color::TRANSPARENT };
             let mut pass = recorder.cleared("distance of bodies", &targets.solid, no_body);
             if let Some(bodies) = &frame.bodies {
@@ -230,8 +232,8 @@ impl Renderer {
             None
         };
         {
-            // With several samples, the samples still hold the scene. With one sample, the scene
-            // was drawn into its own texture and is drawn again here.
+            // With several samples per pixel, the samples still contain the scene. With one sample,
+            // the scene was drawn into its own texture and is drawn again here.
             let has_scene = liquid.is_some() && targets.samples.is_some();
             let start = if has_scene { Start::Load } else { Start::Clear };
             let mut pass = recorder.picture("picture", targets, target, start, End::Discard);

@@ -1,4 +1,4 @@
-//! Textures with a content.
+//! Upload of textures.
 
 use wgpu::{Device, Queue, TextureFormat, TextureUsages, TextureView};
 

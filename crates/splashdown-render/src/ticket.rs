@@ -1,6 +1,6 @@
-//! Identifies a submitted picture.
+//! The ticket of a submitted picture.
 
-/// Identifies a submitted picture, to collect it.
+/// Identifies a submitted picture, which is collected with it.
 #[derive(Debug, PartialEq, Eq)]
 #[must_use = "a picture that is not collected continues to count as in flight"]
 pub struct Ticket {

@@ -1,4 +1,4 @@
-//! Pictures whose pixels are known.
+//! Pictures whose expected pixels are known.
 
 mod common;
 
@@ -121,21 +121,21 @@ fn non_finite_particles_are_not_drawn() {
     let picture = spheres(&mut harness, &[nan, far, around_the_eye], 0.5, level_frame(5.0));
     assert_eq!(changed(&picture, &empty).len(), 0);
     let picture = spheres(&mut harness, &[nan, ([0.0; 3], 1.0)], 0.5, level_frame(5.0));
-    assert!(changed(&picture, &empty).len() > 500, "negative control: a sound one is drawn");
+    assert!(changed(&picture, &empty).len() > 500, "negative control: a valid particle is drawn");
 }
 
 #[test]
-fn a_surface_hides_and_is_hidden() {
+fn a_surface_and_particles_hide_each_other() {
     let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0; 3], 0.5, 32);
     let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    // Nearly opaque, so that nothing behind is visible.
-    let ink = with(Liquid::water(1.0), |l| {
+    // Nearly opaque, so that nothing behind it is visible.
+    let opaque = with(Liquid::water(1.0), |l| {
         l.absorption = [40.0; 3];
         l.scattering = 40.0;
         l.colour = [0.0, 0.4, 0.0];
     });
-    let surface = DrawnSurface::new(ball.buffers(), ink);
+    let surface = DrawnSurface::new(ball.buffers(), opaque);
     let frame = level_frame(5.0).with_surface(surface);
     let centre = [100, 80];
     let front = spheres(&mut harness, &[([0.0, 0.0, 1.0], 1.0)], 0.2, frame);
@@ -179,7 +179,7 @@ fn indirect_draws_equal_direct_ones() {
 }
 
 #[test]
-fn the_colour_bar_ends_with_the_colours_of_the_map() {
+fn the_colour_bar_shows_the_colours_of_the_map() {
     let Some(mut harness) = common::harness() else { return };
     let size = [640, 360];
     let particles = UploadedParticles::new(&harness.device, &[[0.0; 3]], &[], &[], &[]).unwrap();

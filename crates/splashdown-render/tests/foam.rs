@@ -1,4 +1,4 @@
-//! Foam, spray and bubbles, in cases where the pixels are known.
+//! Foam, spray and bubbles, in cases where the expected pixels are known.
 
 mod common;
 
@@ -24,13 +24,13 @@ fn draw(harness: &mut Harness, places: &[[f32; 3]], lifetime: f32, kind: u32, fr
     harness.draw(SIZE, &frame.with_foam(DrawnFoam::new(foam.buffers(), RADIUS)))
 }
 
-/// How much brighter a pixel is than in another picture, summed over its channels.
+/// The difference in brightness of a pixel in two pictures, summed over its channels.
 fn brighter(a: &Picture, b: &Picture, pixel: [u32; 2]) -> i32 {
     a.pixel(pixel).iter().zip(b.pixel(pixel)).map(|(a, b)| i32::from(*a) - i32::from(b)).sum()
 }
 
 /// A ball of black or clear liquid in the middle, as a mesh.
-fn ink(harness: &Harness, radius: f32, clear: bool) -> (UploadedSurface, Liquid) {
+fn liquid_ball(harness: &Harness, radius: f32, clear: bool) -> (UploadedSurface, Liquid) {
     let ball = sample::ball([0.0; 3], radius, 48);
     let ball = UploadedSurface::new(&harness.device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
     let per_metre = if clear { 0.0 } else { 400.0 };
@@ -67,7 +67,7 @@ fn each_kind_is_a_white_disc_and_fades() {
         assert!(here > 40, "kind {kind}: {here}");
         let [r, g, b] = picture.pixel(MIDDLE);
         assert!(r.abs_diff(b) < 60 && g > empty.pixel(MIDDLE)[1], "kind {kind}: {r} {g} {b}");
-        // In its last hundredth of a second, and away from it.
+        // A disc is faint shortly before the end of its lifetime, and does not change other pixels.
         let fading = draw(&mut harness, &[[0.0; 3]], 0.01, kind, frame);
         assert!(brighter(&fading, &empty, MIDDLE) < here / 3);
         assert!(brighter(&picture, &empty, [160, 80]).abs() < 6);
@@ -89,11 +89,11 @@ fn spheres_hide_foam() {
 }
 
 #[test]
-fn bubbles_are_visible_through_clear_liquid_and_hidden_by_ink() {
+fn bubbles_are_visible_through_clear_liquid_and_hidden_by_opaque_liquid() {
     let Some(mut harness) = common::harness() else { return };
     let behind = backdrop(&harness);
     for (clear, seen) in [(true, true), (false, false)] {
-        let (ball, liquid) = ink(&harness, 0.8, clear);
+        let (ball, liquid) = liquid_ball(&harness, 0.8, clear);
         let surface = DrawnSurface::new(ball.buffers(), liquid);
         let with_liquid = frame().with_surface(surface).with_particles(dark(&behind, 4.0));
         let alone = harness.draw(SIZE, &with_liquid);
@@ -109,9 +109,9 @@ fn bubbles_are_visible_through_clear_liquid_and_hidden_by_ink() {
 }
 
 #[test]
-fn foam_in_the_surface_is_not_cut() {
+fn the_surface_does_not_cut_the_discs_of_foam() {
     let Some(mut harness) = common::harness() else { return };
-    let (ball, liquid) = ink(&harness, 0.8, false);
+    let (ball, liquid) = liquid_ball(&harness, 0.8, false);
     let surface = DrawnSurface::new(ball.buffers(), liquid);
     let with_liquid = frame().with_surface(surface);
     let alone = harness.draw(SIZE, &with_liquid);

@@ -83,7 +83,7 @@ fn invalid_frames_are_refused_and_leave_the_target_usable() {
     };
     let with_positions = |positions| with(good, |drawn| drawn.buffers.positions = positions);
     let text = message(&mut renderer, &mut target, with_positions(&short));
-    assert!(text.contains("positions holds 48 bytes, 64 are needed"), "{text}");
+    assert!(text.contains("positions has 48 bytes, but 64 are required"), "{text}");
     let text = message(&mut renderer, &mut target, with_positions(&wrong));
     assert!(text.contains("lacks the usage"), "{text}");
     let text = message(&mut renderer, &mut target, with(good, |drawn| drawn.radius = 0.0));
@@ -132,6 +132,6 @@ fn a_lost_device_is_an_error() {
     device.destroy();
     let after = target.submit(&mut renderer, &frame(0.0)).and_then(|ticket| target.collect(ticket));
     assert!(matches!(after, Err(RenderError::DeviceLost { .. })), "{after:?}");
-    // The earlier picture may have been completed or not; there is no panic either way.
+    // The earlier picture may be complete or not. In neither case is there a panic.
     let _ = target.collect(before);
 }

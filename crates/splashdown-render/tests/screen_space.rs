@@ -1,4 +1,4 @@
-//! The screen-space surface, in cases where the pixels are known.
+//! The screen-space surface, in cases where the expected pixels are known.
 
 mod common;
 
@@ -15,7 +15,7 @@ fn frame() -> Frame<'static> {
 }
 
 /// Nearly opaque and green, so that it hides everything behind it and is easy to detect.
-fn ink() -> Liquid {
+fn opaque_green() -> Liquid {
     with(Liquid::water(1.0), |l| {
         l.absorption = [400.0; 3];
         l.scattering = 400.0;
@@ -59,7 +59,7 @@ fn changed(picture: &Picture, empty: &Picture) -> usize {
 fn a_block_covers_its_square() {
     let Some(mut harness) = common::harness() else { return };
     let empty = harness.draw(SIZE, &frame());
-    let picture = liquid(&mut harness, &block([0.0; 3], [12, 12, 3], 2.0 * RADIUS), ink(), frame());
+    let picture = liquid(&mut harness, &block([0.0; 3], [12, 12, 3], 2.0 * RADIUS), opaque_green(), frame());
     // Spheres of 1.7 radii on a lattice extend 1.597 radii on average beyond the outermost centres.
     // The outline, at a liquid fraction of 0.66, lies 0.412 standard deviations of 0.6 * 1.7 radii
     // further inside.
@@ -69,7 +69,7 @@ fn a_block_covers_its_square() {
     let (covered, expected) = (changed(&picture, &empty) as f32, pixels * pixels);
     assert!((covered - expected).abs() < 0.04 * expected, "{covered} pixels, expected {expected}");
     // Negative control: one particle fewer on each side.
-    let smaller = liquid(&mut harness, &block([0.0; 3], [10, 10, 3], 2.0 * RADIUS), ink(), frame());
+    let smaller = liquid(&mut harness, &block([0.0; 3], [10, 10, 3], 2.0 * RADIUS), opaque_green(), frame());
     assert!((changed(&smaller, &empty) as f32) < 0.8 * expected);
 }
 
@@ -82,11 +82,11 @@ fn a_face_of_many_spheres_looks_flat() {
         let step = |[x, y]: [u32; 2]| picture.pixel([x, y])[1].abs_diff(picture.pixel([x + 1, y])[1]);
         middle().map(step).max().unwrap()
     };
-    let face = liquid(&mut harness, &block([0.0; 3], [14, 14, 3], 2.0 * RADIUS), ink(), frame());
+    let face = liquid(&mut harness, &block([0.0; 3], [14, 14, 3], 2.0 * RADIUS), opaque_green(), frame());
     assert!(is_green(face.pixel([100, 80])));
     assert!(roughness(&face) <= 4, "{}", roughness(&face));
     // Negative control: spheres that are too far apart to overlap.
-    let apart = liquid(&mut harness, &block([0.0; 3], [7, 7, 3], 4.0 * RADIUS), ink(), frame());
+    let apart = liquid(&mut harness, &block([0.0; 3], [7, 7, 3], 4.0 * RADIUS), opaque_green(), frame());
     assert!(roughness(&apart) > 20, "{}", roughness(&apart));
 }
 
@@ -96,8 +96,8 @@ fn near_liquid_leaves_no_halo_on_far_liquid() {
     let far = block([0.0, 0.0, -1.0], [30, 24, 3], 2.0 * RADIUS);
     let both: Vec<[f32; 3]> =
         far.iter().copied().chain(block([0.0, 0.0, 0.6], [6, 6, 3], 2.0 * RADIUS)).collect();
-    let far = liquid(&mut harness, &far, ink(), frame());
-    let both = liquid(&mut harness, &both, ink(), frame());
+    let far = liquid(&mut harness, &far, opaque_green(), frame());
+    let both = liquid(&mut harness, &both, opaque_green(), frame());
     // The outermost centres of the near block are 5 radii from the middle and its spheres extend
     // 1.7 radii further; plus two pixels.
     let outline = 6.7 * RADIUS / (DISTANCE - 0.6 - 2.0 * RADIUS) / 20f32.to_radians().tan() * 80.0;
@@ -114,21 +114,21 @@ fn near_liquid_leaves_no_halo_on_far_liquid() {
 }
 
 #[test]
-fn the_surface_hides_and_is_hidden() {
+fn the_surface_and_particles_hide_each_other() {
     let Some(mut harness) = common::harness() else { return };
     let colouring =
         Colouring::new(Quantity::Speed, [0.0, 1.0]).with_map(ColourMap::BlueRed).with_colour_bar(false);
     let places = block([0.0; 3], [8, 8, 4], 2.0 * RADIUS);
-    let mut with_a_sphere_at = |z: f32, look: Liquid| {
+    let mut with_a_sphere_at = |z: f32, optics: Liquid| {
         let sphere =
             UploadedParticles::new(&harness.device, &[[0.0, 0.0, z]], &[[9.0, 0.0, 0.0]], &[], &[]).unwrap();
         let drawn = DrawnParticles::new(sphere.buffers(), 0.15, colouring);
         let frame = frame().with_particles(drawn);
-        liquid(&mut harness, &places, look, frame).pixel([100, 80])
+        liquid(&mut harness, &places, optics, frame).pixel([100, 80])
     };
     let is_red = |[r, _, b]: [u8; 3]| i32::from(r) - i32::from(b) > 40;
-    assert!(is_red(with_a_sphere_at(1.0, ink())));
-    assert!(is_green(with_a_sphere_at(-1.0, ink())));
+    assert!(is_red(with_a_sphere_at(1.0, opaque_green())));
+    assert!(is_green(with_a_sphere_at(-1.0, opaque_green())));
     let clear = with(Liquid::water(1.0), |l| {
         l.absorption = [0.0; 3];
         l.scattering = 0.0;
@@ -147,10 +147,10 @@ fn liquid_behind_a_body_does_not_tint_it() {
     let alone = harness.draw(SIZE, &with_bodies).pixel([100, 80]);
     let far = |[r, g, b]: [u8; 3]| r.abs_diff(alone[0]).max(g.abs_diff(alone[1])).max(b.abs_diff(alone[2]));
     let behind = block([0.0, 0.0, -1.0], [8, 8, 4], 2.0 * RADIUS);
-    assert!(far(liquid(&mut harness, &behind, ink(), with_bodies).pixel([100, 80])) <= 1);
+    assert!(far(liquid(&mut harness, &behind, opaque_green(), with_bodies).pixel([100, 80])) <= 1);
     // Negative control: liquid in front of the body.
     let before = block([0.0, 0.0, 1.0], [8, 8, 4], 2.0 * RADIUS);
-    assert!(far(liquid(&mut harness, &before, ink(), with_bodies).pixel([100, 80])) > 40);
+    assert!(far(liquid(&mut harness, &before, opaque_green(), with_bodies).pixel([100, 80])) > 40);
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn inactive_particles_are_not_drawn_in_any_mode() {
         let colouring =
             Colouring::new(Quantity::Speed, [0.0, 1.0]).with_map(ColourMap::Inferno).with_colour_bar(false);
         let spheres = DrawnParticles::new(buffers, 0.2, colouring);
-        let merged = DrawnLiquidParticles::new(buffers, 0.2, ink());
+        let merged = DrawnLiquidParticles::new(buffers, 0.2, opaque_green());
         let pictures = [frame().with_particles(spheres), frame().with_liquid_particles(merged)];
         pictures.map(|frame| changed(&harness.draw(SIZE, &frame), &empty))
     };
@@ -208,8 +208,9 @@ fn a_surface_and_liquid_particles_together_are_refused() {
     let mesh = sample::ball([0.0; 3], 0.5, 8);
     let ball = UploadedSurface::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let particles = UploadedParticles::new(&device, &[[0.0; 3]], &[], &[], &[]).unwrap();
-    let merged = DrawnLiquidParticles::new(particles.buffers(), RADIUS, ink());
-    let twice = frame().with_surface(DrawnSurface::new(ball.buffers(), ink())).with_liquid_particles(merged);
+    let merged = DrawnLiquidParticles::new(particles.buffers(), RADIUS, opaque_green());
+    let twice =
+        frame().with_surface(DrawnSurface::new(ball.buffers(), opaque_green())).with_liquid_particles(merged);
     let mut target = Offscreen::new(&device, &queue, SIZE).unwrap();
     let error = target.submit(&mut renderer, &twice).unwrap_err();
     assert!(matches!(error, RenderError::TwoLiquids), "{error}");
@@ -230,7 +231,7 @@ fn the_surface_does_not_bend_at_the_border_of_the_picture() {
     let wide_angle = 2.0 * (1.4 * 20f32.to_radians().tan()).atan().to_degrees();
     let wide = with(frame(), |f| f.camera.field_of_view_deg = wide_angle);
     let particles = UploadedParticles::new(&harness.device, &tilted, &[], &[], &[]).unwrap();
-    let drawn = DrawnLiquidParticles::new(particles.buffers(), RADIUS, ink());
+    let drawn = DrawnLiquidParticles::new(particles.buffers(), RADIUS, opaque_green());
     let wide = harness.draw(wide_size, &wide.with_liquid_particles(drawn));
     // The outermost columns of the picture, compared with the same pixels of a wider picture.
     let largest = |picture: &Picture| {
@@ -241,12 +242,12 @@ fn the_surface_does_not_bend_at_the_border_of_the_picture() {
         };
         rows.map(apart).max().unwrap()
     };
-    let whole = liquid(&mut harness, &tilted, ink(), frame());
+    let whole = liquid(&mut harness, &tilted, opaque_green(), frame());
     assert!(largest(&whole) <= 3, "{}", largest(&whole));
     // Negative control: a slab that ends at the border.
     let [left, right] = [0, SIZE[0]].map(|x| (x as f32 - 100.0) / 80.0 * 20f32.to_radians().tan());
     let inside = |p: &&[f32; 3]| (left..right).contains(&(p[0] / (DISTANCE - p[2])));
     let cut: Vec<[f32; 3]> = tilted.iter().filter(inside).copied().collect();
-    let cut = liquid(&mut harness, &cut, ink(), frame());
+    let cut = liquid(&mut harness, &cut, opaque_green(), frame());
     assert!(largest(&cut) > 12, "{}", largest(&cut));
 }

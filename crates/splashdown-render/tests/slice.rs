@@ -1,4 +1,4 @@
-//! Planes through the fluid, in cases where the pixels are known.
+//! Planes through the fluid, in cases where the expected pixels are known.
 
 mod common;
 

@@ -1,5 +1,5 @@
-// Distance to the nearest body, which ends the liquid's thickness behind it. Needs globals.wgsl,
-// eye_distance.wgsl.
+// Distance of the nearest body. Liquid behind it does not count for the thickness. Needs
+// globals.wgsl, eye_distance.wgsl.
 
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {

@@ -8,11 +8,12 @@ use wgpu::{Buffer, BufferUsages, Device};
 use crate::uploads::{check_indices, upload};
 use crate::{BodyBuffers, Draw, RenderError};
 
-/// Cosine of the crease angle, 35 degrees: edges with a larger angle between their faces stay
+/// Cosine of the crease angle, 35 degrees. Edges with a larger angle between their faces remain
 /// sharp.
 const CREASE: f32 = 0.82;
 
-/// The mesh of a body in its own frame, to be placed in any number of frames.
+/// The mesh of a body in its own frame. It is prepared once and can be drawn in any number of
+/// pictures.
 #[derive(Clone, Debug)]
 pub struct PlacedBody {
     vertices: Vec<Vec3>,
@@ -36,10 +37,10 @@ impl PlacedBody {
         // The length is twice the area, which weights the averages below.
         let faces: Vec<Vec3> =
             triangles.iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a))).collect();
-        let mut around: Vec<Vec<u32>> = vec![Vec::new(); vertices.len()];
+        let mut adjacent: Vec<Vec<u32>> = vec![Vec::new(); vertices.len()];
         for (t, triangle) in triangles.iter().enumerate() {
             for &v in triangle {
-                around[v as usize].push(t as u32);
+                adjacent[v as usize].push(t as u32);
             }
         }
         let mut body = Self { vertices: Vec::new(), normals: Vec::new(), triangles: Vec::new(), colour };
@@ -49,7 +50,7 @@ impl PlacedBody {
             let placed = triangle.map(|v| {
                 let smooth = |face: &Vec3| face.normalize_or_zero().dot(own) > CREASE;
                 let normal: Vec3 =
-                    around[v as usize].iter().map(|&t| faces[t as usize]).filter(|face| smooth(face)).sum();
+                    adjacent[v as usize].iter().map(|&t| faces[t as usize]).filter(|face| smooth(face)).sum();
                 let normal = normal.normalize_or(own);
                 let key = (v, normal.to_array().map(f32::to_bits));
                 *known.entry(key).or_insert_with(|| {

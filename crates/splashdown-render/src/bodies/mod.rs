@@ -1,4 +1,4 @@
-//! Bodies: solids that the liquid meets.
+//! The solid bodies of a scene.
 //!
 //! # How it works
 //! The meshes of all bodies form one mesh in world space, with a colour per vertex. They are drawn
@@ -8,8 +8,8 @@
 //! every distance to it.
 //!
 //! # Why not the other way
-//! Transforming the vertices on the GPU would save an upload of a few thousand vertices per frame
-//! and need a draw per body.
+//! Transforming the vertices on the GPU would save an upload of a few thousand vertices per frame,
+//! but would need one draw per body.
 //!
 //! # Things we might try
 //! Shadows on bodies and on the water; caustics on bodies.
@@ -32,7 +32,7 @@ pub(crate) const SHADER: Shader =
 pub(crate) const DISTANCE: Shader =
     Shader { label: "distance of bodies", parts: &[GLOBALS, EYE_DISTANCE, include_str!("distance.wgsl")] };
 
-/// Keeps the minimum.
+/// Blending that stores the minimum.
 const MINIMUM: BlendState = {
     let component = BlendComponent {
         src_factor: BlendFactor::One,

@@ -1,19 +1,20 @@
 //! Foam, spray and bubbles.
 //!
 //! # How it works
-//! Every diffuse particle is a soft white billboard, blended over the picture. All are nearly
-//! equally white, so their order hardly matters and no sorting is necessary. Depth is tested and
-//! not written. If the frame has a liquid, bubbles are drawn before it, into the picture that the
-//! liquid refracts: they are bent, tinted and hidden like everything else under water. Foam and
-//! spray are drawn after the liquid.
+//! Every diffuse particle is a soft white billboard, blended over the picture. All have nearly the
+//! same colour, so their order hardly matters and no sorting is necessary. Depth is tested and not
+//! written. If the frame has a liquid, bubbles are drawn before it, into the picture that the
+//! liquid refracts, so that the liquid also refracts, tints and hides them. Foam and spray are
+//! drawn after the liquid.
 //!
 //! Foam lies in the surface, which would cut each disc in two; a depth offset moves it slightly
 //! towards the eye. Discs smaller than a pixel are enlarged to one pixel and their opacity is
 //! reduced accordingly.
 //!
 //! # Why not the other way
-//! Ray marching through a volume of foam density (Ihmsen et al. 2012 do so off line) includes
-//! self-shadowing, at the cost of all other passes together. Additive discs would exceed white.
+//! Ray marching through a volume of foam density (used offline by Ihmsen et al. 2012) includes
+//! self-shadowing, but takes as long as all other passes together. Additive discs would exceed
+//! white.
 //!
 //! # Things we might try
 //! Shadows of foam on the floor; reflections of spray in the water.

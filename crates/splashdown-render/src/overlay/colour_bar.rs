@@ -61,7 +61,7 @@ pub(crate) fn draw_colour_bar(
     let inner_width = scale_width.max(text_width(layout.text, title));
     let top = layout.pad + 1.5 * layout.text;
     let width = (inner_width + 2.0 * layout.pad).ceil() as u32;
-    // The space below the bar holds the lower half of the lowest label.
+    // The space below the bar contains the lower half of the lowest label.
     let height = (top + bar_height as f32 + 0.4 * layout.text + layout.pad).ceil() as u32;
     let margin = (1.5 * layout.pad) as u32;
     if 2 * width + margin > picture_size[0] || height + 2 * margin > picture_size[1] {

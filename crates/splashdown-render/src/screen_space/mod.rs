@@ -24,7 +24,8 @@
 //! it as they do the mesh.
 //!
 //! 16-bit floats store the thickness with a relative precision of 1e-3. Where more than a thousand
-//! particles lie behind each other the sum stops growing; the liquid is opaque long before.
+//! particles lie behind each other the sum stops growing, but the liquid is already opaque at a much
+//! smaller thickness.
 //!
 //! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples and 63,000
 //! particles, in one run of `examples/modes.rs`: 1.4 times the time of the same particles as

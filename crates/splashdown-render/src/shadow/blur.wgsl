@@ -9,7 +9,6 @@ override STEP_Y: i32 = 0;
 const REACH = 6;
 const SIGMA = 2.6;
 
-
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = vec2i(position.xy);

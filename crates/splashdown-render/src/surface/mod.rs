@@ -4,10 +4,10 @@
 //! The colour of a pixel combines three parts.
 //!
 //! * *Reflection*: the reflected ray samples the same procedural environment as the background.
-//! * *Refraction*: the picture without the liquid was resolved to a texture. The refracted ray runs
-//!   through as much liquid as there is on the view ray, and the texture is sampled where the ray
-//!   leaves the liquid. Light is absorbed along the path (Beer-Lambert), and the liquid's own
-//!   colour increases with depth.
+//! * *Refraction*: the picture without the liquid was resolved to a texture. The length of the
+//!   refracted ray inside the liquid is assumed to be that of the view ray, and the texture is
+//!   sampled where the ray leaves the liquid. Light is absorbed along the path (Beer-Lambert), and
+//!   the liquid's own colour increases with depth.
 //! * *Fresnel*: the exact equations for a dielectric and unpolarised light weight the two. A rough
 //!   highlight of the sun (GGX, Walter et al. 2007) is added.
 //!
