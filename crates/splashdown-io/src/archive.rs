@@ -1,7 +1,7 @@
 //! Named texts, bytes and arrays in one file: a ZIP archive whose arrays are NPY files, so that `numpy.load` opens it.
 //!
-//! *Why ZIP:* every entry has a checksum; the list of entries comes last, so that a file cut short is recognised; common
-//! tools open it. Entries are not compressed: positions hardly shrink, and compression takes longer than writing.
+//! *Why ZIP:* every entry has a checksum. The list of entries is at the end, so that a truncated file is detected. Common
+//! tools open it. Entries are not compressed, because positions compress badly and compression takes longer than writing.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -114,7 +114,7 @@ impl Archive {
         Ok(())
     }
 
-    /// Writes the file, complete or not at all; returns its size in bytes.
+    /// Writes the file, which is complete or absent; returns its size in bytes.
     ///
     /// # Errors
     /// [`IoError::Write`].

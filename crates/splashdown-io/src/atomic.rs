@@ -1,8 +1,8 @@
 //! Files that are complete or absent: a file is written under a temporary name in the same folder and then renamed.
 //!
-//! A program that watches the folder (ParaView reloading a series, a script) never sees half a frame, and a run that is
-//! killed or fills the disk leaves all earlier frames intact. A power cut can still lose files: the data is not flushed
-//! to the disk, because each frame would have to wait for it.
+//! A program that watches the folder (ParaView reloading a series, a script) never reads an incomplete frame, and a run
+//! that is killed or fills the disk leaves all earlier frames intact. A power failure can still destroy files, because
+//! the data is not flushed to the disk: each frame would have to wait for it.
 //!
 //! *Why not the `tempfile` crate:* it creates files that only their owner can read; an output file has the user's
 //! default permissions.
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::IoError;
 
-/// Bytes of the write buffer: few system calls per frame, and it stays in the cache.
+/// Bytes of the write buffer. It needs few system calls per frame and fits into the cache.
 const BUFFER: usize = 1 << 18;
 
 /// Writes `path` with `fill`; returns the file's size in bytes.
@@ -57,7 +57,7 @@ pub fn prepare_folder(folder: &Path) -> Result<(), IoError> {
         fs::create_dir_all(folder)?;
         let probe = Temporary::beside(&folder.join("probe"));
         let mut file = probe.create()?;
-        // An empty file can often be created on a full disk; only data shows that there is space.
+        // An empty file can often be created on a full disk, so data is written to check that there is space.
         file.write_all(&[0; 4096])?;
         file.sync_all()
     };
@@ -93,7 +93,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // After a rename there is no file to remove; a second failure would only hide the first.
+        // After a rename there is no file to remove. A failure here would only hide an earlier one.
         let _ = fs::remove_file(&self.0);
     }
 }

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// The errors of this crate's functions.
 ///
-/// The error of the operating system is stored as text and not as a `source()`, so that one message says everything and
-/// the value can be cloned: [`crate::FrameWriter`] reports the same failure to every later call.
+/// The error of the operating system is stored as text and not as a `source()`, so that one message is complete and the
+/// value can be cloned: [`crate::FrameWriter`] returns the same failure from every later call.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IoError {
@@ -159,7 +159,7 @@ pub enum WriteCause {
     /// The file would exceed the size limit of the file system.
     #[error("the file is too large for this file system")]
     TooLarge,
-    /// Any other cause; the message of the system says more.
+    /// Any other cause; the message of the system describes it.
     #[error("the system reports an error")]
     Other,
 }

@@ -14,7 +14,7 @@ type WriteParticles = fn(&Path, &Particles) -> Result<u64, IoError>;
 type ReadMesh = fn(&Path) -> Result<Mesh, IoError>;
 type WriteMesh = fn(&Path, &Mesh) -> Result<u64, IoError>;
 
-/// What files with one ending hold, and whether they are read or written.
+/// The data in files with one ending, and whether they are read or written.
 #[derive(Debug, Clone, Copy)]
 pub struct Format {
     /// Name of the format as messages use it, e.g. `PLY`.
@@ -130,7 +130,7 @@ impl Format {
     #[must_use]
     pub fn of(path: &Path) -> Option<&'static Self> {
         let ending = match extension(path)? {
-            // Of two endings the first names the content.
+            // Of two endings the first one names the format of the content.
             gz if gz == "gz" => extension(&path.with_extension("")).filter(|inner| inner == "bgeo")?,
             ending => ending,
         };
@@ -172,19 +172,19 @@ impl Format {
         self.write_mesh.is_some() || self.is_series
     }
 
-    /// Whether one file holds all frames of a run. Other files hold one frame.
+    /// Whether one file contains all frames of a run. Files of other formats contain one frame.
     #[must_use]
     pub fn is_series(&self) -> bool {
         self.is_series
     }
 
-    /// Whether a mesh keeps its [`velocities`](Mesh::velocities).
+    /// Whether a mesh file contains the [`velocities`](Mesh::velocities).
     #[must_use]
     pub fn has_velocities(&self) -> bool {
         self.has_velocities
     }
 
-    /// Whether a mesh keeps its [`attributes`](Mesh::attributes).
+    /// Whether a mesh file contains the [`attributes`](Mesh::attributes).
     #[must_use]
     pub fn has_attributes(&self) -> bool {
         self.has_attributes
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn compressed_files_are_known_by_their_first_ending() {
+    fn the_first_ending_of_a_compressed_file_selects_the_format() {
         let found = |name: &str| Format::of(Path::new(name)).map(|format| format.name);
         assert_eq!(found("a.BGEO.gz"), Some("BGEO"));
         assert_eq!(["a.ply.gz", "bgeo.gz", "a.gz", "ply", "a", "a.", "a.fbx"].map(found), [None; 7]);

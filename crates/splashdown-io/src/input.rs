@@ -7,9 +7,9 @@ use std::path::Path;
 use crate::data::Mesh;
 use crate::error::IoError;
 
-/// The largest number of particles, or of triangles or vertices of a mesh, that is read: some gigabytes. A small glTF
-/// file can refer to a large mesh many times, and must not use all memory.
-pub(crate) const MOST: usize = 1 << 27;
+/// The largest number of particles, or of triangles or vertices of a mesh, that is read. They need some gigabytes. A
+/// small glTF file can refer to a large mesh many times, and must not exhaust the memory.
+pub(crate) const MAX_COUNT: usize = 1 << 27;
 
 /// The reason why a mesh is not read as particles.
 pub(crate) fn not_particles(faces: usize) -> String {
@@ -57,7 +57,7 @@ impl Welder {
     /// The number of the vertex at this position. Positions are compared bit by bit, with both zeros equal.
     pub(crate) fn vertex(&mut self, position: [f32; 3]) -> u32 {
         let position = position.map(|component| component + 0.0);
-        // Files have fewer than 2^32 corners: their counts were compared with their size or `MOST`.
+        // Files have fewer than 2^32 corners: their counts were compared with their size or `MAX_COUNT`.
         let next = self.mesh.vertices.len() as u32;
         let index = *self.known.entry(position.map(f32::to_bits)).or_insert(next);
         if index == next {

@@ -1,6 +1,7 @@
 //! Reads and writes the files of Splashdown: particles, meshes, pictures, films and tables.
 //!
-//! The crate knows nothing of fluids or GPUs. [`Particles`] and [`Mesh`] are plain arrays in SI units with y up.
+//! The crate depends neither on the simulation nor on a GPU. [`Particles`] and [`Mesh`] are plain arrays in SI units with
+//! y up.
 //! [`Format::ALL`] is the table of their file formats:
 //!
 //! | data | read and written by | formats | opens in |
@@ -33,8 +34,8 @@
 //!
 //! # A series of frames
 //!
-//! [`prepare_folder`] finds out before the first step whether the output folder is writable. [`FrameWriter`] writes
-//! frames on a thread of its own while the simulation continues.
+//! [`prepare_folder`] checks before the first step that the output folder is writable. [`FrameWriter`] writes frames on
+//! a separate thread while the simulation continues.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -60,10 +61,10 @@
 //!
 //! # Guarantees
 //!
-//! * A file is complete or absent ([`atomic`]): it gets its name after its last byte is written. A later failure leaves
-//!   earlier files intact. ([`CsvLog`] is the exception: its rows are complete or absent.)
-//! * An error names the file, the cause and the remedy ([`IoError`]). No file content causes a panic.
-//! * Readers refuse a file that promises more data than it has before they allocate memory for it.
+//! * A file is complete or absent ([`atomic`]): it is renamed to its name after its last byte is written. A later failure
+//!   leaves earlier files intact. ([`CsvLog`] is the exception: its rows are complete or absent.)
+//! * An error contains the file, the cause and the remedy ([`IoError`]). No file content causes a panic.
+//! * Readers refuse a file that declares more data than it contains before they allocate memory for it.
 
 #[cfg(target_endian = "big")]
 compile_error!("the binary writers copy memory to the file, which requires a little-endian machine");

@@ -6,7 +6,7 @@ use crate::data::Mesh;
 use crate::error::IoError;
 use crate::format::{self, Format};
 
-/// Writes a mesh in the format of the file name's ending ([`Format`]), complete or not at all; returns the file's size
+/// Writes a mesh in the format of the file name's ending ([`Format`]). The file is complete or absent. Returns its size
 /// in bytes.
 ///
 /// # Errors

@@ -17,7 +17,7 @@ use crate::atomic;
 use crate::data::columns::{Wanted, triples};
 use crate::data::{Attribute, Particles};
 use crate::error::IoError;
-use crate::input::{MOST, regular};
+use crate::input::{MAX_COUNT, regular};
 use crate::npy::{self, Layout};
 
 /// Names of the array of positions, in order of preference; the last is numpy's name for an unnamed array.
@@ -83,8 +83,8 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
         )));
     }
     let count = positions.values.len() / 3;
-    if count > MOST {
-        return Err(IoError::TooMany { what: "particles", given: count, limit: MOST });
+    if count > MAX_COUNT {
+        return Err(IoError::TooMany { what: "particles", given: count, limit: MAX_COUNT });
     }
     particles.positions = triples(&positions.values).collect();
     for name in names.iter().filter(|name| *name != first) {
@@ -118,7 +118,7 @@ fn array<R: Read + io::Seek>(archive: &mut ZipArchive<R>, name: &str) -> Result<
     let mut read = || -> Result<Array, String> {
         let entry = archive.by_name(name).map_err(|error| error.to_string())?;
         // The size in the archive's directory is not reliable, so the data is limited while it is read.
-        let most = 24 * MOST as u64 + (1 << 16);
+        let most = 24 * MAX_COUNT as u64 + (1 << 16);
         let mut bytes = Vec::new();
         entry.take(most).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
         let (header, data) = npy::split(&bytes)?;

@@ -17,7 +17,7 @@ pub(crate) enum Number {
 
 /// A type that every [`Number`] can be decoded to.
 pub(crate) trait FromNumber {
-    /// From any type but `F32`. An f64 holds all of these exactly, except integers beyond 2^53.
+    /// From any type but `F32`. An f64 represents all of these exactly, except integers beyond 2^53.
     fn from_f64(value: f64) -> Self;
 
     /// From `F32`.
@@ -39,7 +39,7 @@ impl FromNumber for f32 {
         value as Self
     }
 
-    /// Keeps all bits, those of a NaN included.
+    /// Preserves all bits, including those of a NaN.
     fn from_f32(value: f32) -> Self {
         value
     }
@@ -81,7 +81,7 @@ impl Number {
 
     /// Appends the numbers of all complete rows to `values`.
     pub(crate) fn decode_cells<T: FromNumber>(self, rows: &[u8], cells: Cells, values: &mut Vec<T>) {
-        // One loop per type, so that the type is not looked up for each number.
+        // One loop per type, so that the type is not tested for each number.
         match self {
             Self::I8 => each(rows, cells, values, |b| T::from_f64(i8::from_le_bytes(b).into())),
             Self::U8 => each(rows, cells, values, |b| T::from_f64(u8::from_le_bytes(b).into())),
@@ -96,7 +96,7 @@ impl Number {
         }
     }
 
-    /// Parses a word of a text file; `None` if it is no number, or one that this type cannot hold.
+    /// Parses a word of a text file; `None` if it is not a number, or out of the range of this type.
     pub(crate) fn parse<T: FromNumber>(self, word: &str) -> Option<T> {
         let range = match self {
             Self::F32 => return word.parse().ok().map(T::from_f32),
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_taken_out_of_their_rows() {
+    fn cells_are_extracted_from_their_rows() {
         let rows: Vec<u8> = (0..12).collect();
         let mut values = Vec::<f32>::new();
         let cells = Cells { at: 1, components: 1, stride: 4, big_endian: false };
@@ -178,19 +178,19 @@ mod tests {
         let expected =
             [1, 5, 9, 1, 2, 5, 6, 9, 10, 0x0203, 0x0607, 0x0a0b].map(|value: u16| f32::from(value));
         assert_eq!(values, expected);
-        // An incomplete row at the end is left out.
+        // An incomplete row at the end is ignored.
         assert_eq!(Number::U16.decode::<f64>(&rows[..3], false), [256.0]);
     }
 
     #[test]
-    fn words_outside_of_a_type_are_refused() {
+    fn words_outside_the_range_of_a_type_are_refused() {
         assert_eq!(Number::U8.parse::<f64>("255"), Some(255.0));
         assert_eq!(Number::U8.parse::<f64>("256"), None);
         assert_eq!(Number::I32.parse::<f64>("-1e3"), Some(-1000.0));
         assert_eq!(Number::I32.parse::<f64>("0.5"), None);
         assert_eq!(Number::U32.parse::<f64>("4294967295"), Some(u32::MAX.into()));
         assert_eq!(Number::U32.parse::<f64>("-1"), None);
-        // Parsed as f32 directly: rounding to f64 first would give the neighbour.
+        // The word is parsed as f32 directly. Rounding to f64 first would give a neighbouring f32.
         let word = "1.00000017881393432617187499";
         assert_eq!(Number::F32.parse::<f32>(word), word.parse().ok());
         assert_eq!(Number::F32.parse::<f32>("nan").map(f32::is_nan), Some(true));

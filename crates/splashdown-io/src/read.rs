@@ -7,7 +7,7 @@ use crate::data::Particles;
 use crate::data::columns::Wanted;
 use crate::error::IoError;
 use crate::format::{self, Format};
-use crate::input::{MOST, regular};
+use crate::input::{MAX_COUNT, regular};
 
 /// Reads a triangle mesh in the format of the file name's ending ([`Format`]).
 ///
@@ -27,8 +27,8 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     (mesh.normals, mesh.velocities) = (Vec::new(), Vec::new());
     usable(&mesh).map_err(|reason| IoError::malformed(path, format, reason))?;
     for (what, given) in [("vertices", mesh.vertices.len()), ("triangles", mesh.len())] {
-        if given > MOST {
-            return Err(IoError::TooMany { what, given, limit: MOST });
+        if given > MAX_COUNT {
+            return Err(IoError::TooMany { what, given, limit: MAX_COUNT });
         }
     }
     mesh.check().map_err(|error| IoError::malformed(path, format, error.to_string()))?;
@@ -68,7 +68,7 @@ fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     particles.attributes.retain(|attribute| attribute.check(count, "particles").is_ok());
     let malformed = |reason: String| IoError::malformed(path, format, reason);
     if particles.is_empty() {
-        return Err(malformed("it holds no particles".to_owned()));
+        return Err(malformed("it contains no particles".to_owned()));
     }
     particles.check().map_err(|error| malformed(error.to_string()))?;
     finite("positions", &particles.positions).map_err(malformed)?;

@@ -2,8 +2,8 @@
 //!
 //! Unlike the other writers this one does not wait until the file is complete: a row is completely in the file when
 //! [`CsvLog::row`] returns, so that a plot or `tail -f` can follow the run. Names are quoted where RFC 4180 requires it
-//! (by the crate `csv`). Numbers have the fewest digits that give the same f64 back. NaN, which a probe reports where
-//! it finds no water, is an empty field, as spreadsheets and `pandas` read it.
+//! (by the crate `csv`). Numbers have the fewest digits from which the same f64 is read. NaN, which a probe reports
+//! where there is no water, is an empty field, which spreadsheets and `pandas` read as a missing value.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write as _};
@@ -33,8 +33,8 @@ impl CsvLog {
         Ok(log)
     }
 
-    /// Continues a file that had `bytes` bytes at the moment from which a run is resumed: what was written later is
-    /// removed. A file that is missing or shorter is created anew.
+    /// Continues a file that had `bytes` bytes at the time from which a run is resumed. Rows written later are removed.
+    /// A file that is missing or shorter is created anew.
     ///
     /// # Errors
     /// [`IoError::Write`].
@@ -59,12 +59,12 @@ impl CsvLog {
         self.length
     }
 
-    /// Appends one row, a number for each column. If it cannot be written completely, none of it remains in the file,
-    /// and a later row may be tried.
+    /// Appends one row, a number for each column. If it cannot be written completely, no part of it remains in the file,
+    /// and writing a later row may be attempted.
     ///
     /// # Errors
-    /// [`IoError::Columns`] if the count of numbers is not that of the columns; [`IoError::Write`], for example when
-    /// the disk is full.
+    /// [`IoError::Columns`] if there is not one number for each column; [`IoError::Write`], for example if the disk is
+    /// full.
     pub fn row(&mut self, values: &[f64]) -> Result<(), IoError> {
         if values.len() != self.columns {
             let (given, expected) = (values.len(), self.columns);
@@ -85,7 +85,8 @@ impl CsvLog {
         match result {
             Ok(size) => self.length += size,
             Err(error) => {
-                // Half a row would be read as a wrong number. An error here changes nothing about the report.
+                // An incomplete row would be read as wrong numbers, so it is removed. A failure to remove it is
+                // ignored, because the failure to write is reported in any case.
                 let _ = self.file.set_len(self.length);
                 let _ = self.file.seek(SeekFrom::Start(self.length));
                 return Err(IoError::write(&self.path, &error));

@@ -26,7 +26,7 @@ pub struct Topology {
     pub triangles: usize,
     /// Triangles that use a vertex twice. They have no area, and their edges are not counted.
     pub degenerate_triangles: usize,
-    /// Edges used by one triangle: the rim of a hole.
+    /// Edges used by one triangle, which form the boundary of a hole.
     pub boundary_edges: usize,
     /// Edges used by more than two triangles.
     pub non_manifold_edges: usize,

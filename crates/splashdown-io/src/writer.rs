@@ -1,8 +1,8 @@
 //! A thread that writes frames while the simulation continues.
 //!
 //! A frame is a list of jobs and takes one place in a short queue. If the disk is slower than the simulation, the queue
-//! fills and [`FrameWriter::submit`] waits, so that memory stays bounded. After the first failure nothing more is
-//! written: every later call returns that failure, and the files written before remain.
+//! fills and [`FrameWriter::submit`] waits, so that the memory is bounded. After the first failure nothing more is
+//! written: every later call returns that failure. The files written before it remain.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -42,7 +42,7 @@ pub enum Job {
 }
 
 impl Job {
-    /// Whether the job writes a file of its own.
+    /// Whether the job writes a file, not a frame of a film or series.
     fn is_file(&self) -> bool {
         !matches!(self, Self::Film(..) | Self::UsdMesh(..) | Self::UsdPoints(..))
     }
@@ -160,7 +160,7 @@ fn stopped() -> IoError {
     IoError::WriterStopped { reason: "its thread panicked".to_owned() }
 }
 
-/// A panic while the lock was held leaves valid counters, which are still reported.
+/// Locks the progress. If another thread has panicked while it held the lock, the counters are still valid.
 fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
     progress.lock().unwrap_or_else(PoisonError::into_inner)
 }

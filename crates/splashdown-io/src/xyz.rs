@@ -53,13 +53,13 @@ fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
         match [next(), next(), next()] {
             [Some(x), Some(y), Some(z)] => positions.push([x, y, z]),
             _ => {
-                return Err(format!("line {} has no three numbers: `{line:.40}`", number + 1));
+                return Err(format!("line {} does not have three numbers: `{line:.40}`", number + 1));
             }
         }
     }
     match count {
         Some(count) if count != positions.len() => {
-            Err(format!("its first line promises {count} points, but it has {}", positions.len()))
+            Err(format!("its first line declares {count} points, but it has {}", positions.len()))
         }
         _ => Ok(positions),
     }
@@ -91,7 +91,7 @@ mod tests {
     fn a_malformed_point_is_reported_with_its_line() {
         assert!(text("1 2 3\n4 five 6").unwrap_err().contains("line 2"));
         assert!(text("1 2").unwrap_err().contains("line 1"));
-        assert!(text("3\nwater\nH 1 2 3").unwrap_err().contains("promises 3"));
+        assert!(text("3\nwater\nH 1 2 3").unwrap_err().contains("declares 3"));
         assert!(text("nan 2 3").unwrap()[0][0].is_nan());
     }
 }

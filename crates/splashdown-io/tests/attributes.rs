@@ -1,4 +1,4 @@
-//! Attributes of any name, and meshes given as particles.
+//! Attributes of any name, and meshes that are read as particles.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn every_format_returns_all_attributes() {
         assert_eq!(attribute(&read, density).values, given.densities, "{ending}");
         assert_eq!(attribute(&read, pressure).values, given.pressures, "{ending}");
         assert_eq!(read.attributes.iter().filter(|attribute| attribute.is_id()).count(), 1, "{ending}");
-        // Everything else is the same as without attributes.
+        // The other data equals that of a file read without attributes.
         let (bare, read) = (read_particles(&path).unwrap(), read.with_attributes(Vec::new()));
         assert!(bare == read && bare == given, "{ending}");
     }

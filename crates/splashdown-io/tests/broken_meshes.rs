@@ -1,4 +1,4 @@
-//! Mesh files that are malformed, cut short, of other formats or hostile: an error names the file and the reason.
+//! Mesh files that are malformed, truncated, of other formats or malicious. The error contains the file and the reason.
 
 mod common;
 
@@ -122,7 +122,7 @@ fn malformed_obj_files_are_refused_with_the_line() {
         refused("given.obj", format!("{corners}{rest}").as_bytes(), reason);
     }
     refused("given.obj", b"one\ntwo\n\nthree", "none of its 3 lines is a vertex");
-    // The control: the same vertices with a valid face.
+    // Control: the same vertices with a valid face.
     let (_keep, path) = file("given.obj", format!("{corners}f 1 2 3\n").as_bytes());
     assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
 }
@@ -151,7 +151,7 @@ fn malformed_stl_files_are_refused_with_the_line_or_the_missing_bytes() {
     refused(
         name,
         &[0xff; 84],
-        "promises 4294967295 triangles, which need 214748364834 bytes, but the file has 84",
+        "declares 4294967295 triangles, which need 214748364834 bytes, but the file has 84",
     );
 }
 
@@ -167,7 +167,7 @@ fn a_ply_file_of_points_is_refused_as_mesh() {
     );
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n\
         element face 1\nproperty list uint uint vertex_indices\nend_header\n";
-    // No memory may be allocated for the 4 * 10^9 entries that the list promises.
+    // No memory may be allocated for the 4 * 10^9 entries that the list declares.
     refused("given.ply", &[header.as_bytes(), &[0xff; 8]].concat(), "in element `face`");
 }
 

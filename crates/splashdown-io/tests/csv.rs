@@ -1,4 +1,4 @@
-//! Growing tables: read while they grow, unusual names and numbers, full disks.
+//! Growing tables: reading while they grow, unusual names and numbers, full disks.
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn every_row_is_in_the_file_when_the_call_returns() {
 }
 
 #[test]
-fn numbers_come_back_exactly() {
+fn numbers_are_read_back_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("numbers.csv");
     let mut log = CsvLog::create(&path, &["x"]).unwrap();
@@ -88,7 +88,7 @@ fn a_row_that_does_not_fit_leaves_only_complete_rows() {
         let mut log = CsvLog::create(Path::new(&path), &["x", "y"]).unwrap();
         let error = (0..100_000).find_map(|n| log.row(&[f64::from(n), 0.123_456_789]).err()).unwrap();
         assert!(matches!(error, IoError::Write { cause: WriteCause::TooLarge, .. }), "{error}");
-        // The next row fails too and leaves no partial row.
+        // The next row also fails and leaves no partial row.
         log.row(&[1.0 / 3.0, 2.0 / 3.0]).unwrap_err();
         return;
     }

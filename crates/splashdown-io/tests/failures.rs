@@ -1,4 +1,4 @@
-//! Full disks, folders that are not writable, and existing files that stay valid.
+//! Full disks and folders that are not writable. Existing files remain valid.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn a_full_disk_leaves_the_old_file_and_no_partial_file() {
     assert_eq!(names(folder.path()), ["frame.ply"]);
     assert_eq!(fs::read_to_string(&path).unwrap(), "the old frame");
 
-    // The control: without the failure the file is replaced.
+    // Control: without the failure the file is replaced.
     assert_eq!(atomic::write(&path, |out| out.write_all(b"new")).unwrap(), 3);
     assert_eq!(fs::read_to_string(&path).unwrap(), "new");
     assert_eq!(names(folder.path()), ["frame.ply"]);
@@ -91,7 +91,7 @@ fn a_folder_is_created_with_its_parents_and_left_empty() {
 }
 
 #[test]
-fn a_missing_folder_or_an_existing_one_is_named() {
+fn errors_name_a_missing_folder_and_a_folder_in_place_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let cube = common::cube([0.0; 3], 1.0);
     let error = write_mesh(&folder.path().join("gone/mesh.obj"), &cube).unwrap_err();

@@ -1,4 +1,4 @@
-//! Films: a real one if `ffmpeg` is installed, and every failure of the child process.
+//! Films: encoding a film if `ffmpeg` is installed, and every failure of the child process.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn a_film_has_the_pictures_in_order_and_colour() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // Odd in both directions: padded by a column and a row.
+    // The size is odd in both directions, so the film is padded by a column and a row.
     let film = Arc::new(Film::start(options(folder.path(), 63, 49)).unwrap());
     let colours = [[200, 40, 40, 255], [40, 180, 60, 255], [30, 60, 200, 255], [220, 220, 220, 255]];
     let writer = FrameWriter::start().unwrap();
@@ -140,7 +140,8 @@ fn a_film_that_cannot_be_written_reports_the_programs_message() {
     let nowhere =
         FilmOptions { path: folder.path().join("gone/film.mp4"), ..options(folder.path(), 640, 480) };
     let film = Film::start(nowhere).unwrap();
-    // More than a pipe holds: a child that ended must not block this process, nor end it by a signal.
+    // The pictures exceed the capacity of a pipe. A child that has ended must not block this process, nor end it by a
+    // signal.
     for _ in 0..20 {
         film.push(&picture(640, 480, [0; 4]));
     }
@@ -148,17 +149,17 @@ fn a_film_that_cannot_be_written_reports_the_programs_message() {
     assert!(message.contains("No such file or directory") && message.contains("frame_%04d.png"), "{message}");
 }
 
-/// Misbehaving children, as shell scripts.
+/// Child processes that fail in several ways, as shell scripts.
 #[cfg(unix)]
-mod impostors {
+mod failing_children {
     use std::os::unix::fs::PermissionsExt;
     use std::path::PathBuf;
     use std::time::Duration;
 
     use super::*;
 
-    /// A program that claims to support H.264 and then runs `body`.
-    fn impostor(folder: &Path, body: &str) -> PathBuf {
+    /// A script in place of `ffmpeg`, which claims to support H.264 and then runs `body`.
+    fn fake_ffmpeg(folder: &Path, body: &str) -> PathBuf {
         let path = folder.join("ffmpeg");
         let script = format!(
             "#!/bin/sh\ncase \"$*\" in *-encoders*) echo ' V....D libx264 H.264'; exit 0;; esac\n{body}\n"
@@ -171,9 +172,9 @@ mod impostors {
     #[test]
     fn a_child_that_fails_is_an_error_with_its_last_message() {
         let folder = tempfile::tempdir().unwrap();
-        // It reads a little, prints more than a pipe holds, and exits.
+        // It reads a part of the input, prints more than the capacity of a pipe, and exits.
         let body = "head -c 100000 > /dev/null; yes 'so much to say' | head -c 300000 >&2; echo 'the very end' >&2; exit 3";
-        let program = impostor(folder.path(), body);
+        let program = fake_ffmpeg(folder.path(), body);
         let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
         for _ in 0..10 {
             film.push(&picture(640, 480, [0; 4]));
@@ -187,7 +188,7 @@ mod impostors {
     #[test]
     fn a_child_that_exits_early_with_success_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
-        let program = impostor(folder.path(), "head -c 1000 > /dev/null; exit 0");
+        let program = fake_ffmpeg(folder.path(), "head -c 1000 > /dev/null; exit 0");
         let film = Film::start(FilmOptions { program, ..options(folder.path(), 640, 480) }).unwrap();
         for _ in 0..3 {
             film.push(&picture(640, 480, [0; 4]));
@@ -198,13 +199,13 @@ mod impostors {
     #[test]
     fn a_child_that_does_not_respond_is_stopped() {
         let folder = tempfile::tempdir().unwrap();
-        let program = impostor(folder.path(), "echo 'busy with nothing' >&2; exec sleep 600");
+        let program = fake_ffmpeg(folder.path(), "echo 'busy with nothing' >&2; exec sleep 600");
         let stuck = FilmOptions {
             program,
             stall_limit: Duration::from_millis(200),
             ..options(folder.path(), 640, 480)
         };
-        // While it gets pictures, and when it should end.
+        // With five pictures it stalls while it receives them, with one when it should end.
         for pictures in [5, 1] {
             let film = Film::start(stuck.clone()).unwrap();
             for _ in 0..pictures {
@@ -221,7 +222,7 @@ mod impostors {
     #[test]
     fn a_program_without_h264_is_reported() {
         let folder = tempfile::tempdir().unwrap();
-        let program = impostor(folder.path(), "");
+        let program = fake_ffmpeg(folder.path(), "");
         std::fs::write(&program, "#!/bin/sh\necho ' V....D mpeg4 MPEG-4'\n").unwrap();
         let error = Film::start(FilmOptions { program, ..options(folder.path(), 64, 48) }).unwrap_err();
         assert!(

@@ -14,7 +14,7 @@ fn folder() -> tempfile::TempDir {
 
 /// The sorted triangles of a mesh as corner positions, independent of vertex numbers. Each triangle is rotated to begin
 /// with its smallest corner, which preserves its orientation.
-fn places(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
+fn triangle_positions(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
     let ordered = |v: [f32; 3]| v.map(|c| (c + 0.0).to_bits());
     let mut triangles: Vec<_> = mesh
         .triangles
@@ -36,13 +36,17 @@ fn meshes_round_trip_in_every_format() {
     let torus = common::torus(1.0, 0.3, 24, 16);
     let mut turned = torus.clone();
     turned.triangles[5].swap(0, 1);
-    assert_ne!(places(&turned), places(&torus), "the comparison must detect one flipped triangle");
+    assert_ne!(
+        triangle_positions(&turned),
+        triangle_positions(&torus),
+        "the comparison must detect one flipped triangle"
+    );
     for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL"] {
         let path = folder.path().join(name);
         let bytes = write_mesh(&path, &torus).unwrap();
         assert_eq!(bytes, fs::metadata(&path).unwrap().len());
         let read = read_mesh(&path).unwrap();
-        assert_eq!(places(&read), places(&torus), "{name}");
+        assert_eq!(triangle_positions(&read), triangle_positions(&torus), "{name}");
         assert_eq!(read.vertices.len(), torus.vertices.len(), "{name}");
         assert!(read.normals.is_empty() && read.topology().unwrap().is_watertight(), "{name}");
         assert!((read.volume() - torus.volume()).abs() < 1e-9, "{name}");
@@ -82,8 +86,8 @@ fn stl_agrees_with_the_independent_crate() {
     fs::write(&text, ascii_stl(&torus)).unwrap();
     write_mesh(&binary, &torus).unwrap();
     for path in [text, binary] {
-        assert_eq!(places(&read_mesh(&path).unwrap()), places(&by_stl_io(&path)));
-        assert_eq!(places(&read_mesh(&path).unwrap()), places(&torus));
+        assert_eq!(triangle_positions(&read_mesh(&path).unwrap()), triangle_positions(&by_stl_io(&path)));
+        assert_eq!(triangle_positions(&read_mesh(&path).unwrap()), triangle_positions(&torus));
     }
 }
 
@@ -106,12 +110,12 @@ fn stl_files_that_other_readers_reject_are_read() {
     let folder = folder();
     let path = folder.path().join("odd.stl");
     let cube = common::cube([0.0; 3], 1.0);
-    // A binary file whose free text begins like a text file.
+    // A binary file whose header begins like a text file.
     write_mesh(&path, &cube).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     bytes[..12].copy_from_slice(b"solid part 1");
     fs::write(&path, bytes).unwrap();
-    assert_eq!(places(&read_mesh(&path).unwrap()), places(&cube));
+    assert_eq!(triangle_positions(&read_mesh(&path).unwrap()), triangle_positions(&cube));
     // No name, capitals, Windows line ends, two solids, a negative zero.
     let one = ascii_stl(&cube).replace(" some name", "").replace("vertex 0", "vertex -0");
     let two = ascii_stl(&common::cube([2.0; 3], 1.0));
@@ -175,7 +179,7 @@ fn obj_groups_share_vertices_and_unusual_lines_are_read() {
 }
 
 #[test]
-fn gltf_is_read_with_inner_outer_and_binary_buffers() {
+fn gltf_is_read_with_embedded_external_and_binary_buffers() {
     let folder = folder();
     let cube = common::cube([0.0; 3], 1.0);
     let files = common::gltf_files::Cube::new(CUBE_AT_ORIGIN);
@@ -187,8 +191,8 @@ fn gltf_is_read_with_inner_outer_and_binary_buffers() {
             _ => fs::write(&path, glb(&files)).unwrap(),
         }
         let read = read_mesh(&path).unwrap();
-        assert_eq!(places(&read), places(&cube), "{name}");
-        assert_eq!(read.vertices.len(), 8, "{name}: the 24 vertices of the file are 8 places");
+        assert_eq!(triangle_positions(&read), triangle_positions(&cube), "{name}");
+        assert_eq!(read.vertices.len(), 8, "{name}: the 24 vertices of the file have 8 positions");
         assert!(read.topology().unwrap().is_watertight(), "{name}");
     }
 }

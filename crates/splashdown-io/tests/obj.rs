@@ -1,4 +1,4 @@
-//! OBJ files, read by `tobj`, which shares no code with the writer.
+//! Writing OBJ files. They are read by `tobj`, which shares no code with the writer.
 
 mod common;
 
@@ -61,14 +61,14 @@ fn a_mesh_larger_than_the_buffer_is_exact() {
     assert!(text.len() > 4 * 65_536);
     assert_eq!(corners(&text), expected(&torus));
 
-    // The control: another vertex in one corner is detected.
+    // Control: another vertex in one corner is detected.
     let mut other = torus.clone();
     other.triangles[5000][1] = 0;
     assert_ne!(corners(&written(&other)), expected(&torus));
 }
 
 #[test]
-fn the_file_is_as_small_as_its_numbers() {
+fn numbers_have_no_superfluous_digits() {
     let cube = common::cube([0.0; 3], 0.5);
     let text = String::from_utf8(written(&cube)).unwrap();
     assert!(text.contains("\nv 0.5 0.0 0.5\n") && text.contains("\nf 1 5 7\n"), "{text}");

@@ -195,7 +195,7 @@ fn legacy_vtk_is_read_as_text_and_binary() {
     }
 }
 
-/// How the arrays of a VTU file are encoded: the attributes of the root, and the bytes of an array as text.
+/// Encodes the bytes of an array of a VTU file as text.
 type Encode = fn(&[u8]) -> String;
 
 fn with_length<const N: usize>(bytes: &[u8]) -> String {
@@ -364,13 +364,13 @@ fn malformed_particle_files_are_refused_with_the_reason() {
     };
     refused("given.bgeo", &with(5, 6), "its version is 6");
     refused("given.bgeo", &with(9, -1), "a count of -1");
-    refused("given.bgeo", &with(9, 21), "promises 21 points");
+    refused("given.bgeo", &with(9, 21), "declares 21 points");
     refused("given.bgeo", &with(9, 0), "no particles");
     refused("given.bgeo", &with(25, i32::MAX), "list of attributes");
     refused("given.bgeo", &with(0, 0), "does not begin with `Bgeo`");
     let (_keep, path) = file("huge.bgeo", &with(9, i32::MAX));
     assert!(matches!(read_particles(&path), Err(IoError::TooMany { what: "particles", .. })));
-    refused("given.bgeo", &gzip(&bytes)[..200], "promises 20 points");
+    refused("given.bgeo", &gzip(&bytes)[..200], "declares 20 points");
 }
 
 /// As written by `numpy.savez_compressed`.
@@ -381,11 +381,11 @@ fn packed_npz(given: &Particles) -> Vec<u8> {
     let positions: Vec<u8> =
         given.positions.iter().flatten().flat_map(|&v| f64::from(v).to_le_bytes()).collect();
     let ids: Vec<u8> = given.ids.iter().flat_map(|&id| i64::from(id).to_le_bytes()).collect();
-    let noise = vec![0; 2 * 5];
+    let unrelated = vec![0; 2 * 5];
     for (name, kind, shape, data) in [
         ("pos", "<f8", format!("({n}, 3)"), positions),
         ("ID", "<i8", format!("({n},)"), ids),
-        ("colour", "|u1", "(2, 5)".to_owned(), noise),
+        ("colour", "|u1", "(2, 5)".to_owned(), unrelated),
     ] {
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}\n");
         archive.start_file(format!("{name}.npy"), options).unwrap();
@@ -398,7 +398,7 @@ fn packed_npz(given: &Particles) -> Vec<u8> {
 }
 
 #[test]
-fn numpys_archives_are_read() {
+fn archives_of_numpy_are_read() {
     let given = plain(2500);
     let bytes = packed_npz(&given);
     let wanted = Particles::from_positions(given.positions.clone()).with_ids(given.ids.clone());

@@ -1,4 +1,4 @@
-//! PNG files, with `image` as the other reader and writer.
+//! PNG files, compared with the reader and the writer of the crate `image`.
 
 #![cfg(feature = "png")]
 
@@ -52,7 +52,7 @@ fn every_colour_type_becomes_rgba() {
 }
 
 #[test]
-fn sixteen_bits_keep_the_upper_half() {
+fn sixteen_bit_channels_keep_their_upper_byte() {
     let data: Vec<u8> =
         pattern(3).into_iter().flat_map(|value| u16::from_be_bytes([value, 9]).to_ne_bytes()).collect();
     let picture = decode_png(&by_image(&data, ExtendedColorType::Rgb16)).unwrap();

@@ -185,7 +185,7 @@ fn malformed_files_are_refused_with_the_reason() {
         ),
         (
             header(&format!("element vertex 999999999999\n{xyz}element face 0\n")),
-            "promises 999999999999 `vertex`",
+            "declares 999999999999 `vertex`",
         ),
         (header("element vertex 99999999999\nelement face 0\n"), "without any property"),
         (header(&triangle) + "0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n", "zero"),
@@ -205,7 +205,7 @@ fn malformed_files_are_refused_with_the_reason() {
         );
         assert!(!message.contains('\n'), "{message}");
     }
-    // The control: the complete file is read.
+    // Control: the complete file is read.
     let (_keep, path) = file((header(&triangle) + corners + "3 0 1 2\n").as_bytes());
     assert_eq!(ply::read_mesh(&path).unwrap().triangles, [[0, 1, 2]]);
 }
@@ -246,10 +246,10 @@ fn malformed_header_lines_are_named() {
 }
 
 #[test]
-fn text_is_read_however_numbers_are_spelled() {
+fn text_is_read_with_every_notation_of_numbers() {
     let lines = ["comment", "element vertex 4", XYZ, "property int id", "property uchar p", "comment last"];
     let text = header("ascii", &lines)
-        + "1 .5 2. 7 0\n\n  -1e3\t+4 1E-2 2.0 255 behind the last property\r\nnan inf -inf 3 1\n0 0 0 4 2";
+        + "1 .5 2. 7 0\n\n  -1e3\t+4 1E-2 2.0 255 after the last property\r\nnan inf -inf 3 1\n0 0 0 4 2";
     let (_keep, path) = file(text.as_bytes());
     let particles = ply::read_particles(&path).unwrap();
     assert_eq!(particles.positions[..2], [[1.0, 0.5, 2.0], [-1000.0, 4.0, 0.01]]);
@@ -342,7 +342,7 @@ fn a_large_file_with_elements_in_another_order_is_read() {
 }
 
 #[test]
-fn hostile_lists_take_no_memory() {
+fn malicious_list_lengths_do_not_allocate_memory() {
     for (count, item) in [("uint", "double"), ("int", "uchar"), ("uint", "uint")] {
         for name in ["vertex_indices", "other"] {
             let property = format!("property list {count} {item} {name}");

@@ -80,7 +80,7 @@ fn a_doubled_triangle_makes_non_manifold_edges() {
 }
 
 #[test]
-fn cubes_that_touch_in_a_corner_are_pinched_there() {
+fn cubes_that_touch_at_a_corner_have_a_non_manifold_vertex() {
     let mut pair = joined(cube([0.0; 3], 1.0), &cube([1.0; 3], 1.0));
     let apart = report(&pair);
     assert!(apart.is_watertight(), "{apart}");
@@ -94,7 +94,7 @@ fn cubes_that_touch_in_a_corner_are_pinched_there() {
 }
 
 #[test]
-fn cubes_that_share_an_edge_are_not_manifold_there() {
+fn cubes_that_share_an_edge_have_a_non_manifold_edge() {
     let mut pair = joined(cube([0.0; 3], 1.0), &cube([1.0, 1.0, 0.0], 1.0));
     for (from, to) in [(8, 3), (12, 7)] {
         pair.triangles.iter_mut().flatten().filter(|index| **index == from).for_each(|index| *index = to);

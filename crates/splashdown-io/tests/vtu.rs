@@ -1,4 +1,4 @@
-//! VTU files, checked by a small reader of their XML and offsets, written from the description of the format.
+//! Checks VTU files with a small independent reader of their XML and offsets.
 
 mod common;
 

@@ -67,7 +67,7 @@ fn after_a_failure_earlier_files_remain_and_every_call_fails() {
     fs::rename(&series, &aside).unwrap();
     writer.submit(frame(&series, 1, &particles)).unwrap();
     let error = loop {
-        // It fails at some call, and never blocks although nothing is written.
+        // A call fails sooner or later, and none blocks although nothing is written.
         if let Err(error) = writer.submit(frame(&series, 2, &particles)) {
             break error;
         }

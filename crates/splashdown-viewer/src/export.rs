@@ -1,4 +1,4 @@
-//! Exporting files. On a desktop they are written into the current folder and never overwrite a file; on a web page they
+//! Exported files: on a desktop they are written into the current folder and never overwrite a file; on a web page they
 //! are downloads.
 
 use splashdown::Checkpoint;

@@ -1,4 +1,4 @@
-//! The command line. One declaration defines the parser, the help and the shell completions.
+//! The command line: one declaration defines the parser, the help and the shell completions.
 
 mod bench;
 mod plot;

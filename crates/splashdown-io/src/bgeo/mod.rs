@@ -4,8 +4,8 @@
 //! The format is big-endian: counts, descriptions of the attributes, then one row per point with x y z w and the
 //! attributes. The whole file may be compressed by gzip; SPlisHSPlasH does so without `.gz` in the name.
 //!
-//! *Why own code:* the only crate that reads it is `splashsurf_lib`, a whole surface reconstruction. The tests read a
-//! file written by it.
+//! *Why own code:* the only crate that reads it is `splashsurf_lib`, a complete surface reconstruction. The tests read a
+//! file that it has written.
 
 mod read;
 mod write;

@@ -9,12 +9,12 @@ use flate2::read::GzDecoder;
 use crate::data::Particles;
 use crate::data::columns::{Column, Wanted, triples};
 use crate::error::IoError;
-use crate::input::{MOST, regular};
+use crate::input::{MAX_COUNT, regular};
 use crate::number::{Cells, Number};
 
-/// The largest size of a row in bytes: far more than in real files, so that a malformed header cannot cause a large
+/// The largest size of a row in bytes, far above that of real files. It prevents that a malformed header causes a large
 /// allocation.
-const MOST_ROW: usize = 1 << 16;
+const MAX_ROW: usize = 1 << 16;
 
 /// Rows decoded at a time.
 const ROWS: usize = 1024;
@@ -33,7 +33,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     };
     result.map_err(|reason| match reason {
         Reason::Text(reason) => IoError::malformed(path, "BGEO", reason),
-        Reason::TooMany(given) => IoError::TooMany { what: "particles", given, limit: MOST },
+        Reason::TooMany(given) => IoError::TooMany { what: "particles", given, limit: MAX_COUNT },
     })
 }
 
@@ -72,15 +72,15 @@ fn parse(file: &mut impl Read, wanted: Wanted) -> Result<Particles, Reason> {
         *count = usize::try_from(given).map_err(|_| format!("its header has a count of {given}"))?;
     }
     let [points, _, _, _, attributes, ..] = counts;
-    if points > MOST {
+    if points > MAX_COUNT {
         return Err(Reason::TooMany(points));
     }
     // A row begins with x, y, z and a weight.
     let (mut row, mut places) = (16, Vec::new());
     for number in 0..attributes {
         row += attribute(file, number, row, wanted, &mut places)?;
-        if row > MOST_ROW {
-            return Err(Reason::Text(format!("its rows are more than {MOST_ROW} bytes long")));
+        if row > MAX_ROW {
+            return Err(Reason::Text(format!("its rows are more than {MAX_ROW} bytes long")));
         }
     }
     rows(file, points, row, wanted, &places)
@@ -140,7 +140,7 @@ fn rows(
         file.read_exact(bytes).map_err(|error| {
             cut(
                 &error,
-                &format!("its header promises {points} points, but the data ends after about {first}"),
+                &format!("its header declares {points} points, but the data ends after about {first}"),
             )
         })?;
         let numbers = |number: Number, at, components| {

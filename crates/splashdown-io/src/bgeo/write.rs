@@ -1,4 +1,4 @@
-//! The writer, without compression, which takes longer than writing.
+//! The writer. Files are not compressed, because compression takes longer than writing.
 
 use std::borrow::Cow;
 use std::io::{self, Write};

@@ -1,8 +1,9 @@
-//! Errors of films. The messages say how to make the film later.
+//! Errors of films. The messages contain the command that makes the film later.
 
 use std::path::PathBuf;
 
-/// Why a film was not made. A message says that the pictures exist and how to make the film from them.
+/// The reason why a film was not made. A message states that the pictures exist, and contains the command that makes the
+/// film from them.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {

@@ -1,8 +1,8 @@
-//! A film (H.264 in MP4), encoded by an `ffmpeg` child process that gets raw pictures through a pipe.
+//! A film (H.264 in MP4), encoded by an `ffmpeg` child process that receives raw pictures through a pipe.
 //!
-//! **How it works.** One thread writes pictures to the pipe; another reads the messages of `ffmpeg`, so that no full
-//! pipe can block both processes. If the child ends early the pipe breaks, which is reported as an error; a child that
-//! does not respond within a time limit is killed. The film gets its name when it is complete.
+//! **How it works.** One thread writes pictures to the pipe. Another reads the messages of `ffmpeg`, so that no full
+//! pipe can block both processes. If the child ends early the pipe breaks, which is reported as an error. A child that
+//! does not respond within a time limit is killed. The film has a temporary name until it is complete.
 //!
 //! **Why not a library.** Bindings to libav need its headers on every build machine; there is no encoder in Rust of this
 //! quality. Without `ffmpeg` the pictures are still written, and a message gives the command that makes the film.
@@ -93,8 +93,8 @@ impl FilmOptions {
         command.args(["-f", "rawvideo", "-pixel_format", "rgba"]);
         command.args(["-video_size", &format!("{}x{}", self.width, self.height)]);
         command.args(["-framerate", &self.frame_rate.to_string(), "-i", "pipe:0"]);
-        // The fast preset leaves the cores to the simulation (50 pictures of 720p: 0.8 s on two cores). At quality 18,
-        // losses are hard to see.
+        // The fast preset leaves most of the processor to the simulation (50 pictures of 720p: 0.8 s on two cores). At
+        // quality 18, losses are hard to see.
         command.args(["-vf", FILTER, "-c:v", "libx264", "-preset", "veryfast", "-crf", "18"]);
         command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]);
         command.args(["-movflags", "+faststart", "-f", "mp4"]);
@@ -183,8 +183,8 @@ impl Film {
     }
 }
 
-/// The child and the two threads of its pipes. The threads are not joined: they end with the pipes, which stay open if a
-/// killed child (a wrapper script) leaves a process behind.
+/// The child and the two threads of its pipes. The threads are not joined: they end when the pipes are closed, which
+/// remain open if a killed child (a wrapper script) has a child process of its own.
 #[derive(Debug)]
 struct Encoder {
     child: Child,
@@ -248,7 +248,7 @@ impl Encoder {
         if self.pushed == 0 {
             return Err(FilmError::Empty);
         }
-        // Closing the queue closes the pipe, which tells the child that there are no more pictures.
+        // Closing the queue closes the pipe, which is the end of the input for the child.
         drop(self.pictures.take());
         let Some(status) = self.wait(options.stall_limit) else { return Err(self.stalled(options)) };
         if !status.success() || self.delivered.load(Ordering::Acquire) != self.pushed {

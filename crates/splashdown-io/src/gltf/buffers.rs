@@ -33,7 +33,7 @@ impl<'a> Buffers<'a> {
     pub(super) fn positions(&mut self, index: usize) -> Result<Vec<[f32; 3]>, IoError> {
         let accessor = self.accessor(index)?;
         if (accessor.component_type, accessor.shape.as_str()) != (F32, "VEC3") {
-            return Err(self.not_read(index, "positions", "VEC3 of type 5126 (float)"));
+            return Err(self.unsupported(index, "positions", "VEC3 of type 5126 (float)"));
         }
         self.rows(index, 12, bytemuck::pod_read_unaligned)
     }
@@ -45,7 +45,9 @@ impl<'a> Buffers<'a> {
             (U8, "SCALAR") => self.rows(index, 1, |row| row[0].into()),
             (U16, "SCALAR") => self.rows(index, 2, |row| bytemuck::pod_read_unaligned::<u16>(row).into()),
             (U32, "SCALAR") => self.rows(index, 4, bytemuck::pod_read_unaligned),
-            _ => Err(self.not_read(index, "vertex numbers", "SCALAR of type 5121, 5123 or 5125 (unsigned)")),
+            _ => {
+                Err(self.unsupported(index, "vertex numbers", "SCALAR of type 5121, 5123 or 5125 (unsigned)"))
+            }
         }
     }
 
@@ -56,7 +58,7 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    fn not_read(&self, index: usize, what: &str, read: &str) -> IoError {
+    fn unsupported(&self, index: usize, what: &str, read: &str) -> IoError {
         let (kind, shape) =
             self.document.accessors.get(index).map_or((0, ""), |a| (a.component_type, &a.shape));
         self.malformed(format!(
@@ -90,9 +92,9 @@ impl<'a> Buffers<'a> {
         let part = view.byte_offset.checked_add(view.byte_length);
         let part = part.and_then(|end| bytes.get(view.byte_offset..end));
         let (Some(part), Some(_)) = (part, needed) else {
-            let held = bytes.len();
+            let available = bytes.len();
             return Err(self.malformed(format!(
-                "array {index} ({count} rows of {size} bytes) does not fit into its part of buffer {}, which has {held} bytes",
+                "array {index} ({count} rows of {size} bytes) does not fit into its part of buffer {}, which has {available} bytes",
                 view.buffer
             )));
         };
@@ -109,7 +111,7 @@ impl<'a> Buffers<'a> {
         if self.loaded[index].is_none() {
             let bytes = match &buffer.uri {
                 Some(uri) => Cow::Owned(self.fetch(index, uri)?),
-                // The buffer inside a binary file is the first one.
+                // In a binary file the chunk is the first buffer.
                 None => Cow::Borrowed(
                     self.blob
                         .filter(|_| index == 0)

@@ -105,7 +105,7 @@ impl Document {
         if !version.starts_with("2.") {
             return Err(format!("its version is `{version:.80}`, only version 2 is read"));
         }
-        // Only these required extensions change the triangles.
+        // Only these extensions change how the triangles are stored.
         let changes = |name: &&String| name.contains("compression") || name.contains("quantization");
         if let Some(name) = document.extensions_required.iter().find(changes) {
             return Err(format!(

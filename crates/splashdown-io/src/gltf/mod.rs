@@ -1,8 +1,8 @@
 //! glTF 2.0, the format of web and game tools: JSON with buffers inside or in other files (`.gltf`), or one binary file
 //! (`.glb`). A reader of both and a writer of binary files.
 //!
-//! The reader joins all meshes of the default scene (the first one if none is named), transformed by their nodes. A
-//! mirrored mesh gets its triangles flipped, so that they still face outwards. Vertices at the same position are merged,
+//! The reader joins all meshes of the default scene (the first one if none is named), transformed by their nodes. The
+//! triangles of a mirrored mesh are flipped, so that they still face outwards. Vertices at the same position are merged,
 //! because glTF splits them where normals or texture coordinates differ. Materials, pictures, skins and animations are
 //! skipped; geometry compressed by an extension (Draco, meshopt, quantisation) is refused.
 //!
@@ -21,10 +21,10 @@ use std::path::Path;
 
 use self::buffers::Buffers;
 use self::document::{Document, Primitive};
-use self::transform::{Affine, mirrors, place, placed};
+use self::transform::{Affine, apply, mirrors, nodes_with_transforms};
 use crate::data::Mesh;
 use crate::error::IoError;
-use crate::input::{MOST, Welder, content};
+use crate::input::{MAX_COUNT, Welder, content};
 
 /// Primitive modes of the format that are surfaces.
 const TRIANGLES: u32 = 4;
@@ -36,7 +36,7 @@ pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let malformed = |reason: String| IoError::malformed(path, "glTF", reason);
     let (document, blob) = Document::parse(&bytes).map_err(malformed)?;
     let mut scene = Scene { buffers: Buffers::new(path, &document, blob), welder: Welder::default() };
-    for (node, transform) in placed(&document).map_err(malformed)? {
+    for (node, transform) in nodes_with_transforms(&document).map_err(malformed)? {
         let Some(number) = node.mesh else { continue };
         let mesh = document.meshes.get(number).ok_or_else(|| {
             malformed(format!("it uses mesh {number}, but has {} (numbered from 0)", document.meshes.len()))
@@ -77,23 +77,23 @@ impl Scene<'_> {
                 corners.len()
             )));
         }
-        // Many nodes may refer to one mesh, so the size of the file is no limit.
+        // Many nodes may refer to one mesh, so the size of the file does not limit the size of the result.
         let bounds = [
             ("vertices", self.welder.vertices() + positions.len()),
             ("triangles", self.welder.triangles() + corners.len()),
         ];
         for (what, given) in bounds {
-            if given > MOST {
-                return Err(IoError::TooMany { what, given, limit: MOST });
+            if given > MAX_COUNT {
+                return Err(IoError::TooMany { what, given, limit: MAX_COUNT });
             }
         }
 
         let welder = &mut self.welder;
-        let placed: Vec<_> =
-            positions.into_iter().map(|position| welder.vertex(place(position, transform))).collect();
+        let vertices: Vec<_> =
+            positions.into_iter().map(|position| welder.vertex(apply(transform, position))).collect();
         let mirrored = mirrors(transform);
         let mut push = |triangle: [u32; 3]| {
-            let [a, b, c] = triangle.map(|corner| placed[corner as usize]);
+            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
             welder.push(if mirrored { [a, c, b] } else { [a, b, c] });
         };
         match (mode, corners.as_slice()) {

@@ -10,7 +10,7 @@ const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0,
 /// The nodes of the default scene with their transforms into the coordinates of the scene, parents before children.
 ///
 /// A node has at most one parent; otherwise a file could contain a cycle, or a graph with exponentially many paths.
-pub(super) fn placed(document: &Document) -> Result<Vec<(&Node, Affine)>, String> {
+pub(super) fn nodes_with_transforms(document: &Document) -> Result<Vec<(&Node, Affine)>, String> {
     let number = document.scene.unwrap_or(0);
     let scenes = document.scenes.len();
     let scene = document
@@ -64,12 +64,12 @@ fn product(parent: &Affine, child: &Affine) -> Affine {
 }
 
 /// Transforms a position.
-pub(super) fn place([x, y, z]: [f32; 3], transform: &Affine) -> [f32; 3] {
+pub(super) fn apply(transform: &Affine, [x, y, z]: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = [x, y, z].map(f64::from);
     transform.map(|[a, b, c, d]| (a * x + b * y + c * z + d) as f32)
 }
 
-/// Whether a transform mirrors, that is, has a negative determinant.
+/// Whether a transform is a reflection, that is, has a negative determinant.
 pub(super) fn mirrors([a, b, c]: &Affine) -> bool {
     let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
     a[0] * minor(1, 2) - a[1] * minor(0, 2) + a[2] * minor(0, 1) < 0.0

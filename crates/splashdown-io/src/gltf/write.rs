@@ -54,7 +54,7 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     Ok(())
 }
 
-/// The arrays in the order of the file; the last one holds the vertex numbers of the triangles.
+/// The arrays in the order of the file. The last one contains the vertex numbers of the triangles.
 struct Arrays<'a>(Vec<Array<'a>>);
 
 struct Array<'a> {

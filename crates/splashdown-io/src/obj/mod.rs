@@ -4,9 +4,9 @@
 //! skipped. A polygon becomes a fan of triangles.
 //!
 //! *Why own code:* the writer has three kinds of lines, which other crates do not write or format through `core::fmt`.
-//! The reader needs only positions and faces. `tobj` 4.0 gives every group vertices of its own, which cuts a closed
-//! model of several groups open at their seams, and its errors do not name the line. The tests compare the two readers
-//! on files with one group.
+//! The reader needs only positions and faces. `tobj` 4.0 duplicates the vertices that groups share, so that a closed
+//! model of several groups has open edges, and its errors do not contain the line. The tests compare the two readers on
+//! files with one group.
 
 mod read;
 mod write;

@@ -1,6 +1,6 @@
 //! The writer, through a buffer of lines.
 //!
-//! Floats have the fewest digits that give the same f32 back. `zmij` and `itoa` format them directly into the buffer:
+//! Floats have the fewest digits from which the same f32 is read. `zmij` and `itoa` format them directly into the buffer:
 //! 300,000 triangles with normals (23 MB) take 23 ms on one core instead of 67 ms with `core::fmt`.
 
 use std::io::{self, Write};

@@ -18,7 +18,7 @@ pub fn read_png(path: &Path) -> Result<Picture, IoError> {
     decode_png(&bytes).map_err(|error| IoError::malformed(path, "PNG", error.to_string()))
 }
 
-/// Reads the bytes of a PNG file of any colour type and depth. 16-bit channels lose their lower half.
+/// Reads the bytes of a PNG file of any colour type and depth. 16-bit channels lose their lower 8 bits.
 ///
 /// # Errors
 /// Of kind [`InvalidData`](io::ErrorKind::InvalidData) if it is not a PNG file or damaged.
@@ -40,7 +40,7 @@ pub fn decode_png(bytes: &[u8]) -> io::Result<Picture> {
     Ok(Picture { width: info.width, height: info.height, rgba })
 }
 
-/// Writes a picture to `path` as PNG, complete or not at all; returns the file's size in bytes.
+/// Writes a picture to `path` as PNG. The file is complete or absent. Returns its size in bytes.
 ///
 /// It uses fast compression, so that a frame does not wait for its picture; films are made from raw pixels.
 ///

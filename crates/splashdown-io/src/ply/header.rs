@@ -160,13 +160,13 @@ impl Element {
         let row: u64 = self.properties.iter().map(smallest).sum();
         let Self { name, count, .. } = self;
         if *count > 0 && row == 0 {
-            return Err(format!("its header promises {count} `{name:.24}` without any property"));
+            return Err(format!("its header declares {count} `{name:.24}` without any property"));
         }
         let needed = (*count as u64).saturating_mul(row);
         // The last line of a text file may lack its line break.
         if needed > file_size + 1 {
             return Err(format!(
-                "its header promises {count} `{name:.24}`, which need at least {needed} bytes, but the file has \
+                "its header declares {count} `{name:.24}`, which need at least {needed} bytes, but the file has \
                  {file_size}: it was cut short"
             ));
         }

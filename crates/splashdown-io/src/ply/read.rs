@@ -130,7 +130,7 @@ fn skipped(element: &Element) -> Vec<Column> {
 /// The columns of the faces.
 fn faces(header: &Header) -> Result<Vec<Column>, String> {
     let Some(element) = header.element("face") else {
-        // Files of points are often taken for meshes.
+        // Files of points are often mistaken for meshes.
         let points = header
             .element("vertex")
             .map(|vertex| format!(" ({} points): a mesh needs faces too", vertex.count));
@@ -258,7 +258,7 @@ fn vector_name([x, y, z]: [&str; 3]) -> Option<String> {
     }
 }
 
-/// The properties of a vertex that have a meaning here, with the axis of a component.
+/// The properties of a vertex that are read, with the axis of a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Field {
     Position(usize),

@@ -8,7 +8,7 @@ use crate::number::{Cells, Number, whole};
 /// Rows without lists that are decoded at a time.
 const ROWS: usize = 1024;
 
-/// What is read of one property.
+/// The values that are read of one property.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Column {
     /// Nothing.
@@ -16,7 +16,7 @@ pub(super) enum Column {
     Floats(Vec<f32>),
     /// Ids; f32 would be exact only up to 2^24.
     Integers(Vec<u32>),
-    /// Lists of vertex numbers, cut into triangles that share the first vertex.
+    /// Lists of vertex numbers, split into triangles that share the first vertex.
     Fans(Vec<[u32; 3]>),
 }
 
@@ -53,7 +53,9 @@ fn table(
 ) -> Result<(), String> {
     let (count, complete) = (element.count, source.left() / stride.max(1) as u64);
     if complete < count as u64 {
-        return Err(format!("{count} rows are promised, the file ends after {complete}: it was cut short"));
+        return Err(format!(
+            "{count} rows are declared, but the file ends after {complete}: it was cut short"
+        ));
     }
     if columns.iter().all(|column| *column == Column::Skipped) {
         return source.skip(count as u64 * stride as u64);
@@ -116,7 +118,7 @@ fn lists(
     Ok(())
 }
 
-/// One line per row. Empty lines are ignored, as are words behind the last property.
+/// One line per row. Empty lines are ignored, and so are words after the last property.
 fn text(source: &mut Source, element: &Element, columns: &mut [Column]) -> Result<(), String> {
     let mut corners = Vec::new();
     let is_skipped = columns.iter().all(|column| *column == Column::Skipped);
@@ -124,7 +126,7 @@ fn text(source: &mut Source, element: &Element, columns: &mut [Column]) -> Resul
     while row < count {
         let number = source.line_number() + 1;
         let line = source.line()?.ok_or_else(|| {
-            format!("{count} rows are promised, the file ends after {row}: it was cut short")
+            format!("{count} rows are declared, but the file ends after {row}: it was cut short")
         })?;
         if line.trim_ascii().is_empty() {
             continue;
@@ -179,7 +181,7 @@ impl Column {
     /// Appends one number.
     fn push(&mut self, value: f64, property: &Property) -> Result<(), String> {
         match self {
-            // The value of an f32 survives the way through f64.
+            // Converting an f32 to f64 and back does not change it.
             Self::Floats(values) => values.push(value as f32),
             Self::Integers(values) => values.push(integer(value, property)?),
             Self::Skipped | Self::Fans(_) => {}

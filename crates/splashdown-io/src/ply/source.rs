@@ -15,11 +15,11 @@ const LONGEST_LINE: usize = 1 << 20;
 
 pub(super) struct Source {
     file: File,
-    /// Bytes in `start..end` were read from the file and not yet taken.
+    /// Bytes in `start..end` were read from the file, but not yet taken.
     buffer: Vec<u8>,
     start: usize,
     end: usize,
-    /// Bytes of the file behind the buffer.
+    /// Bytes of the file that were not read yet.
     unread: u64,
     lines: usize,
 }
@@ -78,7 +78,7 @@ impl Source {
         Ok(bytes)
     }
 
-    /// Takes the next `count` bytes without keeping them.
+    /// Discards the next `count` bytes.
     pub(super) fn skip(&mut self, mut count: u64) -> Result<(), String> {
         while count > 0 {
             let piece = count.min(BLOCK as u64);
@@ -88,7 +88,7 @@ impl Source {
         Ok(())
     }
 
-    /// Reads until the buffer holds `count` bytes, up to its capacity; false if the file ends before.
+    /// Reads until the buffer contains `count` bytes, up to its capacity; false if the file ends before that.
     fn fill(&mut self, count: usize, capacity: usize) -> Result<bool, String> {
         self.buffer.copy_within(self.start..self.end, 0);
         self.end -= self.start;

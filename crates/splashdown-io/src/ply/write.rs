@@ -6,7 +6,7 @@ use crate::data::Attribute;
 use crate::data::Mesh;
 use crate::data::Particles;
 
-/// Rows per write; the buffer stays in the cache.
+/// Rows per write; the buffer fits into the cache.
 const ROWS: usize = 2048;
 
 /// Writes particles to `out`.

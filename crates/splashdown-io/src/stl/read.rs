@@ -17,15 +17,16 @@ pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     mesh.map_err(|reason| IoError::malformed(path, "STL", reason))
 }
 
-/// Number of triangles and size of a binary file, by its header.
-fn promised(bytes: &[u8]) -> Option<(u32, usize)> {
+/// Number of triangles and size of a binary file, as its header declares them.
+fn declared(bytes: &[u8]) -> Option<(u32, usize)> {
     let count = u32::from_le_bytes(*bytes.get(80..HEADER)?.first_chunk()?);
     Some((count, (count as usize).checked_mul(TRIANGLE)?.checked_add(HEADER)?))
 }
 
-/// The first word alone is not enough: many programs write `solid` into the header of binary files.
+/// Whether the file is text. The first word is not sufficient, because many programs write `solid` into the header of
+/// binary files.
 fn is_text(bytes: &[u8]) -> bool {
-    if promised(bytes).is_some_and(|(_, size)| size == bytes.len()) {
+    if declared(bytes).is_some_and(|(_, size)| size == bytes.len()) {
         return false;
     }
     let start = bytes.trim_ascii_start();
@@ -34,7 +35,7 @@ fn is_text(bytes: &[u8]) -> bool {
 }
 
 fn binary(bytes: &[u8]) -> Result<Mesh, String> {
-    let Some((count, size)) = promised(bytes) else {
+    let Some((count, size)) = declared(bytes) else {
         return Err(format!(
             "it does not begin with `solid`, as text files do, and its {} bytes are fewer than the {HEADER} of a binary header",
             bytes.len()
@@ -42,13 +43,13 @@ fn binary(bytes: &[u8]) -> Result<Mesh, String> {
     };
     if bytes.len() < size {
         return Err(format!(
-            "its header promises {count} triangles, which need {size} bytes, but the file has {}: it was cut short, or is not an STL file",
+            "its header declares {count} triangles, which need {size} bytes, but the file has {}: it was cut short, or is not an STL file",
             bytes.len()
         ));
     }
     let mut welder = Welder::default();
     for row in bytes[HEADER..size].chunks_exact(TRIANGLE) {
-        // The normal comes first; it follows from the corners.
+        // The normal at the start of the row is ignored, because it follows from the corners.
         welder.triangle(bytemuck::pod_read_unaligned(&row[12..48]));
     }
     Ok(welder.into_mesh())

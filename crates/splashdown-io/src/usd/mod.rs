@@ -8,9 +8,9 @@
 //! [`MeshSeries::finish`] joins these files. A run that is killed leaves no USD file; one that ends normally or by
 //! Ctrl-C leaves a complete one.
 //!
-//! *Why own code:* the text has five kinds of lines. The crate `openusd` 0.8 is young and needs a newer compiler; the
-//! C++ library takes an hour to build. `tests/foreign` opens the files with Pixar's library. *Why text:* the binary form
-//! (`usdc`) is documented only by that library's source; files would have about a third of the size.
+//! *Why own code:* the text has five kinds of lines. The crate `openusd` 0.8 is new and needs a newer compiler; the C++
+//! library takes an hour to build. `tests/foreign` opens the files with Pixar's library. *Why text:* the binary form
+//! (`usdc`), with about a third of the size, is documented only by the source of that library.
 
 mod spool;
 mod text;
@@ -54,7 +54,7 @@ pub struct MeshSeries(Series);
 pub struct PointSeries(Series);
 
 impl MeshSeries {
-    /// Begins a series. The file appears with [`MeshSeries::finish`].
+    /// Begins a series. [`MeshSeries::finish`] creates the file.
     ///
     /// # Errors
     /// [`IoError::Write`] if its folder is not writable.
@@ -172,7 +172,7 @@ impl Series {
     }
 
     fn finish(&self) -> Result<Option<(PathBuf, u64)>, IoError> {
-        // Taken, so that the hidden files are removed even on failure.
+        // The state is taken, so that the hidden files are removed even on failure.
         let State { spools, frames } =
             std::mem::replace(&mut *self.state(), State { spools: Vec::new(), frames: None });
         let Some([first, last]) = frames else { return Ok(None) };

@@ -12,7 +12,7 @@ use crate::atomic::Temporary;
 pub(super) struct Attribute {
     /// Type and name.
     pub(super) declaration: &'static str,
-    /// What its values belong to, if the kind of the prim does not imply it.
+    /// The kind of element to which each value belongs, if the kind of the prim does not imply it.
     pub(super) interpolation: Option<&'static str>,
 }
 

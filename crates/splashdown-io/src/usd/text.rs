@@ -45,7 +45,7 @@ impl<'a> Text<'a> {
         self.out.write_all(&self.buffer)
     }
 
-    /// Writes the fewest digits that give the same float back; in USD, `nan` and `inf` are lower case.
+    /// Writes the fewest digits from which the same float is read. In USD, `nan` and `inf` are lower case.
     fn float(&mut self, value: f32) {
         let mut digits = zmij::Buffer::new();
         let word = match value {

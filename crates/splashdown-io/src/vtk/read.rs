@@ -93,7 +93,7 @@ impl Cursor<'_> {
         };
         if keyword == "SCALARS" {
             let before = self.at;
-            // The line that names a colour table is optional, but almost every file has it.
+            // The line with the name of a colour table is optional, but almost every file has it.
             if self.words()?.first().is_none_or(|word| word != "LOOKUP_TABLE") {
                 self.at = before;
             }
@@ -238,7 +238,7 @@ fn number(kind: &str) -> Result<Number, String> {
         "unsigned_char" | "vtktypeuint8" => Number::U8,
         "short" | "vtktypeint16" => Number::I16,
         "unsigned_short" | "vtktypeuint16" => Number::U16,
-        // VTK writes its index type as `int`, whatever its size in memory.
+        // VTK writes its index type as `int`, independent of its size in memory.
         "int" | "vtktypeint32" | "vtkidtype" => Number::I32,
         "unsigned_int" | "vtktypeuint32" => Number::U32,
         // Its size on 64-bit Unix systems.

@@ -88,7 +88,7 @@ impl Layout {
         if total != Some(wanted as u64) {
             return Err(format!("it has {blocks} blocks of {block} bytes, its points need {wanted}"));
         }
-        // More blocks than bytes would be empty.
+        // If there are more blocks than bytes, some of them are empty.
         let blocks =
             usize::try_from(blocks).ok().filter(|&blocks| blocks <= wanted).ok_or("it has empty blocks")?;
         let sizes = source.take((3 + blocks) * size)?;
@@ -101,7 +101,7 @@ impl Layout {
             let length = self.word(&sizes[(3 + number) * size..]) as usize;
             let expected = if number + 1 == blocks && last != 0 { last } else { block };
             let before = bytes.len() as u64;
-            // One byte more than expected shows that there are too many.
+            // One byte more than expected is read, so that excess bytes are detected.
             ZlibDecoder::new(&data[at..at + length])
                 .take(expected.saturating_add(1))
                 .read_to_end(&mut bytes)

@@ -7,8 +7,8 @@
 //!
 //! When reading, the points of all pieces are joined. Cells and other arrays are skipped.
 //!
-//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) has had no release since March 2025 and needs its own copy of
-//! every array. The XML is parsed by `roxmltree`. Format: VTK User's Guide, "XML File Formats".
+//! *Why own code:* the crate that writes VTK (`vtkio` 0.6) has had no release since March 2025 and copies every array.
+//! The XML is parsed by `roxmltree`. Format: VTK User's Guide, "XML File Formats".
 
 mod decode;
 mod read;

@@ -8,14 +8,14 @@ use super::decode::{Appended, Encoding, Layout};
 use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
-use crate::input::{MOST, content, not_particles};
+use crate::input::{MAX_COUNT, content, not_particles};
 use crate::number::Number;
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let bytes = content(path)?;
     let particles = parse(&bytes, wanted).map_err(|reason| IoError::malformed(path, "VTU", reason))?;
     match particles.len() {
-        given if given > MOST => Err(IoError::TooMany { what: "particles", given, limit: MOST }),
+        given if given > MAX_COUNT => Err(IoError::TooMany { what: "particles", given, limit: MAX_COUNT }),
         _ => Ok(particles),
     }
 }
@@ -95,8 +95,8 @@ impl Piece<'_, '_> {
     fn add_to(&self, particles: &mut Particles) -> Result<(), String> {
         let given = self.piece.attribute("NumberOfPoints").unwrap_or("0");
         let count: usize = given.parse().map_err(|_| format!("`{given:.24}` is not a number of points"))?;
-        if count > MOST {
-            return Err(format!("its piece has {count} points, at most {MOST} are read"));
+        if count > MAX_COUNT {
+            return Err(format!("its piece has {count} points, at most {MAX_COUNT} are read"));
         }
         let polygons = self.piece.attribute("NumberOfPolys").and_then(|given| given.parse().ok());
         if let Some(polygons) = polygons.filter(|&polygons| polygons > 0) {

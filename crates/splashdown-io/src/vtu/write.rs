@@ -107,7 +107,7 @@ impl<'a> Array<'a> {
     fn declare(&self, out: &mut dyn Write, offset: &mut u64) -> io::Result<()> {
         let Self { name, kind, .. } = self;
         write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
-        // VTK omits it too: `meshio` reads an explicit 1 as a matrix of one column.
+        // A single component is omitted, as VTK does: `meshio` reads an explicit 1 as a matrix of one column.
         if self.components > 1 {
             write!(out, " NumberOfComponents=\"{}\"", self.components)?;
         }

@@ -1,8 +1,8 @@
 //! Opens every format with other software: VTK, meshio, trimesh, numpy, splashsurf, Pixar's USD and Blender, by Python.
 //!
-//! `read.py` prints the sums of the arrays it reads, which are compared with the sums of the written data; each
-//! comparison has a control with one number changed. `cargo xtask test` installs the packages into `target/python`;
-//! without them these tests are skipped with a message.
+//! `read.py` prints the sums of the arrays it reads. They are compared with the sums of the written data. Each comparison
+//! has a control with one number changed. `cargo xtask test` installs the packages into `target/python`; without them
+//! these tests are skipped with a message.
 
 #[path = "../common/mod.rs"]
 mod common;

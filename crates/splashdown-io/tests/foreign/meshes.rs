@@ -1,4 +1,4 @@
-//! Meshes.
+//! Meshes opened by other software.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ fn given() -> Mesh {
     mesh
 }
 
-/// The same with one vertex and one velocity changed, other attributes, and a flipped triangle.
+/// The same mesh with one vertex, one velocity and two attributes changed, and a flipped triangle.
 fn changed(given: &Mesh) -> Mesh {
     let mut changed = given.clone();
     changed.vertices[20][0] += 1e-3;
@@ -37,7 +37,7 @@ fn changed(given: &Mesh) -> Mesh {
     changed
 }
 
-/// What a reader finds in a mesh of this format, and in a changed mesh.
+/// The arrays that a reader finds in a mesh of this format, and in a changed mesh.
 fn found(test: &str, reader: &str, ending: &str) -> Option<[Found; 2]> {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };
@@ -169,6 +169,6 @@ fn meshes_round_trip() {
         let read = read_mesh(&path).unwrap();
         assert_eq!((read.vertices, read.triangles), (given().vertices, given().triangles), "{ending}");
         write_mesh(&path, &Mesh::default()).unwrap();
-        assert!(read_mesh(&path).is_err(), "{ending}: a mesh without triangles is none");
+        assert!(read_mesh(&path).is_err(), "{ending}: a mesh without triangles is refused");
     }
 }

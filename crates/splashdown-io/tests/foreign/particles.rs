@@ -1,4 +1,4 @@
-//! Particles.
+//! Particles opened by other software.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ fn given() -> Particles {
     common::particles(300).with_ids(ids)
 }
 
-/// The same with one velocity and one position changed.
+/// The same particles with one velocity and one position changed.
 fn changed(given: &Particles) -> Particles {
     let mut changed = given.clone();
     changed.velocities[17][1] *= -1.0;
@@ -21,7 +21,7 @@ fn changed(given: &Particles) -> Particles {
     changed
 }
 
-/// Writes both sets and compares them with what `reader` finds; the changed set must differ.
+/// Writes both sets and compares them with the arrays that `reader` finds. The changed set must differ.
 fn opens(test: &str, reader: &str, ending: &str, names: [&str; 4]) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| -> PathBuf { folder.path().join(format!("{name}.{ending}")) };

@@ -16,11 +16,11 @@ pub struct Sums {
     shape: Vec<usize>,
     sum: f64,
     weighted: f64,
-    /// Sum of absolute values, the scale of the tolerance. Python does not compute it.
+    /// Weighted sum of absolute values, to which the tolerance is relative. Python does not compute it.
     amount: f64,
 }
 
-/// What a reader finds: arrays by name.
+/// The sums of the arrays that a reader finds, by name.
 pub type Found = BTreeMap<String, Sums>;
 
 impl Sums {
@@ -60,7 +60,7 @@ impl Sums {
     }
 }
 
-/// What `reader` finds in each file; `None`, with a message on stderr, if Python or a package is missing.
+/// The arrays that `reader` finds in each file; `None`, with a message on stderr, if Python or a package is missing.
 pub fn read(test: &str, reader: &str, files: &[&Path]) -> Option<Vec<Found>> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign/read.py");
     let mut python = Command::new(interpreter());
@@ -71,7 +71,7 @@ pub fn read(test: &str, reader: &str, files: &[&Path]) -> Option<Vec<Found>> {
     let skip = |reason: &str| {
         let _ = writeln!(
             std::io::stderr(),
-            "SKIPPED: {test}: {reason}; `cargo xtask test --all` installs what it can"
+            "SKIPPED: {test}: {reason}; `cargo xtask test --all` installs the packages if possible"
         );
         None
     };
@@ -105,7 +105,7 @@ fn sums_of(sums: &Value) -> Sums {
     }
 }
 
-/// The interpreter of the environment made by `cargo xtask`, one named by a variable, or the system's.
+/// The interpreter: `SPLASHDOWN_PYTHON`, the one in the environment of `cargo xtask`, or the system's.
 fn interpreter() -> PathBuf {
     if let Some(named) = std::env::var_os("SPLASHDOWN_PYTHON") {
         return named.into();
@@ -115,7 +115,7 @@ fn interpreter() -> PathBuf {
     made.into_iter().find(|path| path.exists()).unwrap_or_else(|| "python3".into())
 }
 
-/// Asserts that an array is the written one, and that the comparison detects a change.
+/// Asserts that an array equals the written one.
 #[track_caller]
 pub fn same(found: &Found, name: &str, wanted: &Sums) {
     close(found, name, wanted, 1e-9);

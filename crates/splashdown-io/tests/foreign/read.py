@@ -1,9 +1,9 @@
-"""Opens files with other people's software and prints what is in them, as JSON.
+"""Opens files with other software and prints sums of their arrays as JSON.
 
 usage: read.py READER FILE [READER FILE ...]
 
-A reader gives a dictionary of arrays by name; printed are shape, and two sums of each array: of the values, and of the
-values times their number modulo 97 plus 1, so that values that have changed places are noticed.
+A reader returns a dictionary of arrays by name. For each array the script prints its shape and two sums: that of the
+values, and that of the values times their index modulo 97 plus 1, which detects values in a wrong order.
 """
 
 import importlib
@@ -63,7 +63,7 @@ def of_meshio(path):
     mesh = meshio.read(path)
     cells = mesh.cells_dict
     cells = cells.get("triangle", cells.get("vertex"))
-    # PLY particles come one property at a time.
+    # The properties of PLY particles are separate arrays.
     data = {name: values for name, values in mesh.point_data.items()}
     return {"positions": mesh.points, **({} if cells is None else {"cells": cells}), **data}
 
@@ -90,7 +90,7 @@ def of_numpy(path):
 
 
 def of_splashsurf(path):
-    """The command line of splashsurf, which converts to its own VTK; positions only."""
+    """The positions in a VTK file to which the command line of splashsurf has converted the file."""
     import os
     import subprocess
     import tempfile
@@ -137,7 +137,7 @@ def usd(path):
 
 
 def blender(path):
-    """What Blender's scene holds: points, triangles and the velocity attribute of the first object at frames 0 and 1."""
+    """Points, triangles and the velocity attribute of the first object in Blender's scene, at its first two frames."""
     import bpy
     import numpy
 
@@ -154,18 +154,18 @@ def blender(path):
     else:
         bpy.ops.wm.stl_import(filepath=path)
     arrays = {}
-    thing = next(thing for thing in bpy.data.objects if thing.type in ("MESH", "POINTCLOUD"))
+    item = next(item for item in bpy.data.objects if item.type in ("MESH", "POINTCLOUD"))
     for frame in [bpy.context.scene.frame_start, bpy.context.scene.frame_start + 1]:
         bpy.context.scene.frame_set(frame)
-        shown = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
         data = shown.data
         positions = data.attributes["position"].data
         local = numpy.zeros(3 * len(positions))
         positions.foreach_get("vector", local)
-        # Blender's z is up.
+        # In Blender z is up.
         turn = numpy.array(shown.matrix_world)[:3, :3]
         arrays[f"positions@{frame}"] = local.reshape(-1, 3) @ turn.T
-        if thing.type == "MESH":
+        if item.type == "MESH":
             arrays[f"triangles@{frame}"] = [float(len(data.polygons))]
         if "velocity" in data.attributes:
             velocity = data.attributes["velocity"].data
@@ -191,7 +191,7 @@ READERS = {
 def summed(values):
     import numpy
 
-    # JSON knows no others, and no library agrees with another on columns of one number.
+    # JSON has only finite numbers. Libraries differ in the shape of arrays with one column.
     values = numpy.nan_to_num(numpy.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
     if values.ndim == 2 and values.shape[1] == 1:
         values = values[:, 0]
@@ -212,7 +212,7 @@ def main():
     answers = []
     for name, path in zip(arguments[0::2], arguments[1::2]):
         answers.append({key: summed(values) for key, values in READERS[name][0](path).items()})
-    # The last line: some libraries print words of their own.
+    # Only the last line is read, because some libraries print messages.
     print(json.dumps(answers))
 
 

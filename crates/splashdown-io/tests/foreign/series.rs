@@ -1,4 +1,4 @@
-//! Animated files.
+//! Animated files opened by other software.
 
 use std::path::{Path, PathBuf};
 
@@ -35,7 +35,7 @@ fn write_surface(path: &Path, frames: &[Mesh]) {
     let series = MeshSeries::start(path, RATE).unwrap();
     for (frame, mesh) in frames.iter().enumerate() {
         series.push(frame as u32, mesh).unwrap();
-        assert!(!path.exists(), "an unfinished file has no name");
+        assert!(!path.exists(), "an unfinished file does not have its final name");
     }
     let (written, bytes) = series.finish().unwrap().unwrap();
     assert_eq!((written.as_path(), bytes), (path, std::fs::metadata(path).unwrap().len()));
