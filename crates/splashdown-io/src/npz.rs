@@ -4,7 +4,8 @@
 //! the disk; compressed arrays (`numpy.savez_compressed`) are read.
 //!
 //! Arrays written: `positions` and `velocities` (float32, N x 3), `densities` and `pressures` (float32, N), `ids`
-//! (uint32, N), where present, and other attributes by their names (float32). Arrays of any number type are read; others are skipped.
+//! (uint32, N), where present, and other attributes by their names (float32). Arrays of any number type are read; others
+//! are skipped.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};

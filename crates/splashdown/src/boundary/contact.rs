@@ -10,7 +10,7 @@ impl WallTerms {
     ///
     /// `FORCES` selects the [`part`] that is computed; `fluid` is the same part of the acceleration by the neighbours.
     /// `v` is the velocity of the particle. `pressure_factor` is the acceleration by the pressure of the particle and
-    /// of its image, 2 p / rho, per unit of G in 1/m.
+    /// of its image, per unit of G in 1/m: about 2 p / rho in `wcsph`, p / rho in `mueller2003`.
     ///
     /// All forces: neighbours fill only 1 - D of the kernel beside a wall, and the fluid continues unchanged along
     /// the wall. So the sum over the neighbours is divided by the 1 - D of the walls of the other axes. Without

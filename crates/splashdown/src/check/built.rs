@@ -1,9 +1,9 @@
 //! What is read from a scene's files and built from a scene, once.
 //!
-//! *How it works.* A [`Built`] holds each part from when it is first needed, and a scene carries its `Built` in a slot that
-//! clones share. Scenes are plain values that anyone may change: a `Built` keeps the sections that it was built from, and
-//! [`Built::of`] replaces it if the scene differs in one of them. What takes much memory (the particles, the meshes of
-//! bodies) is handed over to the simulation instead of being kept.
+//! *How it works.* A [`Built`] creates each part when it is first needed, and a scene carries its `Built` in a slot that
+//! clones share. Scenes are plain values that callers may change. A `Built` therefore stores the sections that it was
+//! built from, and [`Built::of`] replaces it if the scene differs in one of them. The particles and the meshes of bodies
+//! take much memory: the simulation takes them out of the `Built`.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 

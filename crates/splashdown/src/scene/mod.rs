@@ -1,9 +1,10 @@
 //! The scene file: from TOML to checked values.
 //!
-//! `keys/` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along that
-//! table and collects every problem with its line; `parse.rs` puts the values together; `geometry.rs` and
-//! `warnings.rs` compare them with each other, `files.rs` with the files that they name. `schema.rs` writes the
-//! same table as a JSON schema and as a page of documentation, so parser, schema and docs cannot disagree.
+//! `keys/` declares every key once: kind, range, unit, default, meaning. `reader.rs` walks a file along this table and
+//! collects every problem with its line. `parse/` builds the scene from the values, and `geometry.rs` compares blocks
+//! and domain. `schema.rs` writes the same table as a JSON schema and as a page of documentation, so that parser, schema
+//! and documentation agree. This module opens no files: the module `check` above it compares a scene with the files that
+//! it names.
 //!
 //! ```
 //! let text = r#"

@@ -71,9 +71,9 @@ impl Scheme {
         self.method == Method::Wcsph && !self.has_tension
     }
 
-    /// Records one step. [`begin_frame`] precedes the first step of a frame, and [`end_step`](crate::state::end_step::record) follows the
-    /// last step of a submission. Needs a buffer of accelerations unless the scheme [is fused](Self::is_fused) and there
-    /// are no couplings.
+    /// Records one step. [`begin_frame`] precedes the first step of a frame, and
+    /// [`end_step`](crate::state::end_step::record) follows the last step of a submission. Needs a buffer of
+    /// accelerations unless the scheme [is fused](Self::is_fused) and there are no couplings.
     pub fn step(
         &self,
         cells: &Cells,

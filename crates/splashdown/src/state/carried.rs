@@ -80,7 +80,7 @@ pub struct Initial<'a> {
 
 impl Initial<'_> {
     /// The value of an attribute of the particles, or `otherwise` where there is none: for the rows of the table whose
-    /// quantity is an attribute in files and in [`Particles`].
+    /// quantity is an attribute in [`Particles`]. Particles that a scene places have no attributes.
     pub fn attribute(&self, name: &str, i: usize, otherwise: f32) -> f32 {
         let found = self.particles.attributes.iter().find(|attribute| attribute.name == name);
         found.and_then(|attribute| attribute.values.get(i)).copied().unwrap_or(otherwise)
