@@ -142,16 +142,16 @@ function closed(ply) {
 async function compilesEveryPass() {
   const { page } = await open("#toml=" + encodeURIComponent(scene));
   await until("the start", 60, () => page.evaluate(() => !!window.splashdown));
-  const sound = await page.evaluate(() => window.splashdown.tryPasses(false));
-  assert(sound.passes > 60, `only ${sound.passes} passes`);
-  assert.deepEqual(sound.refused, []);
+  const valid = await page.evaluate(() => window.splashdown.tryPasses(false));
+  assert(valid.passes > 60, `only ${valid.passes} passes`);
+  assert.deepEqual(valid.refused, []);
   // Negative control: a pass that no device accepts.
   const broken = await page.evaluate(() => window.splashdown.tryPasses(true));
-  assert.equal(broken.passes, sound.passes + 1);
+  assert.equal(broken.passes, valid.passes + 1);
   assert.equal(broken.refused.length, 1);
   assert.match(broken.refused[0], /broken/);
   await page.close();
-  return sound.passes;
+  return valid.passes;
 }
 
 // The browser destroys the device: the program restarts with the state from a few seconds earlier.

@@ -76,5 +76,5 @@ def converted(path, to):
     return {"particles": len(particles)}
 
 
-words = {"time": timed, "memory": measured, "convert": converted}
-print(json.dumps(words[sys.argv[1]](*sys.argv[2:])))
+commands = {"time": timed, "memory": measured, "convert": converted}
+print(json.dumps(commands[sys.argv[1]](*sys.argv[2:])))

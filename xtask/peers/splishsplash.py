@@ -45,7 +45,7 @@ def scene(method, divisor, folder):
     for owner, keys in ((box, ("translation", "scale")), (block, ("start", "end"))):
         for key in keys:
             owner[key] = [scale * x for x in owner[key]]
-    # The block holds one row of particles fewer than its length divided by the spacing.
+    # The block contains one row of particles fewer than its length divided by the spacing.
     block["end"] = [x + 2 * configuration["particleRadius"] for x in block["end"]]
     # A corner of the box, at the distance from the walls that the original scene has.
     gap, [left, floor] = 0.05, [box["translation"][axis] - box["scale"][axis] / 2 for axis in (0, 1)]
@@ -99,7 +99,7 @@ def main():
             "neighbours": neighbours(simulation),
             "peak_memory": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
         }
-    # It logs to stdout; the answer is the last line.
+    # The program logs to stdout, so the result is the last line.
     print("\n" + json.dumps(answer), flush=True)
 
 

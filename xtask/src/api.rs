@@ -24,7 +24,7 @@ const CRATES: [&str; 6] = [
     "splashdown-viewer",
 ];
 
-/// Names the commit that holds the API to compare with.
+/// The file that names the commit with the API to compare with.
 const BASELINE: &str = ".semver-baseline";
 
 const TOOL: &str = "cargo-semver-checks";
@@ -147,7 +147,7 @@ fn describe_commit(commit: &str, source: &Path, output: &Path) -> Result<()> {
     let archive = source.join("archive.tar");
     process::run(command("git").args(["archive", "--format=tar", "--output"]).arg(&archive).arg(commit))?;
     process::run(command("tar").arg("-xf").arg(&archive).arg("-C").arg(source))?;
-    // Complete or absent: a run that is stopped in the middle must not leave a part.
+    // Renamed when complete, so that an interrupted run leaves no partial result.
     let partial = output.with_extension("partial");
     describe(source, &partial)?;
     fs::rename(&partial, output)?;

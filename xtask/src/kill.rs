@@ -11,9 +11,9 @@ pub fn tree(process: u32, root: bool) {
         return;
     }
     // Parents first, so that no parent reacts to the end of its child.
-    let mut doomed = if root { vec![process] } else { Vec::new() };
-    doomed.extend(below(process, &parents()));
-    let numbers: Vec<String> = doomed.iter().map(u32::to_string).collect();
+    let mut processes = if root { vec![process] } else { Vec::new() };
+    processes.extend(descendants(process, &parents()));
+    let numbers: Vec<String> = processes.iter().map(u32::to_string).collect();
     let _ = Command::new("sh").arg("-c").arg(format!("kill -KILL {}", numbers.join(" "))).output();
 }
 
@@ -43,7 +43,7 @@ fn pair<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<(u32, u32)> {
     Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?))
 }
 
-fn below(process: u32, parents: &[(u32, u32)]) -> Vec<u32> {
+fn descendants(process: u32, parents: &[(u32, u32)]) -> Vec<u32> {
     let mut found = vec![process];
     let mut next = 0;
     while next < found.len() {
@@ -56,12 +56,12 @@ fn below(process: u32, parents: &[(u32, u32)]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::{below, parents, proc_parents};
+    use super::{descendants, parents, proc_parents};
 
     #[test]
     fn descendants_are_found_at_any_depth() {
         let parents = [(2, 1), (3, 2), (4, 3), (5, 1), (6, 5)];
-        let mut found = below(2, &parents);
+        let mut found = descendants(2, &parents);
         found.sort_unstable();
         assert_eq!(found, [3, 4]);
     }
@@ -79,7 +79,7 @@ mod tests {
     fn a_tree_is_killed() {
         let mut shell = std::process::Command::new("sh").args(["-c", "sleep 60 & wait"]).spawn().unwrap();
         let start = std::time::Instant::now();
-        while below(shell.id(), &parents()).is_empty() {
+        while descendants(shell.id(), &parents()).is_empty() {
             assert!(start.elapsed().as_secs() < 20);
         }
         super::tree(shell.id(), true);

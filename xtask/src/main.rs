@@ -49,7 +49,7 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   dist [--target TRIPLE] [--no-check]
                     build release archives, a Debian package and checksums in target/dist
   release X.Y.Z [--commit]
-                    set the version and date of a release in every file that holds them
+                    set the version and date of a release in every file that contains them
   setup             check the requirements of demo and test, and install them where possible
   help              print this text
 

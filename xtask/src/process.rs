@@ -99,7 +99,8 @@ pub fn is_ci() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
-/// A private folder for `XDG_RUNTIME_DIR` if the system sets none: without it software Vulkan floods stderr.
+/// A private folder for `XDG_RUNTIME_DIR` if the system sets none: without it, software Vulkan prints many
+/// messages to stderr.
 #[cfg(target_os = "linux")]
 fn runtime_folder() -> Option<&'static Path> {
     use std::os::unix::fs::DirBuilderExt;

@@ -27,7 +27,7 @@ pub fn ensure(all: bool) {
     }
 }
 
-/// Creates an environment in a folder, installs a list of packages into it unless that has been done, and returns its
+/// Creates an environment in a folder, installs a list of packages into it unless they are installed, and returns its
 /// interpreter.
 ///
 /// # Errors
@@ -39,7 +39,7 @@ pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
 
 fn install(folder: &Path, list: &Path) -> Result<()> {
     let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
-    // A copy of the installed list lies beside the environment, so that a second call costs nothing.
+    // A copy of the installed list is stored in the environment, so that a second call costs nothing.
     let note = folder.join(list.file_name().unwrap_or_default());
     if fs::read_to_string(&note).is_ok_and(|installed| installed == wanted) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! `cargo xtask test`, which is also all of the continuous integration.
+//! `cargo xtask test`, which continuous integration also runs.
 
 use std::time::Instant;
 

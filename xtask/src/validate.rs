@@ -52,11 +52,11 @@ pub fn run(arguments: &[String]) -> Result<()> {
         layers::tests(&mut command, filter, None)
     });
     say("\n=== Figures");
-    for table in left(&folder, "txt") {
+    for table in contents(&folder, "txt") {
         say(table.trim_end());
     }
-    // Each file holds an array; removing the brackets is enough to join their entries.
-    let cases = left(&folder, "json");
+    // Each file contains an array; removing the brackets is enough to join their entries.
+    let cases = contents(&folder, "json");
     let entries: Vec<&str> = cases
         .iter()
         .filter_map(|case| Some(case.trim().strip_prefix('[')?.strip_suffix(']')?.trim()))
@@ -66,7 +66,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     std::fs::write(&all, format!("[\n  {}\n]\n", entries.join(",\n  ")))
         .with_context(|| format!("cannot write {}", all.display()))?;
     let page = folder.join("report.html");
-    let text = format!("{HEAD}{}</body>\n</html>\n", left(&folder, "html").concat());
+    let text = format!("{HEAD}{}</body>\n</html>\n", contents(&folder, "html").concat());
     std::fs::write(&page, text).with_context(|| format!("cannot write {}", page.display()))?;
     say(format!("\nAs a page with plots: {FIGURES}/report.html"));
     say(format!("Also as JSON: {FIGURES}/report.json, and a file per case beside it."));
@@ -74,7 +74,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
 }
 
 /// The contents of the cases' files with this extension, in the order of their names.
-fn left(folder: &Path, ending: &str) -> Vec<String> {
+fn contents(folder: &Path, ending: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();
     files.retain(|file| file.extension().is_some_and(|end| end == ending));

@@ -70,7 +70,7 @@ impl Watch {
         silent.then(|| format!("{binary} printed nothing for {} minutes", SILENCE.as_secs() / 60))
     }
 
-    /// Forgets the tests that were running, after they were killed.
+    /// Clears the tests that were running, after they were killed.
     pub fn killed(&mut self, now: Instant) {
         self.slow.clear();
         self.last_line = now;

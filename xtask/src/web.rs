@@ -71,13 +71,13 @@ pub fn build(profile: &str) -> Result<PathBuf> {
     process::run(bindgen.arg(&module).arg(&folder))?;
     fs::copy(process::root().join("web/index.html"), folder.join("index.html"))?;
     if profile == PUBLISHED {
-        weigh(&folder)?;
+        check_size(&folder)?;
     }
     Ok(folder)
 }
 
 /// Compresses the files as a server would and checks their total size against the limit.
-fn weigh(folder: &Path) -> Result<()> {
+fn check_size(folder: &Path) -> Result<()> {
     let mut sum = 0;
     for name in ["splashdown_web_bg.wasm", "splashdown_web.js", "index.html"] {
         let file = folder.join(name);

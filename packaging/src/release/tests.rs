@@ -52,7 +52,7 @@ fn refusal(folder: &Path, version: &Version) -> String {
 }
 
 #[test]
-fn a_release_changes_every_file_that_holds_the_version() -> Result<()> {
+fn a_release_changes_every_file_that_contains_the_version() -> Result<()> {
     let folder = copy()?;
     let version = next(folder.path())?;
     let before = fs::read_to_string(folder.path().join("Cargo.toml"))?;

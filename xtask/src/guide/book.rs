@@ -62,8 +62,8 @@ pub fn build() -> Result<PathBuf> {
     build.args(["build", "docs/guide", "--dest-dir"]).arg(&folder);
     let output = build.output().context("cannot start mdbook")?;
     let text = String::from_utf8_lossy(&output.stderr);
-    let has_complaint = text.lines().any(|line| line.contains("WARN") || line.contains("ERROR"));
-    ensure!(output.status.success() && !has_complaint, "`{}` reports:\n{text}", process::line(&build));
+    let has_warning = text.lines().any(|line| line.contains("WARN") || line.contains("ERROR"));
+    ensure!(output.status.success() && !has_warning, "`{}` reports:\n{text}", process::line(&build));
     for page in links::pages(root())? {
         let html = folder.join(links::html_name(&page));
         ensure!(html.exists(), "mdBook wrote no {}", html.display());

@@ -54,30 +54,30 @@ pub fn graph(sources: &[Source]) -> Graph {
             (module, path.as_path(), imports)
         })
         .collect();
-    let mut left_out = BTreeSet::new();
+    let mut excluded = BTreeSet::new();
     for (module, _, imports) in &read {
         for child in &imports.test_modules {
-            left_out.insert([module.as_slice(), std::slice::from_ref(child)].concat());
+            excluded.insert([module.as_slice(), std::slice::from_ref(child)].concat());
         }
     }
-    let is_left_out = |module: &[String]| (1..=module.len()).any(|n| left_out.contains(&module[..n]));
+    let is_excluded = |module: &[String]| (1..=module.len()).any(|n| excluded.contains(&module[..n]));
     let modules: BTreeSet<&str> = read
         .iter()
-        .filter(|(module, ..)| !is_left_out(module))
+        .filter(|(module, ..)| !is_excluded(module))
         .filter_map(|(module, ..)| module.first().map(String::as_str))
         .collect();
     let root = sources.iter().find(|(path, _)| module_of(path).is_empty());
-    let mut homes = root.map(|(_, text)| exports(text)).unwrap_or_default();
+    let mut origins = root.map(|(_, text)| exports(text)).unwrap_or_default();
     for (module, _, imports) in &read {
         if let Some(module) = module.first() {
-            homes.extend(imports.macros.iter().map(|name| (name.clone(), module.clone())));
+            origins.extend(imports.macros.iter().map(|name| (name.clone(), module.clone())));
         }
     }
     let mut graph: Graph = modules.iter().map(|name| ((*name).to_owned(), BTreeMap::new())).collect();
     for (module, path, imports) in &read {
-        let Some(from) = module.first().filter(|_| !is_left_out(module)) else { continue };
+        let Some(from) = module.first().filter(|_| !is_excluded(module)) else { continue };
         for name in &imports.names {
-            let Some(to) = home(name, &modules, &homes) else { continue };
+            let Some(to) = origin(name, &modules, &origins) else { continue };
             if to != from {
                 let edges = graph.entry(from.clone()).or_default();
                 edges.entry(to.to_owned()).or_insert_with(|| path.to_path_buf());
@@ -89,11 +89,15 @@ pub fn graph(sources: &[Source]) -> Graph {
 
 /// The module that a name at the root of the crate belongs to: the module of that name, the module that it is re-exported
 /// from, or the root. `None` for names of other crates.
-fn home<'a>(name: &'a str, modules: &BTreeSet<&str>, homes: &'a BTreeMap<String, String>) -> Option<&'a str> {
+fn origin<'a>(
+    name: &'a str,
+    modules: &BTreeSet<&str>,
+    origins: &'a BTreeMap<String, String>,
+) -> Option<&'a str> {
     if modules.contains(name) {
         return Some(name);
     }
-    match homes.get(name) {
+    match origins.get(name) {
         Some(module) => modules.contains(module.as_str()).then_some(module),
         None => Some(ROOT),
     }
@@ -133,8 +137,8 @@ fn read_tree(tokens: &[Token], first: Option<&str>, found: &mut BTreeMap<String,
     let Some(open) = tokens.iter().position(|token| *token == Token::Sign('{')) else {
         let words: Vec<&str> =
             tokens.iter().filter_map(Token::word).filter(|word| *word != "crate").collect();
-        if let (Some(name), Some(home)) = (words.last(), first.or(words.first().copied())) {
-            found.insert((*name).to_owned(), home.to_owned());
+        if let (Some(name), Some(origin)) = (words.last(), first.or(words.first().copied())) {
+            found.insert((*name).to_owned(), origin.to_owned());
         }
         return;
     };

@@ -2,7 +2,7 @@
 
 use super::tokens::{Token, tokens};
 
-/// What a source file imports.
+/// The imports of a source file.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Imports {
     /// The first name after the crate root of each path: a module or an item of the root.

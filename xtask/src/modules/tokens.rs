@@ -67,7 +67,7 @@ fn is_part_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The first index from `i` on at which `is` holds, or the end.
+/// The first index from `i` on for which `is` is true, or the end.
 fn find(text: &[char], i: usize, is: impl Fn(char) -> bool) -> usize {
     text[i..].iter().position(|&c| is(c)).map_or(text.len(), |offset| i + offset)
 }
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_and_strings_are_left_out() {
+    fn comments_and_strings_are_skipped() {
         assert_eq!(words("a // crate::x\nb /* crate::y /* nested */ */ c"), "a b c");
         assert_eq!(words(r#"a("crate::x \" b", b"c", 'd', '\'', '"')"#), "a ( , , , , )");
         assert_eq!(words("r\"a\" r#\"crate::\"x\"# br##\"\"#\"## z"), "z");

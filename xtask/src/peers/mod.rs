@@ -18,7 +18,7 @@ use crate::{python, report, setup};
 /// Number of alternating measurements of each program; the median is reported.
 const ROUNDS: usize = 3;
 
-/// What both programs are started with.
+/// The programs and the settings of a comparison.
 struct Sides {
     /// The `splashdown` binary.
     ours: PathBuf,

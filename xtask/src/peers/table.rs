@@ -6,7 +6,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these column headers; all columns but the first hold numbers.
+    /// A table with these column headers; all columns except the first contain numbers.
     pub fn new(heads: &[&str]) -> Self {
         let rule = std::iter::once("---").chain(std::iter::repeat_n("---:", heads.len().saturating_sub(1)));
         let rule = rule.collect::<Vec<_>>().join("|");
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn minimum_and_maximum_bars_are_judged() {
+    fn values_are_compared_with_their_bars() {
         assert_eq!(at_least(10.0, 10.0), "10.00 (bar 10: met)");
         assert_eq!(at_least(9.994, 10.0), "9.99 (bar 10: **missed**)");
         assert_eq!(at_most(1.0, 1.0), "1.00 (bar 1: met)");
