@@ -21,7 +21,7 @@ pub enum BodyError {
     File {
         /// What the mesh is for, such as `body "raft"`.
         owner: String,
-        /// What is solid_error with the file.
+        /// What is wrong with the file.
         source: IoError,
     },
     /// There is no built-in model of this name.
@@ -37,7 +37,7 @@ pub enum BodyError {
     Solid {
         /// What the mesh is for.
         owner: String,
-        /// What is solid_error with the shape.
+        /// What is wrong with the shape.
         source: SolidError,
     },
     /// The size of the mesh is implausible in this domain.

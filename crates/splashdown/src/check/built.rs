@@ -1,4 +1,4 @@
-//! What is read from a scene's files and built from a scene, once.
+//! Caches the files, meshes and particles of a scene, so that each is read or built once.
 //!
 //! *How it works.* A [`Built`] creates each part when it is first needed, and a scene carries its `Built` in a slot that
 //! clones share. Scenes are plain values that callers may change. A `Built` therefore stores the sections that it was
@@ -16,7 +16,7 @@ use crate::sample::{self, SampleError, Sources};
 use crate::scene::{Derived, Domain, Emitter, Fluid, MeshSource, Reach, Scene, Sink, lattice};
 use crate::solid;
 
-/// What was read and built from a scene. Each part is made where it is first asked for.
+/// The files, meshes and particles of a scene. Each part is created on first use.
 #[derive(Default)]
 pub(crate) struct Built {
     inputs: Option<Inputs>,
@@ -44,7 +44,7 @@ type Extents = Arc<[Option<(Vec3, Vec3)>]>;
 /// The meshes of the bodies, in the order of the scene.
 #[derive(Default)]
 struct BodyMeshes {
-    /// Until a simulation takes them.
+    /// `None` after a simulation has taken them.
     meshes: Option<Vec<Result<Mesh, BodyError>>>,
     /// Lower and upper corners in m, in the meshes' own frames; `None` for a mesh that cannot be read.
     extents: Option<Extents>,
@@ -52,16 +52,16 @@ struct BodyMeshes {
 
 #[derive(Default)]
 struct FluidParts {
-    /// The meshes and files of the fluid, until they are filled.
+    /// The meshes and files of the fluid; `None` after they have been turned into particles.
     sources: Option<Sources>,
     reaches: Option<Arc<[Reach]>>,
-    /// Until a simulation takes them.
+    /// `None` after a simulation has taken them.
     particles: Option<Particles>,
     count: Option<u64>,
 }
 
 impl Built {
-    /// What was built from this scene; nothing yet, if it was built from other values.
+    /// The `Built` of this scene. It is replaced by an empty one if the scene has changed.
     pub fn of(scene: &Scene) -> Arc<Self> {
         let inputs = Inputs::of(scene);
         if let Some(built) = scene.built.get::<Self>()
@@ -74,10 +74,10 @@ impl Built {
         built
     }
 
-    /// Stores what the check of a scene's files has read and filled; the particles only where there are meshes or files.
+    /// Stores the results of checking a scene's files. `fluid` is given if the fluid has meshes or files.
     pub fn store(&self, meshes: Vec<Mesh>, flow: LoadedFlow, fluid: Option<(Particles, Vec<Reach>)>) {
         lock(&self.bodies).put(meshes.into_iter().map(Ok).collect());
-        // It is empty: the scene has only just been read.
+        // Cannot fail: the cell is still empty because the scene has just been read.
         let _ = self.flow.set(Ok(Arc::new(flow)));
         if let Some((particles, reaches)) = fluid {
             let mut parts = lock(&self.fluid);
@@ -87,7 +87,7 @@ impl Built {
         }
     }
 
-    /// The meshes of the bodies, which the caller takes; they are read if they have been taken before.
+    /// Takes the meshes of the bodies out; reads them again if they have been taken before.
     pub fn take_meshes(&self, scene: &Scene) -> Vec<Result<Mesh, BodyError>> {
         let mut bodies = lock(&self.bodies);
         let meshes = bodies.meshes.take();
@@ -135,7 +135,7 @@ impl Built {
         reaches
     }
 
-    /// The scene's particles at t = 0, which the caller takes; they are placed anew if they have been taken before.
+    /// Takes the scene's particles at t = 0 out; creates them again if they have been taken before.
     ///
     /// # Errors
     /// As [`sample::particles`].
@@ -148,7 +148,7 @@ impl Built {
         }
     }
 
-    /// As [`sample::count`]; particles that have to be placed for it are kept for the simulation.
+    /// As [`sample::count`]. Particles that have to be created for counting are kept for the simulation.
     pub fn count(&self, scene: &Scene) -> u64 {
         let fluid = &scene.fluid;
         let mut parts = lock(&self.fluid);
@@ -173,14 +173,14 @@ impl Built {
         count
     }
 
-    /// The numbers that follow from the scene with this number of particles at the start.
+    /// The derived quantities of the scene, given the number of particles at the start.
     pub fn derived(&self, scene: &Scene, particles: u64) -> Derived {
-        // An outlet that cannot be made is refused where the simulation starts.
+        // An invalid outlet is reported when the simulation starts.
         let emitted = self.emitted(scene).unwrap_or_default();
         Derived::of(scene, &self.reaches(scene)).with_particles(scene, particles, emitted)
     }
 
-    /// Frees what only the start of a simulation needs.
+    /// Frees the parts that only the start of a simulation needs.
     pub fn release(&self) {
         lock(&self.bodies).meshes = None;
         let mut parts = lock(&self.fluid);
@@ -223,8 +223,8 @@ impl FluidParts {
     }
 }
 
-/// The number of a scene's particles at the start, those inside bodies included. Meshes are filled and files read for it;
-/// a simulation of the scene does not do it again.
+/// The number of a scene's particles at the start, including those inside bodies. This fills meshes and reads
+/// files; a simulation of the same scene uses the results.
 pub fn count(scene: &Scene) -> u64 {
     Built::of(scene).count(scene)
 }

@@ -1,12 +1,12 @@
-//! The numbers that follow from a scene and its files.
+//! Constructors of [`Derived`] that need the scene's files.
 
 use super::Built;
 use crate::sample::Inventory;
 use crate::scene::{Derived, Scene};
 
 impl Derived {
-    /// From a checked scene. Values that a hand-made scene may break (zero spacing, no blocks) give numbers
-    /// that make no sense, but no panic.
+    /// From a checked scene. Invalid values of a scene built in code (zero spacing, no blocks) give
+    /// meaningless numbers but never panic.
     pub fn new(scene: &Scene) -> Self {
         let built = Built::of(scene);
         built.derived(scene, built.count(scene))
@@ -17,7 +17,8 @@ impl Derived {
         Built::of(scene).derived(scene, inventory.particles)
     }
 
-    /// Everything but the numbers of particles, which are zero: those of meshes take time to count.
+    /// All quantities except the numbers of particles, which are zero: counting the particles of meshes takes
+    /// time.
     pub(crate) fn without_particles(scene: &Scene) -> Self {
         Self::of(scene, &Built::of(scene).reaches(scene))
     }

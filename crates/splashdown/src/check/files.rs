@@ -1,4 +1,4 @@
-//! Compares a scene from a file with the files that it names.
+//! Checks the meshes and particle files of a scene, and the objects that depend on them.
 
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
@@ -6,24 +6,24 @@ use splashdown_io::{Mesh, Particles};
 use super::Built;
 use crate::bodies::{check_scale, mesh_of, owner};
 use crate::flow::{LoadedFlow, outlet};
-use crate::sample::{self, Filler, SampleError, Sources, Taken, file_title, mesh_title, typical_spacing};
+use crate::sample::{self, Added, Filler, SampleError, Sources, file_title, mesh_title, typical_spacing};
 use crate::scene::{
     Body, Domain, Emitter, MeshSource, Motion, Reach, Reported, Scene, Section, grouped, outlet_outside,
     place, rounded,
 };
 use crate::solid;
 
-/// A file's spacing may differ from the scene's by this part.
+/// Largest relative difference between a file's spacing and the scene's that gives no warning.
 const SPACING_TOLERANCE: f32 = 0.2;
-/// A point is inside a mesh that winds round it more than this many times; on the surface it is one half.
+/// A point is inside a mesh if the absolute winding number exceeds this value; on the surface it is 0.5.
 const INSIDE: f64 = 0.75;
-/// Points of an outlet that are looked for inside bodies.
-const MOST_POINTS: usize = 64;
-/// Poses of a scripted body that are looked at.
+/// Maximum number of points of an outlet that are tested against bodies.
+const MAX_POINTS: usize = 64;
+/// Number of poses of a scripted body that are tested against the domain.
 const POSES: u32 = 200;
 
-/// Reads every mesh and every file of particles that a whole scene names, and reports each problem at its
-/// line. What was read and built stays with the scene.
+/// Reads all meshes and particle files of a scene and reports each problem with its line. The scene keeps the
+/// results for the simulation.
 pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let (bodies, meshes, placed) = check_bodies(scene, &root.sections_if_any("body")?);
     let mut flow = LoadedFlow::default();
@@ -35,7 +35,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     Ok(())
 }
 
-/// A body's mesh where it is at t = 0.
+/// A body's mesh at its pose at t = 0.
 struct Placed<'a> {
     body: &'a Body,
     triangles: Vec<[Vec3; 3]>,
@@ -61,7 +61,7 @@ impl<'a> Placed<'a> {
         Self { body, triangles: mesh.triangles.iter().map(|t| t.map(corner)).collect(), low, high }
     }
 
-    /// Whether the mesh winds round a point, whichever way its triangles face.
+    /// Whether a point lies inside the mesh, for either orientation of its triangles.
     fn contains(&self, x: Vec3) -> bool {
         if x.cmplt(self.low).any() || x.cmpgt(self.high).any() {
             return false;
@@ -74,7 +74,7 @@ fn check_bodies<'a>(
     scene: &'a Scene,
     sections: &[Section<'_>],
 ) -> (Result<(), Reported>, Vec<Mesh>, Vec<Placed<'a>>) {
-    let mut sound = Ok(());
+    let mut result = Ok(());
     let (mut meshes, mut placed) = (Vec::new(), Vec::new());
     for (body, section) in scene.bodies.iter().zip(sections) {
         match read_scaled(section, &owner("body", &body.name, &body.mesh), &body.mesh, &scene.domain) {
@@ -84,12 +84,12 @@ fn check_bodies<'a>(
                     let most = 0.5 * (high - low).max_element();
                     if half > most {
                         let message = format!(
-                            "body {:?} is {} m long: a sheet of half a thickness of {half} m would bury it",
+                            "half_thickness = {half} m is more than half the length of body {:?}, which is {} m long",
                             body.name,
                             2.0 * most
                         );
                         let allowed = format!("at most {most} m");
-                        sound = Err(section.complain(
+                        result = Err(section.complain(
                             "half_thickness",
                             message,
                             &allowed,
@@ -102,13 +102,13 @@ fn check_bodies<'a>(
                 placed.push(body);
                 meshes.push(mesh);
             }
-            Err(reported) => sound = Err(reported),
+            Err(reported) => result = Err(reported),
         }
     }
-    (sound, meshes, placed)
+    (result, meshes, placed)
 }
 
-/// A mesh whose file can be read and whose size makes sense.
+/// Reads a mesh and checks that its size is plausible.
 fn read_scaled(
     section: &Section<'_>,
     owner: &str,
@@ -141,7 +141,7 @@ fn warn_outside(scene: &Scene, placed: &Placed<'_>, mesh: &Mesh, section: &Secti
     if outside {
         let spans =
             format!("it spans {} to {} m", place(placed.low.to_array()), place(placed.high.to_array()));
-        let message = format!("body {:?} lies wholly outside the domain: {spans}", body.name);
+        let message = format!("body {:?} lies entirely outside the domain: {spans}", body.name);
         let hint = format!("the domain is {} to {} m: check position and scale", domain.min, domain.max);
         section.warn("position", message, &hint);
     }
@@ -153,11 +153,11 @@ fn check_emitters(
     sections: &[Section<'_>],
     bodies: &[Placed<'_>],
 ) -> Result<(), Reported> {
-    let mut sound = Ok(());
+    let mut result = Ok(());
     for (emitter, section) in scene.emitters.iter().zip(sections) {
-        sound = sound.and(check_emitter(scene, flow, emitter, section, bodies));
+        result = result.and(check_emitter(scene, flow, emitter, section, bodies));
     }
-    sound
+    result
 }
 
 fn check_emitter(
@@ -171,7 +171,7 @@ fn check_emitter(
         .add_emitter(emitter, scene)
         .map_err(|error| section.complain("mesh", error.to_string(), "", ""))?;
     let (across, up) = outlet::axes(emitter.direction);
-    let every = layer.len().div_ceil(MOST_POINTS).max(1);
+    let every = layer.len().div_ceil(MAX_POINTS).max(1);
     let points: Vec<Vec3> =
         layer.iter().step_by(every).map(|q| emitter.position + q.x * across + q.y * up).collect();
     let domain = &scene.domain;
@@ -185,29 +185,30 @@ fn check_emitter(
             continue;
         }
         let message = format!(
-            "the outlet of emitter {:?} lies inside body {:?}: nothing can flow there",
+            "the outlet of emitter {:?} lies inside body {:?}: no fluid can leave it",
             emitter.name, placed.body.name
         );
         let hint = "move the outlet or the body; an outlet may lie on a body's surface";
         if placed.body.motion == Motion::Static {
             return Err(section.complain("position", message, "", hint));
         }
-        section.warn("position", format!("{message} before the body moves away"), hint);
+        section.warn("position", format!("{message} until the body moves away"), hint);
     }
     Ok(())
 }
 
 fn check_sinks(scene: &Scene, flow: &mut LoadedFlow, sections: &[Section<'_>]) -> Result<(), Reported> {
-    let mut sound = Ok(());
+    let mut result = Ok(());
     for (sink, section) in scene.sinks.iter().zip(sections) {
         if let Err(error) = flow.add_sink(sink, scene) {
-            sound = Err(section.complain("mesh", error.to_string(), "", ""));
+            result = Err(section.complain("mesh", error.to_string(), "", ""));
         }
     }
-    sound
+    result
 }
 
-/// Fills meshes and reads files as the simulation will, and reports what is left out. `None` for blocks alone.
+/// Creates the particles as the simulation does, and warns of particles that are left out. `None` if the
+/// fluid has blocks only.
 fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<Option<(Particles, Vec<Reach>)>, Reported> {
     let fluid = &scene.fluid;
     if sample::has_blocks_only(fluid) {
@@ -218,49 +219,49 @@ fn check_fluid(scene: &Scene, section: &Section<'_>) -> Result<Option<(Particles
     };
     let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
     filler.blocks(fluid).map_err(|error| refuse(section, "block", &error))?;
-    let mut sound = Ok(());
+    let mut result = Ok(());
     let sources = Sources::read(fluid);
     let reaches = sources.reaches(fluid);
     let meshes = fluid.meshes.iter().zip(sources.meshes);
     for (index, ((mesh, read), section)) in meshes.zip(section.sections_if_any("mesh")?).enumerate() {
         let title = mesh_title(index, mesh);
         match read.and_then(|read| filler.mesh(&title, mesh, &read)) {
-            Ok(taken) => warn_overlap(&section, &title, taken),
-            Err(error) => sound = Err(refuse(&section, "mesh", &error)),
+            Ok(added) => warn_overlap(&section, &title, added),
+            Err(error) => result = Err(refuse(&section, "mesh", &error)),
         }
     }
     let files = fluid.files.iter().zip(sources.files);
     for (index, ((file, read), section)) in files.zip(section.sections_if_any("file")?).enumerate() {
         let title = file_title(index, file);
         match read.and_then(|read| filler.file(&title, file, &read)) {
-            Ok((taken, positions)) => {
-                warn_overlap(&section, &title, taken);
-                warn_stray(&section, &title, taken, scene);
+            Ok((added, positions)) => {
+                warn_overlap(&section, &title, added);
+                warn_outside_particles(&section, &title, added, scene);
                 warn_spacing(&section, &title, &positions, fluid.particle_spacing);
             }
-            Err(error) => sound = Err(refuse(&section, "file", &error)),
+            Err(error) => result = Err(refuse(&section, "file", &error)),
         }
     }
-    sound.map(|()| Some((filler.finish(), reaches)))
+    result.map(|()| Some((filler.finish(), reaches)))
 }
 
-fn warn_overlap(section: &Section<'_>, title: &str, taken: Taken) {
-    if taken.crowded > 0 {
+fn warn_overlap(section: &Section<'_>, title: &str, added: Added) {
+    if added.overlapping > 0 {
         let message = format!(
             "{title} overlaps blocks, meshes or files before it: {} of its {} particles are left out",
-            grouped(taken.crowded),
-            grouped(taken.made + taken.crowded + taken.outside)
+            grouped(added.overlapping),
+            grouped(added.created + added.overlapping + added.outside)
         );
-        section.warn("position", message, "the water there is sampled once, as the earlier section says");
+        section.warn("position", message, "only the particles of the earlier section are created there");
     }
 }
 
-fn warn_stray(section: &Section<'_>, title: &str, taken: Taken, scene: &Scene) {
-    if taken.outside > 0 {
+fn warn_outside_particles(section: &Section<'_>, title: &str, added: Added, scene: &Scene) {
+    if added.outside > 0 {
         let message = format!(
             "{} of the {} particles of {title} lie outside the domain and are left out",
-            grouped(taken.outside),
-            grouped(taken.made + taken.crowded + taken.outside)
+            grouped(added.outside),
+            grouped(added.created + added.overlapping + added.outside)
         );
         let (min, max) = (scene.domain.min, scene.domain.max);
         let hint = format!("the domain is {min} to {max} m: check position and scale, or enlarge it");

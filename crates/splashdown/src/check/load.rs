@@ -1,4 +1,4 @@
-//! From a path or a text to a scene.
+//! Reads a scene from a path or a text.
 
 use std::fs::File;
 use std::io::Read;
@@ -11,16 +11,16 @@ use crate::scene::{
     closest, parse, presets,
 };
 
-/// Longest scene file in bytes; a larger file is surely not one.
+/// Maximum size of a scene file in bytes.
 const MAX_BYTES: u64 = 4 << 20;
 
 impl Scene {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// Everything that is wrong with it, at once: unreadable, too large, not text, not TOML, unknown or missing
-    /// keys, values out of range, values that contradict one another, meshes and particles that are missing or
-    /// cannot be used.
+    /// All problems at once: a file that is unreadable, too large, not text or not TOML; unknown or missing
+    /// keys; values out of range or inconsistent; meshes and particle files that are missing or cannot be
+    /// used.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -49,13 +49,13 @@ impl Scene {
                 format!("the file is larger than {} MiB: this is not a scene file", MAX_BYTES >> 20);
             return Err(refuse(message, "scene files are short texts in TOML"));
         }
-        // A file's name alone has the empty path as its folder, from which files are named as well.
+        // The parent of a bare file name is the empty path, relative to which files are found as well.
         let scene = Self::from_bytes(&bytes, &file, path.parent())?;
         Ok(Self { source: Some(path.to_owned()), ..scene })
     }
 
-    /// Checks the text of a scene file; `file_name` is for messages. The files that it names are not opened:
-    /// paths stay as written, and what is wrong with the files is reported when a simulation starts.
+    /// Checks the text of a scene file; `file_name` is for messages. The files named in the scene are not
+    /// opened: paths stay as written, and problems with the files are reported when a simulation starts.
     ///
     /// # Errors
     /// As [`Scene::load`].
@@ -63,8 +63,8 @@ impl Scene {
         Self::from_bytes(text.as_bytes(), file_name, None)
     }
 
-    /// As [`load`](Self::load), of the text of a file that is not where it was, or not as it was: the files
-    /// that it names are looked for beside `path`.
+    /// As [`load`](Self::load), from the text of a scene file that has been moved or changed. The files named
+    /// in the scene are searched relative to the folder of `path`.
     ///
     /// # Errors
     /// As [`Scene::load`].
@@ -101,16 +101,17 @@ impl Scene {
 }
 
 impl SceneBuilder {
-    /// Checks the scene. Files that it names are looked for where a simulation begins, from the current folder.
+    /// Checks the scene. The files named in it are opened when a simulation starts, relative to the current
+    /// folder.
     ///
     /// # Errors
-    /// Everything that is wrong with it; lines are those of [`to_toml`](Self::to_toml).
+    /// All problems of the scene, with the lines of [`to_toml`](Self::to_toml).
     pub fn build(&self) -> Result<Scene, SceneErrors> {
         Scene::parse(&self.to_toml(), "scene builder")
     }
 }
 
-/// Checks a scene whose values could be read.
+/// Checks a scene after its values have been read.
 fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let is_model = |filled: &&FluidMesh| matches!(filled.mesh.shape, MeshShape::Model(_));
     let fluid = &scene.fluid;
@@ -118,7 +119,7 @@ fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     if root.has_folder() {
         files::check(scene, root)?;
     } else if opens_files {
-        // Without a folder no file is opened: only models count.
+        // Without a folder no file is opened, so only built-in models are considered.
         let meshes = fluid.meshes.iter().filter(is_model).cloned().collect();
         let models = Fluid { meshes, files: Vec::new(), ..fluid.clone() };
         return warnings::check(scene, root, &Derived::of(scene, &Sources::read(&models).reaches(&models)));
@@ -126,7 +127,7 @@ fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     warnings::check(scene, root, &Derived::without_particles(scene))
 }
 
-/// What a missing file may have been meant to be.
+/// The hint for a missing scene file: the command that lists the built-in scenes, and a similar name.
 fn not_found_hint(path: &Path) -> String {
     let list = "`splashdown scenes` lists the scenes that come with the program";
     let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();

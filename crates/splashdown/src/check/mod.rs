@@ -1,8 +1,8 @@
-//! From scene files to checked scenes, and to what is built from them.
+//! Loads scene files and checks them together with the files that they name.
 //!
-//! [`scene`](crate::scene) reads values; this module compares them with the files that a scene names, with their meshes
-//! and with the lattices of particles, and reports what is wrong at its line. What it reads, fills and builds on the way
-//! stays with the scene (`Built`), so that a simulation of that scene does not do it again.
+//! [`scene`](crate::scene) reads and checks values. This module reads the meshes and particle files, creates
+//! the particles, and reports problems with their lines. The results stay with the scene (`Built`), so that a
+//! simulation of that scene does not repeat the work.
 
 mod built;
 mod derived;

@@ -1,4 +1,4 @@
-//! Loading and running a scene reads, samples and builds nothing twice.
+//! Every file, mesh and particle set of a scene is read or built only once.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use splashdown_io::Particles;
 use crate::scene::{Derived, Scene};
 use crate::{Checkpoint, Device, Simulation, inventory, memory_forecast, memory_forecast_of, models, work};
 
-/// A file of each kind, in every place of a scene that can name one.
+/// A scene with a file in every section that can name one.
 const SCENE: &str = "
     [scene]
     name = \"everything\"
@@ -47,7 +47,8 @@ const SCENE: &str = "
     position = [0.8, 0.1, 0.8]
 ";
 
-/// Everything of the scene once: a body, an outlet, a sink and a piece of fluid have a mesh each.
+/// The expected counts if everything is done once. A body, an outlet, a sink and a piece of fluid have a mesh
+/// each.
 const ONCE: [(&str, u32); 6] = [
     ("emitter built", 1),
     ("fluid sampled", 1),
@@ -72,7 +73,7 @@ fn is_once(counts: &work::Counts) -> bool {
 }
 
 #[test]
-fn loading_and_running_a_scene_does_nothing_twice() {
+fn loading_and_running_a_scene_builds_everything_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path());
     work::take();
@@ -84,12 +85,12 @@ fn loading_and_running_a_scene_does_nothing_twice() {
     assert!(is_once(&counts), "{counts:?}");
     assert_eq!(derived.particles, 800 + 64 + 27);
     assert!(u64::from(simulation.stats().particles) <= derived.particles);
-    // Numbers that do not matter to geometry do not matter here.
+    // A value without influence on the geometry leaves the cache valid.
     let mut other = scene.clone();
     other.solver.cfl_factor = 0.2;
     Derived::new(&other);
     assert!(work::take().is_empty());
-    // Controls: a changed scene is sampled and built anew, and so is one whose particles have been handed over.
+    // Negative controls: a changed scene is sampled again, and so is one whose particles have been taken.
     other.fluid.particle_spacing = 0.06;
     Derived::new(&other);
     assert!(work::take()["fluid sampled"] == 1);
@@ -98,7 +99,7 @@ fn loading_and_running_a_scene_does_nothing_twice() {
 }
 
 #[test]
-fn checking_a_scene_does_nothing_twice() {
+fn checking_a_scene_builds_everything_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path());
     work::take();

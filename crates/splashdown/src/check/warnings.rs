@@ -1,4 +1,4 @@
-//! Legal, but probably not what was meant.
+//! Warnings about values that are valid but probably unintended.
 
 use std::f32::consts::PI;
 
@@ -6,12 +6,13 @@ use crate::scene::{
     DensityMode, Derived, Method, Outlet, Quantity, Reported, Scene, Section, Shape, SinkRegion, outlet,
 };
 
-/// More steps than this take days.
+/// A scene with more steps than this takes days and gives a warning.
 const MANY_STEPS: u64 = 10_000_000;
-/// Below this many times the reference speed a weakly compressible fluid visibly loses volume (4 per cent).
+/// Smallest ratio of the speed of sound to the reference speed that gives no warning. At this ratio the
+/// density of a weakly compressible fluid varies by about 4 %.
 const SLOWEST_SOUND: f32 = 5.0;
 
-/// Notes values of a whole scene that are legal but probably not meant.
+/// Warns of values that are valid but probably unintended.
 pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
     let (fluid, solver) = (&root.section("fluid")?, &root.section("solver")?);
     check_flow(scene, root);
@@ -48,28 +49,28 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         solver.warn(
             name,
             message,
-            &format!("the density may vary by about {percent:.0} %; ten times keeps it within 1 %"),
+            &format!("the density may vary by about {percent:.0} %; a ratio of ten keeps it within 1 %"),
         );
     }
     let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
     if let Some(gauge) = gauge
         && scene.solver.density == DensityMode::Summation
     {
-        // A tenth too low at a floor at rest, and a fifth of an impact's (docs/validation.md): the walls'
-        // damping does the rest.
+        // The pressure is a tenth too low on a floor at rest. In an impact it is a fifth of the correct one,
+        // also because of the walls' damping (docs/validation.md).
         let message = format!(
-            "probe {:?} measures a pressure, but where densities are summed the pressure beside walls is too low",
+            "probe {:?} measures pressure, but with density = \"summation\" the pressure near walls is too low",
             gauge.name
         );
-        solver.warn("density", message, "write density = \"continuity\" under [solver] to measure pressures");
+        solver.warn("density", message, "set density = \"continuity\" under [solver] to measure pressure");
     }
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let width = scene.domain.size()[axis];
-        // Rounding of a domain that is just two supports wide is no fault.
+        // The tolerance allows for rounding in a domain exactly two support radii wide.
         if scene.domain.closed[axis] == [true; 2] && width < 1.999 * derived.support_radius {
             let message = format!(
                 "the domain is {width} m wide along {name}, less than two support radii of {} m: \
-                 particles feel only the nearer of two closed sides",
+                 only the nearer of two closed sides acts on a particle",
                 derived.support_radius
             );
             fluid.warn("particle_spacing", message, "use a finer particle_spacing, or open one of the sides");
@@ -82,20 +83,24 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         let off = |length: &f64| (length - length.round()).abs() > 0.1;
         if let Some(axis) = lengths.iter().position(|length| off(length) && *length < 50.0) {
             let message = format!(
-                "fluid.block[{index}] is {:.2} spacings long along {}: its {} layers of particles hold {:.1} % {} water",
+                "fluid.block[{index}] is {:.2} spacings long along {}: its {} layers of particles have {:.1} % {} volume",
                 lengths[axis],
                 ["x", "y", "z"][axis],
                 lengths[axis].round(),
                 (lengths[axis].round() / lengths[axis] - 1.0).abs() * 100.0,
                 if lengths[axis].round() > lengths[axis] { "more" } else { "less" }
             );
-            fluid.warn("particle_spacing", message, "sizes of whole spacings keep the volume exact");
+            fluid.warn(
+                "particle_spacing",
+                message,
+                "the volume is exact if sizes are multiples of the spacing",
+            );
         }
     }
     Ok(())
 }
 
-/// What emitters, sinks and probes cannot do as they are.
+/// Warns of emitters, sinks and probes that have no effect or an inexact one.
 fn check_flow(scene: &Scene, root: &Section<'_>) {
     let spacing = scene.fluid.particle_spacing;
     for emitter in &scene.emitters {
@@ -108,7 +113,7 @@ fn check_flow(scene: &Scene, root: &Section<'_>) {
         let share = layer.len() as f32 * spacing * spacing / area;
         if !(0.8..1.25).contains(&share) {
             let message = format!(
-                "emitter {name:?} is so narrow that its {} particles across bring {:.3e} m^3/s instead of {:.3e}",
+                "the outlet of emitter {name:?} is too narrow for the spacing: its {} particles per layer emit {:.3e} m^3/s instead of {:.3e}",
                 layer.len(),
                 share * area * emitter.speed,
                 area * emitter.speed
@@ -117,24 +122,24 @@ fn check_flow(scene: &Scene, root: &Section<'_>) {
         }
         if emitter.start >= scene.duration {
             let message = format!(
-                "emitter {name:?} begins at {} s, when the scene has ended at {} s",
+                "emitter {name:?} starts at {} s, after the scene ends at {} s",
                 emitter.start, scene.duration
             );
-            root.warn("emitter", message, "begin earlier, or make the scene longer");
+            root.warn("emitter", message, "start earlier, or make the scene longer");
         }
     }
     for sink in &scene.sinks {
         if let SinkRegion::Box { min, max } = sink.region
             && (min.cmpgt(scene.domain.max).any() || max.cmplt(scene.domain.min).any())
         {
-            let message = format!("sink {:?} lies wholly outside the domain", sink.name);
-            root.warn("sink", message, "nothing can get there: check min and max");
+            let message = format!("sink {:?} lies entirely outside the domain", sink.name);
+            root.warn("sink", message, "it removes no particles: check min and max");
         }
     }
     for probe in &scene.probes {
         if probe.interval.is_some_and(|interval| interval > scene.duration) {
             let message =
-                format!("probe {:?} has a longer interval than the scene, and will write no row", probe.name);
+                format!("the interval of probe {:?} is longer than the scene: it writes no rows", probe.name);
             root.warn("probe", message, "make interval shorter than duration");
         }
     }

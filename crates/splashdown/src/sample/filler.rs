@@ -1,57 +1,60 @@
-//! Puts a scene's sources of fluid together, each beside those before it.
+//! Places the particles of a scene's blocks, meshes and files, and leaves out those that overlap earlier
+//! ones.
 
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
 
-use super::near::Near;
-use super::sources::{bounds, placed, turned_velocities};
+use super::grid::PointGrid;
+use super::sources::{bounds, positions_in_scene, velocities_in_scene};
 use super::{MAX_PARTICLES, SampleError, fitting_spacing};
 use crate::bodies::solid_of;
 use crate::scene::lattice::{self, Sampler};
 use crate::scene::{Domain, Fluid, FluidFile, FluidMesh};
 use crate::solid::Solid;
 
-/// A particle this near to one of an earlier mesh, file or block, in spacings, is left out.
-const CROWDED: f32 = 0.6;
-/// How far a mesh may reach out of the domain, in spacings: for the rounding of positions.
+/// Smallest distance, in spacings, between a new particle and one of an earlier block, mesh or file. Nearer
+/// particles are left out.
+const MIN_DISTANCE: f32 = 0.6;
+/// Tolerance, in spacings, for a mesh that reaches out of the domain. It covers the rounding of positions.
 const SLACK: f32 = 0.02;
 
-/// What became of one source.
+/// The numbers of particles of one source that were added and left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Taken {
+pub(crate) struct Added {
     /// Particles that were added.
-    pub made: u64,
+    pub created: u64,
     /// Particles left out because they overlap an earlier source.
-    pub crowded: u64,
-    /// Left out because they lie outside the domain.
+    pub overlapping: u64,
+    /// Particles left out because they lie outside the domain.
     pub outside: u64,
 }
 
-/// Particles in the making.
+/// Collects the initial particles of a scene, source by source.
 #[derive(Debug)]
 pub(crate) struct Filler<'a> {
     domain: &'a Domain,
     spacing: f32,
     positions: Vec<[f32; 3]>,
     velocities: Vec<[f32; 3]>,
-    near: Near,
+    grid: PointGrid,
 }
 
 impl<'a> Filler<'a> {
-    /// None yet.
+    /// An empty filler; `spacing` in m.
     pub fn new(domain: &'a Domain, spacing: f32) -> Self {
-        Self { domain, spacing, positions: Vec::new(), velocities: Vec::new(), near: Near::new(spacing) }
+        Self { domain, spacing, positions: Vec::new(), velocities: Vec::new(), grid: PointGrid::new(spacing) }
     }
 
-    /// The blocks of a fluid, which must come first.
+    /// Adds the blocks of a fluid. Call it before [`mesh`](Self::mesh) and [`file`](Self::file): blocks are
+    /// not compared with particles that exist already.
     ///
     /// # Errors
-    /// [`SampleError`] if there are too many particles, or some outside the domain.
+    /// [`SampleError`] if there are too many particles, or if one lies outside the domain.
     pub fn blocks(&mut self, fluid: &Fluid) -> Result<(), SampleError> {
         #[cfg(test)]
         crate::work::count("fluid sampled");
         let estimate = lattice::estimate(fluid);
-        self.room_for(estimate)?;
+        self.check_count(estimate)?;
         self.positions.reserve(estimate as usize);
         self.velocities.reserve(estimate as usize);
         let domain = self.domain;
@@ -63,7 +66,7 @@ impl<'a> Filler<'a> {
                     return;
                 }
                 let position = position.map(|x| x as f32);
-                if !holds(domain, position) && outside.is_none() {
+                if !is_inside(domain, position) && outside.is_none() {
                     outside = Some((block, position));
                 }
                 self.positions.push(position);
@@ -75,16 +78,17 @@ impl<'a> Filler<'a> {
             return Err(SampleError::Outside { block, position, min, max });
         }
         if !fluid.meshes.is_empty() || !fluid.files.is_empty() {
-            self.near.insert(&self.positions);
+            self.grid.insert(&self.positions);
         }
         Ok(())
     }
 
-    /// Fills a closed mesh as it was read; `what` names it in messages.
+    /// Fills a closed mesh with particles. `mesh` is the mesh as read; `what` names it in messages.
     ///
     /// # Errors
-    /// [`SampleError`] of the mesh, its place and its number of particles.
-    pub fn mesh(&mut self, what: &str, filled: &FluidMesh, mesh: &Mesh) -> Result<Taken, SampleError> {
+    /// [`SampleError`] if the mesh cannot be filled, reaches outside the domain, or gives no particles or too
+    /// many.
+    pub fn mesh(&mut self, what: &str, filled: &FluidMesh, mesh: &Mesh) -> Result<Added, SampleError> {
         let source = &filled.mesh;
         let solid = solid_of(what, source, mesh, self.domain, self.spacing)?;
         let place = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
@@ -93,9 +97,10 @@ impl<'a> Filler<'a> {
         if low.cmplt(self.domain.min - slack).any() || high.cmpgt(self.domain.max + slack).any() {
             return Err(self.outside(what, "reaches outside the domain", (low, high)));
         }
-        // A mesh of many windings may count parts of its volume twice; what it really makes is counted below.
+        // The volume counts overlapping parts of a mesh twice, so this is an estimate. `add` checks the exact
+        // number.
         let expected = f64::from(solid.mass.volume) / f64::from(self.spacing).powi(3);
-        self.room_for(expected as u64)?;
+        self.check_count(expected as u64)?;
         let points = self.lattice(&solid, filled, low, high);
         if points.is_empty() {
             return Err(SampleError::TooSmall { what: what.to_owned(), spacing: self.spacing });
@@ -104,63 +109,61 @@ impl<'a> Filler<'a> {
         self.add(points.into_iter().map(|x| (x, velocity)))
     }
 
-    /// Points of the lattice inside a solid: that of a box round it, so that what is flush with walls, or has
-    /// whole spacings as its size, comes out as a block does.
+    /// The lattice points inside a solid. The lattice is that of the solid's bounding box, so that a mesh
+    /// which touches a wall, or whose size is a multiple of the spacing, is sampled like a block.
     fn lattice(&self, solid: &Solid, filled: &FluidMesh, low: Vec3, high: Vec3) -> Vec<[f32; 3]> {
-        let box_round = lattice::axes(self.domain, f64::from(self.spacing), low, high);
-        let origin = Vec3::from(box_round.map(|(first, _)| first as f32));
+        let axes = lattice::axes(self.domain, f64::from(self.spacing), low, high);
+        let origin = Vec3::from(axes.map(|(first, _)| first as f32));
         let source = &filled.mesh;
         let mut points = solid.fill(source.position, source.rotation, self.spacing, origin, 0.0);
-        let room = lattice::room(self.domain, f64::from(self.spacing));
-        let in_room =
-            |x: &[f32; 3]| (0..3).all(|a| f64::from(x[a]) >= room.0[a] && f64::from(x[a]) <= room.1[a]);
-        points.retain(in_room);
+        let (min, max) = lattice::particle_bounds(self.domain, f64::from(self.spacing));
+        points.retain(|x| (0..3).all(|a| f64::from(x[a]) >= min[a] && f64::from(x[a]) <= max[a]));
         points
     }
 
-    /// Takes in the particles of a file at their positions; returns these positions, too.
+    /// Adds the particles of a file. Also returns the positions of all of the file's particles in the scene.
     ///
     /// # Errors
-    /// [`SampleError`] of the number of particles, or if most of them lie outside the domain.
+    /// [`SampleError`] if there are too many particles, or if most of them lie outside the domain.
     pub fn file(
         &mut self,
         what: &str,
         file: &FluidFile,
         read: &Particles,
-    ) -> Result<(Taken, Vec<[f32; 3]>), SampleError> {
-        let velocities = turned_velocities(read, file);
-        let positions = placed(read, file);
-        let taken = self.add(positions.iter().copied().zip(velocities))?;
-        if 2 * taken.outside > positions.len() as u64 {
+    ) -> Result<(Added, Vec<[f32; 3]>), SampleError> {
+        let velocities = velocities_in_scene(read, file);
+        let positions = positions_in_scene(read, file);
+        let added = self.add(positions.iter().copied().zip(velocities))?;
+        if 2 * added.outside > positions.len() as u64 {
             let bounds = bounds(positions.iter().map(|x| Vec3::from(*x)));
             return Err(self.outside(what, "lies mostly outside the domain", bounds));
         }
-        Ok((taken, positions))
+        Ok((added, positions))
     }
 
     fn add(
         &mut self,
         particles: impl ExactSizeIterator<Item = ([f32; 3], [f32; 3])>,
-    ) -> Result<Taken, SampleError> {
-        self.room_for(particles.len() as u64)?;
+    ) -> Result<Added, SampleError> {
+        self.check_count(particles.len() as u64)?;
         let before = self.positions.len();
-        let mut taken = Taken::default();
+        let mut added = Added::default();
         for (x, v) in particles {
-            if !holds(self.domain, x) {
-                taken.outside += 1;
-            } else if self.near.crowded(x.into(), CROWDED * self.spacing) {
-                taken.crowded += 1;
+            if !is_inside(self.domain, x) {
+                added.outside += 1;
+            } else if self.grid.any_within(x.into(), MIN_DISTANCE * self.spacing) {
+                added.overlapping += 1;
             } else {
                 self.positions.push(x);
                 self.velocities.push(v);
             }
         }
-        taken.made = (self.positions.len() - before) as u64;
-        self.near.insert(&self.positions[before..]);
-        Ok(taken)
+        added.created = (self.positions.len() - before) as u64;
+        self.grid.insert(&self.positions[before..]);
+        Ok(added)
     }
 
-    fn room_for(&self, more: u64) -> Result<(), SampleError> {
+    fn check_count(&self, more: u64) -> Result<(), SampleError> {
         let count = (self.positions.len() as u64).saturating_add(more);
         if count <= MAX_PARTICLES {
             return Ok(());
@@ -175,13 +178,13 @@ impl<'a> Filler<'a> {
         SampleError::Beyond { what, how, low, high, min, max }
     }
 
-    /// Everything that was put in, numbered from 0.
+    /// The collected particles, with ids from 0.
     pub fn finish(self) -> Particles {
         let ids = (0..self.positions.len() as u32).collect();
         Particles::from_positions(self.positions).with_ids(ids).with_velocities(self.velocities)
     }
 }
 
-fn holds(domain: &Domain, x: [f32; 3]) -> bool {
+fn is_inside(domain: &Domain, x: [f32; 3]) -> bool {
     (0..3).all(|a| x[a] >= domain.min[a] && x[a] <= domain.max[a])
 }

@@ -1,14 +1,17 @@
-//! From the blocks, meshes and files of a scene to particles.
+//! Creates the initial particles of a scene from its blocks, meshes and files.
 //!
-//! A box of whole spacings gets `size / particle_spacing` particles along each axis, the outermost half a
-//! spacing inside its faces: water that stands on a floor starts half a spacing above it, where the wall's
-//! kernel integral expects it (`boundary`). A ball gets those particles of a lattice around its centre that lie
-//! inside; a closed mesh those of the lattice that the box round it would have, so that it keeps its volume.
-//! The particles of a file stay where they are. Where sources overlap, the one written first keeps the room:
-//! blocks, then meshes, then files. The order is theirs, x fastest, then y, then z; ids count from 0.
+//! * A box whose size is a multiple of the spacing gets `size / particle_spacing` particles along each axis.
+//!   The outermost ones lie half a spacing inside its faces: fluid that rests on a floor starts half a
+//!   spacing above it, the distance for which the wall's kernel integral is computed (`boundary`).
+//! * A ball gets the points of a lattice around its centre that lie inside it.
+//! * A closed mesh gets the points inside it of the lattice of its bounding box.
+//! * The particles of a file retain_flagged their positions.
+//!
+//! Blocks come first, then meshes, then files. Where two sources overlap, the particles of the later one are
+//! left out. Within a source, x varies fastest, then y, then z. Ids count from 0.
 
 mod filler;
-mod near;
+mod grid;
 mod sources;
 mod spacing;
 
@@ -22,20 +25,22 @@ use crate::scene::{DensityMode, Fluid, Scene, lattice, place};
 
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
-pub(crate) use filler::{Filler, Taken};
+pub(crate) use filler::{Added, Filler};
 pub(crate) use sources::{Sources, file_title, mesh_title};
 pub use spacing::typical_spacing;
 
-/// How near to a body, in spacings, fluid may start: where densities are summed, and where they are integrated.
+/// Smallest distance, in spacings, between the initial fluid and a body: for density summation, and for
+/// density from the continuity equation.
 ///
-/// A sum feels a particle that is too near, so it keeps just under the half spacing at which fluid touches a
-/// wall. An integrated density feels no gap either: what is left empty here stays empty, and a body would
-/// displace its volume and half a spacing all around it (a fifth of a ball of 12 spacings). Centres of
-/// particles outside fill the room outside.
+/// A summed density is too large if a particle is too near to a body. The distance is therefore just under
+/// half a spacing, at which fluid touches a wall. An integrated density starts at the rest density
+/// everywhere, so the fluid does not close an initial gap around a body. With a gap of half a spacing a body
+/// would displace more than its volume (a quarter more for a ball 12 spacings across), so all particles whose
+/// centres lie outside stay.
 const CLEARANCE: [f32; 2] = [0.49, 0.05];
 
-/// Why a scene could not be filled with particles. [`Scene::load`] reports most of these earlier, with the
-/// file's line; a scene built in code meets them here.
+/// Why a scene could not be filled with particles. [`Scene::load`] reports most of these errors with the line
+/// of the scene file. For a scene built in code they are reported when it is filled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SampleError {
@@ -45,14 +50,14 @@ pub enum SampleError {
          particle_spacing of {fitting} m or more"
     )]
     TooMany {
-        /// How many it would have (an estimate).
+        /// The estimated number of particles.
         count: u64,
         /// The spacing given, in m.
         spacing: f32,
         /// A spacing that fits, in m.
         fitting: f32,
     },
-    /// No particle at all.
+    /// The scene has no particles.
     #[error(
         "the fluid has no particles: there is no block, mesh, file or emitter, or every block is smaller than the particle_spacing of {spacing} m"
     )]
@@ -60,7 +65,7 @@ pub enum SampleError {
         /// The spacing given, in m.
         spacing: f32,
     },
-    /// A mesh that no particle fits into.
+    /// A mesh is too small for a single particle.
     #[error("{what} holds no particle at a spacing of {spacing} m: enlarge it, or refine particle_spacing")]
     TooSmall {
         /// The piece of fluid.
@@ -68,10 +73,10 @@ pub enum SampleError {
         /// The spacing given, in m.
         spacing: f32,
     },
-    /// A mesh that cannot be filled.
+    /// A mesh cannot be filled.
     #[error(transparent)]
     Mesh(Box<BodyError>),
-    /// A file of particles.
+    /// A particle file cannot be read.
     #[error("{what}: {source}")]
     File {
         /// The piece of fluid.
@@ -79,7 +84,7 @@ pub enum SampleError {
         /// What is wrong with the file.
         source: Box<IoError>,
     },
-    /// A mesh or a file outside the domain.
+    /// A mesh reaches outside the domain, or most particles of a file lie outside it.
     #[error(
         "{what} {how}: it spans {} to {} m, the domain is {} to {} m; check its scale, position and rotation, or enlarge the domain",
         place(*low), place(*high), place(*min), place(*max)
@@ -87,7 +92,7 @@ pub enum SampleError {
     Beyond {
         /// The piece of fluid.
         what: String,
-        /// Whether a part of it or all.
+        /// The verb phrase of the message: "reaches outside the domain" or "lies mostly outside the domain".
         how: &'static str,
         /// Its lower corner in m.
         low: [f32; 3],
@@ -98,21 +103,21 @@ pub enum SampleError {
         /// The domain's upper corner, in m.
         max: [f32; 3],
     },
-    /// Bodies take all the room.
+    /// All particles lie inside bodies.
     #[error(
         "no fluid is left: all {removed} particles would be inside bodies; move the bodies or the fluid, or check their scale"
     )]
     AllInside {
-        /// How many there were.
+        /// The number of particles.
         removed: u32,
     },
-    /// A particle outside the domain.
+    /// A particle of a block lies outside the domain.
     #[error(
         "block {block} reaches outside the domain: it has a particle at {position:?} m, the domain is {min:?} to {max:?} m; \
          move or shrink the block, or enlarge the domain"
     )]
     Outside {
-        /// The block's place in `fluid.blocks`, from 0.
+        /// The block's index in `fluid.blocks`.
         block: usize,
         /// The first such particle, in m.
         position: [f32; 3],
@@ -129,11 +134,12 @@ impl From<BodyError> for SampleError {
     }
 }
 
-/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s); densities and pressures are
-/// absent. Of a file's particles those outside the domain are left out.
+/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s), without densities and
+/// pressures. Particles of a file that lie outside the domain are left out.
 ///
 /// # Errors
-/// [`SampleError`] if there are none, too many, or some outside the domain; or a mesh or file cannot be used.
+/// [`SampleError`] if there are no particles or too many, if a block or mesh reaches outside the domain, or
+/// if a mesh or file cannot be used.
 pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
     let particles = fill(scene, Sources::read(&scene.fluid))?;
     if particles.is_empty() && scene.emitters.is_empty() {
@@ -142,7 +148,7 @@ pub fn particles(scene: &Scene) -> Result<Particles, SampleError> {
     Ok(particles)
 }
 
-/// As [`particles`], from meshes and files that have been read. There may be none.
+/// As [`particles`], from meshes and files that have been read. The result may be empty.
 pub(crate) fn fill(scene: &Scene, sources: Sources) -> Result<Particles, SampleError> {
     let fluid = &scene.fluid;
     let mut filler = Filler::new(&scene.domain, fluid.particle_spacing);
@@ -161,9 +167,10 @@ pub(crate) fn has_blocks_only(fluid: &Fluid) -> bool {
     fluid.meshes.is_empty() && fluid.files.is_empty()
 }
 
-/// How many particles [`particles`] makes. Of blocks they are counted without storing them: exact up to
-/// [`MAX_PARTICLES`], above that an estimate from the blocks' volumes, quick for sizes of any kind. Meshes are
-/// filled and files read; one that cannot be used counts as none.
+/// The number of particles that [`particles`] returns. The particles of blocks are counted without storing
+/// them: the number is exact up to [`MAX_PARTICLES`] and an estimate from the volumes above, so it is fast
+/// for blocks of any size. Meshes are filled and files are read. If one of them cannot be used, only blocks
+/// are counted.
 pub fn count(scene: &Scene) -> u64 {
     let fluid = &scene.fluid;
     let of_blocks = lattice::count(&scene.domain, fluid);
@@ -177,7 +184,7 @@ pub fn count(scene: &Scene) -> u64 {
     }
 }
 
-/// What becomes of a scene's particles.
+/// The numbers of particles of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Inventory {
@@ -185,11 +192,12 @@ pub struct Inventory {
     pub particles: u64,
     /// Particles of blocks, meshes and files that are left out because they would be inside bodies.
     pub removed: u64,
-    /// Particles that the emitters will bring until the scene's end.
+    /// Particles that the emitters create until the scene's end.
     pub emitted: u64,
 }
 
-/// Takes out the particles that lie inside bodies or too near to one; how many. Ids count from 0 again.
+/// Removes the particles inside or too near to a body, renumbers the ids from 0 and returns the number
+/// removed.
 pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) -> u32 {
     let removed = retain_outside(scene, particles, &bodies.iter().collect::<Vec<_>>());
     if removed > 0 {
@@ -198,7 +206,7 @@ pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[
     removed
 }
 
-/// Takes out the particles that lie inside bodies, as they stand at the start, or too near to one; how many.
+/// Removes the particles inside or too near to a body at its initial pose and returns the number removed.
 pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &[&LoadedBody]) -> u32 {
     let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
     let clearance = clearance * scene.fluid.particle_spacing;
@@ -211,17 +219,17 @@ pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &
     let kept: Vec<bool> = particles.positions.par_iter().map(|&x| free(x.into())).collect();
     let removed = kept.iter().filter(|kept| !**kept).count();
     if removed > 0 {
-        keep(&mut particles.positions, &kept);
-        keep(&mut particles.velocities, &kept);
-        keep(&mut particles.ids, &kept);
-        keep(&mut particles.densities, &kept);
-        keep(&mut particles.pressures, &kept);
+        retain_flagged(&mut particles.positions, &kept);
+        retain_flagged(&mut particles.velocities, &kept);
+        retain_flagged(&mut particles.ids, &kept);
+        retain_flagged(&mut particles.densities, &kept);
+        retain_flagged(&mut particles.pressures, &kept);
     }
     removed as u32
 }
 
-/// Those that are kept; a quantity that particles do not have is an empty list and stays one.
-fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+/// Removes the values whose flag is false. The list of an absent quantity is empty and stays empty.
+fn retain_flagged<T>(values: &mut Vec<T>, kept: &[bool]) {
     let mut kept = kept.iter();
     values.retain(|_| *kept.next().unwrap_or(&true));
 }

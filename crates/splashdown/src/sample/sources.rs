@@ -1,4 +1,4 @@
-//! The meshes and files of the initial fluid, as they were read.
+//! Reads the meshes and files of the initial fluid.
 
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
@@ -12,12 +12,12 @@ use crate::scene::{Fluid, FluidFile, FluidMesh, MeshShape, Reach};
 pub(crate) struct Sources {
     /// Meshes in m, in their own frames.
     pub meshes: Vec<Result<Mesh, SampleError>>,
-    /// Particles as they are in the files.
+    /// Particles in the frames of the files.
     pub files: Vec<Result<Particles, SampleError>>,
 }
 
 impl Sources {
-    /// Reads everything.
+    /// Reads all meshes and files.
     pub fn read(fluid: &Fluid) -> Self {
         let meshes = fluid.meshes.iter().enumerate();
         let files = fluid.files.iter().enumerate();
@@ -38,8 +38,8 @@ impl Sources {
         });
         let files = fluid.files.iter().zip(&self.files).filter_map(|(file, read)| {
             let read = read.as_ref().ok()?;
-            let (low, high) = bounds(placed(read, file).into_iter().map(Vec3::from));
-            let speeds = turned_velocities(read, file).into_iter().map(|v| Vec3::from(v).length());
+            let (low, high) = bounds(positions_in_scene(read, file).into_iter().map(Vec3::from));
+            let speeds = velocities_in_scene(read, file).into_iter().map(|v| Vec3::from(v).length());
             Some(Reach { low, high, speed: speeds.fold(0.0, f32::max) })
         });
         meshes.chain(files).collect()
@@ -54,12 +54,12 @@ fn read_file(what: &str, file: &FluidFile) -> Result<Particles, SampleError> {
 }
 
 /// The positions of a file's particles in the scene, in m.
-pub(super) fn placed(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
+pub(super) fn positions_in_scene(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
     read.positions.iter().map(|x| file.place(Vec3::from(*x)).to_array()).collect()
 }
 
 /// The velocities of a file's particles in the scene, in m/s.
-pub(super) fn turned_velocities(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
+pub(super) fn velocities_in_scene(read: &Particles, file: &FluidFile) -> Vec<[f32; 3]> {
     if read.velocities.is_empty() {
         return vec![file.velocity.to_array(); read.positions.len()];
     }
@@ -71,7 +71,7 @@ pub(super) fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// What a piece of fluid from a mesh is called in messages.
+/// How messages name a mesh of the fluid.
 pub(crate) fn mesh_title(index: usize, filled: &FluidMesh) -> String {
     match &filled.mesh.shape {
         MeshShape::Model(name) => format!("fluid.mesh[{index}] ({name:?})"),
@@ -79,7 +79,7 @@ pub(crate) fn mesh_title(index: usize, filled: &FluidMesh) -> String {
     }
 }
 
-/// What a file of particles is called in messages.
+/// How messages name a particle file.
 pub(crate) fn file_title(index: usize, file: &FluidFile) -> String {
     format!("fluid.file[{index}] ({:?})", file.path.file_name().unwrap_or_default())
 }

@@ -1,35 +1,35 @@
-//! How far from each other the particles of a file are.
+//! Estimates the spacing of the particles of a file.
 
 use rayon::prelude::*;
 
-/// Distances that are looked at, particles times samples.
-const WORK: usize = 200_000_000;
-/// Most particles whose neighbours are looked for.
-const MOST_SAMPLES: usize = 1000;
-/// The neighbour whose distance is taken: on a lattice the corner of a box has three at one spacing. Of
-/// simulated fluids it is the one whose distance is nearest to the spacing that they were made with (1.02 to
-/// 1.03 times that of two runs of DFSPH).
+/// Maximum number of distances to compute: particles times samples.
+const MAX_DISTANCES: usize = 200_000_000;
+/// Maximum number of particles whose neighbours are searched.
+const MAX_SAMPLES: usize = 1000;
+/// The rank of the neighbour whose distance is used. The corner of a box on a lattice has three neighbours at
+/// one spacing. In simulated fluids the distance of the third neighbour is the nearest to the initial
+/// spacing: 1.02 to 1.03 times as large in two DFSPH runs.
 const NEIGHBOUR: usize = 3;
 
-/// The spacing of a lattice with neighbours as far as these particles have theirs, in m: the median distance of
-/// the third neighbour over some particles. `None` for fewer than four.
+/// Estimates the particle spacing in m: the median distance to the third-nearest neighbour over a sample of
+/// the particles. `None` for fewer than four particles.
 pub fn typical_spacing(positions: &[[f32; 3]]) -> Option<f32> {
     let n = positions.len();
     if n <= NEIGHBOUR {
         return None;
     }
-    let samples = (WORK / n).clamp(16, MOST_SAMPLES).min(n);
+    let samples = (MAX_DISTANCES / n).clamp(16, MAX_SAMPLES).min(n);
     let mut distances: Vec<f32> = (0..samples)
         .into_par_iter()
         .map(|k| {
             let x = positions[(k as u64 * n as u64 / samples as u64) as usize];
-            // Of the particle itself and its nearest neighbours, nearest first.
+            // Squared distances to the particle itself and its nearest neighbours, nearest first.
             let mut nearest = [f32::INFINITY; NEIGHBOUR + 1];
             for y in positions {
                 let mut squared: f32 = (0..3).map(|a| (x[a] - y[a]) * (x[a] - y[a])).sum();
-                for place in &mut nearest {
-                    if squared < *place {
-                        std::mem::swap(place, &mut squared);
+                for smallest in &mut nearest {
+                    if squared < *smallest {
+                        std::mem::swap(smallest, &mut squared);
                     }
                 }
             }
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lattice_has_its_own_spacing_be_it_full_flat_or_shifted() {
+    fn the_spacing_of_a_lattice_is_found() {
         let lattice = |n: [i32; 3], spacing: f32| -> Vec<[f32; 3]> {
             let points = (0..n[0] * n[1] * n[2]).map(|i| [i % n[0], i / n[0] % n[1], i / (n[0] * n[1])]);
             points.map(|p| p.map(|c| c as f32 * spacing)).collect()
@@ -55,6 +55,6 @@ mod tests {
             assert!((found / 0.013 - 1.0).abs() < 1e-4, "{n:?}: {found}");
         }
         assert_eq!(typical_spacing(&lattice([3, 1, 1], 0.1)), None);
-        assert_eq!(typical_spacing(&[[0.5; 3]; 8]), Some(0.0), "all at one place");
+        assert_eq!(typical_spacing(&[[0.5; 3]; 8]), Some(0.0), "all at one smallest");
     }
 }

@@ -167,7 +167,7 @@ fn report_overlaps(domain: &Domain, fluid: &Fluid, blocks: &[ReadBlock<'_>]) {
                 grouped(made + left_out)
             );
             let name = if section.has("position") { "position" } else { "center" };
-            section.warn(name, message, "the water there is sampled once, with the earlier block's velocity");
+            section.warn(name, message, "the particles there have the earlier block's velocity");
         }
     }
 }

@@ -1,19 +1,20 @@
-//! The lattices of blocks: where their particles are, and how many there are.
+//! The positions and numbers of the particles of blocks.
 
 use glam::Vec3;
 
 use super::types::{Domain, Fluid, Shape};
 
-/// Most particles of a scene: 2^26.
+/// Maximum number of particles of a scene: 2^26.
 pub const MAX_PARTICLES: u64 = 1 << 26;
 
-/// How near a block's face must be to a wall to touch it, in spacings: positions in f32 are not exact.
+/// A block's face touches a wall if it is no further from it than this, in spacings. It covers the rounding
+/// of positions to f32.
 const TOUCH: f64 = 0.02;
-/// A particle this near to an earlier block, in spacings, would be pressed against that block's particles.
-/// Those stand half a spacing inside, so three quarters of a spacing is the smallest distance that remains.
-const CROWDED: f64 = 0.25;
+/// Particles no further than this from an earlier block, in spacings, are left out. The block's particles lie
+/// half a spacing inside its faces, so at least three quarters of a spacing remain between the particles.
+const MARGIN: f64 = 0.25;
 
-/// A shape in f64.
+/// A block's shape in f64.
 #[derive(Debug, Clone, Copy)]
 enum Solid {
     Box { min: [f64; 3], max: [f64; 3] },
@@ -41,7 +42,7 @@ impl Solid {
     }
 
     /// Whether a point is inside, or no further than `margin` outside.
-    fn holds(&self, point: [f64; 3], margin: f64) -> bool {
+    fn contains(&self, point: [f64; 3], margin: f64) -> bool {
         match self {
             Self::Box { min, max } => {
                 (0..3).all(|a| point[a] > min[a] - margin && point[a] < max[a] + margin)
@@ -54,7 +55,7 @@ impl Solid {
     }
 }
 
-/// Particles of a shape by its volume.
+/// The number of particles of a shape, estimated from its volume.
 fn estimate_of(shape: &Shape, spacing: f64) -> f64 {
     let cells = |length: f32| (f64::from(length) / spacing).max(0.0);
     match *shape {
@@ -63,7 +64,7 @@ fn estimate_of(shape: &Shape, spacing: f64) -> f64 {
     }
 }
 
-/// Particles of the blocks of a fluid: exact up to [`MAX_PARTICLES`], above that an estimate.
+/// The number of particles of a fluid's blocks: exact up to [`MAX_PARTICLES`], an estimate above.
 pub(crate) fn count(domain: &Domain, fluid: &Fluid) -> u64 {
     let estimate = estimate(fluid);
     if estimate > MAX_PARTICLES {
@@ -72,21 +73,21 @@ pub(crate) fn count(domain: &Domain, fluid: &Fluid) -> u64 {
     Sampler::all(domain, fluid).iter().map(|sampler| sampler.counts().0).sum()
 }
 
-/// Particles from the blocks' volumes, overlaps counted twice.
+/// The number of particles estimated from the blocks' volumes. Overlaps are counted twice.
 pub(crate) fn estimate(fluid: &Fluid) -> u64 {
     let spacing = f64::from(fluid.particle_spacing);
     // `as` saturates, and makes a NaN 0.
     fluid.blocks.iter().map(|block| estimate_of(&block.shape, spacing)).sum::<f64>() as u64
 }
 
-/// A spacing at which `count` particles become no more than `allowed`, rounded up to two digits.
+/// The spacing, rounded up to two digits, at which `count` particles become at most `allowed`.
 pub(crate) fn fitting_spacing(spacing: f32, count: u64, allowed: u64) -> f32 {
     let exact = f64::from(spacing) * (count as f64 / allowed.max(1) as f64).cbrt();
     let unit = 10f64.powf(exact.log10().floor() - 1.0);
     ((exact / unit * 1.001).ceil() * unit) as f32
 }
 
-/// Makes the particles of one block.
+/// Creates the particles of one block.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     solid: Solid,
@@ -95,12 +96,12 @@ pub(crate) struct Sampler {
     spacing: f64,
     /// Earlier blocks that may overlap this one.
     earlier: Vec<Solid>,
-    /// Half a spacing inside the closed walls, without limit at open sides.
-    room: ([f64; 3], [f64; 3]),
+    /// See [`particle_bounds`].
+    bounds: ([f64; 3], [f64; 3]),
 }
 
 impl Sampler {
-    /// One for each block of the fluid.
+    /// One sampler for each block of the fluid.
     pub fn all(domain: &Domain, fluid: &Fluid) -> Vec<Self> {
         let spacing = f64::from(fluid.particle_spacing);
         let solids: Vec<Solid> = fluid.blocks.iter().map(|block| Solid::new(&block.shape)).collect();
@@ -121,7 +122,7 @@ impl Sampler {
         let axes: [(f64, u64); 3] = std::array::from_fn(along);
         let near = |other: &&Solid| {
             let (other_low, other_high) = other.bounds();
-            let reach = CROWDED * spacing;
+            let reach = MARGIN * spacing;
             (0..3).all(|a| other_low[a] - reach < high[a] && other_high[a] + reach > low[a])
         };
         Self {
@@ -130,11 +131,11 @@ impl Sampler {
             counts: axes.map(|(_, count)| count),
             spacing,
             earlier: before.iter().filter(near).copied().collect(),
-            room: room(domain, spacing),
+            bounds: particle_bounds(domain, spacing),
         }
     }
 
-    /// Calls `visit(position, free)` for each particle, x fastest; `free` is false where an earlier block already is.
+    /// Calls `visit(position, free)` for each particle, x fastest; `free` is false inside an earlier block.
     pub fn for_each(&self, mut visit: impl FnMut([f64; 3], bool)) {
         let at = |axis: usize, index: u64| self.first[axis] + index as f64 * self.spacing;
         for k in 0..self.counts[2] {
@@ -142,38 +143,39 @@ impl Sampler {
                 for i in 0..self.counts[0] {
                     let point = [at(0, i), at(1, j), at(2, k)];
                     if self.is_filled(point) {
-                        let crowded = |solid: &Solid| solid.holds(point, CROWDED * self.spacing);
-                        visit(point, !self.earlier.iter().any(crowded));
+                        let overlaps = |solid: &Solid| solid.contains(point, MARGIN * self.spacing);
+                        visit(point, !self.earlier.iter().any(overlaps));
                     }
                 }
             }
         }
     }
 
-    /// How many particles it makes, and how many it leaves out because they overlap an earlier block.
+    /// The number of particles created, and the number left out because they overlap an earlier block.
     pub fn counts(&self) -> (u64, u64) {
         if let (Solid::Box { .. }, true) = (&self.solid, self.earlier.is_empty()) {
             return (self.counts.into_iter().fold(1, u64::saturating_mul), 0);
         }
-        let (mut made, mut left_out) = (0, 0);
-        self.for_each(|_, free| if free { made += 1 } else { left_out += 1 });
-        (made, left_out)
+        let (mut created, mut left_out) = (0, 0);
+        self.for_each(|_, free| if free { created += 1 } else { left_out += 1 });
+        (created, left_out)
     }
 
-    /// A box is filled whole; a ball keeps away from walls, which it would otherwise touch with a few particles.
+    /// Whether a lattice point lies in the shape. All points of a box do. The points of a ball that are
+    /// nearer than half a spacing to a wall are left out.
     fn is_filled(&self, point: [f64; 3]) -> bool {
         match &self.solid {
             Solid::Box { .. } => true,
             ball => {
-                let in_room = (0..3).all(|a| point[a] >= self.room.0[a] && point[a] <= self.room.1[a]);
-                in_room && ball.holds(point, 0.0)
+                let (min, max) = self.bounds;
+                (0..3).all(|a| point[a] >= min[a] && point[a] <= max[a]) && ball.contains(point, 0.0)
             }
         }
     }
 }
 
-/// First coordinate (m) and number of the particles of a box along an axis: on the walls that it touches, else
-/// in its middle.
+/// The first coordinate (m) and the number of the particles of a box along an axis. They start half a spacing
+/// from a wall that the box touches; otherwise they are centred in the box.
 fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) -> (f64, u64) {
     let length = (high - low) / spacing;
     let closed = domain.closed[axis];
@@ -181,7 +183,7 @@ fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) ->
     let touches_low = closed[0] && (low - place[0]).abs() <= TOUCH * spacing;
     let touches_high = closed[1] && (place[1] - high).abs() <= TOUCH * spacing;
     let (count, start) = match (touches_low, touches_high) {
-        // From wall to wall nothing may be squeezed in.
+        // Rounding up would compress the fluid between two walls.
         (true, true) => centred((length + TOUCH).floor(), length, spacing),
         (true, false) => (length.round(), 0.5 * spacing),
         (false, true) => (length.round(), (length - length.round() + 0.5) * spacing),
@@ -195,8 +197,9 @@ pub(crate) fn axes(domain: &Domain, spacing: f64, low: Vec3, high: Vec3) -> [(f6
     std::array::from_fn(|a| along_box(domain, spacing, a, f64::from(low[a]), f64::from(high[a])))
 }
 
-/// Corners in m of where particles may be: half a spacing inside the closed walls, without limit at open sides.
-pub(crate) fn room(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
+/// The corners in m of the box in which particles may lie: half a spacing inside closed sides, unbounded at
+/// open sides.
+pub(crate) fn particle_bounds(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
     let low = |axis: usize| match domain.closed[axis][0] {
         true => f64::from(domain.min[axis]) + (0.5 - TOUCH) * spacing,
         false => f64::NEG_INFINITY,
@@ -208,7 +211,8 @@ pub(crate) fn room(domain: &Domain, spacing: f64) -> ([f64; 3], [f64; 3]) {
     (std::array::from_fn(low), std::array::from_fn(high))
 }
 
-/// `count` particles in the middle of a length given in spacings.
+/// `count` particles centred in a length given in spacings: their number, and the offset in m of the first
+/// one.
 fn centred(count: f64, length: f64, spacing: f64) -> (f64, f64) {
     (count, (length - count + 1.0) * 0.5 * spacing)
 }

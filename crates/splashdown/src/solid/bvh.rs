@@ -1,35 +1,35 @@
-//! A tree of boxes over triangles: nearest distance, winding number, and crossings of a ray.
+//! A bounding volume hierarchy of triangles, for nearest distances and winding numbers.
 
 use glam::Vec3;
 
-/// Triangles in a leaf.
+/// Maximum number of triangles in a leaf.
 const LEAF: usize = 4;
-/// A cluster of triangles counts as one dipole from farther than this many of its radii (Barill et al. 2018).
+/// A node is approximated by a dipole beyond this distance, in radii of the node (Barill et al. 2018).
 const FAR: f32 = 2.3;
 
 struct Node {
     low: Vec3,
     high: Vec3,
-    /// The first child, the second follows it; or the first triangle.
+    /// Index of the first child, which the second one follows, or of the first triangle of a leaf.
     first: u32,
     /// Number of triangles of a leaf; 0 for an inner node.
     count: u32,
-    /// Area-weighted centre of its triangles.
+    /// Area-weighted centre of the node's triangles.
     center: Vec3,
-    /// Sum of their normals times areas.
+    /// Sum of the triangles' normals times their areas.
     dipole: Vec3,
-    /// Distance of its farthest corner from `center`.
+    /// Distance of the farthest corner from `center`.
     radius: f32,
 }
 
-/// The tree.
+/// The hierarchy of nodes and the triangles in its order.
 pub(super) struct Bvh {
     nodes: Vec<Node>,
     triangles: Vec<[Vec3; 3]>,
 }
 
 impl Bvh {
-    /// Builds the tree by splitting at the median of the widest axis. There must be a triangle.
+    /// Builds the tree by splitting at the median of the widest axis. `triangles` must not be empty.
     pub fn new(mut triangles: Vec<[Vec3; 3]>) -> Self {
         let mut nodes = Vec::with_capacity(2 * triangles.len() / LEAF + 1);
         nodes.push(summary(&triangles, 0, triangles.len()));
@@ -59,7 +59,7 @@ impl Bvh {
         Self { nodes, triangles }
     }
 
-    /// Distance from `x` to the nearest triangle, if it is less than `most`; else `most`.
+    /// The distance from `x` to the nearest triangle, at most `most`.
     pub fn distance(&self, x: Vec3, most: f32) -> f32 {
         let mut best = most * most;
         let mut stack = [0u32; 64];
@@ -78,7 +78,7 @@ impl Bvh {
             }
             let [a, b] = [node.first, node.first + 1];
             let [da, db] = [a, b].map(|c| box_distance(&self.nodes[c as usize], x));
-            // The nearer one is taken first.
+            // The nearer child goes on top of the stack, so that it is visited first.
             let order = if da <= db { [b, a] } else { [a, b] };
             stack[depth..depth + 2].copy_from_slice(&order);
             depth += 2;
@@ -134,7 +134,7 @@ fn box_distance(node: &Node, x: Vec3) -> f32 {
     x.clamp(node.low, node.high).distance_squared(x)
 }
 
-/// The solid angle of a triangle (van Oosterom & Strackee 1983).
+/// The solid angle of a triangle seen from `x` (van Oosterom & Strackee 1983).
 pub(super) fn solid_angle(x: Vec3, t: &[Vec3; 3]) -> f32 {
     let [a, b, c] = t.map(|corner| corner - x);
     let (la, lb, lc) = (a.length(), b.length(), c.length());
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_and_winding_numbers_of_a_cube_are_those_of_the_formula() {
+    fn distances_and_winding_numbers_of_a_cube_match_the_formula() {
         let bvh = Bvh::new(cube());
         for k in 0..1000u32 {
             let x = Vec3::new((k % 10) as f32, (k / 10 % 10) as f32, (k / 100) as f32) * 0.23 - 1.03;

@@ -1,4 +1,4 @@
-//! Solids on disk, found again by what they were made from.
+//! A cache of solids on disk. The file name is a hash of the inputs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,11 +9,11 @@ use splashdown_io::Mesh;
 use super::field::DistanceField;
 use super::{RepairReport, SolidSettings};
 
-/// Changes when the content of a file would change.
+/// Version of the file contents. Increase it when the same inputs give a different solid.
 const VERSION: u32 = 2;
 const MAGIC: &[u8; 8] = b"SDSOLID2";
 
-/// Where solids are kept unless told otherwise: `splashdown/solids` in the user's cache folder, if there is one.
+/// The default cache folder of solids: `splashdown/solids` in the user's cache folder, if there is one.
 pub fn default_cache_folder() -> Option<PathBuf> {
     let from = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let base = from("XDG_CACHE_HOME")
@@ -40,7 +40,7 @@ pub(super) fn file(folder: &Path, mesh: &Mesh, settings: &SolidSettings) -> Path
     folder.join(format!("{:032x}.solid", hash.0))
 }
 
-/// FNV-1a of 128 bits: a name, not a secret.
+/// The 128-bit FNV-1a hash. It names files and detects damage; it need not be cryptographic.
 struct Fnv(u128);
 
 impl Default for Fnv {
@@ -63,7 +63,7 @@ fn hash_of(bytes: &[u8]) -> u128 {
     hash.0
 }
 
-/// What is stored beside the numbers.
+/// The header of a cache file.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Header {
     report: RepairReport,
@@ -74,7 +74,7 @@ struct Header {
     nodes: [u32; 3],
 }
 
-/// Reads a solid back; `None` if there is none or it is damaged.
+/// Reads a solid; `None` if the file is missing or damaged.
 pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
     let bytes = fs::read(path).ok()?;
     let (content, sum) = bytes.split_last_chunk::<16>()?;
@@ -101,7 +101,7 @@ pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
     Some((mesh, header.report, field))
 }
 
-/// Writes a solid. A cache that cannot be written costs time, not the run: it is told to the log.
+/// Writes a solid. A failure is only logged: the next run then builds the solid again.
 pub(super) fn save(path: &Path, mesh: &Mesh, report: RepairReport, field: &DistanceField) {
     let write = || -> std::io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
@@ -127,6 +127,6 @@ pub(super) fn save(path: &Path, mesh: &Mesh, report: RepairReport, field: &Dista
         fs::rename(&partial, path).inspect_err(|_| drop(fs::remove_file(&partial)))
     };
     if let Err(error) = write() {
-        tracing::warn!("{}: the solid is not kept for the next run: {error}", path.display());
+        tracing::warn!("{}: the solid could not be cached: {error}", path.display());
     }
 }

@@ -1,4 +1,4 @@
-//! Signed distances on a grid, and the share of the kernel that the solid fills.
+//! Signed distances on a grid, and the fraction of the kernel that the solid fills.
 
 use glam::{UVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -6,28 +6,28 @@ use rayon::prelude::*;
 use super::bvh::Bvh;
 use crate::boundary::KernelPair;
 
-/// Distances on the nodes of a grid round a solid, in the frame of its mesh.
+/// Distances on the nodes of a grid around a solid, in the frame of its mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceField {
     /// The first node, in m.
     pub min: Vec3,
-    /// Distance of the nodes in m.
+    /// Distance between the nodes in m.
     pub cell_size: f32,
-    /// Nodes along each axis.
+    /// Number of nodes along each axis.
     pub nodes: [u32; 3],
-    /// Per node, x fastest: the signed distance in m, negative inside; and the distance of the plane wall that
-    /// would fill the same share of the kernel.
+    /// Per node, x fastest: the signed distance in m, negative inside; and the effective distance in m, which
+    /// is the distance of the plane wall that fills the same fraction of the kernel.
     pub values: Vec<Vec2>,
 }
 
-/// Nodes of a block that is settled at once where it is far from the surface.
+/// Edge length of a block in nodes. All nodes of a block that is far from the surface get one value.
 const BLOCK: u32 = 8;
-/// Points of the quadrature along the diameter of the kernel.
+/// Number of quadrature points along the diameter of the kernel.
 const POINTS: i32 = 12;
 
 impl DistanceField {
-    /// Fills the grid. `half_thickness` makes a shell of the mesh; without it the winding number tells inside
-    /// from outside.
+    /// Computes the distances. With `half_thickness` the mesh is a shell; without it the winding number
+    /// decides between inside and outside.
     pub(super) fn new(
         bvh: &Bvh,
         bounds: (Vec3, Vec3),
@@ -54,12 +54,12 @@ impl DistanceField {
         field
     }
 
-    /// Distances of the planes of nodes from `first_z`.
+    /// The distances of up to `BLOCK` planes of nodes, starting at `first_z`.
     fn slab(&self, bvh: &Bvh, first_z: u32, band: f32, half_thickness: Option<f32>) -> Vec<f32> {
         let [nx, ny, nz] = self.nodes;
         let depth = BLOCK.min(nz - first_z);
         let mut slab = vec![0.0; (nx * ny * depth) as usize];
-        let place = |x: u32, y: u32, z: u32| ((z * ny + y) * nx + x) as usize;
+        let index = |x: u32, y: u32, z: u32| ((z * ny + y) * nx + x) as usize;
         let half = 0.5 * BLOCK as f32 * self.cell_size;
         for block_y in (0..ny).step_by(BLOCK as usize) {
             for block_x in (0..nx).step_by(BLOCK as usize) {
@@ -75,7 +75,7 @@ impl DistanceField {
                     for y in block_y..(block_y + BLOCK).min(ny) {
                         let (mut last, mut last_sign) = (f32::INFINITY, 0.0);
                         for x in block_x..(block_x + BLOCK).min(nx) {
-                            slab[place(x, y, z)] = if far {
+                            slab[index(x, y, z)] = if far {
                                 block_sign * nearest
                             } else {
                                 let p = self.node(UVec3::new(x, y, first_z + z));
@@ -83,8 +83,8 @@ impl DistanceField {
                                 match half_thickness {
                                     Some(half) => d - half,
                                     None => {
-                                        // The surface cannot lie between nodes that are farther from it than
-                                        // from each other.
+                                        // The sign cannot change between two nodes if the first one is
+                                        // farther from the surface than from the second.
                                         if last_sign == 0.0 || last.abs() <= self.cell_size {
                                             last_sign = sign(p);
                                         }
@@ -101,11 +101,12 @@ impl DistanceField {
         slab
     }
 
-    /// Fills in the effective distances: H q with D(q) = the solid's share of the kernel.
+    /// Computes the effective distances: H q, where D(q) is the fraction of the kernel that the solid fills.
     ///
-    /// The share is a sum over points of the ball, each with the part of it that is inside, and is compared
-    /// with what the same sum gives for the plane wall at the same distance, whose exact share is known. So a
-    /// plane comes out exact, and errors of the quadrature cancel where shares are tiny.
+    /// The fraction is a quadrature over the points of the kernel's support, each weighted with the part of
+    /// its cell that is inside. It is scaled by the ratio of the exact value and the quadrature for a plane
+    /// wall at the same distance. The result is exact for a plane, and quadrature errors cancel for small
+    /// fractions.
     pub(super) fn fill_effective(
         &mut self,
         support_radius: f32,
@@ -127,7 +128,7 @@ impl DistanceField {
         }
         let total: f32 = ball.iter().map(|(_, w)| w).sum();
         ball.iter_mut().for_each(|(_, w)| *w /= total);
-        let grain = step * support_radius;
+        let sample_size = step * support_radius;
         let plane = (self.nodes[0] * self.nodes[1]) as usize;
         let slices = self.nodes[2];
         let effective: Vec<Vec<f32>> = (0..slices)
@@ -140,7 +141,7 @@ impl DistanceField {
                         if phi.abs() >= support_radius {
                             return phi;
                         }
-                        self.effective(at, phi, support_radius, kernels, &ball, grain)
+                        self.effective(at, phi, support_radius, kernels, &ball, sample_size)
                     })
                     .collect();
                 progress(0.5 / slices as f32);
@@ -159,15 +160,15 @@ impl DistanceField {
         support: f32,
         kernels: KernelPair,
         ball: &[(Vec3, f32)],
-        grain: f32,
+        sample_size: f32,
     ) -> f32 {
         let x = self.node(at);
         let e = 0.5 * self.cell_size;
         let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
-        // In the middle of a wall or a slot the distance has no slope; any plane at that distance serves for
-        // comparison.
+        // The gradient vanishes in the middle of a wall or slot. A plane of any orientation is a valid
+        // reference there.
         let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or(Vec3::X);
-        let inside = |distance: f32| (0.5 - distance / grain).clamp(0.0, 1.0);
+        let inside = |distance: f32| (0.5 - distance / sample_size).clamp(0.0, 1.0);
         let (mut solid, mut plane) = (0.0, 0.0);
         for &(r, w) in ball {
             solid += w * inside(self.distance(x + r));
@@ -176,23 +177,23 @@ impl DistanceField {
         if plane <= 1e-7 {
             return phi;
         }
-        let exact = through(kernels, phi / support);
-        // Above one half the complement is what is small.
+        let exact = wall_fraction(kernels, phi / support);
+        // Above one half the complement is the small quantity, so the ratio is applied to it.
         let kernel_fraction = if exact > 0.5 {
             1.0 - (1.0 - exact) * ((1.0 - solid) / (1.0 - plane).max(1e-7))
         } else {
             exact * solid / plane
         };
-        support * q_of(kernels, kernel_fraction.clamp(0.0, 1.0))
+        support * inverse_wall_fraction(kernels, kernel_fraction.clamp(0.0, 1.0))
     }
 
-    /// The place of a node in m.
+    /// The position of a node in m.
     pub fn node(&self, at: UVec3) -> Vec3 {
         self.min + at.as_vec3() * self.cell_size
     }
 
-    /// The signed distance in m at a point of the mesh's frame: trilinear; outside the grid that of the nearest
-    /// point on its rim plus the way there.
+    /// The signed distance in m at a point of the mesh's frame, by trilinear interpolation. Outside the grid
+    /// it is the value at the nearest point of the grid's boundary plus the distance to that point.
     pub fn distance(&self, x: Vec3) -> f32 {
         let size = UVec3::from_array(self.nodes);
         let high = self.min + (size - UVec3::ONE).as_vec3() * self.cell_size;
@@ -211,22 +212,22 @@ impl DistanceField {
     }
 }
 
-/// D(q) on both sides of a wall.
-fn through(kernels: KernelPair, q: f32) -> f32 {
+/// The kernel fraction D(q) of a plane wall for signed q: 1 - D(-q) inside the wall.
+fn wall_fraction(kernels: KernelPair, q: f32) -> f32 {
     let d = if q.abs() < 1.0 { kernels.gradient(q.abs()).0 } else { 0.0 };
     if q < 0.0 { 1.0 - d } else { d }
 }
 
-/// Its inverse.
-fn q_of(kernels: KernelPair, kernel_fraction: f32) -> f32 {
-    // Shares below one half are exact down to tiny ones, so those above are asked for by their complement.
+/// The inverse of [`wall_fraction`], by bisection.
+fn inverse_wall_fraction(kernels: KernelPair, kernel_fraction: f32) -> f32 {
+    // D is accurate for small values but 1 - D loses digits, so fractions above one half use the complement.
     if kernel_fraction > 0.5 {
-        return -q_of(kernels, 1.0 - kernel_fraction);
+        return -inverse_wall_fraction(kernels, 1.0 - kernel_fraction);
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        if through(kernels, middle) > kernel_fraction { low = middle } else { high = middle }
+        if wall_fraction(kernels, middle) > kernel_fraction { low = middle } else { high = middle }
     }
     0.5 * (low + high)
 }

@@ -12,12 +12,13 @@ pub struct MassProperties {
     pub volume: f32,
     /// Centre of mass in the mesh's frame, in m.
     pub center: Vec3,
-    /// Inertia about the centre over the density, in m^5.
+    /// Inertia about the centre divided by the density, in m^5.
     pub inertia: Mat3,
 }
 
-/// How far the formula may be from the count of cells before the mesh is not trusted to be one plain solid.
-const AGREE: f64 = 0.1;
+/// Largest relative difference between the volumes of the polyhedron formula and the distance field. Beyond
+/// it the mesh overlaps itself or faces the wrong way, and the distance field is used.
+const TOLERANCE: f64 = 0.1;
 
 /// Sums of 1, x and x x^T over a solid.
 #[derive(Clone, Copy)]
@@ -46,8 +47,9 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// By the formula for polyhedra where the mesh is closed and agrees with its distances; else by counting cells.
-/// A shell's is its area times its thickness.
+/// Mass properties from the formula for polyhedra if the mesh is closed and the volume agrees with the
+/// distance field; otherwise from the cells of the distance field. The volume of a shell is its area times
+/// its thickness.
 pub(super) fn properties(
     mesh: &Mesh,
     closed: bool,
@@ -59,13 +61,14 @@ pub(super) fn properties(
     }
     let counted = by_cells(field);
     let exact = by_formula(mesh);
-    if closed && (exact.volume - counted.volume).abs() <= AGREE * counted.volume {
+    if closed && (exact.volume - counted.volume).abs() <= TOLERANCE * counted.volume {
         return exact.finish();
     }
     counted.finish()
 }
 
-/// Tetrahedra from the origin to every triangle (Eberly, Polyhedral Mass Properties, 2002, in another form).
+/// Sums over the tetrahedra from the origin to every triangle (Eberly, Polyhedral Mass Properties, 2002, in
+/// another form).
 fn by_formula(mesh: &Mesh) -> Moments {
     let mut sum = Moments::NONE;
     for t in &mesh.triangles {

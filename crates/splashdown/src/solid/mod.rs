@@ -1,14 +1,14 @@
-//! From a triangle mesh as it is found to a solid that a fluid can meet.
+//! Converts a triangle mesh into a solid: a distance field, mass properties and surface samples.
 //!
-//! *How it works.* The mesh is mended ([`RepairReport`] says how). On a grid round it the distance to the
-//! nearest triangle is found with a tree of boxes; inside and outside are told apart by the generalised winding
-//! number (Jacobson et al. 2013), which does not mind holes, doubled faces or torn seams. A mesh that is too
-//! open for an inside becomes a shell: a sheet with a thickness. Then every node learns the share of the kernel
-//! that the solid fills round it ([`DistanceField`]). The result is kept on disk under the hash of what it was
-//! made from.
+//! *How it works.* The mesh is repaired first; [`RepairReport`] lists the changes. The distance to the
+//! nearest triangle is then computed on the nodes of a grid with a bounding volume hierarchy. The sign comes
+//! from the generalised winding number (Jacobson et al. 2013), which tolerates holes, duplicate faces and
+//! open seams. A mesh whose holes are too large becomes a shell: a sheet with a thickness. Finally each node
+//! gets the effective wall distance, which describes the fraction of the kernel that the solid fills
+//! ([`DistanceField`]). The result is cached on disk under a hash of its inputs.
 //!
-//! *Why not* the mesh itself in the simulation: a look-up in a grid costs the same for twelve triangles and for
-//! a million.
+//! *Why not* use the mesh itself in the simulation: a lookup in a grid costs the same for twelve triangles
+//! and for a million.
 
 mod bvh;
 mod cache;
@@ -30,100 +30,104 @@ use splashdown_io::Mesh;
 use crate::boundary::KernelPair;
 use bvh::Bvh;
 
-/// How a solid is made.
+/// Parameters for building a solid.
 #[derive(Clone, Debug)]
 pub struct SolidSettings {
-    /// Distance of the grid's nodes in m.
+    /// Distance between the grid's nodes in m.
     pub cell_size: f32,
     /// The fluid's support radius in m.
     pub support_radius: f32,
     /// The fluid's kernels.
     pub kernels: KernelPair,
-    /// Half the thickness in m of a shell.
+    /// Half the thickness of a shell in m.
     pub half_thickness: f32,
-    /// Whether it is a shell; `None`: decided by the mesh.
+    /// Whether the mesh is a shell; `None` decides by the size of its holes.
     pub shell: Option<bool>,
-    /// Where solids are kept; `None`: nowhere.
+    /// The folder in which solids are cached; `None` disables the cache.
     pub cache: Option<PathBuf>,
 }
 
-/// What a mesh is taken for.
+/// How a mesh is interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolidKind {
-    /// It has an inside.
+    /// The mesh encloses a volume.
     Volume,
-    /// It is a sheet with a thickness.
+    /// The mesh is a sheet with a thickness.
     Shell,
 }
 
-/// Why no solid could be made.
+/// Why a solid could not be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolidError {
-    /// There is nothing.
-    #[error("the mesh has no triangle with an area ({given} were given): export it again, as triangles")]
+    /// The mesh has no usable triangle.
+    #[error(
+        "the mesh has no triangle with an area (of {given} triangles in the file): export it again, as triangles"
+    )]
     Empty {
-        /// Triangles given.
+        /// Number of triangles given.
         given: usize,
     },
     /// A vertex is NaN or infinite.
     #[error("vertex {index} is {vertex:?}: all coordinates must be finite; export the mesh again")]
     NotFinite {
-        /// The first such vertex, from 0.
+        /// Index of the first such vertex.
         index: usize,
-        /// What it is.
+        /// Its coordinates.
         vertex: [f32; 3],
     },
-    /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} names a vertex beyond the {vertices} there are: the file is damaged")]
+    /// A triangle refers to a vertex that does not exist.
+    #[error(
+        "triangle {triangle} refers to a vertex that does not exist (there are {vertices}): the file is damaged"
+    )]
     BadTriangle {
-        /// The first such triangle, from 0.
+        /// Index of the first such triangle.
         triangle: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A dynamic body without a volume.
+    /// A dynamic body encloses no volume.
     #[error(
-        "it encloses no volume, so it has no mass to move: close the mesh, give it a half_thickness and shell = true, or make its \
+        "it encloses no volume and therefore has no mass: close the mesh, give it a half_thickness and shell = true, or make its \
          motion static or scripted"
     )]
     NoVolume,
-    /// The grid would be absurd.
+    /// The grid of the distance field would be too large.
     #[error(
-        "its grid would have {nodes} nodes of {cell_size} m: it is too large for this particle_spacing; check scale"
+        "its distance field would have {nodes} nodes, {cell_size} m apart: it is too large for this particle_spacing; check scale"
     )]
     TooLarge {
-        /// How many nodes.
+        /// Number of nodes.
         nodes: u64,
         /// Their distance in m.
         cell_size: f32,
     },
 }
 
-/// Most nodes of a grid.
+/// Maximum number of nodes of a grid.
 const MAX_NODES: u64 = 1 << 26;
 
 /// A solid in the frame of its mesh.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    /// The mended triangles, in m.
+    /// The repaired mesh, in m.
     pub mesh: Mesh,
-    /// Solid or sheet.
+    /// Whether it is a volume or a shell.
     pub kind: SolidKind,
-    /// What was found in the mesh and done.
+    /// Problems found in the mesh and repairs.
     pub report: RepairReport,
     /// Volume, centre and inertia.
     pub mass: MassProperties,
-    /// Distances and shares.
+    /// Signed distances and effective wall distances.
     pub field: DistanceField,
 }
 
 impl Solid {
-    /// Makes a solid of a mesh in m, or finds it on disk. `progress` hears how much more is done, in parts that
+    /// Builds a solid from a mesh in m, or loads it from the cache. `progress` is called with increments that
     /// add up to 1.
     ///
     /// # Errors
-    /// [`SolidError`] of a mesh that cannot be used.
+    /// [`SolidError`] if the mesh cannot be used.
     pub fn build(
         mesh: &Mesh,
         settings: &SolidSettings,
@@ -133,10 +137,10 @@ impl Solid {
         crate::work::count("solid built");
         check(mesh)?;
         let path = settings.cache.as_deref().map(|folder| cache::file(folder, mesh, settings));
-        let known = path.as_deref().and_then(cache::load);
-        let found = known.is_some();
-        let (mesh, report, field) = match known {
-            Some(known) => known,
+        let cached = path.as_deref().and_then(cache::load);
+        let found = cached.is_some();
+        let (mesh, report, field) = match cached {
+            Some(cached) => cached,
             None => make(mesh, settings, progress)?,
         };
         if let (Some(path), false) = (&path, found) {
@@ -149,12 +153,12 @@ impl Solid {
         Ok(Self { mesh, kind, report, mass, field })
     }
 
-    /// Refuses what a dynamic body cannot be.
+    /// Checks that the solid has a volume and an invertible inertia, as a dynamic body needs.
     ///
     /// # Errors
-    /// [`SolidError::NoVolume`].
+    /// [`SolidError::NoVolume`] if it does not.
     pub fn require_volume(&self) -> Result<(), SolidError> {
-        // A thousandth of a particle weighs nothing.
+        // Below a thousandth of a cell the volume is rounding error.
         let least = 1e-3 * self.field.cell_size.powi(3);
         let finite = self.mass.inertia.inverse().is_finite();
         if self.mass.volume > least && finite { Ok(()) } else { Err(SolidError::NoVolume) }
@@ -165,14 +169,14 @@ impl Solid {
         self.field.distance(x) < 0.0
     }
 
-    /// Points scattered over the surface, about `spacing` from each other and `depth` inside, in m (Akinci et
-    /// al. 2012).
+    /// Points distributed over the surface, about `spacing` apart and `depth` below it, in m (Akinci et al.
+    /// 2012).
     pub fn sample_surface(&self, spacing: f32, depth: f32) -> Vec<Vec3> {
         sample::surface(&self.mesh, &self.field, spacing, depth)
     }
 
-    /// The points `origin` + whole spacings that lie at least `clearance` (m) inside the solid at `position`
-    /// with `rotation`, in the world, x fastest.
+    /// The points of the lattice through `origin` that lie at least `clearance` (m) inside the solid at
+    /// `position` with `rotation`, in world coordinates, x fastest.
     pub fn fill(
         &self,
         position: Vec3,
@@ -224,13 +228,14 @@ fn check(mesh: &Mesh) -> Result<(), SolidError> {
     }
 }
 
-/// How many times triangles wind round a point: 1 inside a mesh that faces outwards, 0 outside (Jacobson et al. 2013).
+/// The generalised winding number of triangles about a point: 1 inside a mesh that faces outwards, 0 outside
+/// (Jacobson et al. 2013).
 pub(crate) fn winding(triangles: &[[Vec3; 3]], x: Vec3) -> f64 {
     let angle: f64 = triangles.iter().map(|t| f64::from(bvh::solid_angle(x, t))).sum();
     angle / (4.0 * std::f64::consts::PI)
 }
 
-/// Lower and upper corner of a mesh, in m.
+/// Lower and upper corners of a mesh's bounding box, in m.
 pub(crate) fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     mesh.vertices.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &v| {
         (low.min(Vec3::from(v)), high.max(Vec3::from(v)))

@@ -1,4 +1,4 @@
-//! Mends meshes as they are found: welds, drops what has no area or is there twice, and turns faces outwards.
+//! Repairs meshes: welds vertices, removes degenerate and duplicate triangles, and orients faces outwards.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -8,26 +8,26 @@ use splashdown_io::Mesh;
 
 use super::bvh::{Bvh, solid_angle};
 
-/// What was found in a mesh, and what was done.
+/// The problems found in a mesh and the repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct RepairReport {
-    /// Triangles given.
+    /// Number of triangles given.
     pub triangles: u32,
-    /// Vertices that were joined with another.
+    /// Vertices merged with another one.
     pub welded: u32,
-    /// Triangles without area, dropped.
+    /// Removed triangles without area.
     pub degenerate: u32,
-    /// Triangles that were there twice, dropped.
+    /// Removed copies of triangles.
     pub duplicate: u32,
-    /// Triangles turned round.
+    /// Triangles whose orientation was reversed.
     pub flipped: u32,
-    /// Edges of one triangle only: rims of holes and sheets.
+    /// Edges of a single triangle: boundaries of holes and sheets.
     pub boundary_edges: u32,
     /// Edges of more than two triangles.
     pub non_manifold_edges: u32,
-    /// Pieces that hang together by edges.
+    /// Number of pieces connected by edges.
     pub pieces: u32,
-    /// True if it is taken for a sheet with a thickness rather than a solid.
+    /// True if the mesh is treated as a sheet with a thickness rather than a solid.
     pub shell: bool,
 }
 
@@ -36,8 +36,8 @@ impl fmt::Display for RepairReport {
         write!(f, "{} triangles in {} pieces", self.triangles, self.pieces)?;
         for (count, what) in [
             (self.welded, "vertices welded"),
-            (self.degenerate, "triangles without area dropped"),
-            (self.duplicate, "duplicate triangles dropped"),
+            (self.degenerate, "triangles without area removed"),
+            (self.duplicate, "duplicate triangles removed"),
             (self.flipped, "triangles turned outwards"),
             (self.boundary_edges, "open edges"),
             (self.non_manifold_edges, "edges with more than two triangles"),
@@ -46,24 +46,24 @@ impl fmt::Display for RepairReport {
                 write!(f, ", {count} {what}")?;
             }
         }
-        f.write_str(if self.shell { "; taken as a shell" } else { "; taken as a solid" })
+        f.write_str(if self.shell { "; treated as a shell" } else { "; treated as a solid" })
     }
 }
 
-/// Vertices nearer than this part of the mesh's diagonal are one.
+/// Vertices nearer to each other than this fraction of the mesh's diagonal are merged.
 const WELD: f32 = 1e-6;
-/// Holes of more than this part of the whole area make a shell of a mesh.
+/// A mesh is a shell if its holes have more than this fraction of its area.
 const OPEN: f64 = 0.08;
 
-/// Mends a mesh; `shell` overrides what it is taken for.
+/// Repairs a mesh. `shell` overrides the decision between solid and shell.
 pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
     let mut report = RepairReport { triangles: mesh.triangles.len() as u32, ..RepairReport::default() };
-    let (vertices, names) = weld(&mesh.vertices);
+    let (vertices, indices) = weld(&mesh.vertices);
     report.welded = (mesh.vertices.len() - vertices.len()) as u32;
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     let mut seen = HashSet::new();
     for t in &mesh.triangles {
-        let t = t.map(|v| names[v as usize]);
+        let t = t.map(|v| indices[v as usize]);
         let [a, b, c] = t.map(|v| vertices[v as usize]);
         let cross = (b - a).cross(c - a).length();
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
@@ -82,12 +82,12 @@ pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
     report.non_manifold_edges = edges.values().filter(|list| list.len() > 2).count() as u32;
     let pieces = orient(&vertices, &mut triangles, &edges, &mut report.flipped);
     report.pieces = pieces;
-    report.shell = shell.unwrap_or_else(|| open_part(&vertices, &triangles) > OPEN);
+    report.shell = shell.unwrap_or_else(|| hole_fraction(&vertices, &triangles) > OPEN);
     let (vertices, triangles) = compact(&vertices, &triangles);
     (Mesh::new(vertices, triangles), report)
 }
 
-/// Distinct places, and the number of each vertex among them.
+/// The distinct positions, and the index of each vertex's position.
 fn weld(given: &[[f32; 3]]) -> (Vec<Vec3>, Vec<u32>) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for &v in given {
@@ -95,27 +95,28 @@ fn weld(given: &[[f32; 3]]) -> (Vec<Vec3>, Vec<u32>) {
     }
     let reach = (WELD * low.distance(high)).max(f32::MIN_POSITIVE);
     let mut cells: HashMap<IVec3, Vec<u32>> = HashMap::new();
-    let mut places: Vec<Vec3> = Vec::new();
-    let mut names = Vec::with_capacity(given.len());
+    let mut positions: Vec<Vec3> = Vec::new();
+    let mut indices = Vec::with_capacity(given.len());
     for &v in given {
         let v = Vec3::from(v);
         let at = (v - low) / (2.0 * reach);
-        let home = at.floor().as_ivec3();
-        // Only the cells on the near side can hold a place within reach.
+        let cell = at.floor().as_ivec3();
+        // Cells have edges of twice the reach, so only the eight cells on the nearer sides can have a
+        // position in reach.
         let side = (at - at.floor()).map(|f| if f < 0.5 { -1.0 } else { 1.0 }).as_ivec3();
         let found = (0..8)
-            .filter_map(|k| cells.get(&(home + side * IVec3::new(k & 1, k >> 1 & 1, k >> 2))))
+            .filter_map(|k| cells.get(&(cell + side * IVec3::new(k & 1, k >> 1 & 1, k >> 2))))
             .flatten()
             .copied()
-            .find(|&p| places[p as usize].distance_squared(v) <= reach * reach);
-        names.push(found.unwrap_or_else(|| {
-            places.push(v);
-            let name = places.len() as u32 - 1;
-            cells.entry(home).or_default().push(name);
-            name
+            .find(|&p| positions[p as usize].distance_squared(v) <= reach * reach);
+        indices.push(found.unwrap_or_else(|| {
+            positions.push(v);
+            let index = positions.len() as u32 - 1;
+            cells.entry(cell).or_default().push(index);
+            index
         }));
     }
-    (places, names)
+    (positions, indices)
 }
 
 type Edges = HashMap<[u32; 2], Vec<u32>>;
@@ -131,7 +132,7 @@ fn edges_of(triangles: &[[u32; 3]]) -> Edges {
     edges
 }
 
-/// Makes neighbours agree and pieces face outwards; the number of pieces.
+/// Orients neighbouring triangles consistently and pieces outwards. Returns the number of pieces.
 fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped: &mut u32) -> u32 {
     let mut piece_of = vec![u32::MAX; triangles.len()];
     let mut pieces: Vec<Vec<u32>> = Vec::new();
@@ -157,7 +158,7 @@ fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped:
                     continue;
                 }
                 let neighbour = &mut triangles[other as usize];
-                // Neighbours that agree run along their edge in opposite directions.
+                // Triangles of the same orientation traverse their common edge in opposite directions.
                 let same = (0..3).any(|j| neighbour[j] == a && neighbour[(j + 1) % 3] == b);
                 if same {
                     neighbour.swap(1, 2);
@@ -174,9 +175,9 @@ fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped:
     pieces.len() as u32
 }
 
-/// Turns pieces whose outside is not outside: the largest by its volume, then the others by what the winding
-/// number of all larger ones says about them. Closed pieces inside others that face inwards are hollows and
-/// stay.
+/// Reverses pieces that face inwards, in order of decreasing area. A piece that encloses a volume is oriented
+/// by the sign of that volume; a small open piece by the winding number of the larger pieces. A closed piece
+/// that faces inwards inside a larger one is a cavity and keeps its orientation.
 fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u32>], turned: &mut [bool]) {
     let corner = |v: u32| vertices[v as usize];
     let volume = |triangles: &[[u32; 3]], piece: &[u32]| -> f64 {
@@ -202,7 +203,8 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
     let areas: Vec<f64> = pieces.iter().map(|piece| area(triangles, piece)).collect();
     order.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));
     let mut placed: Vec<[Vec3; 3]> = Vec::new();
-    // Built again only after a good part has been added: a tree per scrap would take minutes.
+    // The tree is rebuilt only after many triangles have been added: a rebuild per small piece would take
+    // minutes.
     let mut tree: Option<Bvh> = None;
     let mut in_tree = 0;
     for (rank, &p) in order.iter().enumerate() {
@@ -213,21 +215,23 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
             tree = Some(Bvh::new(placed.clone()));
         }
         let winding = |x: Vec3| {
-            let late = placed[in_tree..].iter().map(|t| solid_angle(x, t)).sum::<f32>();
-            tree.as_ref().map_or(0.0, |tree| tree.winding(x)) + late / (4.0 * std::f32::consts::PI)
+            let newer = placed[in_tree..].iter().map(|t| solid_angle(x, t)).sum::<f32>();
+            tree.as_ref().map_or(0.0, |tree| tree.winding(x)) + newer / (4.0 * std::f32::consts::PI)
         };
-        // A piece with a volume of its own says where its inside is; a scrap of a torn surface does not.
-        let own_way = size.abs() > 0.02 * areas[p].powf(1.5) / 10.0;
-        let turn = if own_way {
-            let hollow = size < 0.0
+        // The sign of the volume is meaningful only if the piece encloses one. A fragment of a surface does
+        // not.
+        let has_volume = size.abs() > 0.02 * areas[p].powf(1.5) / 10.0;
+        let turn = if has_volume {
+            let cavity = size < 0.0
                 && rank > 0
                 && piece
                     .iter()
                     .step_by(1 + piece.len() / 16)
                     .all(|&t| winding(corner(triangles[t as usize][0])) > 0.5);
-            size < 0.0 && !hollow
+            size < 0.0 && !cavity
         } else if rank > 0 && rank < 2000 {
-            // The face belongs where the surface is missing: its outside is where the others' winding number is lower.
+            // The fragment fills a gap in the surface: the winding number of the larger pieces is lower on
+            // its outside.
             let votes: f32 = piece
                 .iter()
                 .step_by(1 + piece.len() / 8)
@@ -249,15 +253,16 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
                 turned[t as usize] = !turned[t as usize];
             }
         }
-        // Scraps beyond the first few hundred change nothing about where the inside is.
+        // Pieces beyond the first few hundred hardly change the winding number.
         if rank < 300 {
             placed.extend(piece.iter().map(|&t| triangles[t as usize].map(corner)));
         }
     }
 }
 
-/// The area of the holes as a part of the whole area: of each closed line of open edges its vector area.
-fn open_part(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+/// The area of the holes as a fraction of the mesh's area. The area of a hole is the vector area of its loop
+/// of open edges.
+fn hole_fraction(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let place = |v: u32| vertices[v as usize].as_dvec3();
     let mut area = 0.0;
     let mut open: HashMap<u32, Vec<u32>> = HashMap::new();
@@ -278,7 +283,7 @@ fn open_part(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let mut starts: Vec<u32> = open.keys().copied().collect();
     starts.sort_unstable();
     for start in starts {
-        // All open edges that hang together are one hole.
+        // Connected open edges form one hole.
         let mut stack = vec![start];
         let (mut hole, origin) = (DVec3::ZERO, place(start));
         while let Some(a) = stack.pop() {
@@ -295,20 +300,20 @@ fn open_part(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     if area > 0.0 { holes / area } else { 0.0 }
 }
 
-/// Drops vertices that no triangle uses.
+/// Removes vertices that no triangle uses.
 fn compact(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
-    let mut names = vec![u32::MAX; vertices.len()];
+    let mut indices = vec![u32::MAX; vertices.len()];
     let mut kept = Vec::new();
     let triangles = triangles
         .iter()
         .map(|t| {
             t.map(|v| {
-                let name = &mut names[v as usize];
-                if *name == u32::MAX {
-                    *name = kept.len() as u32;
+                let index = &mut indices[v as usize];
+                if *index == u32::MAX {
+                    *index = kept.len() as u32;
                     kept.push(vertices[v as usize].to_array());
                 }
-                *name
+                *index
             })
         })
         .collect();

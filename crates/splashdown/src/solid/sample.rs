@@ -7,14 +7,14 @@ use splashdown_io::Mesh;
 
 use super::field::DistanceField;
 
-/// Candidates per point that is kept.
+/// Candidates per square of one spacing.
 const CANDIDATES: f32 = 40.0;
-/// Points are no nearer to each other than this part of the spacing, so that their mean distance is about the spacing.
-const NEAREST: f32 = 0.8;
+/// Smallest distance between points, in spacings. With this value their mean distance is about one spacing.
+const MIN_DISTANCE: f32 = 0.8;
 
-/// Evenly scattered points of a surface: many candidates in a fixed sequence, each kept if no earlier one is
-/// near (dart throwing; Bridson 2007). `depth` moves them inwards along the faces' normals; what is not that
-/// deep then, beside an edge, is left out.
+/// Evenly distributed points of a surface. Candidates in a fixed sequence are accepted if no accepted point
+/// is too near (dart throwing; Bridson 2007). Points are moved inwards by `depth` along the faces' normals.
+/// Near edges, where such a point is less than `depth` inside, it is left out.
 pub(super) fn surface(mesh: &Mesh, field: &DistanceField, spacing: f32, depth: f32) -> Vec<Vec3> {
     let corner = |v: u32| Vec3::from(mesh.vertices[v as usize]);
     let areas: Vec<f32> = mesh
@@ -26,15 +26,15 @@ pub(super) fn surface(mesh: &Mesh, field: &DistanceField, spacing: f32, depth: f
         })
         .collect();
     let mut candidates = Vec::new();
-    // What a triangle is too small for is carried on to the next.
-    let mut owed = 0.0;
+    // Fractions of a candidate are carried over to the next triangle.
+    let mut pending = 0.0;
     let mut k = 0u32;
     for (t, area) in mesh.triangles.iter().zip(&areas) {
         let [a, b, c] = t.map(corner);
         let inwards = -(b - a).cross(c - a).normalize_or_zero() * depth;
-        owed += CANDIDATES * area / (spacing * spacing);
-        while owed >= 1.0 {
-            owed -= 1.0;
+        pending += CANDIDATES * area / (spacing * spacing);
+        while pending >= 1.0 {
+            pending -= 1.0;
             // The R2 sequence (Roberts 2018) folded into the triangle.
             let (mut u, mut v) =
                 ((0.754_877_7 * f64::from(k)).fract() as f32, (0.569_840_3 * f64::from(k)).fract() as f32);
@@ -48,22 +48,25 @@ pub(super) fn surface(mesh: &Mesh, field: &DistanceField, spacing: f32, depth: f
             k += 1;
         }
     }
-    // In an order that jumps about, so that early ones do not crowd one triangle.
+    // The candidates are visited with a large stride, so that the points do not depend on the order of the
+    // triangles.
     let n = candidates.len();
     let stride = (0.618_034 * n as f64) as usize | 1;
     let stride = (stride..).find(|s| gcd(*s, n.max(1)) == 1).unwrap_or(1);
-    let reach = NEAREST * spacing;
+    let reach = MIN_DISTANCE * spacing;
     let mut cells: HashMap<IVec3, Vec<Vec3>> = HashMap::new();
     let mut kept = Vec::new();
     for i in 0..n {
         let x = candidates[i * stride % n];
-        let home = (x / reach).floor().as_ivec3();
-        let crowded = (0..27).any(|k| {
-            let cell = home + IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-            cells.get(&cell).is_some_and(|list| list.iter().any(|y| y.distance_squared(x) < reach * reach))
+        let cell = (x / reach).floor().as_ivec3();
+        let too_near = (0..27).any(|k| {
+            let neighbour = cell + IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+            cells
+                .get(&neighbour)
+                .is_some_and(|list| list.iter().any(|y| y.distance_squared(x) < reach * reach))
         });
-        if !crowded {
-            cells.entry(home).or_default().push(x);
+        if !too_near {
+            cells.entry(cell).or_default().push(x);
             kept.push(x);
         }
     }
@@ -74,8 +77,8 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// The points of a lattice (`origin` + whole spacings) that lie at least `clearance` inside a solid with this
-/// pose; x fastest.
+/// The points of the lattice through `origin` that lie at least `clearance` inside a solid with this pose, x
+/// fastest.
 pub(super) fn fill(
     field: &DistanceField,
     bounds: (Vec3, Vec3),

@@ -113,7 +113,7 @@ fn bodies_outside_the_domain_give_a_warning() {
     let text = body("block").replace("0.5,", "2.5,");
     let found = warnings(&load(folder.path(), &text).expect("valid"));
     assert!(
-        found.contains("body \"rock\" lies wholly outside the domain") && found.contains("scene.toml:23"),
+        found.contains("body \"rock\" lies entirely outside the domain") && found.contains("scene.toml:23"),
         "{found}"
     );
     let comes = format!("{text}\nmove = [\"0\", \"-4*t\", \"0\"]");
@@ -121,7 +121,7 @@ fn bodies_outside_the_domain_give_a_warning() {
     assert!(found.warnings.is_empty(), "control: it enters later: {}", warnings(&found));
     let leaves = format!("{text}\nmove = [\"0\", \"4*t\", \"0\"]");
     let found = warnings(&load(folder.path(), &leaves).expect("valid"));
-    assert!(found.contains("wholly outside"), "{found}");
+    assert!(found.contains("entirely outside"), "{found}");
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn an_outlet_inside_a_body_is_rejected() {
     );
     let moving = format!("{}\nmove = [\"t\", \"0\", \"0\"]\n{}", body("block"), tap(0.5));
     let found = warnings(&load(folder.path(), &moving).expect("valid"));
-    assert!(found.contains("before the body moves away"), "{found}");
+    assert!(found.contains("until the body moves away"), "{found}");
     for y in [0.6, 0.75] {
         let scene = load(folder.path(), &format!("{}\n{}", body("block"), tap(y)))
             .expect("on the surface and outside");
