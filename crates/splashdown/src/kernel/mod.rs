@@ -10,21 +10,21 @@ use splashdown_gpu::WgslModule;
 
 use crate::simd::Lanes;
 
-/// The WGSL side: `kernel_w`, `kernel_g`, chosen by `override KERNEL`.
+/// The WGSL implementation: `kernel_w` and `kernel_g`, selected by `override KERNEL`.
 pub const WGSL: WgslModule = WgslModule { name: "sph/kernel", source: include_str!("kernel.wgsl") };
 
-/// A kernel as the CPU's loops see it: arithmetic without branches, for one number or a whole register of them.
+/// A kernel for the loops on the CPU: arithmetic without branches, on one number or a register of numbers.
 /// Implementations must be `#[inline(always)]`.
 pub trait Kernel: Copy + Send + Sync + 'static {
-    /// The number by which WGSL's `KERNEL` chooses it.
+    /// The value of WGSL's `KERNEL` that selects it.
     const ID: u32;
     /// W * H^3.
     fn w<V: Lanes>(q: V) -> V;
-    /// The factor g with grad W = g / H^5 * (x_i - x_j).
+    /// The factor g in grad W = g / H^5 * (x_i - x_j).
     fn g<V: Lanes>(q: V) -> V;
 }
 
-/// 1 - q, zero beyond the support.
+/// 1 - q, clamped to zero beyond the support.
 #[inline(always)]
 fn inside<V: Lanes>(q: V) -> V {
     (V::splat(1.0) - q).max(V::splat(0.0))
@@ -103,7 +103,8 @@ impl Poly6 {
     }
 }
 
-/// The smallest q that divides: below it a direction has no meaning, and the product with x_i - x_j vanishes.
+/// Lower bound of q in divisions. Below it the direction is undefined, and the product with x_i - x_j is
+/// negligible.
 pub const SMALLEST_Q: f32 = 1e-4;
 
 /// The spiky kernel of the same paper, for the pressure: its gradient does not vanish at the centre.
@@ -126,7 +127,8 @@ impl Kernel for Spiky {
     }
 }
 
-/// The Laplacian, times H^5, of the viscosity kernel of the same paper: positive everywhere, so friction never heats.
+/// The Laplacian, times H^5, of the viscosity kernel of the same paper. It is positive everywhere, so
+/// viscosity never increases the kinetic energy.
 #[inline(always)]
 pub fn viscosity_laplacian<V: Lanes>(q: V) -> V {
     inside(q) * (45.0 / PI)

@@ -23,7 +23,7 @@ fn gradient_error<K: Kernel>() -> f32 {
 
 fn check<K: Kernel>() {
     assert!((integral::<K>() - 1.0).abs() < 1e-5, "W integrates to {}", integral::<K>());
-    // Central differences of a third-order kink are good to about the step.
+    // Where the third derivative is discontinuous, central differences are accurate to about the step.
     assert!(gradient_error::<K>() < 2e-3, "gradient off by {}", gradient_error::<K>());
     for q in [1.0, 1.5, 1e9] {
         assert_eq!((K::w(q), K::g(q)), (0.0, -0.0), "outside the support, q = {q}");
@@ -40,7 +40,7 @@ fn kernels_are_normalised_and_their_gradients_match() {
 }
 
 #[test]
-fn the_checks_can_fail() {
+fn wrong_kernels_fail_the_checks() {
     #[derive(Clone, Copy)]
     struct Wrong;
     impl Kernel for Wrong {

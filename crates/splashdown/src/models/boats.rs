@@ -1,4 +1,4 @@
-//! What floats: a tug and a beacon buoy.
+//! Floating models: a tug and a beacon buoy.
 
 use glam::{DVec3, Vec3, vec2, vec3};
 use splashdown_io::Mesh;
@@ -41,7 +41,7 @@ fn keel(s: f32) -> f32 {
     0.11 * smooth_step(0.55, 1.08, s).powi(2) + 0.075 * smooth_step(-0.62, -1.1, s)
 }
 
-/// Negative inside the hull that is `inset` (m) smaller.
+/// An implicit function that is negative inside the hull shrunk by `inset` (m).
 fn hull_form(p: Vec3, inset: f32) -> f32 {
     let s = (p.x / (HALF_LENGTH - inset)).clamp(-1.3, 1.3);
     let plan = if s > -0.15 {
@@ -65,10 +65,10 @@ pub(super) fn hull() -> Mesh {
         let s = p.x / HALF_LENGTH;
         let body = distance_of(p, 1e-3, |q| hull_form(q, 0.0));
         let body = meet(body, p.y - sheer(s), 0.008);
-        // The deck lies lower than the bulwark, which leans on the hull's own shape.
+        // The deck lies below the top of the bulwark, whose inner side follows the shape of the hull.
         let well = distance_of(p, 1e-3, |q| hull_form(q, 0.015)).max(sheer(s) - 0.028 - p.y);
         let mut d = cut(body, well, 0.005);
-        // A rubbing strake, and a tyre's worth of fender round the bow.
+        // A rubbing strake around the hull, and a skeg below it.
         let strake =
             vec2(distance_of(p, 1e-3, |q| hull_form(q, 0.0)), p.y - sheer(s) + 0.03).length() - 0.009;
         d = join(d, strake, 0.004);
@@ -90,7 +90,7 @@ fn upper_works(p: Vec3) -> f32 {
     let q = p - vec3(0.035, deck + 0.125, 0.0);
     let mut wheelhouse = meet(rectangle(vec2(q.x, q.z), vec2(0.044, 0.046), 0.02), q.y.abs() - 0.043, 0.005);
     for (x, z) in [(0.0, 0.0), (-0.024, 1.0), (0.016, 1.0)] {
-        // In front there are three in a row; z counts both sides.
+        // Three windows in a row in front; z != 0 stands for windows on both sides.
         let window = if z > 0.0 {
             cuboid(vec3(q.x - x, q.y - 0.012, q.z.abs() - 0.05), vec3(0.0135, 0.0165, 0.0095), 0.004)
         } else {

@@ -1,4 +1,4 @@
-//! A mug with thick walls, and a beaker without any thickness.
+//! A mug with thick walls, and a beaker with walls of zero thickness.
 
 use std::f32::consts::TAU;
 
@@ -9,7 +9,7 @@ use super::polygonise::polygonise;
 use super::shape::{cut, join, lathe, profile};
 
 pub(super) fn cup() -> Mesh {
-    // The walls' middle line, thickened: so the rim is a half circle. The foot is a ring below a hollow bottom.
+    // The outer and inner profiles of the mug. The foot is a ring below a hollow bottom.
     let outside = profile(&[
         [0.0, 0.0045],
         [0.022, 0.0035],
@@ -37,21 +37,21 @@ pub(super) fn cup() -> Mesh {
     ]);
     polygonise(vec3(-0.05, -0.006, -0.05), vec3(0.083, 0.108, 0.05), 0.0018, |p| {
         let body = lathe(p, &outside, 0.0015);
-        // The handle: an ear, wider at the top, flattened towards the fingers.
+        // The handle is a ring in the xy plane, wider at the top, with a flattened cross section.
         let q = vec2(p.x - 0.041, p.y - 0.053);
         let lean = 1.0 + 3.0 * q.y;
-        let way = (vec2(q.x / lean, q.y) / vec2(0.0285, 0.0325)).length();
-        let across = (way - 1.0) * 0.0295;
-        let ear = vec2(across / 0.0043, p.z / 0.0066).length();
-        let ear = (ear - 1.0) * 0.0044;
-        cut(join(body, ear, 0.007), lathe(p, &inside, 0.0015), 0.004)
+        let elliptic_radius = (vec2(q.x / lean, q.y) / vec2(0.0285, 0.0325)).length();
+        let across = (elliptic_radius - 1.0) * 0.0295;
+        let handle = vec2(across / 0.0043, p.z / 0.0066).length();
+        let handle = (handle - 1.0) * 0.0044;
+        cut(join(body, handle, 0.007), lathe(p, &inside, 0.0015), 0.004)
     })
 }
 
-/// Vertices of a beaker in one circle.
+/// Number of vertices around the beaker.
 const AROUND: u32 = 96;
 
-/// A sheet: a bottom and a wall that widens upwards. Normals point out of the beaker.
+/// A sheet of a bottom and a wall that widens upwards. Normals point out of the beaker.
 pub(super) fn thin_cup() -> Mesh {
     let corner = 0.008;
     let mut line: Vec<Vec2> = (1..=8_u8).map(|i| vec2(0.0035 * f32::from(i), 0.0)).collect();
@@ -85,7 +85,7 @@ pub(super) fn thin_cup() -> Mesh {
     mesh
 }
 
-/// The room in a [`thin_cup`]: the same sheet with a lid.
+/// The interior of a [`thin_cup`]: the same sheet, closed by a lid.
 pub(super) fn thin_cup_filling() -> Mesh {
     let mut mesh = thin_cup();
     let middle = mesh.vertices.len() as u32;

@@ -1,4 +1,4 @@
-//! A knot, a ball, a rounded cube.
+//! A trefoil knot, a sphere and a rounded cube.
 
 use std::collections::HashMap;
 use std::f32::consts::TAU;
@@ -22,7 +22,7 @@ pub(super) fn torus_knot() -> Mesh {
     for i in 0..ALONG {
         let t = TAU * i as f32 / ALONG as f32;
         let tangent = (path(t + 1e-3) - path(t - 1e-3)).normalize_or_zero();
-        // The knot never runs along z, so z gives a frame that comes round to itself without a twist.
+        // The knot is nowhere parallel to z, so z defines a continuous frame along the closed curve.
         let u = Vec3::Z.reject_from_normalized(tangent).normalize_or_zero();
         let v = tangent.cross(u);
         for j in 0..AROUND {
@@ -38,7 +38,7 @@ pub(super) fn torus_knot() -> Mesh {
     mesh
 }
 
-/// An icosahedron, each triangle of which is split into four, five times.
+/// An icosahedron whose triangles are split into four, five times.
 pub(super) fn sphere() -> Mesh {
     let golden = 0.5 * (1.0 + 5.0_f32.sqrt());
     let mut points: Vec<Vec3> = Vec::new();

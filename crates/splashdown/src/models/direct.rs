@@ -2,8 +2,9 @@
 
 use splashdown_io::Mesh;
 
-/// A prism: the outline (x, y in m; counter-clockwise, and wholly visible from its first corner) pulled along z from
-/// -`half_width` to +`half_width`. Without normals, since its edges are sharp.
+/// A prism: an outline extruded along z from -`half_width` to +`half_width`. The outline (x, y in m) is
+/// counter-clockwise and star-shaped with respect to its first corner. The mesh has no normals because its
+/// edges are sharp.
 fn prism(outline: &[[f32; 2]], half_width: f32) -> Mesh {
     let count = outline.len() as u32;
     let side = |z: f32| outline.iter().map(move |&[x, y]| [x, y, z]);

@@ -31,7 +31,7 @@ pub(super) fn figure() -> Mesh {
 /// The skirt, from the plinth to the waist: folds that run down and out, and a train at the back.
 fn robe(p: Vec3) -> f32 {
     let t = ((p.y - 0.06) / 0.5).clamp(0.0, 1.0);
-    // She stands on one leg: the hips are off the middle, the other knee shows through the cloth.
+    // The weight is on one leg: the hips are off centre, and the other knee shows through the cloth.
     let q = p.xz() - vec2(0.012 * smooth_step(0.1, 0.45, p.y), -0.012 * (1.0 - t));
     let angle = q.y.atan2(q.x);
     let fold = (11.0 * angle + 1.2 * (2.0 * angle).sin() + 3.0 * t).cos();

@@ -69,26 +69,26 @@ fn stones() -> Vec<Boulder> {
 }
 
 fn rock(p: Vec3, stones: &[Boulder]) -> f32 {
-    // High above it a lower bound will do.
+    // High above the rock a lower bound of the distance is sufficient.
     if p.y > TOP + 0.12 {
         return p.y - TOP - 0.03;
     }
     let d = stones.iter().fold(1.0, |d, stone| join(d, stone.distance(p, 0.012), 0.02));
     let top = cylinder(p, 0.15, 0.05, TOP, 0.015);
-    // The stairs to the door, hewn into the rock.
+    // The stairs from the door down the rock.
     let stairs = (0..7_u8).fold(1.0_f32, |d, i| {
         let i = f32::from(i);
         let (height, z) = (0.5 * (TOP - 0.026 * i + 0.012), 0.115 + 0.026 * i);
         d.min(cuboid(p - vec3(0.0, height - 0.006, z), vec3(0.036, height, 0.02), 0.003))
     });
-    // Above the stairs the rock is hewn away, along a slope of 45 degrees.
+    // The rock above the stairs is cut away along a slope of 45 degrees.
     let slope = (TOP + 0.135 - p.z - p.y) * std::f32::consts::FRAC_1_SQRT_2;
     let d = cut(d, (p.x.abs() - 0.046).max(slope).max(0.1 - p.z), 0.02);
     let rough = if d.abs() < 0.05 { 0.006 * noise(28.0 * p) + 0.0025 * noise(61.0 * p) } else { 0.0 };
     join(join(d + rough, top, 0.03), stairs, 0.006)
 }
 
-/// Cuts a door and windows, each under an arch and in a raised frame, and lays bands round the tower.
+/// Cuts a door and windows, each with an arch and a raised frame, and adds bands around the tower.
 fn openings(p: Vec3, tower: f32) -> f32 {
     let mut d = tower;
     for y in [0.345, 0.505, 0.655] {

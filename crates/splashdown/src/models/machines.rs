@@ -1,4 +1,4 @@
-//! What turns and what pours: a gear, a paddle wheel, a mixing drum, a bent pipe. Axes along z.
+//! Machine parts: a gear, a paddle wheel and a mixing drum with their axes along z, and a bent pipe.
 
 use glam::{Mat2, Vec2, Vec3, Vec3Swizzles as _, vec2, vec3};
 use splashdown_io::Mesh;
@@ -33,7 +33,7 @@ pub(super) fn paddle_wheel() -> Mesh {
     polygonise(vec3(-0.27, -0.27, -0.15), vec3(0.27, 0.27, 0.15), 0.0064, |p| {
         let (r, z) = (p.xy().length(), p.z.abs());
         let q = sector(p.xy(), 12.0).extend(p.z);
-        // The boards lean a little forward, as on mill wheels, and stand between two rims on spokes.
+        // The boards are slightly inclined, as on mill wheels, and lie between two rims on spokes.
         let lean = Mat2::from_angle(0.18) * (q.xy() - vec2(0.2, 0.0));
         let board = cuboid(lean.extend(p.z), vec3(0.05, 0.0095, 0.086), 0.006);
         let rim = rectangle(vec2(r - 0.182, z - 0.062), vec2(0.014, 0.0098), 0.007);
@@ -51,7 +51,7 @@ pub(super) fn drum() -> Mesh {
     polygonise(vec3(-0.28, -0.28, -0.24), vec3(0.28, 0.28, 0.2), 0.0088, |p| {
         let r = p.xy().length();
         let mut d = extrude(r - 0.25, p.z.abs() - 0.17, 0.02);
-        // The cavity, from which the lifters stand out, and the mouth.
+        // The cavity with the lifters, and the mouth.
         let cavity = extrude(r - 0.225, p.z.abs() - 0.145, 0.03);
         let q = sector(Mat2::from_angle(0.26) * p.xy(), 6.0);
         let lean = Mat2::from_angle(-0.35) * (q - vec2(0.205, 0.0));
@@ -59,7 +59,7 @@ pub(super) fn drum() -> Mesh {
         d = cut(d, cut(cavity, lifter, 0.02), 0.01);
         let mouth = (r - 0.13).max(-p.z);
         d = cut(d, mouth, 0.012);
-        // A lip round the mouth, two running rings, and the shaft behind.
+        // A lip around the mouth, two running rings, and the shaft at the back.
         let lip = rectangle(vec2(r - 0.142, p.z - 0.172), vec2(0.015, 0.014), 0.008);
         d = join(d, lip, 0.008);
         let tyre = rectangle(vec2(r - 0.253, p.z.abs() - 0.1), vec2(0.016, 0.018), 0.01);
@@ -70,8 +70,8 @@ pub(super) fn drum() -> Mesh {
     })
 }
 
-/// Distance in m from the pipe's middle line: up from the mouth, round a bend, and back along -x. The second number
-/// is the way along the line, from the mouth.
+/// The distance from the pipe's centre line, and the arc length along that line from the mouth, both in m.
+/// The line runs up from the mouth, through a bend, and on along -x.
 fn spout_line(p: Vec3) -> (f32, f32) {
     const RISE: f32 = 0.05;
     const BEND: f32 = 0.09;
@@ -94,7 +94,7 @@ pub(super) fn spout() -> Mesh {
         d = join(d, rectangle(vec2(r - 0.034, s - 0.014), vec2(0.0125, 0.014), 0.006), 0.005);
         d = join(d, rectangle(vec2(r - 0.034, s - 0.215), vec2(0.011, 0.008), 0.004), 0.005);
         d = join(d, rectangle(vec2(r - 0.03, s - end + 0.009), vec2(0.05, 0.009), 0.004), 0.01);
-        // Six bolts hold the flange.
+        // Six bolts on the flange.
         let around = sector(vec2(p.y - 0.14, p.z), 6.0) - vec2(0.062, 0.0);
         let bolt = extrude(around.length() - 0.0085, (s - end + 0.022).abs() - 0.008, 0.003);
         d = join(d, bolt, 0.003);

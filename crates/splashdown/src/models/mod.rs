@@ -1,11 +1,12 @@
-//! Meshes that come with the program: every one is computed, none is read from a file.
+//! Built-in meshes, all of which are computed rather than read from files.
 //!
-//! Most are written as a formula for the signed distance to the shape (`shape`), which marching cubes turns into
-//! triangles (`polygonise`); the simple ones are built triangle by triangle (`direct`). All are closed, manifold
-//! and oriented outwards, but for `thin-cup`, a sheet without thickness. Lengths are in metres and y is up: what
-//! stands has its foot at y = 0 and its middle over the origin, what floats has its centre of mass at the origin.
+//! Most are defined by a signed distance function (`shape`), which marching cubes converts into triangles
+//! (`polygonise`). The simple ones are built triangle by triangle (`direct`). All are closed, manifold and
+//! oriented outwards, except `thin-cup`, which is a sheet without thickness. Lengths are in metres and y
+//! points up. Standing models have their base at y = 0 and their axis through the origin; floating models
+//! have their centre of mass at the origin.
 //!
-//! `ugly` spoils a mesh, as material for tests of whatever repairs meshes.
+//! `ugly` damages a mesh, for tests of mesh repair.
 
 mod boats;
 mod crockery;
@@ -27,7 +28,7 @@ use splashdown_io::Mesh;
 
 pub use ugly::ugly;
 
-/// One model: its name, what it is, and what makes it.
+/// A model: its name, its description, and the function that builds it.
 type Model = (&'static str, &'static str, fn() -> Mesh);
 
 const MODELS: &[Model] = &[
@@ -59,7 +60,7 @@ const MODELS: &[Model] = &[
     ("steps", "five stairs, 1 m long, 0.5 m wide, rising to 0.5 m towards +x", direct::steps),
 ];
 
-/// The models: the name of each, and one line that says what it is and how large in m.
+/// The names of the models, each with a one-line description that includes the size in m.
 #[must_use]
 pub fn names() -> &'static [(&'static str, &'static str)] {
     const NAMES: [(&str, &str); MODELS.len()] = {
@@ -74,8 +75,8 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
     &NAMES
 }
 
-/// The model of this name (one of [`names`]) in m; `None` for an unknown name. The same name gives the same mesh,
-/// to the last bit; it is computed once and then copied, for some take half a second.
+/// The model of this name (one of [`names`]) in m; `None` for an unknown name. The mesh of a name is always
+/// bit-identical. It is computed once per process and then copied, because some models take half a second.
 #[must_use]
 pub fn build(name: &str) -> Option<Mesh> {
     static BUILT: [OnceLock<Mesh>; MODELS.len()] = [const { OnceLock::new() }; MODELS.len()];

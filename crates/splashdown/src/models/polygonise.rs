@@ -1,11 +1,12 @@
-//! Triangles of a shape that is given by its signed distance.
+//! Triangulates a shape that is given by its signed distance function.
 //!
-//! Marching cubes on a grid gives a closed, manifold, oriented mesh, whatever the function (see
-//! `marching_cubes`), but slivers too. So the vertices are then moved along the surface towards the middle of
-//! their neighbours and back onto the surface by Newton's method, a few rounds; the normals are the gradients.
+//! Marching cubes on a grid gives a closed, manifold, oriented mesh for any function (see `marching_cubes`),
+//! but with slivers. Several rounds of smoothing remove them: each moves the vertices along the surface
+//! towards the mean of their neighbours, and back onto the surface by Newton's method. The normals are the
+//! gradients of the function.
 //!
-//! Grid nodes in blocks that the surface cannot reach are not evaluated one by one: a distance changes by no more
-//! than the way gone.
+//! The nodes of a block share one value if the surface cannot reach the block: a distance function changes by
+//! at most the distance moved.
 
 use glam::{UVec3, Vec3, uvec3, vec3};
 use rayon::prelude::*;
@@ -13,17 +14,18 @@ use splashdown_io::Mesh;
 
 use crate::marching_cubes::TRIANGLES;
 
-/// Nodes along an edge of a block.
+/// Number of nodes along an edge of a block.
 const BLOCK: u32 = 4;
 
-/// How much faster than a distance a shape's function may change. Joints and tapers are no exact distances.
+/// Upper bound of the gradient of a shape's function. Smooth unions and tapers are not exact distances, whose
+/// gradient is at most 1.
 const SLACK: f32 = 1.6;
 
-/// Rounds of moving vertices.
+/// Number of smoothing rounds.
 const ROUNDS: u32 = 7;
 
-/// The surface where `shape` (m, negative inside; a distance, nearly) is zero, between `min` and `max` (m), with
-/// triangles of about `cell` (m).
+/// The zero level of `shape` between `min` and `max` (m), with triangles of about the size `cell` (m).
+/// `shape` is an approximate signed distance in m, negative inside.
 pub(super) fn polygonise(min: Vec3, max: Vec3, cell: f32, shape: impl Fn(Vec3) -> f32 + Sync) -> Mesh {
     let blocks = ((max - min) / (cell * BLOCK as f32)).ceil().as_uvec3().max(UVec3::ONE);
     let nodes = blocks * BLOCK;
@@ -59,7 +61,7 @@ fn sample(min: Vec3, cell: f32, blocks: UVec3, shape: &(impl Fn(Vec3) -> f32 + S
     values
 }
 
-/// Marching cubes: the triangles' vertices on the grid's edges, each once.
+/// Marching cubes with shared vertices: one vertex per grid edge that crosses the surface.
 fn march(min: Vec3, cell: f32, nodes: UVec3, values: &[f32]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     const NONE: u32 = u32::MAX;
     let step = uvec3(1, nodes.x, nodes.x * nodes.y);
@@ -83,7 +85,7 @@ fn march(min: Vec3, cell: f32, nodes: UVec3, values: &[f32]) -> (Vec<Vec3>, Vec<
                             *slot = vertices.len() as u32;
                             let to = from + UVec3::AXES[axis];
                             let (v0, v1) = (values[index(from)], values[index(to)]);
-                            // Not quite to the ends: two vertices at one node would make a triangle without area.
+                            // Two vertices at the same node would form a triangle without area.
                             let t = (v0 / (v0 - v1)).clamp(0.05, 0.95);
                             let middle = from.as_vec3() + t * (to.as_vec3() - from.as_vec3());
                             vertices.push(min + cell * middle);
@@ -97,7 +99,7 @@ fn march(min: Vec3, cell: f32, nodes: UVec3, values: &[f32]) -> (Vec<Vec3>, Vec<
     (vertices, triangles)
 }
 
-/// Evens the triangles out; returns the vertices and the unit normals there.
+/// Smooths the triangles. Returns the vertices and their unit normals.
 fn relax(
     mut vertices: Vec<Vec3>,
     triangles: &[[u32; 3]],
@@ -106,7 +108,7 @@ fn relax(
 ) -> (Vec<Vec3>, Vec<Vec3>) {
     let neighbours = Neighbours::of(vertices.len(), triangles);
     let gradient = |p: Vec3| {
-        // Differences over a tetrahedron: four evaluations instead of six.
+        // Differences over a tetrahedron need four evaluations instead of six.
         let e = 0.1 * cell;
         let corners = [vec3(1.0, -1.0, -1.0), vec3(-1.0, -1.0, 1.0), vec3(-1.0, 1.0, -1.0), Vec3::ONE];
         corners.into_iter().map(|corner| corner * shape(p + e * corner)).sum::<Vec3>() / (4.0 * e)
@@ -123,8 +125,8 @@ fn relax(
             let around = neighbours.of_vertex(i);
             let middle =
                 around.iter().map(|&j| vertices[j as usize]).sum::<Vec3>() / around.len().max(1) as f32;
-            let way = (middle - p).reject_from_normalized(normal);
-            let q = p + (0.5 * way).clamp_length_max(0.3 * cell);
+            let tangential = (middle - p).reject_from_normalized(normal);
+            let q = p + (0.5 * tangential).clamp_length_max(0.3 * cell);
             let q = project(q, normals[i]);
             (q, gradient(q))
         });
@@ -137,16 +139,16 @@ fn relax(
     (vertices, normals)
 }
 
-/// The vertices next to each vertex of a closed mesh.
+/// The one-ring of each vertex of a closed mesh.
 struct Neighbours {
-    /// Where each vertex's part of `list` begins; one more at the end.
+    /// The first entry of each vertex in `list`, followed by the length of `list`.
     starts: Vec<u32>,
     list: Vec<u32>,
 }
 
 impl Neighbours {
-    /// In a closed oriented mesh each edge is the side of two triangles, once in each direction; so the ends of the
-    /// sides that begin at a vertex are its neighbours, each once.
+    /// In a closed oriented mesh each edge belongs to two triangles, in opposite directions. The ends of the
+    /// triangle sides that start at a vertex are therefore its neighbours, each once.
     fn of(count: usize, triangles: &[[u32; 3]]) -> Self {
         let mut starts = vec![0; count + 1];
         for &corner in triangles.iter().flatten() {

@@ -1,4 +1,4 @@
-//! A boulder with facets, and noise to roughen it.
+//! A faceted boulder, and noise for rough surfaces.
 
 use glam::{IVec3, Vec3, vec3};
 
@@ -7,7 +7,7 @@ use super::shape::meet;
 /// Number of facets of a boulder.
 const FACETS: u8 = 22;
 
-/// A random number in [0, 1) that a whole number always gets (Wang's hash, 2007).
+/// A pseudo-random number in [0, 1), a hash of an integer (Wang 2007).
 pub(super) fn random(seed: u32) -> f32 {
     let mut x = (seed ^ 61) ^ (seed >> 16);
     x = x.wrapping_mul(9);
@@ -17,11 +17,12 @@ pub(super) fn random(seed: u32) -> f32 {
     (x >> 8) as f32 / 16_777_216.0
 }
 
-/// A convex stone: an ellipsoid's tangent planes, each moved in or out a little.
+/// A convex stone, bounded by tangent planes of an ellipsoid with random offsets.
 pub(super) struct Boulder {
     center: Vec3,
     /// Outward unit normal, and distance from the centre in m.
     planes: Vec<(Vec3, f32)>,
+    /// Radius of the bounding sphere in m.
     reach: f32,
 }
 
@@ -44,7 +45,7 @@ impl Boulder {
     /// Distance in m; edges are rounded over `width` (m).
     pub(super) fn distance(&self, p: Vec3, width: f32) -> f32 {
         let q = p - self.center;
-        // Far away a ball round the stone is near enough, and much cheaper.
+        // Far away the bounding sphere is accurate enough and much cheaper.
         let far = q.length() - self.reach;
         if far > 0.1 {
             return far;
@@ -53,7 +54,7 @@ impl Boulder {
     }
 }
 
-/// Smooth noise in about [-1, 1] that varies over a length of 1.
+/// Smooth noise in [-1, 1] with a wavelength of about 1.
 pub(super) fn noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let t = p - cell;

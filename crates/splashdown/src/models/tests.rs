@@ -15,14 +15,15 @@ fn model(name: &str) -> Mesh {
     MODELS.get(name).cloned().unwrap_or_else(|| panic!("no model {name}"))
 }
 
-/// Lower and upper corner of a mesh's box.
+/// Lower and upper corners of a mesh's bounding box.
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     let points = mesh.vertices.iter().map(|&v| Vec3::from(v));
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Euler characteristic of each: 2 less two for every hole through it. The rail and the 14 posts of the gallery make
-/// 14 holes, their 2 rings on 4 legs and its 2 eyes the 13 of the buoy; the gear has 6 and its bore.
+/// Euler characteristics: 2 minus two for every hole through the model. The rail and the 14 posts of the
+/// gallery form 14 holes. The buoy has 13 from two rings on four legs and two eyes. The gear has six and its
+/// bore.
 const EULER: &[(&str, i64)] = &[
     ("lighthouse", 2 - 2 * 14),
     ("cup", 0),
@@ -40,7 +41,7 @@ const EULER: &[(&str, i64)] = &[
 ];
 
 #[test]
-fn every_model_is_closed_manifold_and_turned_outwards() {
+fn every_model_is_closed_manifold_and_oriented_outwards() {
     for (name, what) in names() {
         let mesh = model(name);
         let topology = mesh.topology().unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -53,12 +54,12 @@ fn every_model_is_closed_manifold_and_turned_outwards() {
             assert_eq!(topology.euler_characteristic, *euler, "{name}: {topology}");
         }
         assert!(mesh.len() < 70_000, "{name}: {} triangles", mesh.len());
-        assert!(what.contains(" m"), "{name} does not say how large it is: {what}");
+        assert!(what.contains(" m"), "the description of {name} does not state its size: {what}");
     }
     assert!(build("teapot").is_none());
 }
 
-/// The share of triangles that look away from the mean of their corners' normals.
+/// The fraction of triangles that face away from the mean of their vertex normals.
 fn folded(mesh: &Mesh) -> f64 {
     let away = mesh.triangles.iter().filter(|corners| {
         let [a, b, c] = corners.map(|i| Vec3::from(mesh.vertices[i as usize]));
@@ -77,7 +78,7 @@ fn normals_agree_with_the_triangles() {
         }
         assert!(mesh.normals.iter().all(|&n| (Vec3::from(n).length() - 1.0).abs() < 1e-3), "{name}");
         assert!(folded(&mesh) < 0.002, "{name}: {:.4} of the triangles are folded over", folded(&mesh));
-        // The measure can tell: a mesh turned inside out is folded all over.
+        // Negative control: all triangles of a mesh turned inside out are folded.
         for corners in &mut mesh.triangles {
             corners.swap(1, 2);
         }
@@ -86,7 +87,7 @@ fn normals_agree_with_the_triangles() {
 }
 
 #[test]
-fn volumes_are_those_of_the_formulas() {
+fn volumes_match_the_formulas() {
     let ball = 4.0 / 3.0 * PI * 1e-3;
     for (name, volume, tolerance) in [
         ("sphere", ball, 0.005),
@@ -102,11 +103,11 @@ fn volumes_are_those_of_the_formulas() {
 }
 
 #[test]
-fn models_stand_or_float_where_they_are_said_to() {
+fn models_stand_on_the_ground_and_have_the_described_height() {
     for name in ["lighthouse", "figure", "cup", "thin-cup", "thin-cup-filling", "marin-box", "ramp", "steps"]
     {
         let (low, _) = bounds(&model(name));
-        assert!(low.y.abs() < 1e-3, "{name} stands at y = {}", low.y);
+        assert!(low.y.abs() < 1e-3, "the base of {name} is at y = {}", low.y);
     }
     for (name, low, high) in [
         ("lighthouse", 0.97, 1.02),
@@ -122,7 +123,7 @@ fn models_stand_or_float_where_they_are_said_to() {
 }
 
 #[test]
-fn the_same_model_twice_is_the_same_mesh() {
+fn models_are_reproducible() {
     for name in ["lighthouse", "figure"] {
         assert_eq!(build(name).as_ref(), Some(&model(name)), "{name}");
     }
@@ -132,19 +133,19 @@ fn the_same_model_twice_is_the_same_mesh() {
 }
 
 #[test]
-fn the_ugly_twin_has_every_fault() -> Result<(), Box<dyn std::error::Error>> {
+fn the_damaged_mesh_has_every_defect() -> Result<(), Box<dyn std::error::Error>> {
     let sphere = model("sphere");
-    let twin = ugly(&sphere, 3);
-    let report = twin.topology()?;
-    assert!(twin.normals.is_empty() && twin.len() > sphere.len());
-    assert_eq!(report.components, twin.len(), "a soup shares nothing: {report}");
-    let volume = twin.volume() / sphere.volume();
-    assert!((0.7..0.9).contains(&volume), "a tenth is turned over: volume {volume}");
+    let damaged = ugly(&sphere, 3);
+    let report = damaged.topology()?;
+    assert!(damaged.normals.is_empty() && damaged.len() > sphere.len());
+    assert_eq!(report.components, damaged.len(), "triangles share no vertices: {report}");
+    let volume = damaged.volume() / sphere.volume();
+    assert!((0.7..0.9).contains(&volume), "a tenth of the triangles is reversed: volume {volume}");
     let area = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|i| Vec3::from(twin.vertices[i as usize]));
+        let [a, b, c] = corners.map(|i| Vec3::from(damaged.vertices[i as usize]));
         (b - a).cross(c - a).length()
     };
-    assert!(twin.triangles.iter().filter(|t| area(t) == 0.0).count() > 100);
-    assert!(bounds(&twin).1.y > 0.105, "nothing floats about");
+    assert!(damaged.triangles.iter().filter(|t| area(t) == 0.0).count() > 100);
+    assert!(bounds(&damaged).1.y > 0.105, "there is no separate tetrahedron");
     Ok(())
 }

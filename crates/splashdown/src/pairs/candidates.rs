@@ -92,13 +92,13 @@ impl<const F: usize> Candidates<F> {
         self.pad(count);
     }
 
-    /// Makes room for a number of particles and the padding.
+    /// Enlarges the columns, if necessary, for a number of particles and the padding.
     #[inline(always)]
     fn reserve(&mut self, particles: usize) {
         // A whole register is written at the end, and then the padding.
-        let room = particles + 2 * BLOCK;
-        if self.columns[0].len() < room {
-            self.columns.iter_mut().for_each(|column| column.resize(room, 0.0));
+        let length = particles + 2 * BLOCK;
+        if self.columns[0].len() < length {
+            self.columns.iter_mut().for_each(|column| column.resize(length, 0.0));
         }
     }
 
@@ -113,12 +113,12 @@ impl<const F: usize> Candidates<F> {
         mut count: usize,
     ) -> usize {
         let from: [&[f32]; F] = std::array::from_fn(|f| all.column(f));
-        let room = self.columns[0].len();
+        let length = self.columns[0].len();
         let to = self.columns.each_mut().map(|column| column.as_mut_ptr());
         let (low, high) = (region.low.map(V::splat), region.high.map(V::splat));
         let (zero, reach2) = (V::splat(0.0), V::splat(region.reach2));
         assert!(run.end + BLOCK <= from[0].len(), "a run of particles ends at {}", run.end);
-        assert!(count + run.len() + BLOCK <= room, "no room for {} candidates", run.len());
+        assert!(count + run.len() + BLOCK <= length, "{} candidates exceed the columns", run.len());
         for j in run.clone().step_by(V::WIDTH) {
             // SAFETY: `j` is below the end of the run, and the columns extend a block beyond it.
             let load = |f: usize| unsafe { V::load(from[f].as_ptr().add(j)) };

@@ -88,13 +88,13 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>> Leaf for Row<'_, F, S, P>
         let Self { sorted, columns, candidates, row, outputs, pass } = self;
         let first = sorted.cell_start[row.start] as usize;
         for cell in row {
-            let places = sorted.run(cell, 1);
-            if places.clone().any(|i| pass.wants(i)) {
-                let targets = sorted.positions[places.clone()].iter().map(|p| p.truncate());
+            let particles = sorted.run(cell, 1);
+            if particles.clone().any(|i| pass.wants(i)) {
+                let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
                 let region = Region::around(targets, sorted.support_radius);
                 candidates.pack::<V>(columns, &sorted.runs_around(cell), &region);
             }
-            for i in places {
+            for i in particles {
                 let sums = if pass.wants(i) { candidates.sum::<V, S>(pass.pair::<V>(i)) } else { [0.0; S] };
                 pass.finish(i, sums, &mut outputs[i - first]);
             }

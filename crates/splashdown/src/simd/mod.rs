@@ -1,11 +1,12 @@
-//! Arithmetic on a register of numbers, as wide as the processor has them.
+//! SIMD arithmetic in registers of the width that the processor supports.
 //!
-//! *How it works.* A formula is written once over [`Lanes`]; a `Leaf` is compiled for every kind of register, and
-//! the widest of this processor is chosen while running (`target-cpu=native` would add nothing).
+//! *How it works.* A formula is written once over [`Lanes`]. A `Leaf` is compiled for every kind of register,
+//! and the widest one that the processor supports is selected at run time (`target-cpu=native` has no further
+//! effect).
 //!
-//! *Why not* plain loops that the compiler vectorises: whether it does changes with an unrelated line, by a factor of
-//! three. *Why not* a fused multiplication and addition: it saves a twentieth, and results would depend on the
-//! processor.
+//! *Why not* rely on automatic vectorisation: unrelated changes to the code can disable it, which costs a
+//! factor of three. *Why not* use fused multiply-add: it saves a twentieth of the time, and results would
+//! depend on the processor.
 
 mod portable;
 #[cfg(test)]
@@ -16,11 +17,11 @@ mod x86;
 use std::ops::{Add, Div, Mul, Sub};
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// Numbers that are taken together: sums are kept in so many lanes whatever the width of the registers, so that the
-/// order of every sum, and with it every bit, is the same on all processors.
+/// Number of lanes of a block. Sums are accumulated in this many lanes for any width of the registers, so
+/// that the order of additions, and therefore every bit of the result, is the same on all processors.
 pub(crate) const BLOCK: usize = 16;
 
-/// A vector of numbers; `f32` is one of a single lane.
+/// A vector of numbers; `f32` is a vector of one lane.
 pub trait Lanes:
     Copy
     + Add<Output = Self>
@@ -35,9 +36,9 @@ pub trait Lanes:
     fn splat(value: f32) -> Self;
     /// The square root of each lane.
     fn sqrt(self) -> Self;
-    /// The larger of each two lanes; that of `other` if one of both is NaN.
+    /// The lane-wise maximum; the lane of `other` if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// Lane by lane: `yes` where `self < bound`, `no` elsewhere.
+    /// Selects lane by lane: `yes` where `self < bound`, `no` elsewhere.
     fn if_less(self, bound: Self, yes: Self, no: Self) -> Self;
 }
 
@@ -49,19 +50,19 @@ pub(crate) trait Register: Lanes {
     /// Reads `WIDTH` numbers.
     ///
     /// # Safety
-    /// So many must lie at `from`.
+    /// `from` must be valid for reads of `WIDTH` numbers.
     unsafe fn load(from: *const f32) -> Self;
 
     /// Writes `WIDTH` numbers.
     ///
     /// # Safety
-    /// There must be room for so many at `to`.
+    /// `to` must be valid for writes of `WIDTH` numbers.
     unsafe fn store(self, to: *mut f32);
 
-    /// One bit for every lane that is below the bound.
+    /// A bit mask of the lanes that are below the bound.
     fn less_bits(self, bound: Self) -> u32;
 
-    /// The lanes whose bit is set, moved to the front in their order; what follows them is anything.
+    /// Moves the lanes whose bit is set to the front, in order. The remaining lanes are unspecified.
     fn compress(self, bits: u32) -> Self;
 }
 
@@ -91,7 +92,7 @@ impl Lanes for f32 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Simd {
-    /// What every processor has: SSE2, NEON.
+    /// Four lanes, available on every processor (SSE2, NEON).
     Portable,
     /// AVX2.
     Avx2,
@@ -103,7 +104,7 @@ impl Simd {
     /// All kinds, narrowest first.
     pub const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
-    /// Its name as a person writes it.
+    /// The name in lower case.
     pub fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -112,7 +113,7 @@ impl Simd {
         }
     }
 
-    /// True if this processor has such registers.
+    /// True if this processor supports this kind.
     pub fn is_available(self) -> bool {
         match self {
             Self::Portable => true,
@@ -125,16 +126,15 @@ impl Simd {
         }
     }
 
-    /// The kind that the loops of this process run with: the widest of this processor within
-    /// [`limit`](Self::limit_to).
+    /// The kind that this process uses: the widest one of the processor that does not exceed the
+    /// [limit](Self::limit_to).
     pub fn in_use() -> Self {
         let limit = LIMIT.load(Relaxed);
         let fits = |kind: &Self| *kind as u8 <= limit && kind.is_available();
         Self::ALL.into_iter().rev().find(fits).unwrap_or(Self::Portable)
     }
 
-    /// From now on, loops of this process use no wider kind. It changes no bit of any result, only the time: for
-    /// measuring.
+    /// Limits the registers of this process to this kind, for measurements. Results stay bit-identical.
     pub fn limit_to(self) {
         LIMIT.store(self as u8, Relaxed);
     }
@@ -142,30 +142,30 @@ impl Simd {
 
 static LIMIT: AtomicU8 = AtomicU8::new(Simd::Avx512 as u8);
 
-/// Work that is compiled for every kind of register. `run` must be `#[inline(always)]`, and so must be what it calls
-/// with registers: only then are they registers.
+/// Code that is compiled for every kind of register. `run` and all functions that it calls with registers
+/// must be `#[inline(always)]`: otherwise the values are passed in memory.
 pub(crate) trait Leaf {
     fn run<V: Register>(self);
 }
 
-/// Runs a leaf with registers of the kind, which this processor must have.
+/// Runs a leaf with registers of the given kind. Panics if the processor does not support it.
 #[inline]
 pub(crate) fn run_with<L: Leaf>(kind: Simd, leaf: L) {
     assert!(kind.is_available(), "this processor has no {} registers", kind.name());
     match kind {
         Simd::Portable => leaf.run::<portable::F32x4>(),
-        // SAFETY: the processor has them.
+        // SAFETY: the assertion above checks that the processor supports them.
         #[cfg(target_arch = "x86_64")]
         Simd::Avx2 => unsafe { x86::with_avx2(leaf) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
         Simd::Avx512 => unsafe { x86::with_avx512(leaf) },
         #[cfg(not(target_arch = "x86_64"))]
-        Simd::Avx2 | Simd::Avx512 => unreachable!("asked above"),
+        Simd::Avx2 | Simd::Avx512 => unreachable!("checked by the assertion above"),
     }
 }
 
-/// The sum of a block, always in the same order: halves are folded onto each other.
+/// The sum of a block in a fixed order: the upper half is added to the lower half, until one lane is left.
 #[inline(always)]
 pub(crate) fn sum(mut lanes: [f32; BLOCK]) -> f32 {
     let mut width = BLOCK;
@@ -178,8 +178,9 @@ pub(crate) fn sum(mut lanes: [f32; BLOCK]) -> f32 {
     lanes[0]
 }
 
-/// For every set of lanes, by the bits of its number: the numbers of the lanes in it, and then anything.
-const fn front<const LANES: usize, const SETS: usize>() -> [[u32; LANES]; SETS] {
+/// A table for [`Register::compress`]. The entry of a bit mask starts with the indices of the lanes whose bit
+/// is set.
+const fn compress_table<const LANES: usize, const SETS: usize>() -> [[u32; LANES]; SETS] {
     let mut table = [[0; LANES]; SETS];
     let mut set = 0;
     while set < SETS {

@@ -1,4 +1,4 @@
-//! Four lanes that every compiler makes a register of: SSE2, NEON, WebAssembly.
+//! Four lanes, which compilers keep in one register with SSE2, NEON and WebAssembly.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -68,13 +68,13 @@ impl Register for F32x4 {
 
     #[inline(always)]
     unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: four numbers lie there; arrays of them need no wider alignment.
+        // SAFETY: the caller guarantees four readable numbers, and an array has the alignment of its items.
         Self(unsafe { *from.cast::<[f32; 4]>() })
     }
 
     #[inline(always)]
     unsafe fn store(self, to: *mut f32) {
-        // SAFETY: there is room for four; arrays of them need no wider alignment.
+        // SAFETY: the caller guarantees four writable numbers, and an array has the alignment of its items.
         unsafe { *to.cast::<[f32; 4]>() = self.0 }
     }
 
@@ -86,8 +86,8 @@ impl Register for F32x4 {
 
     #[inline(always)]
     fn compress(self, bits: u32) -> Self {
-        Self(FRONT[(bits & 15) as usize].map(|lane| self.0[lane as usize & 3]))
+        Self(COMPRESS[(bits & 15) as usize].map(|lane| self.0[lane as usize & 3]))
     }
 }
 
-static FRONT: [[u32; 4]; 16] = super::front();
+static COMPRESS: [[u32; 4]; 16] = super::compress_table();

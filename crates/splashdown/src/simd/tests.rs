@@ -1,6 +1,6 @@
 use super::*;
 
-/// What a leaf finds for two columns, operation by operation.
+/// The bits of the results of every operation on two blocks.
 fn results(kind: Simd, a: &[f32; BLOCK], b: &[f32; BLOCK]) -> Vec<[u32; BLOCK]> {
     struct All<'a>(&'a [f32; BLOCK], &'a [f32; BLOCK], &'a mut Vec<[u32; BLOCK]>);
     impl Leaf for All<'_> {
@@ -46,12 +46,12 @@ fn available() -> impl Iterator<Item = Simd> {
 }
 
 #[test]
-fn every_register_gives_the_same_bits() {
+fn all_registers_give_the_same_bits() {
     let a = std::array::from_fn(|l| (l as f32 - 7.3) * 1.7);
     let mut b = std::array::from_fn(|l| ((l * 5 % 16) as f32 - 6.1) * 0.9);
     (b[3], b[4], b[5]) = (f32::NAN, f32::INFINITY, a[5]);
     let expected = results(Simd::Portable, &a, &b);
-    assert_ne!(expected[5], expected[6], "max is asked with a NaN on either side");
+    assert_ne!(expected[5], expected[6], "max is tested with a NaN in either operand");
     for kind in available() {
         for (n, (found, expected)) in results(kind, &a, &b).iter().zip(&expected).enumerate() {
             assert_eq!(found, expected, "operation {n} with {} registers", kind.name());
@@ -60,9 +60,9 @@ fn every_register_gives_the_same_bits() {
 }
 
 #[test]
-fn the_lanes_below_a_bound_move_to_the_front() {
-    struct Front<'a>(&'a [f32; BLOCK], f32, &'a mut Vec<f32>);
-    impl Leaf for Front<'_> {
+fn compress_moves_the_selected_lanes_to_the_front() {
+    struct Compress<'a>(&'a [f32; BLOCK], f32, &'a mut Vec<f32>);
+    impl Leaf for Compress<'_> {
         #[inline(always)]
         fn run<V: Register>(self) {
             for l in (0..BLOCK).step_by(V::WIDTH) {
@@ -85,7 +85,7 @@ fn the_lanes_below_a_bound_move_to_the_front() {
                 if below { -(l as f32) - 1.0 } else { l as f32 + 1.0 }
             });
             let mut found = Vec::new();
-            run_with(kind, Front(&values, 0.0, &mut found));
+            run_with(kind, Compress(&values, 0.0, &mut found));
             let expected: Vec<f32> = values.into_iter().filter(|&x| x < 0.0).collect();
             assert_eq!(found, expected, "{} registers, pattern {pattern}", kind.name());
         }
@@ -93,7 +93,7 @@ fn the_lanes_below_a_bound_move_to_the_front() {
 }
 
 #[test]
-fn a_limit_is_kept() {
+fn the_limit_is_respected() {
     assert!(Simd::in_use().is_available());
     Simd::Portable.limit_to();
     assert_eq!(Simd::in_use(), Simd::Portable);

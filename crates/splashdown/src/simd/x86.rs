@@ -1,9 +1,10 @@
-//! The registers of AVX2 and of AVX-512.
+//! The registers of AVX2 and AVX-512.
 //!
-//! Such a register exists only in a [`Leaf`], which runs where the processor has it: that is why every intrinsic here
-//! may be called. Nobody but [`with_avx2`] and [`with_avx512`] may name the two types.
+//! All intrinsics in this module are safe to call for one reason: values of the two register types exist only
+//! inside a [`Leaf`] that [`with_avx2`] or [`with_avx512`] runs, after the processor's support has been
+//! checked. No other function may name these types.
 
-#![expect(clippy::undocumented_unsafe_blocks, reason = "they are all safe for the reason above")]
+#![expect(clippy::undocumented_unsafe_blocks, reason = "all of them are safe for the reason given above")]
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
@@ -108,12 +109,12 @@ impl Register for F32x8 {
 
     #[inline(always)]
     fn compress(self, bits: u32) -> Self {
-        let places = &FRONT[(bits & 255) as usize];
-        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_loadu_si256(places.as_ptr().cast())) })
+        let lanes = &COMPRESS[(bits & 255) as usize];
+        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_loadu_si256(lanes.as_ptr().cast())) })
     }
 }
 
-static FRONT: [[u32; 8]; 256] = super::front();
+static COMPRESS: [[u32; 8]; 256] = super::compress_table();
 
 impl Lanes for F32x16 {
     #[inline(always)]
