@@ -1,4 +1,4 @@
-//! Scenes from code, without a scene file.
+//! Builds scenes in code, without a scene file.
 
 use toml::{Table, Value};
 
@@ -23,12 +23,12 @@ use super::types::Scene;
 /// # Ok::<(), splashdown::SceneErrors>(())
 /// ```
 #[derive(Clone, Debug)]
-#[must_use = "a builder makes a scene only when `build` is called"]
+#[must_use = "a builder creates a scene only when `build` is called"]
 pub struct SceneBuilder {
     root: Table,
 }
 
-/// One section of a list, such as a body, while it is built: see [`SceneBuilder::section`].
+/// Builds one section of a list, such as a body: see [`SceneBuilder::section`].
 #[derive(Clone, Debug)]
 pub struct SectionBuilder {
     table: Table,
@@ -52,7 +52,7 @@ value_from!(f64 => Float as f64, i64 => Integer as i64, i32 => Integer as i64, u
     bool => Boolean as bool, &str => String as String, String => String as String);
 
 impl From<f32> for SceneValue {
-    /// The shortest decimal number that reads back as this `f32`, as one would write it in a file.
+    /// The shortest decimal number that is read back as this `f32`.
     fn from(value: f32) -> Self {
         Self(Value::Float(value.to_string().parse().unwrap_or(f64::from(value))))
     }
@@ -83,7 +83,7 @@ impl SceneBuilder {
         self.set("domain.min", min).set("domain.max", max)
     }
 
-    /// The distance of neighbouring particles at the start in m, which is the resolution.
+    /// The initial distance between neighbouring particles in m, which is the resolution.
     pub fn particle_spacing(self, spacing: f64) -> Self {
         self.set("fluid.particle_spacing", spacing)
     }
@@ -120,7 +120,7 @@ impl SceneBuilder {
         self.root.to_string()
     }
 
-    /// The table at this path, made where it is missing; a key with a value in its place gives way to it.
+    /// The table at this path. Missing tables are created; a value at the path is replaced by a table.
     fn table(&mut self, path: &str) -> Option<&mut Table> {
         let mut table = &mut self.root;
         for name in path.split('.').filter(|name| !name.is_empty()) {
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_built_scene_is_that_of_the_equal_file() {
+    fn a_built_scene_equals_the_scene_of_the_same_file() {
         let built = column()
             .set("domain.open", ["y_max"])
             .set("solver.cfl_factor", 0.25_f32)
@@ -189,24 +189,24 @@ mod tests {
         let mut file = Scene::parse(text, "column.toml").unwrap();
         file.text = built.text.clone();
         assert_eq!(built, file);
-        // Control: one key more makes another scene.
+        // Negative control: an additional key gives a different scene.
         assert_ne!(column().set("solver.cfl_factor", 0.2).build().unwrap().solver, file.solver);
     }
 
     #[test]
-    fn mistakes_are_reported_as_those_of_a_file() {
+    fn mistakes_are_reported_like_those_of_a_file() {
         let errors =
             column().particle_spacing(-1.0).set("solver.kernal", "cubic_spline").build().unwrap_err();
         let text = errors.to_string();
         assert!(text.contains("fluid.particle_spacing is -1") && text.contains("kernal"), "{text}");
-        // A section where a value belongs, and a value where a section belongs.
+        // A section in place of a value, and values in place of sections.
         assert!(column().section("scene.name", |section| section).build().is_err());
         assert!(column().set("fluid", 1.0).build().is_err());
         assert!(column().set("scene.name.first", "a").build().is_err());
     }
 
     #[test]
-    fn the_text_of_a_builder_builds_the_same_scene() {
+    fn the_text_of_a_builder_gives_the_same_scene() {
         let builder = column().set("solver.max_dt", 0.001_f32);
         assert!(builder.to_toml().contains("max_dt = 0.001"), "{}", builder.to_toml());
         assert_eq!(Scene::parse(&builder.to_toml(), "copy").unwrap(), builder.build().unwrap());

@@ -1,8 +1,9 @@
-//! Enums that are words in a scene file: one declaration gives the enum, its words, their explanations and the reading.
+//! Enums that are words in a scene file. One declaration defines the enum, its words, their descriptions and
+//! the conversions.
 
-/// A value that a scene file writes as one word out of a few.
+/// A value that is written as one of a few words in a scene file.
 pub trait Choice: Copy + 'static {
-    /// Every variant with its word and its explanation, in the order in which messages list them.
+    /// Every variant with its word and its description, in the order in which messages list them.
     const ALL: &'static [(Self, &'static str, &'static str)];
 
     /// The word in the scene file.
@@ -14,8 +15,8 @@ pub trait Choice: Copy + 'static {
     }
 }
 
-/// Declares enums whose variants are words of the scene file; the doc comment of a variant is also its
-/// explanation in the schema.
+/// Declares enums whose variants are words of the scene file. The doc comment of a variant is also its
+/// description in the schema.
 macro_rules! choices {
     ($(
         $(#[doc = $doc:literal])+

@@ -1,4 +1,4 @@
-//! Numbers that follow from a scene: what `splashdown check` prints and the solvers start from.
+//! Quantities derived from a scene. `splashdown check` prints them, and the solvers use them.
 
 use glam::Vec3;
 use serde::Serialize;
@@ -6,26 +6,27 @@ use serde::Serialize;
 use super::things::Motion;
 use super::types::{KernelKind, Method, Scene, Shape, SurfaceTension};
 
-/// Speed of sound over the largest speed to expect: keeps the density within one per cent (Monaghan 1994).
+/// Ratio of the speed of sound to the reference speed. With this value the density varies by at most one per
+/// cent (Monaghan 1994).
 const SOUND_RATIO: f32 = 10.0;
-/// When nothing drives the fluid, anything positive will do, in m/s.
-const LEAST_SPEED: f32 = 0.01;
+/// Lower bound of the reference speed in m/s, for scenes in which nothing drives the fluid.
+const MIN_SPEED: f32 = 0.01;
 
-/// What follows from a scene.
+/// Quantities derived from a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Derived {
-    /// Number of particles at the start. [`Derived::new`] counts those inside bodies, too; see
-    /// [`Derived::with_inventory`].
+    /// Number of particles at the start. [`Derived::new`] includes those inside bodies,
+    /// [`Derived::with_inventory`] does not.
     pub particles: u64,
     /// Number of particles that emitters create until the end.
     pub emitted: u64,
-    /// Number of particles on average over the scene's time, if none is drained.
+    /// Average number of particles over the scene's duration, if none are removed.
     pub mean_particles: f64,
-    /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`, so that the starting
-    /// lattice has exactly the rest density.
+    /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`. The initial lattice then
+    /// has exactly the rest density.
     pub particle_mass: f32,
-    /// The sum of `W * particle_spacing^3` over the infinite lattice, for the density's kernel.
+    /// The sum of `W * particle_spacing^3` over the infinite lattice, with the kernel of the density.
     pub lattice_sum: f64,
     /// Volume of the fluid in m^3: `particles * particle_spacing^3`.
     pub volume: f32,
@@ -33,20 +34,21 @@ pub struct Derived {
     pub support_radius: f32,
     /// Height in m of the fluid's highest point above the domain's lowest, along gravity; 0 without gravity.
     pub head: f32,
-    /// The largest speed to expect, in m/s: `sqrt(4 g head + v0^2)` plus the tank's own largest speed, where v0
-    /// is the fastest block, mesh, file, emitter or body. The first part is the front of a dam break of that
-    /// height, 2 sqrt(g head) (Ritter 1892); it also exceeds the speed sqrt(2 g head) of a fall from there. A
-    /// scene that nothing drives gets its capillary speed sqrt(2 sigma / (rho spacing)).
+    /// The largest expected speed in m/s: `sqrt(4 g head + v0^2)` plus the largest speed of the oscillating
+    /// domain, where v0 is the largest initial speed of blocks, meshes, files, emitters and bodies. The term
+    /// `2 sqrt(g head)` is the speed of the front of a dam break (Ritter 1892). It exceeds the speed `sqrt(2
+    /// g head)` of a free fall. The capillary speed `sqrt(2 sigma / (rho spacing))` is a lower bound if
+    /// surface tension is enabled.
     pub reference_speed: f32,
-    /// Speed of sound in m/s: as given, or from the stiffness, or ten times the reference speed.
+    /// Speed of sound in m/s: given, computed from the stiffness, or ten times the reference speed.
     pub sound_speed: f32,
     /// Stiffness of the equation of state: Tait's `c^2 rho0 / exponent` in Pa (`wcsph`), or `c^2` in m^2/s^2
     /// (`mueller2003`).
     pub stiffness: f32,
-    /// Expected time step in s: the least of `cfl_factor * support_radius / 2 / sound_speed`, `0.125
-    /// (support_radius / 2)^2 / viscosity` (Morris et al. 1997) and `max_dt`.
+    /// Expected time step in s: the smallest of `cfl_factor * support_radius / 2 / sound_speed`,
+    /// `0.125 (support_radius / 2)^2 / viscosity` (Morris et al. 1997) and `max_dt`.
     pub dt_estimate: f32,
-    /// Which of the three it is: `sound`, `viscosity` or `max_dt`.
+    /// The limit that determines the time step: `sound`, `viscosity` or `max_dt`.
     pub dt_limit: &'static str,
     /// Number of frames.
     pub frames: u32,
@@ -54,7 +56,7 @@ pub struct Derived {
     pub steps_estimate: u64,
 }
 
-/// How high the fluid of a mesh or a file reaches, and how fast it is.
+/// The extent and the speed of the fluid of a mesh or file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reach {
     /// Lower corner in m.
@@ -66,8 +68,8 @@ pub(crate) struct Reach {
 }
 
 impl Derived {
-    /// With this number of particles at the start, and the number that emitters create: in all, and on average over the
-    /// scene's time.
+    /// Sets the number of particles at the start, the number that emitters create, and how many of these
+    /// exist on average over the scene's duration.
     pub(crate) fn with_particles(
         self,
         scene: &Scene,
@@ -84,7 +86,8 @@ impl Derived {
         }
     }
 
-    /// Everything but the numbers of particles, which are zero. `reaches` are those of the meshes and files of the fluid.
+    /// All quantities except the numbers of particles, which are zero. `reaches` are the extents of the
+    /// fluid's meshes and files.
     pub(crate) fn of(scene: &Scene, reaches: &[Reach]) -> Self {
         let (fluid, solver) = (&scene.fluid, &scene.solver);
         let spacing = fluid.particle_spacing;
@@ -151,7 +154,7 @@ fn head(scene: &Scene, reaches: &[Reach]) -> f32 {
 fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
     let blocks = scene.fluid.blocks.iter().map(|block| block.velocity.length());
     let emitters = scene.emitters.iter().map(|emitter| emitter.speed);
-    // Of bodies only the speed of their origins: how far they reach is known when their meshes are read.
+    // Only the speed of a body's origin counts: its extent is unknown before its mesh is read.
     let bodies = scene.bodies.iter().map(|body| match &body.motion {
         Motion::Static => 0.0,
         Motion::Scripted(script) => script.max_speed(f64::from(scene.duration), 0.0),
@@ -171,11 +174,11 @@ fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
         SurfaceTension::None => 0.0,
         _ => (2.0 * material.surface_tension / (material.rest_density * scene.fluid.particle_spacing)).sqrt(),
     };
-    driven.max(capillary).max(LEAST_SPEED)
+    driven.max(capillary).max(MIN_SPEED)
 }
 
-/// The sum of `W dx^3` over the lattice of distance dx, for a support radius of `ratio * dx`: the kernel with
-/// which the method sums its density (poly6 for `mueller2003`).
+/// The sum of `W dx^3` over the infinite lattice of spacing dx, for a support radius of `ratio * dx`. W is
+/// the kernel of the method's density (poly6 for `mueller2003`).
 pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
     let weight = |q: f64| match (method, kernel) {
         (Method::Mueller2003, _) => 315.0 / 64.0 * (1.0 - q * q).powi(3),
@@ -183,7 +186,7 @@ pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
         (Method::Wcsph, KernelKind::CubicSpline) if q <= 0.5 => 8.0 * (6.0 * q * q * (q - 1.0) + 1.0),
         (Method::Wcsph, KernelKind::CubicSpline) => 16.0 * (1.0 - q).powi(3),
     };
-    // A checked scene has ratios up to 4; a hand-made one must not loop for ever.
+    // The ratio of a checked scene is at most 4. The clamp bounds the loops for scenes built in code.
     let reach = (ratio.ceil() as i64).clamp(0, 32);
     let mut sum = 0.0;
     for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
@@ -201,9 +204,9 @@ pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Values computed independently with a computer algebra system, to the four digits given there.
+    /// Values computed independently with a computer algebra system, rounded to four or five digits.
     #[test]
-    fn lattice_sums_match_the_published_ones() {
+    fn lattice_sums_match_independent_values() {
         let c2 = |ratio| lattice_sum(Method::Wcsph, KernelKind::WendlandC2, ratio);
         let cubic = |ratio| lattice_sum(Method::Wcsph, KernelKind::CubicSpline, ratio);
         let poly6 = |ratio| lattice_sum(Method::Mueller2003, KernelKind::WendlandC2, ratio);
@@ -221,6 +224,6 @@ mod tests {
         for (ours, published) in known {
             assert!((ours - published).abs() < 6e-5, "{ours} is not {published}");
         }
-        assert!((c2(2.0) - 1.0175).abs() > 6e-5, "control: another ratio's sum is told apart");
+        assert!((c2(2.0) - 1.0175).abs() > 6e-5, "negative control: the value of another ratio");
     }
 }

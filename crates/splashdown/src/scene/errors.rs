@@ -1,41 +1,41 @@
-//! What a reader of a scene file is told: every problem at once, each with its place, the value given and what
-//! is allowed.
+//! Problems of scene files. All problems are reported at once, each with its line, the given value and the
+//! allowed values.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// Problems printed in full; a broken file may have thousands.
-const MOST_SHOWN: usize = 40;
+/// Maximum number of problems that are displayed.
+const MAX_SHOWN: usize = 40;
 
-/// One thing wrong with a scene file.
+/// One problem of a scene file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct SceneProblem {
     /// The file, as given to [`crate::scene::Scene::load`] or [`crate::scene::Scene::parse`].
     pub file: String,
-    /// Line, from 1; `None` if the file as a whole is meant.
+    /// Line, from 1; `None` for a problem of the whole file.
     pub line: Option<usize>,
     /// Column in characters, from 1.
     pub column: Option<usize>,
-    /// The key with its path, for example `fluid.block[1].size`; empty if no key is meant.
+    /// The key with its path, for example `fluid.block[1].size`; empty if the problem concerns no single key.
     pub key: String,
-    /// What is wrong, in one sentence.
+    /// A description of the problem.
     pub message: String,
     /// The value as written, shortened.
     pub given: Option<String>,
-    /// What is allowed instead.
+    /// The allowed values.
     pub allowed: Option<String>,
-    /// What to do.
+    /// A suggested correction.
     pub hint: Option<String>,
     /// The line of the file, shortened.
     pub text: Option<String>,
-    /// Where in `text` the marker starts and how long it is, in characters.
+    /// The start of the marker in `text` and its length, in characters.
     #[serde(skip)]
     pub(crate) mark: (usize, usize),
 }
 
-/// Something repaired, or legal but probably not meant.
+/// A value that was corrected, or that is valid but probably unintended.
 pub type SceneWarning = SceneProblem;
 
 impl SceneProblem {
@@ -81,14 +81,14 @@ impl SceneProblem {
     }
 }
 
-/// As a warning; errors are displayed by [`SceneErrors`].
+/// Displays the problem as a warning. [`SceneErrors`] displays problems as errors.
 impl fmt::Display for SceneProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.write(f, "warning")
     }
 }
 
-/// Everything that is wrong with a scene file, in the order of its lines; never empty.
+/// All problems of a scene file in the order of its lines; never empty.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct SceneErrors {
@@ -106,13 +106,13 @@ impl SceneErrors {
 
 impl fmt::Display for SceneErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for problem in self.errors.iter().take(MOST_SHOWN) {
+        for problem in self.errors.iter().take(MAX_SHOWN) {
             problem.write(f, "error")?;
             f.write_str("\n\n")?;
         }
         let count = self.errors.len();
-        if count > MOST_SHOWN {
-            writeln!(f, "... and {} more", count - MOST_SHOWN)?;
+        if count > MAX_SHOWN {
+            writeln!(f, "... and {} more", count - MAX_SHOWN)?;
         }
         let word = if count == 1 { "error" } else { "errors" };
         write!(f, "{count} {word} in {}", self.file)

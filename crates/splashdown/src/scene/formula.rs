@@ -1,19 +1,18 @@
-//! Formulas of the time t, as scene files write motions: `0.1 * sin(2 * pi * t)`.
+//! Formulas of the time t, which describe motions in scene files: `0.1 * sin(2 * pi * t)`.
 //!
-//! Written here because the need is a screen of code: numbers, `t`, `pi`, + - * / ^, brackets and a dozen
-//! functions. The crates for it either parse a language (evalexpr, under the AGPL), or are no longer kept
-//! (meval, fasteval).
+//! Why not a crate: the grammar is small (numbers, `t`, `pi`, + - * / ^, brackets and a dozen functions),
+//! evalexpr is under the AGPL, and meval and fasteval are no longer maintained.
 
 /// A formula that can be evaluated at any time.
 #[derive(Debug, Clone)]
 pub struct Formula {
     text: String,
-    /// In the order of evaluation on a stack.
+    /// Operations in postfix order.
     code: Vec<Op>,
 }
 
 impl PartialEq for Formula {
-    /// Two formulas are the same if they are written alike.
+    /// Formulas are equal if their texts are equal.
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -49,24 +48,24 @@ const FUNCTIONS: &[Function] = &[
 ];
 const FUNCTIONS_OF_TWO: &[FunctionOfTwo] = &[("min", f64::min), ("max", f64::max)];
 
-/// What a formula may contain, for messages.
+/// The allowed elements of a formula, for messages.
 pub(crate) const ALLOWED: &str =
     "numbers, t (seconds), pi, + - * / ^ ( ), sin cos tan sqrt exp log abs tanh floor min max";
 
-/// How deep brackets may be nested.
-const DEEPEST: u32 = 64;
+/// Maximum depth of nested brackets and signs.
+const MAX_DEPTH: u32 = 64;
 
 impl Formula {
-    /// Reads a formula.
+    /// Parses a formula.
     ///
     /// # Errors
-    /// What is wrong with it and where, in words.
+    /// A message that names the problem and its position.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut parser = Parser { text, at: 0, code: Vec::new(), depth: 0 };
         parser.sum()?;
         match parser.peek() {
             None => Ok(Self { text: text.to_owned(), code: parser.code }),
-            Some(c) => Err(format!("{c:?} at place {} of {text:?} was not expected", parser.at + 1)),
+            Some(c) => Err(format!("unexpected {c:?} at position {} of {text:?}", parser.at + 1)),
         }
     }
 
@@ -98,8 +97,9 @@ impl Formula {
         stack.pop().unwrap_or(f64::NAN)
     }
 
-    /// A time in [0, `end`] (s) at which the formula has no finite value or one larger than `limit`, if one is
-    /// found: among many samples, and between those where the value is largest, for there a pole hides.
+    /// Searches [0, `end`] (s) for a time at which the formula is not finite or its absolute value exceeds
+    /// `limit`. It tests equidistant samples, and searches for a pole near the samples with the largest
+    /// values.
     pub(crate) fn fault(&self, end: f64, limit: f64) -> Option<f64> {
         const SAMPLES: usize = 2000;
         const PEAKS: usize = 8;
@@ -185,8 +185,8 @@ impl Parser<'_> {
 
     fn signed(&mut self) -> Result<(), String> {
         self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(format!("it is nested more than {DEEPEST} deep"));
+        if self.depth > MAX_DEPTH {
+            return Err(format!("it is nested more than {MAX_DEPTH} levels deep"));
         }
         let done =
             if self.take('-') { self.signed().map(|()| self.code.push(Op::Negate)) } else { self.power() };
@@ -221,7 +221,7 @@ impl Parser<'_> {
             return Ok(());
         }
         let word: String = rest.chars().take_while(char::is_ascii_alphanumeric).collect();
-        let place = self.at + 1;
+        let position = self.at + 1;
         self.at += word.len();
         if let Some(&(_, f)) = FUNCTIONS.iter().find(|(name, _)| *name == word) {
             self.expect('(')?;
@@ -239,8 +239,8 @@ impl Parser<'_> {
             self.code.push(match word.as_str() {
                 "t" => Op::Time,
                 "pi" => Op::Number(std::f64::consts::PI),
-                "" => return Err(format!("{c:?} at place {place} of {:?} was not expected", self.text)),
-                _ => return Err(format!("{word:?} at place {place} of {:?} is unknown", self.text)),
+                "" => return Err(format!("unexpected {c:?} at position {position} of {:?}", self.text)),
+                _ => return Err(format!("unknown name {word:?} at position {position} of {:?}", self.text)),
             });
         }
         Ok(())
@@ -250,11 +250,11 @@ impl Parser<'_> {
         if self.take(wanted) {
             return Ok(());
         }
-        Err(format!("{wanted:?} is missing at place {} of {:?}", self.at + 1, self.text))
+        Err(format!("{wanted:?} is missing at position {} of {:?}", self.at + 1, self.text))
     }
 }
 
-/// Bytes of the number that a text begins with, its exponent included.
+/// The length in bytes of the number at the start of a text, including its exponent.
 fn number_length(text: &str) -> usize {
     let digits = |text: &str| text.bytes().take_while(|b| b.is_ascii_digit() || *b == b'.').count();
     let mantissa = digits(text);
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formulas_have_the_values_of_arithmetic() {
+    fn formulas_are_evaluated_by_the_rules_of_arithmetic() {
         for (text, value) in [
             ("1 + 2 * 3", 7.0),
             ("-2 ^ 2", -4.0),
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn formulas_that_blow_up_are_found_wherever_they_do() {
+    fn values_that_are_not_finite_or_too_large_are_found() {
         for (text, at) in [
             ("1/t", 0.0),
             ("sqrt(0.5-t)", 0.5),
@@ -307,21 +307,25 @@ mod tests {
         {
             assert_eq!(Formula::parse(text).unwrap().fault(2.0, 1e6), None, "{text}");
         }
-        assert_eq!(Formula::parse("1/(t-3)").unwrap().fault(2.0, 1e6), None, "control: after the end");
+        assert_eq!(
+            Formula::parse("1/(t-3)").unwrap().fault(2.0, 1e6),
+            None,
+            "control: the pole is after the end"
+        );
     }
 
     #[test]
-    fn what_is_no_formula_is_refused_with_its_place() {
+    fn invalid_formulas_are_rejected_with_a_position() {
         for (text, part) in [
             ("", "ends"),
             ("2 *", "ends"),
-            ("2 3", "place 3"),
+            ("2 3", "position 3"),
             ("sin t", "'('"),
-            ("foo(2)", "\"foo\" at place 1"),
+            ("foo(2)", "\"foo\" at position 1"),
             ("(1", "')'"),
             ("1 ; 2", "';'"),
             ("1.2.3", "not a number"),
-            ("é", "place 1"),
+            ("é", "position 1"),
         ] {
             let error = Formula::parse(text).unwrap_err();
             assert!(error.contains(part), "{text}: {error}");

@@ -1,10 +1,10 @@
-//! Where the camera stands.
+//! The position of the camera.
 
 use glam::Vec3;
 
 use super::types::{Camera, Domain};
 
-/// Room left around the domain.
+/// Factor on the size of the domain that leaves a margin around it.
 const MARGIN: f32 = 1.06;
 
 impl Camera {
@@ -21,7 +21,7 @@ impl Camera {
     }
 }
 
-/// The distance in m from which the camera sees all corners of the domain, at every moment of its orbit.
+/// The distance in m from which the camera sees all corners of the domain during its whole orbit.
 pub(crate) fn fitting_distance(camera: &Camera, domain: &Domain, picture: [u32; 2], duration: f32) -> f32 {
     let moments = if camera.orbit_speed == 0.0 { 1 } else { 48 };
     let half_height = (camera.field_of_view * 0.5).to_radians().tan();
@@ -29,7 +29,7 @@ pub(crate) fn fitting_distance(camera: &Camera, domain: &Domain, picture: [u32; 
     let mut needed = f32::MIN_POSITIVE;
     for moment in 0..moments {
         let backward = camera.direction(duration * moment as f32 / moments as f32);
-        // A checked camera never looks straight down; for one that does, any direction will do.
+        // A camera built in code may look straight down, where any horizontal direction is valid.
         let right = Vec3::Y.cross(backward).normalize_or(Vec3::X);
         let up = backward.cross(right);
         for corner in 0..8 {
@@ -60,14 +60,14 @@ mod tests {
         assert!(camera.eye(0.0).abs_diff_eq(Vec3::new(1.0, 1.0, 3.0), 1e-6));
         assert!(
             camera.eye(1.0).abs_diff_eq(Vec3::new(3.0, 1.0, 1.0), 1e-6),
-            "the orbit is a growing azimuth"
+            "the azimuth increases along the orbit"
         );
         camera.elevation = 30.0;
         assert!((camera.eye(0.0).y - 2.0).abs() < 1e-6);
     }
 
     #[test]
-    fn every_corner_is_in_view_and_nearer_it_is_not() {
+    fn the_fitting_distance_shows_every_corner() {
         let domain = Domain {
             min: Vec3::ZERO,
             max: Vec3::new(2.0, 1.0, 0.8),
@@ -85,7 +85,7 @@ mod tests {
         camera.distance = fitting_distance(&camera, &domain, [1280, 720], 1.0);
         assert!(sees_all(&camera, &domain));
         camera.distance *= 0.85;
-        assert!(!sees_all(&camera, &domain), "control: from nearer a corner is cut off");
+        assert!(!sees_all(&camera, &domain), "negative control: a corner is outside at a smaller distance");
     }
 
     /// The oracle: glam's own view and projection matrices.

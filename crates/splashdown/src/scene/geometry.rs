@@ -1,23 +1,25 @@
-//! Does the fluid fit: into the domain, into memory, into the numbers of f32?
+//! Checks the sizes of the domain and of the blocks: against each other, against the maximum number of
+//! particles, and against the precision of f32.
 
 use super::lattice::{self, MAX_PARTICLES, Sampler};
 use super::reader::{Read, Reported, Section};
 use super::spec::rounded;
 use super::types::{Block, Domain, Fluid, Material};
 
-/// Coordinates in f32 are exact to half a per cent of a spacing up to this many spacings from the origin.
-const MOST_SPACINGS: f32 = 100_000.0;
-/// Most cells of the neighbour grid (edges of two spacings): the grid covers the whole domain.
+/// Maximum distance from the origin in spacings. Coordinates in f32 are accurate to half a per cent of a
+/// spacing there.
+const MAX_SPACINGS: f32 = 100_000.0;
+/// Maximum number of cells of the neighbour grid, which covers the whole domain with edges of two spacings.
 const MAX_CELLS: f64 = (1u64 << 26) as f64;
-/// Fewer spacings than this along an edge are not a domain.
-const LEAST_SPACINGS: f32 = 4.0;
-/// How far a block may reach out of the domain, in spacings: for the rounding of positions.
+/// Minimum edge length of the domain in spacings.
+const MIN_SPACINGS: f32 = 4.0;
+/// Tolerance, in spacings, for a block that reaches out of the domain. It covers the rounding of positions.
 const SLACK: f32 = 0.02;
 
-/// A block as far as it could be read, and where it stands.
+/// A block, if it could be read, and its section.
 pub(crate) type ReadBlock<'r> = (Result<Block, Reported>, Section<'r>);
 
-/// Checks what could be read; `Err` if anything is wrong.
+/// Checks all values that could be read; `Err` if there is a problem.
 pub(crate) fn check(
     domain_section: &Result<Section<'_>, Reported>,
     domain: Option<&Domain>,
@@ -28,12 +30,12 @@ pub(crate) fn check(
     let (Ok(Some(spacing)), Ok(domain_section), Some(domain)) = (spacing, domain_section, domain) else {
         return Err(Reported);
     };
-    let mut sound = check_domain(domain_section, domain, fluid_section, spacing);
+    let mut result = check_domain(domain_section, domain, fluid_section, spacing);
     let Ok(blocks) = blocks else { return Err(Reported) };
     for (block, section) in blocks {
         let fits =
             block.as_ref().map_err(|r| *r).and_then(|block| check_block(section, block, domain, spacing));
-        sound = sound.and(fits);
+        result = result.and(fits);
     }
     let whole: Vec<Block> = blocks.iter().filter_map(|(block, _)| block.as_ref().ok().cloned()).collect();
     let fluid = Fluid {
@@ -51,7 +53,7 @@ pub(crate) fn check(
         let hint = format!("a spacing of {fitting} m or more fits, or make the blocks smaller");
         return Err(fluid_section.complain("particle_spacing", message, &allowed, &hint));
     }
-    sound?;
+    result?;
     report_overlaps(domain, &fluid, blocks);
     Ok(())
 }
@@ -63,12 +65,12 @@ fn check_domain(
     spacing: f32,
 ) -> Result<(), Reported> {
     let size = domain.size();
-    if size.min_element() < LEAST_SPACINGS * spacing {
+    if size.min_element() < MIN_SPACINGS * spacing {
         let message = format!(
             "the domain is {} x {} x {} m: too thin for a particle spacing of {spacing} m",
             size.x, size.y, size.z
         );
-        let allowed = format!("edges of at least {} m", rounded(LEAST_SPACINGS * spacing));
+        let allowed = format!("edges of at least {} m", rounded(MIN_SPACINGS * spacing));
         return Err(section.complain(
             "max",
             message,
@@ -77,11 +79,11 @@ fn check_domain(
         ));
     }
     let farthest = domain.min.abs().max(domain.max.abs()).max_element();
-    if farthest > MOST_SPACINGS * spacing {
+    if farthest > MAX_SPACINGS * spacing {
         let message = format!(
             "the domain reaches {farthest} m from the origin: single precision cannot place particles {spacing} m apart there"
         );
-        let allowed = format!("at most {} m with this spacing", rounded(MOST_SPACINGS * spacing));
+        let allowed = format!("at most {} m with this spacing", rounded(MAX_SPACINGS * spacing));
         return Err(section.complain(
             "max",
             message,
@@ -98,7 +100,7 @@ fn check_domain(
         );
         let fitting = f64::from(spacing) * (cells / MAX_CELLS).cbrt();
         let hint = format!(
-            "shrink the domain to the room that the fluid needs, or use a spacing of about {} m",
+            "shrink the domain to the region that the fluid needs, or use a spacing of about {} m",
             rounded((fitting * 1.01) as f32)
         );
         return Err(fluid.complain(
@@ -158,13 +160,13 @@ fn check_block(section: &Section<'_>, block: &Block, domain: &Domain, spacing: f
 /// Warns where blocks overlap; particles of the later one are left out.
 fn report_overlaps(domain: &Domain, fluid: &Fluid, blocks: &[ReadBlock<'_>]) {
     for (sampler, (_, section)) in Sampler::all(domain, fluid).iter().zip(blocks) {
-        let (made, left_out) = sampler.counts();
+        let (created, left_out) = sampler.counts();
         if left_out > 0 {
             let message = format!(
                 "{} overlaps earlier blocks: {} of its {} particles are left out",
                 section.path(),
                 grouped(left_out),
-                grouped(made + left_out)
+                grouped(created + left_out)
             );
             let name = if section.has("position") { "position" } else { "center" };
             section.warn(name, message, "the particles there have the earlier block's velocity");
@@ -172,7 +174,7 @@ fn report_overlaps(domain: &Domain, fluid: &Fluid, blocks: &[ReadBlock<'_>]) {
     }
 }
 
-/// 1234567 as 1,234,567.
+/// A number with separators of thousands: 1,234,567.
 pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let groups: Vec<&str> =

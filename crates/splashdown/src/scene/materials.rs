@@ -5,9 +5,9 @@ use super::types::Material;
 /// A liquid that a scene file can name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownMaterial {
-    /// Its word in the scene file.
+    /// Its name in the scene file.
     pub name: &'static str,
-    /// What is meant, for the schema.
+    /// A description for the schema.
     pub about: &'static str,
     /// Density in kg/m^3.
     pub rest_density: f32,
@@ -18,7 +18,7 @@ pub struct KnownMaterial {
 }
 
 impl KnownMaterial {
-    /// As a scene has it.
+    /// The material of a scene with these properties.
     pub fn material(&self) -> Material {
         Material {
             name: self.name.to_owned(),
@@ -74,7 +74,7 @@ impl Material {
         MATERIALS.iter().find(|known| known.name == name).map(Self::from)
     }
 
-    /// Water at 20 °C: what a scene is made of if it names nothing.
+    /// Water at 20 °C, the default material of a scene.
     pub fn water() -> Self {
         Self::from(&MATERIALS[0])
     }

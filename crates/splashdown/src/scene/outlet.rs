@@ -2,16 +2,17 @@
 
 use glam::{Vec2, Vec3};
 
-/// The horizontal unit vector across a direction (x where the direction is vertical), and the third one.
+/// Two unit vectors perpendicular to a direction: a horizontal one (x for a vertical direction), and their
+/// cross product.
 pub fn axes(direction: Vec3) -> (Vec3, Vec3) {
     let across = Vec3::Y.cross(direction);
     let across = if across.length_squared() < 1e-6 { Vec3::X } else { across.normalize_or_zero() };
     (across, direction.cross(across))
 }
 
-/// A layer: points in m along [`axes`], on a square lattice of `spacing` that keeps half a spacing off the rim.
-/// Of the lattice with a point in the middle and that with a square there, the one whose points make up the
-/// outlet's area better is taken.
+/// A layer of particles in a disc: points in m along [`axes`], on a square lattice that ends half a spacing
+/// inside the rim. The lattice has either a point or the centre of a square at the disc's centre, whichever
+/// represents the disc's area better.
 pub fn disc_layer(radius: f32, spacing: f32) -> Vec<Vec2> {
     let reach = (radius / spacing).ceil() as i32 + 1;
     let area = std::f32::consts::PI * radius * radius / (spacing * spacing);
@@ -26,7 +27,7 @@ pub fn disc_layer(radius: f32, spacing: f32) -> Vec<Vec2> {
         .unwrap_or_else(|| vec![Vec2::ZERO])
 }
 
-/// As [`disc_layer`] for a rectangle of this size in m: as many whole spacings as fit it best.
+/// As [`disc_layer`], for a rectangle of this size in m. The edges are rounded to multiples of the spacing.
 pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Vec<Vec2> {
     let [n, m] = size.map(|edge| ((edge / spacing).round() as i32).max(1));
     let place = |i: i32, n: i32| spacing * (i as f32 - 0.5 * (n - 1) as f32);

@@ -1,8 +1,8 @@
-//! The scenes that come with the program.
+//! The built-in scenes.
 
 macro_rules! presets {
     ($($name:literal),+ $(,)?) => {
-        /// Name and text of every scene that comes with the program, the demo first.
+        /// Name and text of every built-in scene. The first one is the demo.
         pub fn presets() -> &'static [(&'static str, &'static str)] {
             &[$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),+]
         }

@@ -1,7 +1,7 @@
-//! Walks the tree of a TOML file along the table of keys and collects every problem on the way.
+//! Reads a TOML file according to the table of keys and collects all problems.
 //!
-//! Why not serde: it stops at the first error. Here each key is read on its own; a failed one has already been
-//! reported, so its value is `Err(Reported)` and the reading goes on.
+//! Why not serde: it stops at the first error. Here each key is read separately. A key with a problem reports
+//! it and has the value `Err(Reported)`, and reading continues.
 
 use std::cell::RefCell;
 use std::ops::Range as Span;
@@ -20,20 +20,20 @@ use super::values::{
     wrong_type,
 };
 
-/// A file with more problems than this is not a scene; reading on would cost time and memory for nothing.
+/// Maximum number of problems that are collected. It bounds time and memory for files that are no scenes.
 const MAX_PROBLEMS: usize = 200;
 
-/// The problem is already in the list.
+/// Marks a value whose problem has already been reported.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reported;
 
-/// A value, nothing (the key is absent), or a problem that is already in the list.
+/// A value, `None` for an absent key, or a problem that has already been reported.
 pub(crate) type Read<T> = Result<Option<T>, Reported>;
 
-/// The list of problems of one file.
+/// Collects the problems of one file.
 pub(crate) struct Reader<'a> {
     pub source: Source<'a>,
-    /// From where files are named; `None` for a text without a file.
+    /// The folder to which file names are relative; `None` for a text without a file.
     folder: Option<&'a Path>,
     problems: RefCell<Vec<SceneProblem>>,
     warnings: RefCell<Vec<SceneProblem>>,
@@ -46,7 +46,7 @@ impl<'a> Reader<'a> {
 
     pub fn report(&self, problem: SceneProblem) -> Reported {
         let mut problems = self.problems.borrow_mut();
-        // A section that is read again reports its unknown keys again.
+        // A section that is read twice reports its unknown keys twice.
         if problems.len() < MAX_PROBLEMS && !problems.contains(&problem) {
             problems.push(problem);
         }
@@ -64,10 +64,10 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// One table of the file beside its declaration.
+/// One table of the file, with its declaration.
 pub(crate) struct Section<'r> {
     reader: &'r Reader<'r>,
-    /// `None`: the file does not have it.
+    /// `None` if the file does not have this section.
     table: Option<&'r DeTable<'r>>,
     spec: &'static Table,
     /// For messages: `fluid.block[1]`; empty for the root.
@@ -78,7 +78,7 @@ pub(crate) struct Section<'r> {
 }
 
 impl<'r> Section<'r> {
-    /// The file's root; reports its unknown and missing keys.
+    /// The root of the file. Reports its unknown and missing keys.
     pub fn root(reader: &'r Reader<'r>, table: &'r DeTable<'r>, spec: &'static Table) -> Self {
         let root = Self {
             reader,
@@ -121,12 +121,12 @@ impl<'r> Section<'r> {
         }
     }
 
-    /// Warns of a key's former name, and refuses it beside the present one.
+    /// Warns of a key's former name. Reports an error if the present name is given as well.
     fn report_former(&self, name: &Spanned<std::borrow::Cow<'r, str>>, key: &Key) {
         let (former, present) = (self.key_path(name.get_ref()), self.key_path(key.name));
         let is_twice = self.table.is_some_and(|table| table.contains_key(key.name));
         let message = if is_twice {
-            format!("{former} is the former name of {present}, which is given as well")
+            format!("{former} is the former name of {present}, which is also given")
         } else {
             format!("{former} is deprecated: the key is now called {present}")
         };
@@ -152,8 +152,8 @@ impl<'r> Section<'r> {
         self.reader.report(problem);
     }
 
-    /// The path of a file that this key names: from the scene file's folder, where that is known; the file must
-    /// be there then.
+    /// The path of a file that this key names. It is relative to the scene file's folder if that is known;
+    /// then the file must exist.
     pub fn file(&self, name: &str, file: &str) -> Result<PathBuf, Reported> {
         let Some(folder) = self.reader.folder else { return Ok(file.into()) };
         let path = folder.join(file);
@@ -161,11 +161,11 @@ impl<'r> Section<'r> {
             return Ok(path);
         }
         let message = format!("{}: there is no file {:?}", self.key_path(name), path.display().to_string());
-        let hint = "files are named from the scene file's folder";
+        let hint = "file names are relative to the folder of the scene file";
         Err(self.complain(name, message, "", hint))
     }
 
-    /// Whether the scene has a place on disk, so that the files it names can be looked for.
+    /// Whether the folder of the scene file is known, so that the files named in it can be opened.
     pub fn has_folder(&self) -> bool {
         self.reader.folder.is_some()
     }
@@ -193,7 +193,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// Where a key stands, or the section if it is absent.
+    /// The location of a key's value, or of the section if the key is absent.
     fn span_of(&self, name: &str) -> Span<usize> {
         self.value(name).map_or_else(|| self.span.clone(), Spanned::span)
     }
@@ -206,18 +206,18 @@ impl<'r> Section<'r> {
         problem
     }
 
-    /// Reports a problem found by comparing values, at this key.
+    /// Reports a problem at this key.
     pub fn complain(&self, name: &str, message: String, allowed: &str, hint: &str) -> Reported {
         self.reader.report(self.problem(name, message, allowed, hint))
     }
 
-    /// Notes something legal but doubtful, at this key.
+    /// Adds a warning at this key.
     pub fn warn(&self, name: &str, message: String, hint: &str) {
         let warning = self.problem(name, message, "", hint);
         self.reader.warnings.borrow_mut().push(warning);
     }
 
-    /// Reads a key; its kind in the table must be the one that `convert` expects.
+    /// Reads a key. `convert` must expect the kind that the table of keys declares.
     fn read<T, E: Into<Wrongs>>(
         &self,
         name: &str,
@@ -257,7 +257,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// A number, or a unit's word as metres.
+    /// A number, or the name of a unit of length, converted to metres.
     pub fn scale(&self, name: &str) -> Read<f32> {
         self.read(name, |value, kind| match kind {
             Kind::Scale(range) => one_scale(value, range).map(|x| x as f32),
@@ -297,7 +297,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// A name that is safe as a folder's name.
+    /// A name that can be used as a folder name.
     pub fn name(&self, name: &str) -> Read<String> {
         self.read(name, |value, _| {
             let allowed = "1 to 64 letters, digits, `-` and `_`, a letter or digit first";
@@ -329,7 +329,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// Several texts.
+    /// A list of texts.
     pub fn texts<const N: usize>(&self, name: &str) -> Read<[String; N]> {
         self.read(name, |value, kind| match kind {
             Kind::Texts(count, what) if count == N => {
@@ -346,7 +346,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// A word that is not an enum's.
+    /// One of the words that the table of keys declares.
     pub fn word(&self, name: &str) -> Read<String> {
         self.read(name, |value, kind| match kind {
             Kind::Word(words) => one_word(value, &words()).map(str::to_owned),
@@ -391,7 +391,7 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// A section that may be absent: then every key in it is.
+    /// A section. If the file does not have it, all its keys are absent.
     pub fn section(&self, name: &str) -> Result<Section<'r>, Reported> {
         let spec = match self.spec.key(name).map(|key| key.kind) {
             Some(Kind::Table(spec)) => spec,
@@ -404,7 +404,7 @@ impl<'r> Section<'r> {
         Ok(self.child(name, None, table, spec, self.span_of(name)))
     }
 
-    /// A list of sections; those that are not tables are reported and left out.
+    /// A list of sections. Items that are not tables are reported and left out.
     pub fn sections(&self, name: &str) -> Result<Vec<Section<'r>>, Reported> {
         let Some(Kind::Tables(spec, most)) = self.spec.key(name).map(|key| key.kind) else {
             unreachable!("{name} is read as a list of sections but not declared as one in keys/");
@@ -468,7 +468,7 @@ impl<'r> Section<'r> {
         child
     }
 
-    /// Whether the file has this section at all.
+    /// Whether the file has this section.
     pub fn exists(&self) -> bool {
         self.table.is_some()
     }
@@ -485,7 +485,8 @@ fn describe_texts(count: usize, what: &str) -> String {
     format!("{count} texts of {what}")
 }
 
-/// `keys/` and the code that reads disagree: a mistake in this crate, shown as an error rather than a crash.
+/// The error of a key that is declared and read as different kinds. This is a bug in this crate, reported as
+/// an error rather than a panic.
 fn undeclared(kind: Kind) -> Wrong {
     Wrong {
         message: format!("is declared as {kind:?} but read as something else"),

@@ -1,13 +1,13 @@
-//! Scripted motion: where a body is at any time.
+//! Scripted motion: the pose of a body as a function of time.
 
 use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 
 use super::formula::Formula;
 
-/// A body's pose and how it changes.
+/// A body's pose and velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// Where the mesh's origin is, in m.
+    /// Position of the mesh's origin in m.
     pub position: Vec3,
     /// The mesh's rotation.
     pub orientation: Quat,
@@ -17,37 +17,39 @@ pub struct Pose {
     pub angular_velocity: Vec3,
 }
 
-/// A motion that is written down beforehand: keyframes, and formulas on top of them.
+/// A prescribed motion: keyframes, and formulas that are added to them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// Poses in order of time, at least one. Between them the position is a cubic with the slopes of Catmull
-    /// and Rom and the rotation turns steadily; before the first and after the last the body rests.
+    /// Poses in order of time, at least one. Between them the position is a Catmull-Rom spline, and the
+    /// rotation is interpolated at constant angular velocity. The body rests before the first and after the
+    /// last keyframe.
     pub keyframes: Vec<Keyframe>,
-    /// Added to the position, in m.
+    /// A displacement in m that is added to the position.
     pub shift: Option<Box<[Formula; 3]>>,
-    /// Turns the mesh about its own axes, x first, then y, then z, in degrees, before the keyframes' rotation.
+    /// A rotation in degrees about the mesh's own x, then y, then z axis, applied before the keyframes'
+    /// rotation.
     pub turn: Option<Box<[Formula; 3]>>,
 }
 
-/// A pose at a time.
+/// A pose at a given time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keyframe {
     /// Time in s.
     pub time: f64,
-    /// Where the mesh's origin is, in m.
+    /// Position of the mesh's origin in m.
     pub position: Vec3,
     /// The mesh's rotation.
     pub orientation: Quat,
 }
 
-/// Half the time over which velocities are differences, in s.
+/// Half the interval of the central differences that give the velocities, in s.
 const STEP: f64 = 1e-4;
 
 impl Script {
     /// The pose at a time in seconds.
     pub fn pose(&self, time: f64) -> Pose {
         let (position, orientation) = self.place(time);
-        // Formulas need have no value before the start.
+        // Formulas may be undefined for negative times.
         let (start, end) = ((time - STEP).max(0.0), time.max(0.0) + STEP);
         let (before, turned_before) = self.place(start);
         let (after, turned_after) = self.place(end);
@@ -62,7 +64,8 @@ impl Script {
         }
     }
 
-    /// The fastest that a point `reach` metres from the origin moves up to `duration`, in m/s: from samples.
+    /// An upper bound of the speed in m/s, up to `duration`, of points within `reach` metres of the origin,
+    /// estimated from samples.
     pub fn max_speed(&self, duration: f64, reach: f32) -> f32 {
         const SAMPLES: u32 = 400;
         (0..=SAMPLES)
@@ -88,12 +91,12 @@ impl Script {
         let pose = |key: &Keyframe| (key.position.as_dvec3(), key.orientation.as_dquat());
         let next = keys.partition_point(|key| key.time <= time);
         let (Some(a), Some(b)) = (next.checked_sub(1).and_then(|k| keys.get(k)), keys.get(next)) else {
-            let held = if next == 0 { keys.first() } else { keys.last() };
-            return held.map_or((DVec3::ZERO, DQuat::IDENTITY), pose);
+            let nearest = if next == 0 { keys.first() } else { keys.last() };
+            return nearest.map_or((DVec3::ZERO, DQuat::IDENTITY), pose);
         };
         let length = b.time - a.time;
         let f = (time - a.time) / length;
-        // The slope at a key is that of the line through its neighbours; at both ends the body rests.
+        // The slope at a keyframe is that of the line through its neighbours. At both ends it is zero.
         let slope = |k: usize| {
             if k == 0 || k + 1 == keys.len() {
                 return DVec3::ZERO;
@@ -118,14 +121,14 @@ mod tests {
         Some(Box::new(texts.map(|text| Formula::parse(text).unwrap())))
     }
 
-    fn still() -> Keyframe {
+    fn keyframe() -> Keyframe {
         Keyframe { time: 0.0, position: Vec3::new(1.0, 2.0, 3.0), orientation: Quat::IDENTITY }
     }
 
     #[test]
-    fn formulas_move_and_turn_with_their_derivatives() {
+    fn velocities_are_derivatives_of_the_formulas() {
         let script = Script {
-            keyframes: vec![still()],
+            keyframes: vec![keyframe()],
             shift: formulas(["0.1*sin(2*t)", "0", "t^2"]),
             turn: formulas(["0", "0", "90*t"]),
         };
@@ -141,14 +144,14 @@ mod tests {
     }
 
     #[test]
-    fn a_formula_without_a_value_before_the_start_has_a_speed_at_it() {
-        let script = Script { keyframes: vec![still()], shift: formulas(["t^1.5", "0", "0"]), turn: None };
+    fn a_formula_undefined_for_negative_times_has_a_velocity_at_the_start() {
+        let script = Script { keyframes: vec![keyframe()], shift: formulas(["t^1.5", "0", "0"]), turn: None };
         assert!(script.pose(0.0).velocity.length() < 0.02);
         assert!((script.pose(1.0).velocity.x - 1.5).abs() < 1e-4);
     }
 
     #[test]
-    fn keyframes_are_met_smoothly_and_held_at_both_ends() {
+    fn keyframes_are_interpolated_smoothly_and_held_at_both_ends() {
         let key = |time: f64, x: f32, turn: f32| Keyframe {
             time,
             position: Vec3::new(x, 0.0, 0.0),
@@ -160,7 +163,7 @@ mod tests {
             assert!((script.pose(time).position.x - x).abs() < 1e-6, "{time}");
         }
         assert_eq!(script.pose(0.2).velocity, Vec3::ZERO);
-        // No jump of the velocity at the key in the middle: 1.5 m in 1.5 s.
+        // The velocity is continuous at the middle keyframe: 1.5 m in 1.5 s.
         for time in [0.999, 1.0, 1.001] {
             assert!((script.pose(time).velocity.x - 1.0).abs() < 0.02, "{}", script.pose(time).velocity);
         }

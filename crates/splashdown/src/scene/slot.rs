@@ -1,11 +1,11 @@
-//! What modules above build from a scene travels with the scene.
+//! A cache inside a scene for the data that higher modules build from it.
 
 use std::any::Any;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Holds what was built from a scene and from the files that it names, so that the next user of the scene need not build
-/// it again. The module that builds it knows its type. Clones of a scene share it; comparisons ignore it.
+/// Caches data built from a scene and its files, so that it is not built twice. Its type is defined by the
+/// module that builds it. Clones of a scene share the cache; comparisons ignore it.
 #[derive(Clone, Default)]
 pub(crate) struct BuiltSlot(Arc<Mutex<Option<Arc<dyn Any + Send + Sync>>>>);
 

@@ -1,15 +1,15 @@
-//! The text of a scene file and places in it.
+//! The text of a scene file, and lines, columns and excerpts for messages.
 
 use std::ops::Range;
 
 use super::errors::SceneProblem;
 
-/// Longest piece of a line shown in a message, in characters.
-const WIDEST: usize = 100;
-/// Longest value shown in a message, in characters.
-const LONGEST_VALUE: usize = 48;
+/// Maximum length of a line in a message, in characters.
+const MAX_LINE: usize = 100;
+/// Maximum length of a value in a message, in characters.
+const MAX_VALUE: usize = 48;
 
-/// A file's text with its line starts.
+/// The text of a file with its line starts.
 pub(crate) struct Source<'a> {
     pub file: &'a str,
     pub text: &'a str,
@@ -29,11 +29,11 @@ impl<'a> Source<'a> {
         let start = self.starts[line];
         let before = self.text[start..at].chars().count();
         let whole = self.text[start..].lines().next().unwrap_or_default();
-        // A very long line is shown from a little before the place.
-        let skipped = if before >= WIDEST { before - WIDEST / 4 } else { 0 };
-        let text: String = whole.chars().skip(skipped).take(WIDEST).map(printable).collect();
+        // A very long line is shown from slightly before the marked part.
+        let skipped = if before >= MAX_LINE { before - MAX_LINE / 4 } else { 0 };
+        let text: String = whole.chars().skip(skipped).take(MAX_LINE).map(printable).collect();
         let marked = self.text[at..self.boundary(span.end.max(at))].lines().next().unwrap_or_default();
-        let marked = marked.chars().take(WIDEST).count().max(1);
+        let marked = marked.chars().take(MAX_LINE).count().max(1);
         SceneProblem {
             file: self.file.to_owned(),
             line: Some(line + 1),
@@ -52,7 +52,7 @@ impl<'a> Source<'a> {
     pub fn excerpt(&self, span: Range<usize>) -> String {
         let text = &self.text[self.boundary(span.start)..self.boundary(span.end.max(span.start))];
         let line = text.lines().next().unwrap_or_default();
-        let mut short: String = line.chars().take(LONGEST_VALUE).map(printable).collect();
+        let mut short: String = line.chars().take(MAX_VALUE).map(printable).collect();
         if short.len() < text.trim_end().len() {
             short.push_str(" ...");
         }
@@ -65,7 +65,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Tabs and control characters would move or colour the terminal's cursor.
+/// Replaces tabs and control characters, which would move the terminal's cursor or change its colours.
 fn printable(c: char) -> char {
     match c {
         '\t' => ' ',

@@ -1,30 +1,30 @@
-//! The vocabulary in which `keys/` declares the scene file: kinds of values, keys, tables of keys.
+//! The types in which `keys/` declares the scene file: kinds of values, keys, tables of keys.
 
 use super::choice::Choice;
 
-/// A word and its explanation.
+/// A word and its description.
 pub(crate) type Word = (&'static str, &'static str);
 
-/// What a key may hold.
+/// The kind of a key's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A finite number.
     Number(Range),
-    /// That many finite numbers, each in the range.
+    /// A list of this length of finite numbers, each in the range.
     Numbers(usize, Range),
-    /// A number, or the word for a unit of length ([`UNITS`]).
+    /// A number, or the name of a unit of length ([`UNITS`]).
     Scale(Range),
-    /// A whole number.
+    /// An integer.
     Integer(Range),
-    /// That many whole numbers, each in the range.
+    /// A list of this length of integers, each in the range.
     Integers(usize, Range),
     /// `true` or `false`.
     Boolean,
-    /// A short name that is safe as a folder's name.
+    /// A short name that can be used as a folder name.
     Name,
-    /// Any text; the words say what may be in it.
+    /// A text; the string describes the allowed texts.
     Text(&'static str),
-    /// That many texts.
+    /// A list of this length of texts.
     Texts(usize, &'static str),
     /// One of some words.
     Word(fn() -> Vec<Word>),
@@ -32,15 +32,15 @@ pub(crate) enum Kind {
     Words(fn() -> Vec<Word>),
     /// A table of keys.
     Table(&'static Table),
-    /// A list of tables, of this many at most.
+    /// A list of tables with at most this many items.
     Tables(&'static Table, usize),
 }
 
-/// Units of length as the scale of a file, in m.
+/// Units of length that a scale can name, in m.
 pub(crate) const UNITS: &[(&str, f64)] =
     &[("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254), ("ft", 0.3048)];
 
-/// Both ends are allowed.
+/// A range that includes both ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Range {
     pub least: f64,
@@ -50,7 +50,7 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    pub fn holds(&self, value: f64) -> bool {
+    pub fn contains(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }
 }
@@ -68,13 +68,13 @@ pub(crate) struct Key {
     pub name: &'static str,
     pub kind: Kind,
     pub required: bool,
-    /// The default as it would be written in the file; empty if it is derived from other values.
+    /// The default in the syntax of the file; empty if it is derived from other values.
     pub default: &'static str,
     /// One sentence for the schema and the reference.
     pub about: &'static str,
-    /// Names that people try for it.
+    /// Names that users may try instead, for suggestions.
     pub also: &'static [&'static str],
-    /// Former names, which files may still use; each use is a warning.
+    /// Former names, which are still accepted with a warning.
     pub formerly: &'static [&'static str],
 }
 
@@ -112,7 +112,7 @@ impl Table {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// The key that once had this name.
+    /// The key that formerly had this name.
     pub fn key_formerly(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.formerly.contains(&name))
     }
@@ -139,18 +139,18 @@ pub(crate) fn words<C: Choice>() -> Vec<Word> {
     C::ALL.iter().map(|&(_, word, about)| (word, about.trim())).collect()
 }
 
-/// A number computed in f32 with the digits that mean something.
+/// A number computed in f32, rounded to its significant digits.
 pub(crate) fn rounded(value: f32) -> String {
     number(format!("{value:.3e}").parse().unwrap_or(f64::from(value)))
 }
 
-/// A number as people write it: no long rows of zeros.
+/// A number in decimal notation, or in scientific notation if it is very large or small.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { format!("{value}") }
 }
 
-/// A point in m, its coordinates with the digits that mean something.
+/// A point in m, its coordinates rounded to their significant digits.
 pub(crate) fn place(x: [f32; 3]) -> String {
     format!("[{}]", x.map(rounded).join(", "))
 }

@@ -1,15 +1,16 @@
-//! "Did you mean": the right key for a wrong one.
+//! Suggests corrections for unknown keys and words.
 
 use super::keys::ROOT;
 use super::spec::{Kind, Table};
 
-/// Longer words are not compared: no key is nearly as long, and the distance takes quadratic time.
-const LONGEST: usize = 40;
+/// Maximum length of words that are compared. All keys are shorter, and computing the distance takes
+/// quadratic time.
+const MAX_LENGTH: usize = 40;
 
 /// A hint for an unknown key; `path` is the table's path, empty for the root.
 pub(crate) fn for_key(unknown: &str, table: &'static Table, path: &str) -> Option<String> {
     let word = unknown.to_ascii_lowercase().replace('-', "_");
-    if word.len() > LONGEST {
+    if word.len() > MAX_LENGTH {
         return None;
     }
     if let Some(key) = table.keys.iter().find(|key| key.also.contains(&word.as_str())) {
@@ -29,10 +30,10 @@ pub(crate) fn for_key(unknown: &str, table: &'static Table, path: &str) -> Optio
     })
 }
 
-/// The known word with the smallest edit distance (insertions, deletions, replacements and swaps of neighbours), if
-/// it is small enough for a typing error.
+/// The known word with the smallest edit distance (insertions, deletions, replacements and swaps of
+/// neighbours), if that distance is small enough for a typing error.
 pub(crate) fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
-    if word.len() > LONGEST {
+    if word.len() > MAX_LENGTH {
         return None;
     }
     let allowed = (word.chars().count() / 3).clamp(1, 3);

@@ -1,4 +1,4 @@
-//! What stands, moves, pours, drains and measures in a scene: checked values in SI units, y up.
+//! Bodies, emitters, sinks and probes of a scene: checked values in SI units, with y up.
 
 use std::path::PathBuf;
 
@@ -7,61 +7,62 @@ use glam::{Quat, Vec3};
 use super::choice::choices;
 use super::script::Script;
 
-/// A solid that the fluid meets.
+/// A solid body in the fluid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Its name in messages, probes and files; unique in a scene.
     pub name: String,
-    /// Its shape and where that starts.
+    /// Its shape and initial pose.
     pub mesh: MeshSource,
-    /// How it moves.
+    /// Its motion.
     pub motion: Motion,
-    /// 0: the fluid slips along it; 1: it sticks.
+    /// Friction between fluid and body: 0 for free slip, 1 for no slip.
     pub friction: f32,
-    /// How strongly the fluid clings to it: Akinci's adhesion coefficient in m/s^2-like units; 0 for none.
+    /// Akinci's adhesion coefficient in units like m/s^2; 0 for no adhesion.
     pub adhesion: f32,
-    /// How the fluid feels it.
+    /// The boundary method.
     pub boundary: BoundaryKind,
-    /// Half the thickness in m that an open mesh gets; `None`: half a particle spacing.
+    /// Half the thickness of a shell in m; `None`: half a particle spacing.
     pub half_thickness: Option<f32>,
-    /// Whether the mesh is a shell (a surface with a thickness) or a solid; `None`: decided by the mesh.
+    /// Whether the mesh is a shell (a surface with a thickness) or a solid; `None` decides by the size of its
+    /// holes.
     pub shell: Option<bool>,
-    /// Linear RGB in [0, 1] in pictures; `None`: a quiet grey.
+    /// Linear RGB in [0, 1] in pictures; `None`: grey.
     pub colour: Option<[f32; 3]>,
 }
 
-/// A triangle mesh and its place.
+/// A triangle mesh and its initial pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSource {
-    /// Where the triangles come from.
+    /// The source of the triangles.
     pub shape: MeshShape,
-    /// Metres per unit of the file, times any wish to stretch it.
+    /// Metres per unit of the file.
     pub scale: f32,
     /// Which axis of the file points up.
     pub up: UpAxis,
-    /// Where the mesh's origin lies at t = 0, in m.
+    /// Position of the mesh's origin at t = 0, in m.
     pub position: Vec3,
     /// The mesh's rotation about its origin at t = 0.
     pub rotation: Quat,
 }
 
-/// Where triangles come from.
+/// The source of triangles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum MeshShape {
-    /// One of the models that come with the program (`splashdown::models`).
+    /// A built-in model (`splashdown::models`).
     Model(String),
-    /// A file; its path is relative to the scene file's folder until loading, absolute or as given after.
+    /// A file. [`Scene::load`](crate::Scene::load) resolves its path relative to the scene file's folder.
     File(PathBuf),
 }
 
-/// How a body moves.
+/// The motion of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Motion {
-    /// Not at all.
+    /// The body does not move.
     Static,
-    /// As written.
+    /// A script moves the body.
     Scripted(Script),
-    /// As the fluid, gravity and contacts drive it.
+    /// The fluid, gravity and contacts move the body.
     Dynamic {
         /// Density in kg/m^3.
         density: f32,
@@ -69,15 +70,15 @@ pub enum Motion {
         velocity: Vec3,
         /// Angular velocity at t = 0 in rad/s.
         angular_velocity: Vec3,
-        /// The axis that holds it, if it may only turn.
+        /// The axis of a body that can only rotate.
         hinge: Option<Hinge>,
     },
 }
 
-/// An axis, fixed in the world, about which a body turns.
+/// An axis, fixed in space, about which a body rotates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hinge {
-    /// A point of the axis in m.
+    /// A point on the axis in m.
     pub point: Vec3,
     /// Unit vector along it.
     pub axis: Vec3,
@@ -107,40 +108,40 @@ choices! {
 pub struct Emitter {
     /// Its name in messages.
     pub name: String,
-    /// The outlet's shape.
+    /// The shape of the outlet.
     pub outlet: Outlet,
-    /// The middle of the outlet in m.
+    /// The centre of the outlet in m.
     pub position: Vec3,
-    /// Unit vector along which the fluid leaves.
+    /// Unit vector in the direction of the outflow.
     pub direction: Vec3,
-    /// Speed of the fluid in m/s.
+    /// Speed of the outflow in m/s.
     pub speed: f32,
-    /// When it begins, in s.
+    /// Start time in s.
     pub start: f32,
-    /// When it ends, in s; `None`: with the scene.
+    /// End time in s; `None`: the end of the scene.
     pub end: Option<f32>,
-    /// Most particles it makes; `None`: as many as fit.
+    /// Maximum number of particles created; `None`: no limit other than memory.
     pub max_particles: Option<u32>,
 }
 
 /// The shape of an emitter's outlet.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outlet {
-    /// A disc of this radius in m.
+    /// A disc.
     Disc {
         /// Radius in m.
         radius: f32,
     },
-    /// A rectangle of these edge lengths in m: across, and up.
+    /// A rectangle.
     Rectangle {
-        /// Edge lengths in m.
+        /// Edge lengths in m: horizontal, and perpendicular to it.
         size: [f32; 2],
     },
-    /// The outline of a closed mesh, cut by the plane through its origin across the direction.
+    /// The cross-section of a closed mesh in the plane through its origin, perpendicular to the direction.
     Mesh(MeshSource),
 }
 
-/// Where fluid leaves for good.
+/// A region that removes fluid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sink {
     /// Its name in messages.
@@ -159,9 +160,9 @@ pub enum SinkRegion {
         /// Upper corner in m.
         max: Vec3,
     },
-    /// Where (x - point) . normal < 0.
+    /// The half-space (x - point) . normal < 0.
     Below {
-        /// A point of the plane in m.
+        /// A point on the plane in m.
         point: Vec3,
         /// Unit vector away from the sink.
         normal: Vec3,
@@ -170,42 +171,42 @@ pub enum SinkRegion {
     Mesh(MeshSource),
 }
 
-/// Something measured while running.
+/// A measurement during the run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Probe {
-    /// Its name: the file's and the column's.
+    /// Its name, also that of its file and column.
     pub name: String,
-    /// What it measures.
+    /// The measured quantity.
     pub quantity: Quantity,
-    /// Time between two lines of the file in s; `None`: a tenth of a frame.
+    /// Time between two rows of the file in s; `None`: a tenth of a frame.
     pub interval: Option<f32>,
 }
 
-/// What a probe measures.
+/// The quantity that a probe measures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Quantity {
     /// Pressure in Pa at a point (m).
     Pressure(Vec3),
-    /// Height of the water in m above the point, in the column over it.
+    /// Height of the fluid in m above a point, in the column over it.
     Height(Vec3),
     /// Force in N and torque in N m (about the centre of mass) of the fluid on the body of this name.
     Force(String),
-    /// Volume in m^3/s through a rectangle, positive along its normal.
+    /// Volume flow in m^3/s through a rectangle, positive along its normal.
     Flow {
-        /// Its middle in m.
+        /// Its centre in m.
         center: Vec3,
         /// Unit normal.
         normal: Vec3,
         /// Unit vector along its first edge.
         along: Vec3,
-        /// Edge lengths in m: along `along`, and along `normal` x `along`.
+        /// Edge lengths in m along `along` and along `normal` x `along`.
         size: [f32; 2],
     },
-    /// Volume in m^3, kinetic and potential energy in J (which is 0 at the origin) and momentum in N s of the
-    /// fluid in a box, at the end of every frame.
+    /// Volume in m^3, kinetic and potential energy in J (the latter relative to the origin) and momentum in N
+    /// s of the fluid in a box, at the end of every frame.
     Fluid {
-        /// Lower corner in m; infinite for all the fluid.
+        /// Lower corner in m; infinite for all fluid.
         min: Vec3,
         /// Upper corner in m.
         max: Vec3,

@@ -1,7 +1,7 @@
-//! What a scene file says, once it is checked: plain values in SI units, y up.
+//! The checked values of a scene file, in SI units with y up.
 //!
-//! A [`Scene`] from [`Scene::load`] or [`Scene::parse`] holds only values inside the ranges of the table of keys
-//! (`keys/`); the fields are public, so code and tests can also build one by hand.
+//! The values of a [`Scene`] from [`Scene::load`] or [`Scene::parse`] lie inside the ranges of the table of
+//! keys (`keys/`). The fields are public, so code and tests can change them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use super::errors::SceneWarning;
 use super::slot::BuiltSlot;
 use super::things::{Body, Emitter, MeshSource, Probe, Sink};
 
-/// A whole scene: what to simulate, how, and what to write.
+/// A scene: what is simulated, how it is computed, and what is written.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Scene {
@@ -23,44 +23,44 @@ pub struct Scene {
     pub duration: f32,
     /// Frames per simulated second, in 1/s.
     pub frame_rate: f32,
-    /// Gravity in m/s^2; (0, -9.81, 0) unless the file says otherwise.
+    /// Gravity in m/s^2; (0, -9.81, 0) by default.
     pub gravity: Vec3,
-    /// The box that holds the fluid.
+    /// The box that contains the fluid.
     pub domain: Domain,
-    /// The fluid and where it starts.
+    /// The fluid and its initial shape.
     pub fluid: Fluid,
-    /// Solids that it meets.
+    /// Solid bodies.
     pub bodies: Vec<Body>,
-    /// Sources of more fluid.
+    /// Sources of fluid.
     pub emitters: Vec<Emitter>,
-    /// Where fluid leaves for good.
+    /// Regions that remove fluid.
     pub sinks: Vec<Sink>,
-    /// What is measured while running.
+    /// Measurements during the run.
     pub probes: Vec<Probe>,
-    /// How it is computed.
+    /// The solver and its parameters.
     pub solver: Solver,
-    /// How its surface is extracted.
+    /// Parameters of surface reconstruction.
     pub surface: SurfaceSettings,
-    /// Whether and how it foams.
+    /// Parameters of foam, spray and bubbles.
     pub foam: FoamSettings,
-    /// From where it is seen.
+    /// The view of the pictures.
     pub camera: Camera,
-    /// What is written.
+    /// The output files.
     pub output: Output,
-    /// What was repaired or looks unintended.
+    /// Values that were corrected or are probably unintended.
     pub warnings: Vec<SceneWarning>,
-    /// The file it came from, if any.
+    /// The scene file, if any.
     pub source: Option<PathBuf>,
-    /// What it was read from.
+    /// The text that the scene was read from.
     pub text: Arc<str>,
-    /// What modules above have built from it.
+    /// The data that other modules have built from the scene.
     pub(crate) built: BuiltSlot,
 }
 
 impl Scene {
     /// Number of frames: `duration * frame_rate`, rounded up, at least 1 (the state at t = 0 is not counted).
     pub fn frame_count(&self) -> u32 {
-        // 0.1 s at 30/s is 3.00000004 in f32: a part in a million does not make a frame.
+        // 0.1 s is rounded in f32, which gives 3.00000004 frames at 30/s. The factor prevents an extra frame.
         let frames = f64::from(self.duration) * f64::from(self.frame_rate) * (1.0 - 1e-6);
         (frames.ceil() as u32).max(1)
     }
@@ -78,9 +78,10 @@ pub struct Domain {
     pub min: Vec3,
     /// Upper corner in m.
     pub max: Vec3,
-    /// `closed[axis][side]`, axis x, y, z, side 0 = min, 1 = max: whether a wall stands there.
+    /// `closed[axis][side]`: whether there is a wall. The axis is x, y, z; the side is 0 for min and 1 for
+    /// max.
     pub closed: [[bool; 2]; 3],
-    /// How the whole tank moves, if it does.
+    /// The motion of the domain, if it moves.
     pub oscillation: Option<Oscillation>,
 }
 
@@ -90,14 +91,14 @@ impl Domain {
         self.max - self.min
     }
 
-    /// The middle of the box, in m.
+    /// The centre of the box in m.
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
 }
 
-/// A harmonic motion of the tank: its position is `amplitude * sin(2 pi t / period)`. The simulation runs in
-/// the tank's frame, where the fluid feels [`Oscillation::acceleration`].
+/// A harmonic motion of the domain: its displacement is `amplitude * sin(2 pi t / period)`. The simulation
+/// uses the domain's frame of reference, in which [`Oscillation::acceleration`] acts on the fluid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillation {
     /// Amplitude in m, per axis.
@@ -107,32 +108,32 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
-    /// Inertial acceleration of the fluid in the tank's frame at time `t` (s), in m/s^2: minus the tank's own
-    /// acceleration.
+    /// Inertial acceleration in the domain's frame at time `t` (s), in m/s^2: the negative acceleration of
+    /// the domain.
     pub fn acceleration(&self, t: f64) -> Vec3 {
         let omega = std::f64::consts::TAU / f64::from(self.period);
         self.amplitude * (omega * omega * (omega * t).sin()) as f32
     }
 
-    /// The tank's largest speed in m/s.
+    /// The largest speed of the domain in m/s.
     pub fn max_speed(&self) -> f32 {
         self.amplitude.length() * std::f32::consts::TAU / self.period
     }
 }
 
-/// The fluid: resolution, material and starting shape.
+/// The fluid: resolution, material and initial shape.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Fluid {
-    /// Distance of neighbouring particles on the starting lattice, in m: the one resolution number.
+    /// Distance between neighbouring particles on the initial lattice in m, which is the resolution.
     pub particle_spacing: f32,
-    /// What it is made of.
+    /// The properties of the liquid.
     pub material: Material,
-    /// Where it starts; may be empty where meshes, files or emitters bring fluid.
+    /// Blocks of fluid at the start; may be empty if meshes, files or emitters provide fluid.
     pub blocks: Vec<Block>,
     /// Closed meshes that are filled with fluid at the start.
     pub meshes: Vec<FluidMesh>,
-    /// Files of particles that are there at the start.
+    /// Particle files that provide fluid at the start.
     pub files: Vec<FluidFile>,
 }
 
@@ -143,10 +144,10 @@ impl Fluid {
     }
 }
 
-/// Measured properties of a liquid; see [`crate::scene::MATERIALS`] for the known ones and their source.
+/// Properties of a liquid; see [`crate::scene::MATERIALS`] for the known liquids and their sources.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// The word in the scene file, for example `water`.
+    /// The name in the scene file, for example `water`.
     pub name: String,
     /// Density at rest in kg/m^3.
     pub rest_density: f32,
@@ -156,41 +157,41 @@ pub struct Material {
     pub surface_tension: f32,
 }
 
-/// One piece of fluid at t = 0.
+/// A block of fluid at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
     /// Its shape.
     pub shape: Shape,
-    /// Starting velocity of all its particles, in m/s.
+    /// Initial velocity of all its particles, in m/s.
     pub velocity: Vec3,
 }
 
 /// A closed mesh filled with fluid at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FluidMesh {
-    /// The mesh and its place.
+    /// The mesh and its pose.
     pub mesh: MeshSource,
-    /// Starting velocity in m/s.
+    /// Initial velocity in m/s.
     pub velocity: Vec3,
 }
 
 /// A file of particles at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FluidFile {
-    /// PLY, VTK, VTU, NPY or BGEO.
+    /// Path of the file.
     pub path: PathBuf,
     /// Metres per unit of the file; positions and velocities are multiplied by it.
     pub scale: f32,
-    /// Turns positions and velocities about the file's origin.
+    /// Rotation of positions and velocities about the file's origin.
     pub rotation: Quat,
-    /// Where the file's origin lies, in m.
+    /// Position of the file's origin in m.
     pub position: Vec3,
-    /// Added to the file's velocities, which are zero where it has none, in m/s.
+    /// Added to the velocities of the file, in m/s. A file without velocities has zero velocities.
     pub velocity: Vec3,
 }
 
 impl FluidFile {
-    /// A point of the file in the scene, in m.
+    /// Transforms a point of the file to the scene, in m.
     pub fn place(&self, x: Vec3) -> Vec3 {
         self.position + self.rotation * (self.scale * x)
     }
@@ -216,7 +217,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Lower and upper corner of the bounding box, in m.
+    /// Lower and upper corners of the bounding box, in m.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match *self {
             Self::Box { min, size } => (min, min + size),
@@ -311,7 +312,7 @@ choices! {
 }
 
 impl Format {
-    /// Ending of the file names, without its dot.
+    /// File name extension without the dot.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Usd => "usda",
@@ -319,33 +320,33 @@ impl Format {
         }
     }
 
-    /// Whether files of this format hold particles.
+    /// Whether files of this format can contain particles.
     pub fn has_particles(self) -> bool {
         self.has(splashdown_io::Format::writes_particles)
     }
 
-    /// Whether files of this format hold the surface.
+    /// Whether files of this format can contain the surface.
     pub fn has_surface(self) -> bool {
         self.has(splashdown_io::Format::writes_meshes)
     }
 
-    /// Whether each frame has a file of its own. Otherwise one file holds all frames.
+    /// Whether there is one file per frame. Otherwise one file contains all frames.
     pub fn is_numbered(self) -> bool {
         !self.has(splashdown_io::Format::is_series)
     }
 
-    /// Whether its surfaces can have velocities.
+    /// Whether surfaces in this format can have velocities.
     pub fn has_vertex_velocities(self) -> bool {
         self.has(|format| format.writes_meshes() && format.has_velocities())
     }
 
-    /// Whether its row in the table of file formats meets a condition.
+    /// Whether the entry in the table of file formats meets a condition.
     fn has(self, condition: fn(&splashdown_io::Format) -> bool) -> bool {
         splashdown_io::Format::with_ending(self.ending()).is_some_and(condition)
     }
 }
 
-/// How the fluid is computed. [`Solver::default`] holds the scene file's defaults.
+/// The solver and its parameters. [`Solver::default`] gives the defaults of the scene file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Solver {
@@ -353,34 +354,35 @@ pub struct Solver {
     pub method: Method,
     /// The kernel of `wcsph`.
     pub kernel: KernelKind,
-    /// Support radius over particle spacing.
+    /// Support radius divided by the particle spacing.
     pub support_ratio: f32,
-    /// How the density is found.
+    /// The computation of the density.
     pub density: DensityMode,
-    /// What happens to pressures below zero.
+    /// The treatment of negative pressures.
     pub negative_pressure: NegativePressure,
     /// Speed of sound in m/s; `None`: ten times the reference speed (see [`crate::scene::Derived::sound_speed`]).
     pub sound_speed: Option<f32>,
-    /// Stiffness of the equation of state; `None`: from the speed of sound. For `wcsph` the Tait constant
-    /// B = c^2 rho0 / exponent in Pa, for `mueller2003` k = c^2 in m^2/s^2 (exponent 1: p = k (rho - rho0)).
+    /// Stiffness of the equation of state; `None`: computed from the speed of sound. It is the Tait constant
+    /// B = c^2 rho0 / exponent in Pa for `wcsph`, and k = c^2 in m^2/s^2 for `mueller2003`, where p = k (rho
+    /// - rho0).
     pub stiffness: Option<f32>,
     /// Exponent of the equation of state.
     pub exponent: f32,
     /// Factor alpha of Monaghan's artificial viscosity.
     pub artificial_viscosity: f32,
-    /// Factor delta of the density diffusion, with `continuity`.
+    /// Factor delta of the density diffusion; requires `continuity`.
     pub density_diffusion: f32,
     /// The model of surface tension.
     pub surface_tension: SurfaceTension,
-    /// 0 = free slip, 1 = no slip.
+    /// Friction at closed sides: 0 for free slip, 1 for no slip.
     pub wall_friction: f32,
-    /// Time step as a part of half the support radius over the speed of sound.
+    /// Time step divided by the time in which sound travels half the support radius.
     pub cfl_factor: f32,
-    /// Longest time step in s.
+    /// Maximum time step in s.
     pub max_dt: f32,
-    /// Shortest time step in s.
+    /// Minimum time step in s.
     pub min_dt: f32,
-    /// How particles are sorted into cells.
+    /// The algorithm that sorts particles into cells.
     pub sort: Sort,
 }
 
@@ -414,19 +416,19 @@ impl Default for Solver {
     }
 }
 
-/// How the surface is extracted.
+/// Parameters of surface reconstruction.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceSettings {
-    /// Whether it is extracted at all.
+    /// Whether the surface is reconstructed.
     pub enabled: bool,
     /// Edge of a marching-cubes cell in m.
     pub cell_size: f32,
-    /// Where the surface lies, as a part of the density inside the fluid.
+    /// Value of the field at the surface; the field is about 1 inside the fluid.
     pub iso_level: f32,
-    /// Rounds of weighted smoothing of the mesh.
+    /// Iterations of weighted smoothing of the mesh.
     pub smoothing_iterations: u32,
-    /// Support radius of the density field over the particle spacing.
+    /// Support radius of the field divided by the particle spacing.
     pub support_ratio: f32,
 }
 
@@ -443,29 +445,31 @@ impl SurfaceSettings {
     }
 }
 
-/// Whether and how a splash makes foam, spray and bubbles (Ihmsen et al. 2012).
+/// Parameters of foam, spray and bubbles (Ihmsen et al. 2012).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FoamSettings {
-    /// Whether it does at all.
+    /// Whether diffuse particles are created.
     pub enabled: bool,
-    /// Diffuse particles per second from a particle of the fluid that traps as much air as it can, in 1/s.
+    /// Diffuse particles per second and fluid particle at full trapped-air potential, in 1/s.
     pub trapped_air: f32,
-    /// The same from a wave's crest, in 1/s.
+    /// Diffuse particles per second and fluid particle at full wave-crest potential, in 1/s.
     pub wave_crest: f32,
-    /// From where to where trapped air counts, over the scene's reference speed.
+    /// Relative speed of colliding fluid, divided by the reference speed, at which the trapped-air potential
+    /// is 0 and 1.
     pub trapped_air_limits: [f32; 2],
-    /// From where to where a crest's curvature counts.
+    /// Curvature at which the wave-crest potential is 0 and 1.
     pub wave_crest_limits: [f32; 2],
-    /// From where to where the fluid's speed counts, over the scene's reference speed.
+    /// Speed of the fluid, divided by the reference speed, below which no diffuse particles and above which
+    /// all are created.
     pub speed_limits: [f32; 2],
-    /// Shortest and longest life of foam in s.
+    /// Minimum and maximum lifetime of foam in s.
     pub lifetime: [f32; 2],
-    /// Buoyancy of bubbles in multiples of gravity.
+    /// Buoyancy of bubbles as a multiple of gravity.
     pub buoyancy: f32,
-    /// How quickly bubbles take the water's velocity, in 1/s.
+    /// Rate at which bubbles adopt the fluid's velocity, in 1/s.
     pub drag: f32,
-    /// Most diffuse particles; `None`: four per particle of the fluid, four million at most.
+    /// Maximum number of diffuse particles; `None`: four per fluid particle, at most four million.
     pub max_particles: Option<u32>,
 }
 
@@ -486,38 +490,38 @@ impl Default for FoamSettings {
     }
 }
 
-/// An orbit camera: it looks at `target` from `distance` away.
+/// A camera that looks at `target` and can orbit it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The point in the middle of the picture, in m.
+    /// The point at the centre of the picture, in m.
     pub target: Vec3,
     /// Distance of the eye from the target, in m.
     pub distance: f32,
-    /// Angle around the y axis in degrees: 0 looks from +z (x to the right), 90 from +x.
+    /// Angle about the y axis in degrees: 0 looks from +z (x to the right), 90 from +x.
     pub azimuth: f32,
     /// Angle above the horizon in degrees.
     pub elevation: f32,
     /// Vertical angle of view in degrees.
     pub field_of_view: f32,
-    /// How fast the azimuth grows, in degrees per simulated second.
+    /// Rate of change of the azimuth, in degrees per simulated second.
     pub orbit_speed: f32,
 }
 
-/// What is written.
+/// The output files.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Output {
     /// File formats of the frames.
     pub formats: Vec<Format>,
-    /// Pictures of each frame.
+    /// Pictures drawn of each frame.
     pub pictures: Vec<PictureKind>,
     /// Width and height of a picture in pixels.
     pub picture_size: [u32; 2],
-    /// What colours the particles.
+    /// The quantity that colours the particles.
     pub colour_by: ColourBy,
-    /// Whether the pictures become a film.
+    /// Whether a film is made of the pictures.
     pub film: bool,
-    /// The quantity at both ends of the colour bar; `None`: chosen from the scene.
+    /// Values at the ends of the colour bar; `None`: derived from the scene.
     pub colour_range: Option<[f32; 2]>,
 }
 

@@ -1,20 +1,20 @@
-//! From a TOML value to a checked Rust value, or to the words that say what is wrong with it.
+//! Converts TOML values to checked Rust values, or to descriptions of what is wrong with them.
 
 use toml::de::DeValue;
 
 use super::spec::{Key, Kind, Range, UNITS, Word, number};
 use super::suggest;
 
-/// What is wrong with one value.
+/// A problem of a value, without the path of its key.
 pub(crate) struct Wrong {
     pub message: String,
     pub allowed: String,
     pub hint: Option<String>,
-    /// The item of a list that is meant, and its place in the text.
+    /// The index and the location of the item in question, if the value is a list.
     pub item: Option<(usize, std::ops::Range<usize>)>,
 }
 
-/// Everything that is wrong with the value of one key: of a list, each item may be.
+/// All problems of one key's value. Each item of a list can have one.
 pub(crate) struct Wrongs(pub Vec<Wrong>);
 
 impl From<Wrong> for Wrongs {
@@ -70,7 +70,7 @@ pub(crate) fn one_number(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong
     in_range(given, range)
 }
 
-/// A number, or a unit's word.
+/// A number, or the name of a unit of length.
 pub(crate) fn one_scale(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong> {
     let DeValue::String(given) = value else {
         return one_number(value, range).map_err(|wrong| Wrong { allowed: scales(range), ..wrong });
@@ -125,7 +125,7 @@ pub(crate) fn one_integer(value: &DeValue<'_>, range: Range) -> Result<f64, Wron
 }
 
 impl Wrong {
-    /// A float is a number too; say what is wrong with it.
+    /// Replaces "must be a whole number, not a number" for a value with a fraction.
     fn float_is(mut self, value: &DeValue<'_>) -> Self {
         if let DeValue::Float(_) = value {
             self.message = "must be a whole number".into();
@@ -135,7 +135,7 @@ impl Wrong {
 }
 
 fn in_range(given: f64, range: Range) -> Result<f64, Wrong> {
-    if range.holds(given) {
+    if range.contains(given) {
         return Ok(given);
     }
     let message = format!("is {}, which is out of range", number(given));
@@ -184,7 +184,7 @@ pub(crate) fn list_words(words: &[Word]) -> String {
     words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ")
 }
 
-/// What a key may hold, in words.
+/// A description of the values that a key accepts.
 pub(crate) fn describe(key: &Key) -> String {
     match key.kind {
         Kind::Number(range) => range.to_string(),

@@ -136,10 +136,10 @@ fn errors_in_bodies_name_the_allowed_values() {
             &["cannot have keyframes"],
         ),
         ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"speed*t\", \"0\"]", &["\"speed\"", "sin cos"]),
-        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"1/t\", \"0\"]", &["no value at t = 0"]),
+        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"1/t\", \"0\"]", &["not finite at t = 0"]),
         (
             "name = \"a\"\nmesh = \"cube\"\nmove = [\"sqrt(0.5-t)\", \"0\", \"0\"]",
-            &["body[0].move", "no value at t = 0.50"],
+            &["body[0].move", "not finite at t = 0.50"],
         ),
         (
             "name = \"a\"\nmesh = \"cube\"\nmove = [\"0\", \"0.1/(t-0.3333)\", \"0\"]",
@@ -173,7 +173,7 @@ fn errors_in_bodies_name_the_allowed_values() {
 fn a_density_of_a_static_body_gives_a_warning() {
     let scene = parse(&with_body(&format!("{PLAIN}\ndensity = 300"))).expect("valid");
     let warnings = scene.warnings.iter().map(ToString::to_string).collect::<String>();
-    assert!(warnings.contains("only to a dynamic body"), "{warnings}");
+    assert!(warnings.contains("only on a dynamic body"), "{warnings}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn errors_in_emitters_and_sinks_are_reported() {
     for (text, part) in [
         (TAP.replace("radius = 0.1\n", ""), "emitter[0].radius is missing: a disc needs it"),
         (TAP.replace("0.9", "1.9"), "outside the domain"),
-        (TAP.replace("[0, -2, 0]", "[0, 0, 0]"), "has no length"),
+        (TAP.replace("[0, -2, 0]", "[0, 0, 0]"), "is the zero vector"),
         (format!("{TAP}\nstart = 1\nend = 0.5"), "ends at 0.5 s"),
         (TAP.replace("speed = 2", ""), "speed is missing"),
         (format!("{TAP}\n{TAP}"), "there are two emitters called \"tap\""),

@@ -36,19 +36,22 @@ fn errors_in_probes_are_reported() {
         (probe("quantity = \"pressure\"\nposition = [0, 9, 0]"), "outside the domain"),
         (probe("quantity = \"presure\"\nposition = [0, 0, 0]"), "did you mean \"pressure\"?"),
         (probe("quantity = \"force\"\nbody = \"wheal\""), "did you mean \"wheel\"?"),
-        (probe("quantity = \"force\"\nbody = \"wheel\"\nposition = [0, 0, 0]"), "has no meaning for force"),
+        (
+            probe("quantity = \"force\"\nbody = \"wheel\"\nposition = [0, 0, 0]"),
+            "does not apply to quantity = \"force\"",
+        ),
         (probe("quantity = \"flow\"\nposition = [0, 0, 0]\nsize = [1, 1]"), "normal is missing"),
         (
             probe(
                 "quantity = \"flow\"\nposition = [0, 0, 0]\nsize = [1, 1]\nnormal = [0, 1, 0]\nalong = [0, 1, 1]",
             ),
-            "is not across the normal",
+            "is not perpendicular to the normal",
         ),
-        (probe("quantity = \"fluid\"\ninterval = 0.1"), "interval has no meaning for fluid"),
+        (probe("quantity = \"fluid\"\ninterval = 0.1"), "interval does not apply to quantity = \"fluid\""),
         (probe("quantity = \"fluid\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]"), "max is not above min"),
         (
             probe("quantity = \"height\"\nposition = [0, 0, 0]\ninterval = 1e-6"),
-            "more than 10000 rows in a frame",
+            "more than 10000 rows per frame",
         ),
         (
             format!(

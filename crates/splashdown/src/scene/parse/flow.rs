@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::things::{self, named_once};
+use super::things::{self, read_unique};
 use super::{Part, given, needed};
 use crate::scene::choice::Choice;
 use crate::scene::keys::{OutletWord, SinkWord};
@@ -11,9 +11,9 @@ use crate::scene::reader::{Reported, Section};
 use crate::scene::things::{Emitter, Outlet, Sink, SinkRegion};
 use crate::scene::types::Domain;
 
-/// Everything that `[[emitter]]` says.
+/// Reads all `[[emitter]]` sections.
 pub(super) fn read_emitters(sections: &[Section<'_>], domain: Option<&Domain>) -> Vec<Part<Emitter>> {
-    named_once(sections, "emitters", |section| read_emitter(section, domain), |emitter| &emitter.name)
+    read_unique(sections, "emitters", |section| read_emitter(section, domain), |emitter| &emitter.name)
 }
 
 fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter> {
@@ -37,7 +37,7 @@ fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter>
     };
     if let Some(end) = emitter.end.filter(|end| *end <= emitter.start) {
         let message =
-            format!("emitter {:?} ends at {end} s, but begins at {} s", emitter.name, emitter.start);
+            format!("emitter {:?} ends at {end} s, but starts at {} s", emitter.name, emitter.start);
         return Err(section.complain("end", message, &format!("more than {} s", emitter.start), ""));
     }
     if let Some(domain) = domain {
@@ -49,7 +49,7 @@ fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter>
             return Err(section.complain("position", message, &allowed, hint));
         }
         let reach = reach(&emitter);
-        // Rounding of an outlet that fills a wall is no fault.
+        // The tolerance allows for rounding of an outlet that fills a whole side.
         let slack = 1e-3 * reach.max_element();
         if (position - reach).cmplt(domain.min - slack).any()
             || (position + reach).cmpgt(domain.max + slack).any()
@@ -60,7 +60,7 @@ fn read_emitter(section: &Section<'_>, domain: Option<&Domain>) -> Part<Emitter>
     Ok(emitter)
 }
 
-/// How far an outlet reaches along each axis, in m; of a mesh only its middle is known yet.
+/// Half the extent of an outlet along each axis in m; zero for a mesh, which has not been read yet.
 fn reach(emitter: &Emitter) -> Vec3 {
     let (across, up) = outlet::axes(emitter.direction);
     match emitter.outlet {
@@ -73,7 +73,7 @@ fn reach(emitter: &Emitter) -> Vec3 {
     }
 }
 
-/// Reports an outlet that is partly outside.
+/// Reports an outlet that is partly outside the domain.
 pub(crate) fn outlet_outside(section: &Section<'_>, emitter: &Emitter, domain: &Domain) -> Reported {
     let message = format!("the outlet of emitter {:?} reaches out of the domain", emitter.name);
     let allowed = format!("all of it from {} to {} m", domain.min, domain.max);
@@ -98,9 +98,9 @@ fn read_outlet(section: &Section<'_>) -> Part<Outlet> {
     }
 }
 
-/// Everything that `[[sink]]` says.
+/// Reads all `[[sink]]` sections.
 pub(super) fn read_sinks(sections: &[Section<'_>]) -> Vec<Part<Sink>> {
-    named_once(sections, "sinks", read_sink, |sink| &sink.name)
+    read_unique(sections, "sinks", read_sink, |sink| &sink.name)
 }
 
 fn read_sink(section: &Section<'_>) -> Part<Sink> {
@@ -135,20 +135,20 @@ fn read_sink(section: &Section<'_>) -> Part<Sink> {
     Ok(Sink { name: needed(name)?, region })
 }
 
-/// Complains of keys that belong to another shape.
+/// Reports a key that belongs to another shape.
 fn refuse_others(section: &Section<'_>, word: &str, fitting: &[&str], all: &[&str]) -> Part<()> {
     let Some(name) = all.iter().find(|name| section.has(name) && !fitting.contains(name)) else {
         return Ok(());
     };
     let message = format!("{} does not belong to shape = {word:?}", section.key_path(name));
-    Err(section.complain(name, message, &fitting.join(", "), "take it out, or write the shape it belongs to"))
+    Err(section.complain(name, message, &fitting.join(", "), "remove it, or set the shape that uses it"))
 }
 
-/// A vector of any length but zero, as a unit vector.
+/// Reads a non-zero vector and normalises it.
 fn read_direction(section: &Section<'_>, name: &str) -> Part<Vec3> {
     let vector = Vec3::from(given(section, name, section.numbers::<3>(name)?, "direction")?);
     vector.try_normalize().ok_or_else(|| {
-        let message = format!("{} has no length", section.key_path(name));
-        section.complain(name, message, "any vector but zero", "")
+        let message = format!("{} is the zero vector", section.key_path(name));
+        section.complain(name, message, "any vector except zero", "")
     })
 }

@@ -1,4 +1,5 @@
-//! From text to [`Scene`]: each section is read on its own, so that one mistake does not hide another.
+//! Reads the text of a scene file into a [`Scene`]. Each section is read separately, so that one mistake does
+//! not hide another.
 
 mod flow;
 mod fluid;
@@ -22,17 +23,17 @@ use super::slot::BuiltSlot;
 use super::source::Source;
 use super::types::{Domain, Fluid, Oscillation, Scene};
 
-/// Most frames of a run.
+/// Maximum number of frames of a run.
 const MAX_FRAMES: f64 = 100_000.0;
 
-/// A section's value, or a problem that is in the list.
+/// A section's value, or a problem that has already been reported.
 type Part<T> = Result<T, Reported>;
 
-/// Compares a scene with its files, its meshes and the lattices of its particles, and reports what is wrong at its line.
+/// A check of a scene against its files, its meshes and its particles. It reports problems with their lines.
 pub(crate) type Check = fn(&Scene, &Section<'_>) -> Result<(), Reported>;
 
-/// Reads a scene and checks it, by `check` where its values can be read. File names are relative to `folder`, in which the
-/// files must exist; without one, names stay as written.
+/// Reads a scene, and calls `check` if all values could be read. File names are relative to `folder`, and the
+/// files must exist. Without a folder, file names stay as written.
 pub(crate) fn parse(
     text: &str,
     file: &str,
@@ -57,7 +58,7 @@ pub(crate) fn parse(
             format!("not valid TOML: {}", mistake.message().trim()),
         ));
     }
-    // After a mistake of grammar the tree is a guess; complaints about it would mislead.
+    // The tree of a text with syntax errors is incomplete, so further messages would be misleading.
     let scene = if mistakes.is_empty() {
         read(&Section::root(&reader, table.get_ref(), &ROOT), check)
     } else {
@@ -84,9 +85,10 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
         let meshes = read_all(section, "mesh", fluid::read_fluid_mesh);
         let files = read_all(section, "file", fluid::read_fluid_file);
         let material = fluid::read_material(section);
-        // Geometry is checked for all that could be read, so that a wrong viscosity does not hide a block
-        // outside the tank.
-        let sound = geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
+        // The geometry is checked even if other values are invalid, so that a wrong viscosity does not hide a
+        // block outside the domain.
+        let geometry_result =
+            geometry::check(&domain_section, domain.as_ref().ok(), section, spacing, &blocks);
         let blocks: Vec<geometry::ReadBlock<'_>> = blocks?;
         let blocks = blocks.into_iter().map(|(block, _)| block).collect::<Part<Vec<_>>>()?;
         let fluid = Fluid {
@@ -96,7 +98,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
             meshes: meshes?,
             files: files?,
         };
-        sound.map(|()| fluid)
+        geometry_result.map(|()| fluid)
     });
     let emitters = all_of(root.sections_if_any("emitter"), |sections| {
         flow::read_emitters(sections, domain.as_ref().ok())
@@ -115,8 +117,8 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
     let duration = header.as_ref().map(|header| header.duration).ok();
     let bodies = all_of(root.sections_if_any("body"), |sections| things::read_bodies(sections, duration));
     let probes = root.sections_if_any("probe").and_then(|sections| {
-        let around = probes::Around { domain: domain.as_ref().ok(), bodies: bodies.as_deref().ok() };
-        probes::read_probes(&sections, &around)
+        let context = probes::Context { domain: domain.as_ref().ok(), bodies: bodies.as_deref().ok() };
+        probes::read_probes(&sections, &context)
     });
     let solver = solver_section.as_ref().map_err(|r| *r).and_then(solver::read_solver);
     let surface =
@@ -156,7 +158,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
     Ok(scene)
 }
 
-/// Every section of a list, or a problem that is in the list.
+/// The values of all sections of a list, or a problem that has already been reported.
 fn all_of<T>(
     sections: Part<Vec<Section<'_>>>,
     read: impl Fn(&[Section<'_>]) -> Vec<Part<T>>,
@@ -166,7 +168,7 @@ fn all_of<T>(
 
 /// Reads every section of a list that may be absent.
 fn read_all<T>(section: &Section<'_>, name: &str, read: fn(&Section<'_>) -> Part<T>) -> Part<Vec<T>> {
-    // All of them before any is given up, so that each has its say.
+    // All sections are read before the first error is returned, so that all problems are reported.
     let all: Vec<Part<T>> = section.sections_if_any(name)?.iter().map(read).collect();
     all.into_iter().collect()
 }
@@ -237,7 +239,7 @@ fn read_oscillation(section: &Section<'_>) -> Part<Oscillation> {
     Ok(Oscillation { amplitude: needed(amplitude)?.into(), period: needed(period)? })
 }
 
-/// The value of a key that a certain shape needs.
+/// The value of a key that `what` requires; reports it if it is missing.
 fn given<T>(section: &Section<'_>, name: &str, value: Option<T>, what: &str) -> Part<T> {
     value.ok_or_else(|| {
         let message = format!("{} is missing: a {what} needs it", section.key_path(name));
@@ -245,7 +247,7 @@ fn given<T>(section: &Section<'_>, name: &str, value: Option<T>, what: &str) -> 
     })
 }
 
-/// The value of a required key; its absence has been reported with the section.
+/// The value of a required key. Its absence has been reported with the section.
 fn needed<T>(value: Read<T>) -> Part<T> {
     value?.ok_or(Reported)
 }

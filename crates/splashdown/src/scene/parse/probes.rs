@@ -10,34 +10,34 @@ use crate::scene::suggest;
 use crate::scene::things::{Body, Probe, Quantity};
 use crate::scene::types::Domain;
 
-/// Most rows of a probe in a frame.
+/// Maximum number of rows of a probe per frame.
 const MAX_ROWS: f32 = 10_000.0;
 
-/// What probes are checked against, as far as it could be read.
-pub(super) struct Around<'a> {
+/// The parts of the scene that probes are checked against; `None` if they could not be read.
+pub(super) struct Context<'a> {
     pub domain: Option<&'a Domain>,
     pub bodies: Option<&'a [Body]>,
 }
 
-/// Everything that `[[probe]]` says.
-pub(super) fn read_probes(sections: &[Section<'_>], around: &Around<'_>) -> Part<Vec<Probe>> {
-    let probes: Vec<Part<Probe>> = sections.iter().map(|section| read_probe(section, around)).collect();
+/// Reads all `[[probe]]` sections.
+pub(super) fn read_probes(sections: &[Section<'_>], context: &Context<'_>) -> Part<Vec<Probe>> {
+    let probes: Vec<Part<Probe>> = sections.iter().map(|section| read_probe(section, context)).collect();
     let mut found: Vec<&str> = Vec::new();
-    let mut doubles = Ok(());
+    let mut unique = Ok(());
     for (probe, section) in probes.iter().zip(sections) {
         let Ok(probe) = probe else { continue };
-        // Names are those of files, which some disks do not tell apart by case.
+        // Probes are files of these names, and some file systems ignore case.
         if found.iter().any(|name| name.eq_ignore_ascii_case(&probe.name)) {
             let message = format!("there are two probes called {:?}", probe.name);
-            doubles = Err(section.complain("name", message, "a name of its own", "each has its own file"));
+            unique = Err(section.complain("name", message, "unique names", "each probe has its own file"));
         }
         found.push(&probe.name);
     }
-    doubles?;
+    unique?;
     probes.into_iter().collect()
 }
 
-fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
+fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
     let name = section.name("name");
     let quantity = section.choice::<QuantityWord>("quantity");
     let position = section.numbers::<3>("position");
@@ -59,13 +59,13 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
         QuantityWord::Pressure | QuantityWord::Height => &["position", "interval"],
         QuantityWord::Force => &["body", "interval"],
         QuantityWord::Flow => &["position", "normal", "along", "size", "interval"],
-        // It has a row for each frame.
+        // It has one row per frame, so there is no interval.
         QuantityWord::Fluid => &["min", "max"],
     };
     for key in ["position", "body", "normal", "along", "size", "min", "max", "interval"] {
         if section.has(key) && !fitting.contains(&key) {
-            let message = format!("{} has no meaning for {word}", section.key_path(key));
-            return Err(section.complain(key, message, &fitting.join(", "), "leave it out"));
+            let message = format!("{} does not apply to quantity = {word:?}", section.key_path(key));
+            return Err(section.complain(key, message, &fitting.join(", "), "remove it"));
         }
     }
     let missing = |key: &str| {
@@ -74,7 +74,7 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
     };
     let point = || -> Part<Vec3> {
         let point = Vec3::from(position?.ok_or_else(|| missing("position"))?);
-        match around.domain {
+        match context.domain {
             Some(domain) if point.cmplt(domain.min).any() || point.cmpgt(domain.max).any() => {
                 let message = format!("{} lies outside the domain", section.key_path("position"));
                 let allowed = format!("{} to {} m", domain.min, domain.max);
@@ -86,7 +86,7 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
     let quantity = match quantity {
         QuantityWord::Pressure => Quantity::Pressure(point()?),
         QuantityWord::Height => Quantity::Height(point()?),
-        QuantityWord::Force => Quantity::Force(known_body(section, body?, around.bodies, missing)?),
+        QuantityWord::Force => Quantity::Force(known_body(section, body?, context.bodies, missing)?),
         QuantityWord::Flow => {
             let center = point()?;
             let normal = unit(section, "normal", normal?.ok_or_else(|| missing("normal"))?)?;
@@ -95,8 +95,10 @@ fn read_probe(section: &Section<'_>, around: &Around<'_>) -> Part<Probe> {
                 Some(along) => {
                     let along = unit(section, "along", along)?;
                     if along.dot(normal).abs() > 1e-3 {
-                        let message = format!("{} is not across the normal", section.key_path("along"));
-                        return Err(section.complain("along", message, "a vector across normal", ""));
+                        let message =
+                            format!("{} is not perpendicular to the normal", section.key_path("along"));
+                        let allowed = "a vector perpendicular to normal";
+                        return Err(section.complain("along", message, allowed, ""));
                     }
                     along
                 }
@@ -124,7 +126,7 @@ fn known_body(
     missing: impl Fn(&str) -> Reported,
 ) -> Part<String> {
     let name = name.ok_or_else(|| missing("body"))?;
-    // Bodies with mistakes of their own are not known, and nothing can be said about names then.
+    // The names of the bodies are unknown if one of them could not be read.
     let Some(bodies) = bodies else { return Ok(name) };
     let names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
     if names.contains(&name.as_str()) {
@@ -138,16 +140,16 @@ fn known_body(
 
 fn unit(section: &Section<'_>, key: &str, vector: [f32; 3]) -> Part<Vec3> {
     Vec3::from(vector).try_normalize().ok_or_else(|| {
-        let message = format!("{} has no length", section.key_path(key));
-        section.complain(key, message, "any vector but zero", "")
+        let message = format!("{} is the zero vector", section.key_path(key));
+        section.complain(key, message, "any vector except zero", "")
     })
 }
 
-/// Rows are kept on the device for the length of a frame: there must be a sane number of them.
+/// Checks the number of rows per frame, because the rows of a frame are stored on the device.
 pub(super) fn check_intervals(root: &Section<'_>, probes: Vec<Probe>, frame: f32) -> Part<Vec<Probe>> {
     let short = probes.iter().find(|probe| probe.interval.is_some_and(|s| frame / s > MAX_ROWS));
     let Some(probe) = short else { return Ok(probes) };
-    let message = format!("probe {:?} has more than {MAX_ROWS} rows in a frame", probe.name);
+    let message = format!("probe {:?} has more than {MAX_ROWS} rows per frame", probe.name);
     let allowed = format!("an interval of at least {} s", frame / MAX_ROWS);
     Err(root.complain("probe", message, &allowed, "make the interval longer or the frame_rate higher"))
 }

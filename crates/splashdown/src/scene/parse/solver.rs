@@ -51,17 +51,17 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     check_solver(section, &solver).map(|()| solver)
 }
 
-/// Refuses choices that contradict or ignore one another.
+/// Reports values that contradict each other or have no effect.
 fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
-    let mut sound = Ok(());
+    let mut result = Ok(());
     if solver.min_dt > solver.max_dt {
         let message =
             format!("solver.min_dt = {} s is above solver.max_dt = {} s", solver.min_dt, solver.max_dt);
-        sound = Err(section.complain("min_dt", message, &format!("at most {} s", solver.max_dt), ""));
+        result = Err(section.complain("min_dt", message, &format!("at most {} s", solver.max_dt), ""));
     }
     if section.has("sound_speed") && section.has("stiffness") {
-        let message = "solver.sound_speed and solver.stiffness say the same thing twice".to_owned();
-        sound = Err(section.complain("stiffness", message, "", "keep one of them"));
+        let message = "solver.sound_speed and solver.stiffness define the same quantity".to_owned();
+        result = Err(section.complain("stiffness", message, "", "keep one of them"));
     }
     match (solver.method, solver.surface_tension) {
         (Method::Mueller2003, SurfaceTension::Akinci2013) | (Method::Wcsph, SurfaceTension::ColourField) => {
@@ -72,7 +72,7 @@ fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
                 Method::Wcsph => "\"none\", \"akinci2013\"",
                 Method::Mueller2003 => "\"none\", \"mueller2003\"",
             };
-            sound = Err(section.complain("surface_tension", message, allowed, ""));
+            result = Err(section.complain("surface_tension", message, allowed, ""));
         }
         _ => {}
     }
@@ -80,23 +80,23 @@ fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
         if solver.density == DensityMode::Continuity {
             let message =
                 "solver.density = \"continuity\" does not work with method = \"mueller2003\"".to_owned();
-            sound = Err(section.complain("density", message, "\"summation\"", ""));
+            result = Err(section.complain("density", message, "\"summation\"", ""));
         }
         for name in ["kernel", "artificial_viscosity", "density_diffusion"]
             .into_iter()
             .filter(|name| section.has(name))
         {
             let message = format!("solver.{name} has no effect with method = \"mueller2003\"");
-            sound = Err(section.complain(name, message, "", "leave it out, or use method = \"wcsph\""));
+            result = Err(section.complain(name, message, "", "leave it out, or use method = \"wcsph\""));
         }
     } else if solver.density == DensityMode::Summation && section.has("density_diffusion") {
         let message = "solver.density_diffusion has no effect with density = \"summation\"".to_owned();
-        sound = Err(section.complain(
+        result = Err(section.complain(
             "density_diffusion",
             message,
             "",
             "leave it out, or use density = \"continuity\"",
         ));
     }
-    sound
+    result
 }

@@ -13,19 +13,19 @@ use crate::scene::script::{Keyframe, Script};
 use crate::scene::suggest;
 use crate::scene::things::{Body, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, UpAxis};
 
-/// A body beyond this many metres is surely a mistake in a formula.
-const FARTHEST: f64 = 1e6;
-/// Nor does anything turn this far, in degrees.
-const MOST_DEGREES: f64 = 1e9;
+/// Maximum displacement by a formula in m; larger values indicate a mistake.
+const MAX_DISPLACEMENT: f64 = 1e6;
+/// Maximum rotation by a formula in degrees.
+const MAX_DEGREES: f64 = 1e9;
 
-/// Everything that `[[body]]` says; `duration` (s) of the scene, if known.
+/// Reads all `[[body]]` sections. `duration` is that of the scene in s, if it is known.
 pub(super) fn read_bodies(sections: &[Section<'_>], duration: Option<f32>) -> Vec<Part<Body>> {
     let read = |section: &Section<'_>| read_body(section, duration.unwrap_or(0.0));
-    named_once(sections, "bodies", read, |body| &body.name)
+    read_unique(sections, "bodies", read, |body| &body.name)
 }
 
-/// Reads sections whose names must differ.
-pub(super) fn named_once<T>(
+/// Reads sections whose names must be unique.
+pub(super) fn read_unique<T>(
     sections: &[Section<'_>],
     kinds: &str,
     mut read: impl FnMut(&Section<'_>) -> Part<T>,
@@ -38,7 +38,7 @@ pub(super) fn named_once<T>(
             return Ok(thing);
         }
         let message = format!("there are two {kinds} called {:?}", name(&thing));
-        Err(section.complain("name", message, "a name of its own for each", "rename one of them"))
+        Err(section.complain("name", message, "unique names", "rename one of them"))
     };
     sections.iter().map(&mut one).collect()
 }
@@ -87,19 +87,20 @@ fn read_hinge(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Hinge>> {
     let point = section.numbers::<3>("hinge_point")?.map_or(mesh.position, Vec3::from);
     let Some(axis) = axis? else {
         if section.has("hinge_point") {
-            let message = format!("{} has no hinge", section.key_path("hinge_point"));
-            return Err(section.complain("hinge_point", message, "", "add hinge = [0, 0, 1], its axis"));
+            let message = format!("{} is given without a hinge", section.key_path("hinge_point"));
+            let hint = "add the axis, for example hinge = [0, 0, 1]";
+            return Err(section.complain("hinge_point", message, "", hint));
         }
         return Ok(None);
     };
     let axis = Vec3::from(axis).try_normalize().ok_or_else(|| {
-        let message = format!("{} has no length", section.key_path("hinge"));
-        section.complain("hinge", message, "any vector but zero", "")
+        let message = format!("{} is the zero vector", section.key_path("hinge"));
+        section.complain("hinge", message, "any vector except zero", "")
     })?;
     Ok(Some(Hinge { point, axis }))
 }
 
-/// The mesh and its place: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
+/// The mesh and its pose: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
 pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
     let shape = section.text("mesh");
     let scale = section.scale("scale");
@@ -112,7 +113,7 @@ pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
     } else {
         let names: Vec<&str> = models::names().iter().map(|(name, _)| *name).collect();
         if !names.contains(&text.as_str()) {
-            let message = format!("{} names no model: {text:?}", section.key_path("mesh"));
+            let message = format!("{} is not the name of a model: {text:?}", section.key_path("mesh"));
             let hint = suggest::closest(&text, &names).map_or_else(
                 || "a file name needs its extension".to_owned(),
                 |name| format!("did you mean {name:?}? A file name needs its extension"),
@@ -132,10 +133,10 @@ pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
 
 /// The key `rotation`: about x, then y, then z, in degrees.
 pub(super) fn read_rotation(section: &Section<'_>) -> Part<Quat> {
-    Ok(section.numbers("rotation")?.map_or(Quat::IDENTITY, turned))
+    Ok(section.numbers("rotation")?.map_or(Quat::IDENTITY, quat_from_degrees))
 }
 
-fn turned(degrees: [f32; 3]) -> Quat {
+fn quat_from_degrees(degrees: [f32; 3]) -> Quat {
     let [x, y, z] = degrees.map(f32::to_radians);
     Quat::from_euler(EulerRot::ZYX, z, y, x)
 }
@@ -147,8 +148,8 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
     let word = word?.unwrap_or(if scripted { MotionWord::Scripted } else { MotionWord::Static });
     for name in ["density", "velocity", "angular_velocity", "hinge"] {
         if section.has(name) && word != MotionWord::Dynamic {
-            let message = format!("{} means something only to a dynamic body", section.key_path(name));
-            section.warn(name, message, "write motion = \"dynamic\", or take the key out");
+            let message = format!("{} has an effect only on a dynamic body", section.key_path(name));
+            section.warn(name, message, "set motion = \"dynamic\", or remove the key");
         }
     }
     match (word, script) {
@@ -166,14 +167,14 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
         }
         (other, Some(_)) => {
             let message = format!("a {other} body cannot have keyframes, move or turn");
-            Err(section.complain("motion", message, "", "take motion out, or the script"))
+            Err(section.complain("motion", message, "", "remove motion, or remove the script"))
         }
     }
 }
 
 fn read_script(section: &Section<'_>, mesh: &MeshSource, duration: f32) -> Part<Option<Script>> {
-    let shift = read_formulas(section, "move", duration, FARTHEST);
-    let turn = read_formulas(section, "turn", duration, MOST_DEGREES);
+    let shift = read_formulas(section, "move", duration, MAX_DISPLACEMENT);
+    let turn = read_formulas(section, "turn", duration, MAX_DEGREES);
     let sections = section.sections_if_any("keyframe")?;
     let keyframes: Vec<Part<Keyframe>> = sections.iter().map(|s| read_keyframe(s, mesh)).collect();
     let mut keyframes = keyframes.into_iter().collect::<Part<Vec<_>>>()?;
@@ -181,12 +182,12 @@ fn read_script(section: &Section<'_>, mesh: &MeshSource, duration: f32) -> Part<
     for (k, pair) in keyframes.windows(2).enumerate() {
         if pair[1].time <= pair[0].time {
             let message = format!(
-                "{} = {} s is not after the keyframe before it, {} s",
+                "{} = {} s is not after the previous keyframe, {} s",
                 sections[k + 1].key_path("time"),
                 pair[1].time,
                 pair[0].time
             );
-            let hint = "keyframes stand in the order of time, each at a time of its own";
+            let hint = "keyframes must be in order of increasing time";
             return Err(sections[k + 1].complain("time", message, "", hint));
         }
     }
@@ -206,7 +207,7 @@ fn read_keyframe(section: &Section<'_>, mesh: &MeshSource) -> Part<Keyframe> {
     Ok(Keyframe {
         time: f64::from(needed(time)?),
         position: position?.map_or(mesh.position, Vec3::from),
-        orientation: rotation?.map_or(mesh.rotation, turned),
+        orientation: rotation?.map_or(mesh.rotation, quat_from_degrees),
     })
 }
 
@@ -229,9 +230,9 @@ fn read_formulas(
         let why = if value.is_finite() {
             format!("{text:?} is {value:.3e} at t = {time:.6} s")
         } else {
-            format!("{text:?} has no value at t = {time:.6} s: it is {value}")
+            format!("{text:?} is not finite at t = {time:.6} s: it is {value}")
         };
-        let hint = "a motion needs a sane value from 0 to the scene's duration; max(t, 0.1) keeps a divisor from zero";
+        let hint = "a motion needs moderate finite values from 0 to the scene's duration; max(t, 0.1) avoids a division by zero";
         return Err(refuse(&why, hint));
     }
     Ok(Some(formulas))

@@ -26,7 +26,7 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
         support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
     };
     let Some(spacing) = spacing else { return Ok(surface) };
-    // Finer cells only repeat the particles' bumps; coarser ones miss the gaps between them.
+    // Finer cells only resolve the shape of single particles; coarser cells miss gaps between them.
     let (least, most) = (0.1 * spacing, 2.0 * spacing);
     if !(least * 0.999..=most * 1.001).contains(&surface.cell_size) {
         let message = format!(
@@ -43,7 +43,7 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
     }
     if surface.enabled && surface.cell_size > 1.001 * spacing {
         let message = format!(
-            "surface.cell_size = {} m is coarser than the particles, {spacing} m apart: thin sheets and corners go missing, and \
+            "surface.cell_size = {} m is coarser than the particles, {spacing} m apart: thin sheets and corners are lost, and \
              the surface encloses less than the fluid's volume",
             surface.cell_size
         );
@@ -85,30 +85,31 @@ pub(super) fn read_foam(section: &Section<'_>) -> Part<FoamSettings> {
         ("wave_crest_limits", foam.wave_crest_limits),
         ("speed_limits", foam.speed_limits),
     ];
-    let mut sound = Ok(foam);
+    let mut result = Ok(foam);
     for (name, [least, most]) in rising {
         if most <= least {
-            let message = format!("the second of foam.{name} is not above the first: {most} <= {least}");
-            sound = Err(section.complain(
+            let message =
+                format!("the second value of foam.{name} is not above the first: {most} <= {least}");
+            result = Err(section.complain(
                 name,
                 message,
                 &format!("above {least}"),
-                "nothing counts below the first, all above the second",
+                "no particles are created below the first value, and all above the second",
             ));
         }
     }
     let [shortest, longest] = foam.lifetime;
     if longest < shortest {
         let message =
-            format!("the longest life of foam is shorter than the shortest: {longest} s < {shortest} s");
-        sound = Err(section.complain(
+            format!("the maximum of foam.lifetime is below the minimum: {longest} s < {shortest} s");
+        result = Err(section.complain(
             "lifetime",
             message,
-            &format!("{shortest} s and more"),
-            "give the shortest first",
+            &format!("{shortest} s or more"),
+            "give the minimum first",
         ));
     }
-    sound
+    result
 }
 
 pub(super) fn read_camera(
@@ -164,10 +165,10 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
         colour_by: colour_by?.unwrap_or(standard.colour_by),
         colour_range: colour_range?,
     };
-    let mut sound = Ok(());
+    let mut result = Ok(());
     if !with_surface && output.pictures.contains(&PictureKind::Surface) {
-        let message = "output.pictures asks for the surface, but surface.enabled is false".to_owned();
-        sound = Err(section.complain(
+        let message = "output.pictures includes the surface, but surface.enabled is false".to_owned();
+        result = Err(section.complain(
             "pictures",
             message,
             "\"particles\"",
@@ -177,9 +178,9 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
     let surface_only = |format: &&Format| format.has_surface() && !format.has_particles();
     if !with_surface && let Some(format) = output.formats.iter().find(surface_only) {
         let message = format!(
-            "output.formats asks for \"{format}\", which holds the surface, but surface.enabled is false"
+            "output.formats includes \"{format}\", which stores the surface, but surface.enabled is false"
         );
-        sound = Err(section.complain(
+        result = Err(section.complain(
             "formats",
             message,
             "\"ply\", \"vtu\"",
@@ -188,16 +189,16 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
     }
     if film_wanted == Some(true) && output.pictures.is_empty() {
         let message = "output.film needs pictures, but output.pictures is empty".to_owned();
-        sound =
+        result =
             Err(section.complain("film", message, "false", "add \"particles\" or \"surface\" to pictures"));
     }
     if output.film && output.picture_size.iter().any(|side| side % 2 == 1) {
         let message = "a film needs an even picture_size".to_owned();
-        sound = Err(section.complain("picture_size", message, "even numbers", "or set film = false"));
+        result = Err(section.complain("picture_size", message, "even numbers", "or set film = false"));
     }
     if output.colour_range.is_some_and(|[low, high]| low >= high) {
-        let message = "output.colour_range must rise".to_owned();
-        sound = Err(section.complain("colour_range", message, "[low, high] with low < high", ""));
+        let message = "output.colour_range must be increasing".to_owned();
+        result = Err(section.complain("colour_range", message, "[low, high] with low < high", ""));
     }
-    sound.map(|()| output)
+    result.map(|()| output)
 }
