@@ -13,8 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::load(arguments.next().ok_or("give a scene file")?)?;
     let device: Device = arguments.next().unwrap_or_else(|| "auto".into()).parse()?;
     let frames: u32 = arguments.next().map_or(Ok(3), |text| text.parse())?;
-    let ways: Vec<String> = arguments.collect();
-    let has = |way: &str| ways.iter().any(|given| given == way);
+    let flags: Vec<String> = arguments.collect();
+    let has = |flag: &str| flags.iter().any(|given| given == flag);
     let executor = if has("unchecked") {
         // SAFETY: only the simulation uses the executor.
         unsafe { device.unchecked_executor()? }

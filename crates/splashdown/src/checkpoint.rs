@@ -107,7 +107,7 @@ pub(crate) struct HostState {
     pub capacity: u32,
     pub initial: u32,
     pub removed: u32,
-    /// Emitters whose lack of room has been reported.
+    /// Emitters that have already reported full buffers.
     pub reported: Vec<bool>,
     pub bodies: Vec<BodyKey>,
     /// Fingerprint of the emitters and sinks.

@@ -16,7 +16,7 @@ pub struct Stats {
     pub particles: u32,
     /// Total number of particles created by emitters.
     pub emitted: u32,
-    /// Total number of particles that emitters could not create for lack of room.
+    /// Total number of particles that emitters could not create because the buffers were full.
     pub refused: u32,
     /// Total number of particles removed by sinks.
     pub drained: u32,

@@ -118,7 +118,7 @@ impl FoamParams {
     }
 }
 
-/// More diffuse particles than a device holds.
+/// The requested number of diffuse particles exceeds the largest buffer of the device.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TooMuchFoam {
     pub given: u64,
@@ -255,12 +255,12 @@ impl Foam {
     }
 
     /// Restores whether the overflow of the pool has already been reported.
-    pub(crate) fn remember(&mut self, state: &FoamState) {
+    pub(crate) fn restore_overflow(&mut self, state: &FoamState) {
         self.has_warned |= state.refused > 0;
     }
 
-    /// A warning if the pool overflowed for the first time.
-    pub(crate) fn tell(&mut self, state: &FoamState) -> Option<String> {
+    /// Returns a warning when the pool has overflowed for the first time.
+    pub(crate) fn overflow_warning(&mut self, state: &FoamState) -> Option<String> {
         (state.refused > 0 && !std::mem::replace(&mut self.has_warned, true)).then(|| {
             format!(
                 "the pool of {} particles of foam, spray and bubbles is full; from now on fewer are generated. Raise \
@@ -294,7 +294,7 @@ pub struct DiffuseParticles {
 }
 
 impl DiffuseParticles {
-    /// From the contents of a pool.
+    /// Unpacks the contents of a pool.
     pub fn new(pool: &[Diffuse]) -> Self {
         Self {
             ids: pool.iter().map(Diffuse::id).collect(),

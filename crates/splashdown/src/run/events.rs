@@ -10,12 +10,12 @@ use crate::probes::ProbeRows;
 use crate::scene::Scene;
 use crate::{BodyState, Device, DiffuseParticles, Stats};
 
-/// What to compute in addition to the motion of particles.
+/// Options of a run: the device, and what is computed in addition to the motion of particles.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
-    /// Where to simulate.
+    /// The device that runs the simulation.
     pub device: Device,
-    /// Frames to compute; the scene's own number if `None`.
+    /// Number of frames to compute; `None` for the number of the scene.
     pub frames: Option<u32>,
     /// Extract the surface in every frame.
     pub surface: bool,
@@ -34,7 +34,7 @@ pub struct RunOptions {
 #[derive(Clone)]
 pub struct ProgressFn(Arc<Report>);
 
-/// What [`ProgressFn`] calls: a name, and the part in [0, 1] that is done.
+/// The function that [`ProgressFn`] wraps.
 type Report = dyn Fn(&str, f32) + Send + Sync;
 
 impl ProgressFn {
@@ -169,11 +169,11 @@ pub struct Summary {
     pub frames: u32,
     /// Steps of this run, without those before the checkpoint it resumed from.
     pub steps: u64,
-    /// Wall time in all, in seconds.
+    /// Total wall time in seconds.
     pub wall: f64,
-    /// Wall time of steps, in seconds.
+    /// Wall time of the steps in seconds.
     pub step_wall: f64,
-    /// Wall time of extracting the surface and reading frames back, in seconds.
+    /// Wall time of surface extraction and of reading frames back, in seconds.
     pub frame_wall: f64,
     /// Particles times steps per second of `step_wall`.
     pub particle_steps_per_second: f64,

@@ -1,4 +1,4 @@
-//! A whole run as one stream of events.
+//! Computes all frames of a scene and reports them as a stream of events.
 
 mod events;
 mod resume;
@@ -57,18 +57,18 @@ pub struct Run {
     next_duration: Option<f32>,
     scene_text: Arc<str>,
     started: Instant,
-    /// When progress was last reported.
+    /// Time of the last progress report.
     reported: Instant,
     clock: Clock,
     density_error: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
     particle_steps: f64,
-    waiting: VecDeque<Event>,
+    pending_events: VecDeque<Event>,
     /// Warnings about the scene's probes.
-    buried: Vec<String>,
+    probe_warnings: Vec<String>,
     domain: Domain,
-    /// One per body: whether it is dynamic and has not been reported as lost.
+    /// For each body, whether it is dynamic and has not been reported as lost.
     watched: Vec<bool>,
     stats_before: Stats,
     /// Simulated time at the start in seconds.
@@ -111,7 +111,7 @@ impl Run {
         options: RunOptions,
         started: Instant,
     ) -> Result<Self, SimulationError> {
-        let buried = simulation.buried_probes(&scene.probes)?;
+        let probe_warnings = simulation.buried_probes(&scene.probes)?;
         let surface = if options.surface { Some(simulation.surface(&scene.surface)?) } else { None };
         let foam = if options.foam { Some(simulation.foam(&scene.foam)?) } else { None };
         if options.timing {
@@ -143,8 +143,8 @@ impl Run {
             volume: None,
             particle_volume,
             particle_steps: 0.0,
-            waiting: VecDeque::new(),
-            buried,
+            pending_events: VecDeque::new(),
+            probe_warnings,
             domain: scene.domain.clone(),
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             stats_before: simulation.stats(),
@@ -174,14 +174,14 @@ impl Run {
             frame => self.after(frame),
         };
         for (body, report) in self.simulation.body_meshes().iter().zip(self.simulation.body_reports()) {
-            self.waiting.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
+            self.pending_events.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
         }
-        self.waiting.extend(std::mem::take(&mut self.buried).into_iter().map(Event::Warning));
+        self.pending_events.extend(std::mem::take(&mut self.probe_warnings).into_iter().map(Event::Warning));
         let removed = self.simulation.removed();
         if removed > 0 {
             let text =
                 format!("{removed} particles of the fluid were removed because they are inside bodies");
-            self.waiting.push_back(Event::Note(text));
+            self.pending_events.push_back(Event::Note(text));
         }
         Event::Started(Started {
             device: self.simulation.device_name(),
@@ -263,13 +263,13 @@ impl Run {
         // A sum of frame durations in single precision would give 0.0199999996.
         let time = f64::from(index) / f64::from(self.frame_rate);
         let warnings = self.simulation.take_warnings().into_iter();
-        self.waiting.extend(warnings.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
+        self.pending_events.extend(warnings.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
         let inside_bodies = self.simulation.inside_bodies(&particles)?;
         let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
         if inside_bodies > 0 {
             let plural = if inside_bodies == 1 { " is" } else { "s are" };
             let text = format!("at {time:.4} s: {inside_bodies} particle{plural} inside a body");
-            self.waiting.push_back(Event::Warning(text));
+            self.pending_events.push_back(Event::Warning(text));
         }
         let mut probes = self.simulation.take_probe_rows();
         self.fluid_probes.read(&mut probes, time, &particles);
@@ -315,7 +315,7 @@ impl Iterator for Run {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(event) = self.waiting.pop_front() {
+            if let Some(event) = self.pending_events.pop_front() {
                 return Some(Ok(event));
             }
             let outcome = match self.stage {

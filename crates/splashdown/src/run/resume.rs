@@ -8,7 +8,7 @@ use super::{Run, RunOptions, Stage};
 use crate::scene::Scene;
 use crate::{Checkpoint, CheckpointError, Simulation, SimulationError};
 
-/// The state of a run beside its simulation; part of a checkpoint.
+/// The state of a run in addition to that of its simulation, stored in checkpoints.
 #[derive(Serialize, Deserialize)]
 struct RunState {
     frame: u32,
@@ -60,7 +60,8 @@ impl Run {
                 run.complete = Some(frame);
                 frame
             }
-            // From the window, which has no frames. A millionth of a frame is rounding.
+            // A checkpoint from the window, which has no frames. The tolerance of a millionth of a frame
+            // covers rounding.
             None => {
                 let frame = (time * rate + 1e-6).floor();
                 run.next_duration = Some(((frame + 1.0) / rate - time) as f32);
@@ -81,7 +82,7 @@ impl Run {
         if let Some(foam) = &self.foam {
             checkpoint.set_foam(&block_on(self.simulation.keep_foam_async(foam))?);
         }
-        // Only between frames.
+        // Within a frame there is no state of a complete frame to resume from.
         let between = !matches!(self.stage, Stage::Steps(_) | Stage::Fetch(_));
         let state = self.complete.filter(|_| between).map(|frame| RunState {
             frame,

@@ -12,18 +12,18 @@ impl Run {
         let before = std::mem::replace(&mut self.stats_before, *stats);
         if stats.density_error > MAX_EXCESS && before.density_error <= MAX_EXCESS {
             let text = format!(
-                "at {:.4} s: the density is up to {:.0} % above the rest density: there is more fluid than room, or fluid is \
-                 pressed into a wall. Check emitters in closed or narrow places, and overlapping particles",
+                "at {:.4} s: the density is up to {:.0} % above the rest density: the fluid does not fit into the \
+                 available space, or is pressed into a wall. Check emitters in closed or narrow places, and overlapping particles",
                 stats.time,
                 100.0 * stats.density_error
             );
-            self.waiting.push_back(Event::Warning(text));
+            self.pending_events.push_back(Event::Warning(text));
         }
         let mut warn = |count: u32, noun: &str, what: &str| {
             if count > 0 {
                 let plural = if count == 1 { "" } else { "s" };
                 let text = format!("at {:.4} s: {count} {noun}{plural} {what}", stats.time);
-                self.waiting.push_back(Event::Warning(text));
+                self.pending_events.push_back(Event::Warning(text));
             }
         };
         warn(stats.escaped - before.escaped, "particle", "left the domain through open sides");
@@ -47,7 +47,7 @@ impl Run {
         );
     }
 
-    /// Warns once of each dynamic body that is farther outside the domain than the domain's size, or at NaN.
+    /// Warns once of each dynamic body whose distance from the domain exceeds the domain's size or is NaN.
     pub(super) fn warn_of_lost_bodies(&mut self, bodies: &[BodyState], time: f64) {
         let far = self.domain.size().max_element();
         for ((state, watched), mesh) in
@@ -58,7 +58,7 @@ impl Run {
             if *watched && (away.is_nan() || away >= far) {
                 *watched = false;
                 let text = format!("at {time:.4} s: body {:?} has left the domain, at {x} m", mesh.name);
-                self.waiting.push_back(Event::Warning(text));
+                self.pending_events.push_back(Event::Warning(text));
             }
         }
     }

@@ -1,4 +1,5 @@
-//! A table with more rows than the simulation's own: what a row alone gives.
+//! Tests of the table of carried quantities with two additional rows: a row is sufficient to carry a quantity
+//! through steps, output and checkpoints.
 
 use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, block_on, testing};
 use splashdown_io::Particles;
@@ -7,7 +8,7 @@ use super::Simulation;
 use crate::Scene;
 use crate::state::{Carried, DENSITIES, IDS, Kind, POSITIONS, Update, VELOCITIES};
 
-/// A number that stays with its particle.
+/// A constant scalar.
 const TAG: Carried = Carried {
     name: "tags",
     sorted: Some("sorted_tags"),
@@ -20,7 +21,7 @@ const TAG: Carried = Carried {
     },
 };
 
-/// A vector that stays with its particle.
+/// A constant vector.
 const SPIN: Carried = Carried {
     name: "spins",
     sorted: Some("sorted_spins"),
@@ -37,7 +38,7 @@ const SPIN: Carried = Carried {
 
 static TABLE: &[Carried] = &[POSITIONS, VELOCITIES, DENSITIES, IDS, TAG, SPIN];
 
-/// The number that belongs to an id.
+/// The value of the particle with this id.
 fn tag(id: u32) -> f32 {
     id as f32 * 0.25 + 3.0
 }
@@ -57,8 +58,8 @@ fn start(executor: Executor) -> Simulation {
     block_on(Simulation::with_bodies(&scene, executor, &particles, Vec::new(), TABLE)).unwrap()
 }
 
-/// The particles whose values are not those of their id.
-fn strayed(particles: &Particles) -> usize {
+/// The number of particles whose values do not match their ids.
+fn mismatches(particles: &Particles) -> usize {
     let [tags, spins] = &particles.attributes[..] else { panic!("{:?}", particles.attributes) };
     let wrong = |i: usize, id: u32| tags.values[i] != tag(id) || spins.values[i] != -tag(id);
     particles.ids.iter().enumerate().filter(|&(i, &id)| wrong(i, id)).count()
@@ -70,18 +71,18 @@ fn a_quantity_follows_its_particle_through_steps_and_checkpoints() {
         testing::executors("a_quantity_follows_its_particle_through_steps_and_checkpoints")
     {
         let mut simulation = start(executor);
-        assert_eq!(strayed(&simulation.particles().unwrap()), 0, "{name}: at the start");
+        assert_eq!(mismatches(&simulation.particles().unwrap()), 0, "{name}: at the start");
         let stats = simulation.advance(0.2).unwrap();
         assert!(stats.steps > 50, "{name}: {stats:?}");
         let particles = simulation.particles().unwrap();
-        assert_eq!(strayed(&particles), 0, "{name}: after {} steps", stats.steps);
-        // Control: the particles have changed places in the arrays.
+        assert_eq!(mismatches(&particles), 0, "{name}: after {} steps", stats.steps);
+        // Control: the order of the particles has changed.
         let ids = simulation.executor.read(simulation.fields.ids).unwrap();
         assert!(!ids.is_sorted(), "{name}");
-        // Control: the values of other ids are recognised.
-        let mut spoiled = particles.clone();
-        spoiled.attributes[0].values.swap(0, 1);
-        assert_eq!(strayed(&spoiled), 2, "{name}");
+        // Negative control: swapped values are detected.
+        let mut swapped = particles.clone();
+        swapped.attributes[0].values.swap(0, 1);
+        assert_eq!(mismatches(&swapped), 2, "{name}");
 
         let checkpoint = simulation.checkpoint(&scene().text).unwrap();
         let again = match simulation.gpu() {
@@ -93,12 +94,12 @@ fn a_quantity_follows_its_particle_through_steps_and_checkpoints() {
         assert_eq!(resumed.particles().unwrap(), particles, "{name}: resumed");
         simulation.advance(0.05).unwrap();
         resumed.advance(0.05).unwrap();
-        assert_eq!(resumed.particles().unwrap(), simulation.particles().unwrap(), "{name}: went on");
+        assert_eq!(resumed.particles().unwrap(), simulation.particles().unwrap(), "{name}: continued");
     }
 }
 
 #[test]
-fn a_row_changes_nothing_else() {
+fn additional_rows_do_not_change_the_other_quantities() {
     let executor = || Executor::from(CpuExecutor::new());
     let mut plain = Simulation::with_executor(&scene(), executor()).unwrap();
     let mut with_rows = start(executor());
@@ -108,7 +109,7 @@ fn a_row_changes_nothing_else() {
     assert_eq!(particles.attributes.len(), 2);
     particles.attributes.clear();
     assert_eq!(particles, plain.particles().unwrap());
-    // Two arrays of one number and two of four.
+    // A persistent and a sorted array for the scalar (4 bytes) and for the vector (16 bytes).
     let more = with_rows.memory() - plain.memory();
     assert_eq!(more, particles.len() as u64 * 2 * (4 + 16));
 }

@@ -18,7 +18,7 @@ impl Simulation {
         let speed = Derived::without_particles(&self.scene).reference_speed;
         let constants = FoamParams::new(settings, &self.params, speed, capacity);
         let foam = Foam::new(&mut self.executor, &constants, &self.fields, &self.cells, particles)?;
-        // Sets the time from which the first update counts.
+        // Sets the start of the first update's time step.
         self.executor.run(foam.recording())?;
         Ok(foam)
     }
@@ -60,7 +60,7 @@ impl Simulation {
     /// Those of the device.
     pub fn restore_foam(&mut self, foam: &mut Foam, kept: &KeptFoam) -> Result<(), SimulationError> {
         let count = kept.pool.len().min(foam.capacity() as usize);
-        foam.remember(&kept.state);
+        foam.restore_overflow(&kept.state);
         self.executor.write(foam.pool(), &kept.pool[..count])?;
         Ok(self.executor.write(foam.state(), &[FoamState { count: count as u32, ..kept.state }])?)
     }
@@ -71,11 +71,11 @@ impl Simulation {
     /// Those of the device.
     pub async fn foam_state_async(&mut self, foam: &mut Foam) -> Result<FoamState, SimulationError> {
         let state = self.executor.fetch(foam.state()).await?[0];
-        self.warnings.extend(foam.tell(&state));
+        self.warnings.extend(foam.overflow_warning(&state));
         Ok(state)
     }
 
-    /// Fetches the diffuse particles. If there was no room for all of them, [`take_warnings`](Self::take_warnings)
+    /// Fetches the diffuse particles. If the pool has overflowed, [`take_warnings`](Self::take_warnings)
     /// returns a warning afterwards.
     ///
     /// # Errors

@@ -95,7 +95,7 @@ impl Simulation {
         self.stable_dt
     }
 
-    /// The warnings since the last call. Each emitter warns once if it finds no room.
+    /// The warnings since the last call. Each emitter warns once if its particles exceed the buffers.
     pub fn take_warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.warnings)
     }

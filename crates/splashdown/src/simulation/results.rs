@@ -53,7 +53,7 @@ impl Simulation {
         Ok(values)
     }
 
-    /// The number of these particles that lie inside a body: zero in a sound run.
+    /// The number of these particles that lie inside a body. It is zero unless particles have leaked.
     ///
     /// # Errors
     /// Those of the device.
@@ -63,7 +63,7 @@ impl Simulation {
         Ok(bodies.inside(&states, particles))
     }
 
-    /// A warning for each gauge that is now so deep inside a body that no fluid reaches it.
+    /// A warning for each gauge that lies so deep inside a body that no fluid is within its reach.
     ///
     /// # Errors
     /// Those of the device.

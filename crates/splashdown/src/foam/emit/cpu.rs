@@ -36,7 +36,7 @@ pub(super) fn emit(buffers: EmitBindings<'_>) {
         let m = last_at(place as u32, now.share);
         let i = starts.partition_point(|&start| start <= m) - 1;
         let number = now.next_id.wrapping_sub(now.born).wrapping_add(place as u32);
-        *new = newborn(&fluid, foam, &now, i, ids[i], m - starts[i], number);
+        *new = new_particle(&fluid, foam, &now, i, ids[i], m - starts[i], number);
     });
     let points: Vec<Vec3> = new.iter().map(|new| new.position).collect();
     for (new, near) in new.iter_mut().zip(fluid.at(&points)) {
@@ -53,7 +53,7 @@ fn last_at(place: u32, share: u32) -> u32 {
 }
 
 /// A new particle. Its kind is not set.
-fn newborn(
+fn new_particle(
     fluid: &Fluid<'_>,
     foam: &FoamParams,
     now: &FoamState,

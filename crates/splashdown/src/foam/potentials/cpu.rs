@@ -5,6 +5,7 @@ use crate::kernel::{Kernel, WendlandC2};
 use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 
+/// Cosine of the largest angle between the velocity and the normal of a wave crest.
 const FORWARDS: f32 = 0.6;
 
 pub(super) fn potentials(buffers: PotentialsBindings<'_>) {
@@ -38,7 +39,7 @@ pub(super) fn potentials(buffers: PotentialsBindings<'_>) {
 struct Potentials<'a> {
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
-    /// Zero, with a fourth component of zero, away from the surface.
+    /// Normals of surface particles, with a fourth component of 1; zero for other particles.
     normals: &'a [Vec4],
     least: f32,
     scale: f32,
@@ -73,11 +74,11 @@ impl PairSum<10, 2> for Potentials<'_> {
             let dv = difference(v, [u_j, v_j, w_j]);
             let r2 = dot(d, d);
             let w = WendlandC2::w(r2.sqrt() * self.scale);
-            let parting = dot(dv, d) / r2.max(smallest).sqrt();
+            let separation_speed = dot(dv, d) / r2.max(smallest).sqrt();
             let bend = one - dot([n_x, n_y, n_z], n);
-            // Only what is behind the surface bends it.
+            // Only neighbours behind the surface contribute to the curvature.
             let curvature = zero.if_less(dot(d, n), w * on_surface * bend, zero);
-            [w * (dot(dv, dv).sqrt() - parting), curvature]
+            [w * (dot(dv, dv).sqrt() - separation_speed), curvature]
         }
     }
 
@@ -89,7 +90,7 @@ impl PairSum<10, 2> for Potentials<'_> {
         *out = Vec4::new(self.volume * trapped, curvature, self.energy(i), 0.0);
     }
 
-    /// Calm particles make no foam.
+    /// Particles that are too slow to generate foam are skipped.
     #[inline(always)]
     fn wants(&self, i: usize) -> bool {
         self.energy(i) > self.least

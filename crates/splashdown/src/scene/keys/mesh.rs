@@ -1,4 +1,4 @@
-//! Keys shared by everything that has a mesh.
+//! Keys of all sections with a mesh.
 
 use super::FAR;
 use crate::scene::spec::{Key, Kind, a_vector, key, range, words};
