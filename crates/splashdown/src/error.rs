@@ -24,13 +24,13 @@ pub enum SimulationError {
     /// A count exceeds what the device or 32-bit indices allow.
     #[error("{given} {what} are too many: at most {allowed} fit; {advice}")]
     TooMany {
-        /// What is counted.
+        /// The counted objects.
         what: &'static str,
         /// The count requested.
         given: u64,
         /// The largest count possible.
         allowed: u64,
-        /// How to stay below it.
+        /// Advice on how to stay below the limit.
         advice: String,
     },
     /// Every particle left the domain or became NaN.
@@ -38,7 +38,7 @@ pub enum SimulationError {
     NothingLeft {
         /// Simulated time in seconds.
         time: f64,
-        /// How they were lost.
+        /// The numbers of particles lost by each cause.
         reason: String,
     },
     /// The time step required for stability is below `solver.min_dt`.

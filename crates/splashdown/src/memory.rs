@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn the_forecast_is_what_the_buffers_take() {
+    fn the_forecast_matches_the_size_of_the_buffers() {
         for (name, text) in crate::scene::presets() {
             let mut scene = Scene::parse(text, name).unwrap();
             if Derived::new(&scene).particles > 20_000 {

@@ -158,7 +158,7 @@ mod tests {
     use crate::scene::{MeshShape, UpAxis};
 
     #[test]
-    fn layers_fill_their_outlet_and_keep_off_the_rim() {
+    fn layers_fill_the_outlet_up_to_half_a_spacing_from_the_rim() {
         for radius in [0.02, 0.03, 0.05, 0.083] {
             let layer = disc_layer(radius, 0.01);
             let area = std::f32::consts::PI * radius * radius;
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_pours_through_its_outline_however_thin_it_is() {
+    fn an_outlet_of_a_mesh_is_its_cross_section_for_any_thickness() {
         let source = |scale: f32| MeshSource {
             shape: MeshShape::Model("cube".into()),
             scale,
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_falls_is_staggered() {
+    fn only_downward_outlets_are_staggered() {
         let gravity = Vec3::new(0.0, -9.81, 0.0);
         let depth = |direction| stagger(direction, gravity, 0.01);
         assert_eq!([Vec3::NEG_Y, Vec3::Y, Vec3::X].map(depth), [0.01, 0.0, 0.0]);

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_are_those_of_the_particles_in_the_box() {
+    fn only_particles_in_the_box_contribute_to_the_sums() {
         let probes =
             FluidProbes { boxes: Vec::new(), volume: 0.001, mass: 2.0, gravity: DVec3::new(0.0, -10.0, 0.0) };
         let particles = Particles::from_positions(vec![[0.0, 1.0, 0.0], [0.5, 3.0, 0.0], [9.0, 5.0, 0.0]])

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_typing_errors_are_corrected() {
+    fn only_small_typing_errors_are_corrected() {
         assert_eq!(closest("gravitty", &["gravity", "name"]), Some("gravity"));
         assert_eq!(closest("color_by", &["colour_by", "film"]), Some("colour_by"));
         assert_eq!(closest("mthod", &["method"]), Some("method"));

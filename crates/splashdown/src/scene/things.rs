@@ -38,7 +38,7 @@ pub struct MeshSource {
     pub shape: MeshShape,
     /// Metres per unit of the file.
     pub scale: f32,
-    /// Which axis of the file points up.
+    /// The axis of the file that points up.
     pub up: UpAxis,
     /// Position of the mesh's origin at t = 0, in m.
     pub position: Vec3,
@@ -85,7 +85,7 @@ pub struct Hinge {
 }
 
 choices! {
-    /// Which axis of a mesh file points up.
+    /// The axis of a mesh file that points up.
     UpAxis {
         /// y, as in this program, OBJ and glTF.
         Y = "y",
@@ -94,7 +94,7 @@ choices! {
         /// x.
         X = "x",
     }
-    /// How the fluid feels a body.
+    /// The boundary method of a body.
     BoundaryKind {
         /// Integral of the kernel over the solid, interpolated from a grid.
         Map = "map",

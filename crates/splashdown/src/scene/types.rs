@@ -242,14 +242,14 @@ choices! {
         /// The cubic spline of Monaghan and Lattanzio.
         CubicSpline = "cubic_spline",
     }
-    /// How the density is found.
+    /// The computation of the density.
     DensityMode {
         /// Sum over the neighbours in every step: robust.
         Summation = "summation",
         /// Continuity equation with diffusion (delta-SPH): smooth pressure.
         Continuity = "continuity",
     }
-    /// What happens to pressures below zero.
+    /// The treatment of negative pressures.
     NegativePressure {
         /// They are set to zero: no clumping at the surface.
         Clamp = "clamp",
@@ -265,7 +265,7 @@ choices! {
         /// Curvature of the colour field, Mueller et al. 2003; for `mueller2003`.
         ColourField = "mueller2003",
     }
-    /// How particles are sorted into cells.
+    /// The algorithm that sorts particles into cells.
     Sort {
         /// Counting sort: a histogram, a scan, a scatter.
         Counting = "counting",
@@ -293,7 +293,7 @@ choices! {
         /// Animated USD, one file for all frames: particles and the surface.
         Usd = "usd",
     }
-    /// What a picture shows.
+    /// The subject of a picture.
     PictureKind {
         /// The particles as shaded spheres with a colour bar.
         Particles = "particles",

@@ -50,7 +50,7 @@ fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static s
 }
 
 #[test]
-fn a_plain_step_is_five_dispatches_and_six_where_there_are_many_cells() {
+fn a_plain_step_has_five_dispatches_or_six_with_many_cells() {
     let (cells, small) = step(2.0, "", false);
     assert!(cells < 16_384);
     let passes = [

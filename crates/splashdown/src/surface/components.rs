@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn bubbles_stay() {
+    fn bubbles_are_kept() {
         let mut mesh = Mesh::new(
             vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]],

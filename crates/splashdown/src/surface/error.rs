@@ -66,7 +66,7 @@ pub enum SurfaceError {
     },
     /// The coordinates are too large for `f32` to distinguish neighbouring nodes.
     #[error(
-        "coordinates up to {farthest} m cannot be told apart at a surface cell_size of {cell_size} m in 32-bit \
+        "coordinates up to {farthest} m cannot be distinguished at a surface cell_size of {cell_size} m in 32-bit \
          numbers (at most {allowed} m); use a larger cell_size or move the fluid nearer to the origin"
     )]
     TooFar {

@@ -149,7 +149,7 @@ fn a_lattice_half_a_spacing_from_the_sides_has_the_rest_density() {
 }
 
 #[test]
-fn where_a_third_side_hardly_reaches_in_all_terms_stay_small() {
+fn terms_stay_small_if_a_third_side_is_just_within_the_support() {
     for kernels in ALL {
         let (walls, table) = (Walls { offset: 0.05, ..corner_box(kernels) }, wall_table(kernels));
         for near in [1e-3, 0.14, 0.3] {

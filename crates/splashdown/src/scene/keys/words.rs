@@ -69,7 +69,7 @@ choices! {
 }
 
 impl Side {
-    /// Its place in [`crate::scene::Domain::closed`]: axis and side.
+    /// The indices of the side in [`crate::scene::Domain::closed`]: axis and side.
     pub fn place(self) -> (usize, usize) {
         let index = Self::ALL.iter().position(|(side, ..)| *side == self).unwrap_or(0);
         (index / 2, index % 2)
