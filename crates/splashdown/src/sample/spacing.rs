@@ -55,6 +55,6 @@ mod tests {
             assert!((found / 0.013 - 1.0).abs() < 1e-4, "{n:?}: {found}");
         }
         assert_eq!(typical_spacing(&lattice([3, 1, 1], 0.1)), None);
-        assert_eq!(typical_spacing(&[[0.5; 3]; 8]), Some(0.0), "all at one smallest");
+        assert_eq!(typical_spacing(&[[0.5; 3]; 8]), Some(0.0), "all at one position");
     }
 }
