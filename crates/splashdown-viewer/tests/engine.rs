@@ -129,6 +129,47 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
         .count()
 }
 
+/// The bytes in use must not depend on the number of earlier surfaces.
+#[test]
+fn surfaces_that_are_not_needed_are_freed() {
+    let Some(gpu) = testing::gpu_or_skip("surfaces_that_are_not_needed_are_freed") else { return };
+    for simulate in [Simulate::OnCpu, Simulate::WhereDrawn] {
+        let mut engine = start(&gpu, simulate);
+        let (opened, _) = until(&mut engine, |_| true);
+        let without = opened.opened.memory;
+        engine.send(Command::Surface(true));
+        let (shown, _) = until(&mut engine, |now| now.drawn.mesh().is_some());
+        let with = shown.opened.memory;
+        assert!(with > without + 10_000, "{with} bytes with a surface, {without} without");
+        for round in 1..=12 {
+            let mut changed = scene();
+            changed.surface.smoothing_iterations = round % 4;
+            changed.surface.iso_level = 0.5 + 0.01 * round as f32;
+            for scene in [changed, scene()] {
+                let settings = scene.surface.clone();
+                engine.send(Command::Change(Box::new(scene)));
+                let (now, _) = until(&mut engine, |now| now.opened.scene.surface == settings);
+                assert!(now.drawn.mesh().is_some());
+            }
+            assert_eq!(engine.snapshot().unwrap().opened.memory, with, "after {round} changes");
+        }
+        engine.send(Command::Surface(false));
+        let (hidden, _) = until(&mut engine, |now| now.drawn.mesh().is_none());
+        assert_eq!(hidden.opened.memory, without);
+        // An export needs the surface only for the mesh.
+        engine.send(Command::Export);
+        engine.send(Command::Advance(0.001));
+        let time = hidden.stats.time;
+        let (later, messages) = until(&mut engine, |now| now.stats.time > time);
+        assert!(messages.iter().any(|message| matches!(message, Message::Exported(_))));
+        assert_eq!(later.opened.memory, without);
+        // Control: the surface is extracted again if it is wanted.
+        engine.send(Command::Surface(true));
+        let (again, _) = until(&mut engine, |now| now.drawn.mesh().is_some());
+        assert_eq!(again.opened.memory, with);
+    }
+}
+
 /// The surface of the CPU is copied. That of the GPU is drawn in place by an indirect call.
 #[test]
 fn both_devices_show_the_same_surface() {

@@ -10,6 +10,7 @@ use splashdown_io::Mesh;
 use super::{Drawn, Purpose};
 
 /// The scene being simulated.
+#[derive(Clone)]
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
@@ -17,7 +18,7 @@ pub struct Opened {
     pub bodies: Arc<[BodyMesh]>,
     /// The simulating device.
     pub device: String,
-    /// Bytes in its buffers.
+    /// Bytes in its buffers, including those of the surface and the foam.
     pub memory: u64,
 }
 

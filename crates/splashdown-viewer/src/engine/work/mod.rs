@@ -134,8 +134,10 @@ impl Worker {
             }
             Command::Grip(grip) => self.grip = grip,
             Command::Surface(wanted) => {
-                let changed = std::mem::replace(&mut self.wants_surface, wanted) != wanted;
-                if changed && wanted {
+                if std::mem::replace(&mut self.wants_surface, wanted) != wanted {
+                    if !wanted {
+                        self.free_surface()?;
+                    }
                     return self.show().await;
                 }
             }
@@ -194,6 +196,15 @@ impl Worker {
         Ok((executor, progress))
     }
 
+    /// Frees the buffers of the surface, which are often larger than those of the simulation. The next extraction
+    /// creates them again.
+    fn free_surface(&mut self) -> Result<(), SimulationError> {
+        if let (Some(simulation), Some(surface)) = (&mut self.simulation, self.surface.take()) {
+            surface.free(simulation.executor())?;
+        }
+        Ok(())
+    }
+
     async fn checkpoint(&mut self, text: &str, purpose: Purpose) -> Result<(), SimulationError> {
         let Some(simulation) = &mut self.simulation else { return Ok(()) };
         let mut checkpoint = Box::new(simulation.checkpoint_async(text).await?);
@@ -214,8 +225,8 @@ impl Worker {
                 // Existing foam would not match the water.
                 foam.clear(simulation.executor())?;
             }
-            if surface_differs && let Some(surface) = self.surface.take() {
-                surface.free(simulation.executor())?;
+            if surface_differs {
+                self.free_surface()?;
             }
             // The bodies are unchanged, so the picture can reuse their buffers.
             let bodies = self.opened.as_ref().map(|opened| Arc::clone(&opened.bodies));

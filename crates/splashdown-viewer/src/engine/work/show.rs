@@ -11,7 +11,9 @@ use crate::engine::{Message, Snapshot, lock};
 impl Worker {
     /// Takes a snapshot.
     pub(super) async fn show(&mut self) -> Result<(), SimulationError> {
-        let (Some(simulation), Some(opened)) = (&mut self.simulation, &self.opened) else { return Ok(()) };
+        let (Some(simulation), Some(opened)) = (&mut self.simulation, &mut self.opened) else {
+            return Ok(());
+        };
         let mut extracted: Option<SurfaceStats> = None;
         if self.wants_surface {
             if self.surface.is_none() {
@@ -39,6 +41,10 @@ impl Worker {
         }
         let bodies = simulation.body_states_async().await?;
         let drawn = self.copies.take(simulation, self.surface.as_ref().zip(extracted), foam);
+        let memory = simulation.memory();
+        if opened.memory != memory {
+            Arc::make_mut(opened).memory = memory;
+        }
         let snapshot = Snapshot {
             opened: Arc::clone(opened),
             stats: simulation.stats(),
@@ -67,6 +73,9 @@ impl Worker {
         let Some(surface) = &mut self.surface else { return Ok(()) };
         simulation.extract_async(surface).await?;
         let mesh = Arc::new(simulation.mesh_async(surface).await?);
+        if !self.wants_surface {
+            self.free_surface()?;
+        }
         lock(&lock(&self.outbox).messages).push(Message::Exported(mesh));
         (self.repaint)();
         Ok(())
