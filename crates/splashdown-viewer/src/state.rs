@@ -8,6 +8,7 @@ use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
 
 use crate::camera::Orbit;
+use crate::edit;
 use crate::engine::Grip;
 use crate::look::Look;
 
@@ -260,7 +261,7 @@ impl State {
             particles_wanted: counted as f32,
             counted,
             recorded: None,
-            pouring: false,
+            pouring: edit::has_tap(&scene),
             files: Vec::new(),
             scene,
         }

@@ -197,6 +197,25 @@ fn a_scene_without_water_at_the_start_keeps_its_spacing() {
     assert!(actions(&mut other).contains(&Action::Restart));
 }
 
+#[test]
+fn the_button_of_the_tap_follows_the_scene() {
+    let (name, text) = presets()[1];
+    let emitter = |name: &str| {
+        format!(
+            "{text}\n[[emitter]]\nname = \"{name}\"\nradius = 0.1\nposition = [0.5, 0.5, 0.5]\ndirection = [0, -1, 0]\nspeed = 1\n"
+        )
+    };
+    for (emitter_name, is_open) in [("tap", true), ("inlet", false)] {
+        let mut state = State::new(Scene::parse(&emitter(emitter_name), name).unwrap());
+        assert_eq!(state.pouring, is_open, "{emitter_name}");
+        // A scene opened later, as from a checkpoint.
+        state.open(Scene::parse(text, name).unwrap());
+        assert!(!state.pouring);
+        state.open(Scene::parse(&emitter(emitter_name), name).unwrap());
+        assert_eq!(state.pouring, is_open, "{emitter_name}");
+    }
+}
+
 /// Drags the slider of the number of particles.
 fn drag_count(window: &mut Harness<'_, Both>) {
     let y = window.get_all_by_label("Fluid").last().unwrap().rect().center().y + 23.0;
