@@ -12,6 +12,8 @@ const DENSITY_RATIO: f32 = 0.5;
 const SIZE: f32 = 0.2;
 /// The minimum duration for which a tap has particles, in s.
 const TAP_TIME: f32 = 60.0;
+/// The minimum speed of a tap, in heights of the domain per second. It applies where gravity is weak.
+const TAP_MIN_SPEED: f32 = 0.1;
 /// The tap's name.
 const TAP: &str = "tap";
 
@@ -49,6 +51,8 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
     let radius = (0.08 * size.min_element()).max(2.5 * spacing);
     let top = scene.domain.max.y - 3.0 * spacing;
     let center = scene.domain.center();
+    // The speed after a fall through an eighth of the height.
+    let speed = (0.25 * size.y * scene.gravity.length()).sqrt();
     // Particles are allocated in advance for the duration of the scene.
     scene.duration = scene.duration.max(TAP_TIME);
     let max_particles = (2 * splashdown::check::count(scene)).clamp(20_000, 500_000) as u32;
@@ -57,7 +61,7 @@ pub fn turn_tap(scene: &mut Scene) -> bool {
         outlet: Outlet::Disc { radius },
         position: Vec3::new(center.x, top, center.z),
         direction: Vec3::NEG_Y,
-        speed: (0.25 * size.y * 9.81).sqrt(),
+        speed: speed.max(TAP_MIN_SPEED * size.y),
         start: 0.0,
         end: None,
         max_particles: Some(max_particles),
@@ -140,5 +144,26 @@ mod tests {
         assert!(positions[0].distance(positions[1]) > added_size(&scene), "{positions:?}");
         assert!(!turn_tap(&mut scene));
         assert!(scene.emitters.is_empty());
+    }
+
+    #[test]
+    fn the_speed_of_a_tap_follows_the_gravity_of_the_scene() {
+        let (name, text) = presets()[1];
+        let speed = |gravity: f32| {
+            let mut scene = Scene::parse(text, name).unwrap();
+            scene.gravity = Vec3::NEG_Y * gravity;
+            assert!(turn_tap(&mut scene) && has_tap(&scene));
+            scene.emitters[0].speed
+        };
+        let height = Scene::parse(text, name).unwrap().domain.size().y;
+        for gravity in [9.81, 1.62] {
+            let fallen = (2.0 * gravity * height / 8.0).sqrt();
+            assert!(
+                (speed(gravity) - fallen).abs() < 1e-5 * fallen,
+                "{gravity} m/s^2: {} m/s",
+                speed(gravity)
+            );
+        }
+        assert!(speed(0.0) > 0.0);
     }
 }
