@@ -58,7 +58,7 @@ impl Picture {
         Ok(Self { gpu, renderer, target: None, scene_bodies: None, placed: None, timing: false })
     }
 
-    /// Draws into a texture of this size in pixels.
+    /// Draws into a texture of this size in pixels, limited to the sizes that the device supports.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -70,6 +70,8 @@ impl Picture {
         camera: Camera,
     ) -> Result<(), RenderError> {
         self.place_bodies(snapshot)?;
+        let limit = self.gpu.limits.max_texture_dimension_2d;
+        let size = size.map(|side| side.clamp(1, limit));
         if self.target.as_ref().is_none_or(|target| target.size != size) {
             self.target = Some(self.texture(size));
         }
@@ -180,14 +182,9 @@ impl Picture {
     }
 
     fn texture(&self, [width, height]: [u32; 2]) -> Target {
-        let limit = self.gpu.limits.max_texture_dimension_2d;
         let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
-            size: wgpu::Extent3d {
-                width: width.clamp(1, limit),
-                height: height.clamp(1, limit),
-                depth_or_array_layers: 1,
-            },
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,

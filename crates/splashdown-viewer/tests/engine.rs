@@ -237,6 +237,25 @@ fn every_display_mode_shows_the_water() {
 }
 
 #[test]
+fn the_size_of_a_picture_is_limited_to_that_of_its_texture() {
+    let Some(gpu) = testing::gpu_or_skip("the_size_of_a_picture_is_limited_to_that_of_its_texture") else {
+        return;
+    };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    let (snapshot, _) = until(&mut engine, |_| true);
+    let limit = gpu.limits.max_texture_dimension_2d;
+    let mut picture = Picture::new(Arc::clone(&gpu)).unwrap();
+    for (size, drawn) in [([limit + 7, 2], [limit, 2]), ([0, 0], [1, 1]), ([64, 36], [64, 36])] {
+        let camera = Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0);
+        picture.draw(size, &snapshot, &Look::default(), camera).unwrap();
+        assert_eq!(picture.texture_drawn().unwrap().1, drawn);
+        let pixels = picture.read().expect("the device reads the whole texture");
+        assert_eq!(pixels.len(), 4 * (drawn[0] * drawn[1]) as usize);
+        gpu.health("the picture").unwrap();
+    }
+}
+
+#[test]
 fn a_checkpoint_restores_the_simulation() {
     let Some(gpu) = testing::gpu_or_skip("a_checkpoint_restores_the_simulation") else { return };
     let mut engine = start(&gpu, Simulate::OnCpu);
