@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 
 use crate::layers::Outcome;
+use crate::names;
 use crate::process::{self, cargo, command, root, say};
 
 /// The crates whose API is compared.
@@ -33,17 +34,23 @@ const TOOL_VERSION: &str = "0.51.0";
 /// Set while this program replaces rustdoc: the folder of the descriptions.
 const OUTPUT: &str = "SPLASHDOWN_API_OUTPUT";
 
-/// The flags of rustdoc with which the tool itself describes a crate.
-const RUSTDOC_FLAGS: &str = "-Zunstable-options --output-format=json --document-private-items \
-                             --document-hidden-items --cap-lints=allow";
+/// The flags of rustdoc for a description of the items that users see.
+const PUBLIC: &str = "-Zunstable-options --output-format=json --cap-lints=allow";
 
-/// The command `api`: compares, and installs the tool if necessary.
+/// The flags of rustdoc with which the tool itself describes a crate.
+const EVERYTHING: &str = "-Zunstable-options --output-format=json --document-private-items \
+                          --document-hidden-items --cap-lints=allow";
+
+/// The command `api`: checks the names, and compares with the tool, which is installed if necessary.
 pub fn run(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "api takes no arguments, got {}", arguments.join(" "));
-    match layer(true)? {
-        Outcome::Passed => Ok(()),
-        Outcome::Failed(reason) | Outcome::Skipped(reason) => anyhow::bail!("{reason}"),
+    for check in [check_names, || layer(true)] {
+        let outcome = check()?;
+        if let Outcome::Failed(reason) | Outcome::Skipped(reason) = outcome {
+            anyhow::bail!("{reason}");
+        }
     }
+    Ok(())
 }
 
 /// The layer of `cargo xtask test`. Without the tool it is skipped, unless `install` is set: building the tool takes
@@ -67,7 +74,7 @@ pub fn layer(install: bool) -> Result<Outcome> {
     }
     say("Describing the API of the working tree ...");
     let new = folder.join(format!("current-{compiler}"));
-    describe(root(), &new)?;
+    describe(root(), &new, EVERYTHING)?;
     let mut broken = Vec::new();
     for name in CRATES {
         let file = format!("{}.json", name.replace('-', "_"));
@@ -85,6 +92,23 @@ pub fn layer(install: bool) -> Result<Outcome> {
         "the API of {} differs from {baseline} more than the version allows; raise the version, or set {BASELINE} \
          (see docs/releasing.md)",
         broken.join(", ")
+    )))
+}
+
+/// Checks that every type in a public signature of the main library has a public name.
+///
+/// # Errors
+/// If rustdoc fails.
+pub fn check_names() -> Result<Outcome> {
+    let folder = process::target().join("api").join("public");
+    describe(root(), &folder, PUBLIC)?;
+    let unnamed = names::check(&folder.join("splashdown.json"))?;
+    if unnamed.is_empty() {
+        return Ok(Outcome::Passed);
+    }
+    Ok(Outcome::Failed(format!(
+        "users cannot name these types; re-export them, or hide what uses them with `#[doc(hidden)]`:\n  {}",
+        unnamed.join("\n  ")
     )))
 }
 
@@ -149,7 +173,7 @@ fn describe_commit(commit: &str, source: &Path, output: &Path) -> Result<()> {
     process::run(command("tar").arg("-xf").arg(&archive).arg("-C").arg(source))?;
     // Renamed when complete, so that an interrupted run leaves no partial result.
     let partial = output.with_extension("partial");
-    describe(source, &partial)?;
+    describe(source, &partial, EVERYTHING)?;
     fs::rename(&partial, output)?;
     fs::remove_dir_all(source)?;
     Ok(())
@@ -157,11 +181,11 @@ fn describe_commit(commit: &str, source: &Path, output: &Path) -> Result<()> {
 
 /// Describes every crate of a workspace. The selection of packages is that of the documentation layer, so that
 /// cargo chooses the same features and finds its dependencies compiled.
-fn describe(workspace: &Path, output: &Path) -> Result<()> {
+fn describe(workspace: &Path, output: &Path, flags: &str) -> Result<()> {
     fs::create_dir_all(output)?;
     let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
     doc.current_dir(workspace).env("CARGO_TARGET_DIR", process::target());
-    doc.env("RUSTDOC", std::env::current_exe()?).env(OUTPUT, output).env("RUSTDOCFLAGS", RUSTDOC_FLAGS);
+    doc.env("RUSTDOC", std::env::current_exe()?).env(OUTPUT, output).env("RUSTDOCFLAGS", flags);
     process::run(&mut doc)
 }
 

@@ -1,5 +1,5 @@
-//! The development commands of this repository: `cargo xtask COMMAND`. The only dependency is `anyhow`, so this
-//! program builds in a few seconds on a machine that has only Rust.
+//! The development commands of this repository: `cargo xtask COMMAND`. The only dependencies are `anyhow` and
+//! `serde_json`, so this program builds in a few seconds on a machine that has only Rust.
 
 mod api;
 mod bench;
@@ -9,6 +9,7 @@ mod guide;
 mod kill;
 mod layers;
 mod modules;
+mod names;
 mod package;
 mod page;
 mod peers;
@@ -44,7 +45,7 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   web [--build] [--port N]
                     build the web page and serve it on localhost (--build: build only)
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
-  api               compare the public API of the library crates with that of an earlier commit
+  api               check the public API of the library crates and compare it with that of an earlier commit
   package           pack every published crate and build it from its package
   dist [--target TRIPLE] [--no-check]
                     build release archives, a Debian package and checksums in target/dist

@@ -61,7 +61,10 @@ pub fn run(arguments: &[String]) -> Result<()> {
     } else {
         report.layer("documentation", |_| {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
-            succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))
+            match succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))? {
+                Outcome::Passed => api::check_names(),
+                failed => Ok(failed),
+            }
         });
         report.layer("public API", |_| api::layer(false));
         report.layer("guide", |_| guide::test(extent == Extent::All));

@@ -3,9 +3,10 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use splashdown::SimulationError;
+use splashdown::error::CheckpointError;
 use splashdown::scene::SceneErrors;
 use splashdown::surface::SurfaceError;
-use splashdown::{CheckpointError, SimulationError};
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_run::RunError;

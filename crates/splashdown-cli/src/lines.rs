@@ -1,8 +1,9 @@
 //! The lines of `splashdown run --json`: one object each, all with the same keys.
 
 use serde::Serialize;
+use splashdown::Stats;
+use splashdown::run::{Progress, Started, Summary};
 use splashdown::scene::SceneProblem;
-use splashdown::{Progress, Started, Stats, Summary};
 use splashdown_run::CompleteFrame;
 
 use crate::exit::Failure;

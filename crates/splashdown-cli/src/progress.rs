@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use splashdown::{Progress, ProgressFn};
+use splashdown::run::{Progress, ProgressFn};
 
 use crate::console::{self, Verbosity};
 use crate::human;
@@ -148,7 +148,7 @@ impl Speed {
 #[cfg(test)]
 mod tests {
     use super::{Speed, WINDOW};
-    use splashdown::Progress;
+    use splashdown::run::Progress;
     use std::time::Duration;
 
     fn at(seconds: f64, steps: u64) -> Progress {

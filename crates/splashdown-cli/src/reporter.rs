@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::time::Duration;
 
-use splashdown::{Progress, ProgressFn, Started};
+use splashdown::run::{Progress, ProgressFn, Started};
 use splashdown_run::{CompleteFrame, Reporter, RunEnd, RunOutcome};
 
 use crate::console::{self, Verbosity};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use splashdown::Summary;
+use splashdown::run::Summary;
 use splashdown_gpu::Timings;
 use splashdown_io::WrittenFile;
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use splashdown::{Checkpoint, CheckpointError, SimulationError};
+use splashdown::error::CheckpointError;
+use splashdown::{Checkpoint, SimulationError};
 use splashdown_gpu::GpuError;
 use splashdown_io::IoError;
 use splashdown_render::RenderError;

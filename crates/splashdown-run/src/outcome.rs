@@ -1,6 +1,6 @@
 //! The result of a run.
 
-use splashdown::Summary;
+use splashdown::run::Summary;
 use splashdown_io::WrittenFile;
 
 use crate::{CompleteFrame, RunError, RunFolder};

@@ -2,8 +2,9 @@
 
 use std::fs;
 
+use splashdown::probes;
+use splashdown::run::Frame;
 use splashdown::scene::{Probe, Scene};
-use splashdown::{Frame, probes};
 use splashdown_io::{CsvLog, IoError, WrittenFile};
 
 use crate::RunFolder;

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use splashdown::Stats;
+use splashdown::run::Summary;
 use splashdown::scene::Scene;
-use splashdown::{Stats, Summary};
 use splashdown_gpu::Timings;
 use splashdown_io::{IoError, atomic};
 

@@ -1,6 +1,6 @@
 //! The interface by which a run reports to its caller and is stopped.
 
-use splashdown::{Progress, ProgressFn, Started};
+use splashdown::run::{Progress, ProgressFn, Started};
 
 use crate::CompleteFrame;
 

@@ -4,8 +4,9 @@ use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
+use splashdown::Device;
+use splashdown::run::{Progress, Started};
 use splashdown::scene::Scene;
-use splashdown::{Device, Progress, Started};
 use splashdown_run::{
     CompleteFrame, Reporter, RunEnd, RunError, RunOutcome, RunRequest, RunSettings, Session, Stop, run,
 };

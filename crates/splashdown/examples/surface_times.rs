@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use splashdown::scene::Scene;
-use splashdown::surface::{SurfaceParams, interpolate, reconstruct};
+use splashdown::surface::{SurfaceParams, interpolate, reconstruct_with};
 use splashdown::{Device, Simulation};
 use splashdown_gpu::Executor;
 use splashdown_io::npy;
@@ -81,12 +81,12 @@ fn times(
     points: &[[f32; 3]],
     params: &SurfaceParams,
 ) -> Result<(), Failure> {
-    let total = timed(|| reconstruct(points, params, &mut executor));
-    let vertices = reconstruct(points, params, &mut executor)?.0.vertices;
+    let total = timed(|| reconstruct_with(points, params, &mut executor));
+    let vertices = reconstruct_with(points, params, &mut executor)?.0.vertices;
     let velocities = timed(|| interpolate(&vertices, points, points, params));
     println!("  {name}: {} vertices, their velocities (on the CPU) in {velocities:.1} ms", vertices.len());
     executor.enable_timing();
-    reconstruct(points, params, &mut executor)?;
+    reconstruct_with(points, params, &mut executor)?;
     let timings = executor.take_timings();
     println!(
         "  {name}: {total:.1} ms with sorting and read-back; passes {:.1} ms:",

@@ -1,6 +1,14 @@
-//! The library's errors.
+//! The errors of the library. [`SimulationError`] contains those of its parts.
 
-use splashdown_gpu::GpuError;
+pub use splashdown_gpu::GpuError;
+pub use splashdown_io::IoError;
+
+pub use crate::bodies::BodyError;
+pub use crate::checkpoint::CheckpointError;
+pub use crate::sample::SampleError;
+pub use crate::scene::SceneErrors;
+pub use crate::solid::SolidError;
+pub use crate::surface::SurfaceError;
 
 /// Errors of a simulation.
 #[derive(Debug, thiserror::Error)]
@@ -11,16 +19,16 @@ pub enum SimulationError {
     Gpu(#[from] GpuError),
     /// Particles could not be placed.
     #[error(transparent)]
-    Sample(#[from] crate::sample::SampleError),
+    Sample(#[from] SampleError),
     /// A body could not be loaded.
     #[error(transparent)]
-    Body(#[from] crate::bodies::BodyError),
+    Body(#[from] BodyError),
     /// The surface could not be reconstructed.
     #[error(transparent)]
-    Surface(#[from] crate::surface::SurfaceError),
+    Surface(#[from] SurfaceError),
     /// A checkpoint could not be used.
     #[error(transparent)]
-    Checkpoint(Box<crate::CheckpointError>),
+    Checkpoint(Box<CheckpointError>),
     /// A count exceeds what the device or 32-bit indices allow.
     #[error("{given} {what} are too many: at most {allowed} fit; {advice}")]
     TooMany {

@@ -30,10 +30,12 @@
 //! |---|---|
 //! | describe what to simulate | [`Scene`], [`Scene::builder`], [`scene`] |
 //! | advance a simulation and read its state | [`Simulation`], [`Stats`], [`Particles`] |
-//! | compute all frames of a scene, with their surfaces | [`Run`], which emits [`Event`]s |
+//! | compute all frames of a scene, with their surfaces | [`Run`], which emits [`Event`]s; [`run`] |
+//! | read foam and probes | [`foam`], [`probes`] |
 //! | stop and continue | [`Checkpoint`] |
-//! | choose where it runs | [`Device`] |
-//! | reconstruct a surface | [`reconstruct()`], or [`Surface`] on the device of a simulation |
+//! | choose where it runs | [`Device`], [`gpu`] |
+//! | reconstruct a surface | [`reconstruct()`], or [`Surface`] on the device of a simulation; [`surface`] |
+//! | tell errors apart | [`SimulationError`], [`error`] |
 //!
 //! Lengths are in metres, times in seconds, masses in kilograms; y is up. Modules without documentation here are
 //! internals: they are public for the other crates of this workspace, and may change in any release.
@@ -69,11 +71,10 @@ mod checkpoint;
 #[doc(hidden)]
 pub mod coupling;
 mod device;
-mod error;
+pub mod error;
 mod fingerprint;
 #[doc(hidden)]
 pub mod flow;
-#[doc(hidden)]
 pub mod foam;
 #[doc(hidden)]
 pub mod kernel;
@@ -86,10 +87,9 @@ pub mod mouse_force;
 mod pairs;
 #[doc(hidden)]
 pub mod passes;
-#[doc(hidden)]
 pub mod probes;
 mod reconstruct;
-mod run;
+pub mod run;
 #[doc(hidden)]
 pub mod sample;
 pub mod scene;
@@ -108,26 +108,26 @@ pub mod surface;
 mod work;
 
 pub use bodies::{BodyMesh, BodyState};
-pub use checkpoint::{Checkpoint, CheckpointError};
+pub use checkpoint::Checkpoint;
 pub use device::Device;
 pub use error::SimulationError;
-#[doc(hidden)]
-pub use foam::{Diffuse, FoamState, KeptFoam};
-pub use foam::{DiffuseKind, DiffuseParticles, Foam};
 #[doc(hidden)]
 pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
 pub use mouse_force::MouseForce;
 pub use reconstruct::reconstruct;
-pub use run::{Event, Frame, Progress, ProgressFn, Run, RunOptions, Started, Summary};
-pub use scene::{Scene, SceneBuilder, SceneErrors};
+pub use run::{Event, Run, RunOptions};
+pub use scene::{Scene, SceneBuilder};
 pub use simulation::Simulation;
 #[doc(hidden)]
 pub use simulation::inventory;
-#[doc(hidden)]
-pub use state::Fields;
 pub use stats::Stats;
-pub use surface::{Surface, SurfaceParams, SurfaceStats};
-pub use {glam, splashdown_gpu::Executor, splashdown_io::Mesh, splashdown_io::Particles};
+pub use surface::{Surface, SurfaceParams};
+pub use {glam, splashdown_io::Mesh, splashdown_io::Particles};
+
+/// The device of a simulation, from the crate `splashdown-gpu`.
+pub mod gpu {
+    pub use splashdown_gpu::{Executor, Gpu, PassTime, Timings};
+}
 
 /// All passes of this crate, for the shader validation and the tests.
 #[doc(hidden)]

@@ -11,7 +11,7 @@ use crate::{SimulationError, bodies, foam};
 
 /// Bytes per particle in the largest single buffer: a position is four floats.
 const LARGEST_PER_PARTICLE: u64 = 16;
-/// Bytes per particle in all buffers of [`Fields`](crate::Fields) and [`Cells`](crate::cells::Cells): the carried
+/// Bytes per particle in all buffers of [`Fields`](crate::state::Fields) and [`Cells`](crate::cells::Cells): the carried
 /// quantities, a cell and an entry.
 const PER_PARTICLE: u64 = bytes_per_particle(CARRIED) + 4 + 8;
 /// Bytes per particle of buffers that only some scenes need: accelerations, normals, pairs of the bitonic sort.

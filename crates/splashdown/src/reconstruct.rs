@@ -1,4 +1,4 @@
-//! Surface reconstruction for any particle data in one call, which also opens the device.
+//! Surface reconstruction for any particle data in one call, which opens the device.
 
 use splashdown_io::Mesh;
 
@@ -24,5 +24,5 @@ pub fn reconstruct(
     params: &SurfaceParams,
     device: &Device,
 ) -> Result<(Mesh, SurfaceStats), SimulationError> {
-    Ok(surface::reconstruct(points, params, &mut device.executor()?)?)
+    Ok(surface::reconstruct_with(points, params, &mut device.executor()?)?)
 }

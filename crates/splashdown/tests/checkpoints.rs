@@ -1,7 +1,8 @@
 //! A run that is resumed from a checkpoint is bit-identical to an uninterrupted run.
 
+use splashdown::error::CheckpointError;
 use splashdown::scene::Scene;
-use splashdown::{Checkpoint, CheckpointError, Device, Simulation, SimulationError};
+use splashdown::{Checkpoint, Device, Simulation, SimulationError};
 use splashdown_gpu::testing::gpu_or_skip;
 use splashdown_gpu::{Executor, GpuExecutor};
 use splashdown_io::Particles;

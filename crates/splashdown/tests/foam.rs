@@ -1,10 +1,9 @@
 //! Foam, spray and bubbles: generation, motion and reproducibility.
 
 use splashdown::foam::Diffuse;
+use splashdown::foam::{DiffuseKind, DiffuseParticles, Foam, FoamState};
 use splashdown::scene::Scene;
-use splashdown::{
-    Device, DiffuseKind, DiffuseParticles, Event, Foam, FoamState, Run, RunOptions, Simulation,
-};
+use splashdown::{Device, Event, Run, RunOptions, Simulation};
 use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, block_on, testing};
 
 const HEAD: &str = "

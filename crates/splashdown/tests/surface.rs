@@ -6,7 +6,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use splashdown::cells::Grid;
 use splashdown::surface::{
-    self, Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats, reconstruct,
+    self, Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats, reconstruct_with,
 };
 use splashdown_gpu::{CpuExecutor, Executor, testing};
 use splashdown_io::Mesh;
@@ -60,7 +60,7 @@ fn the_surface_of_a_ball_is_a_sphere_of_equal_volume() {
                 params.smoothing_iterations = smoothing_iterations;
                 params
             };
-            let (mesh, stats) = reconstruct(&points, &params, &mut executor).unwrap();
+            let (mesh, stats) = reconstruct_with(&points, &params, &mut executor).unwrap();
             assert_sound(&mesh, &stats);
             let topology = mesh.topology().unwrap();
             assert_eq!(topology.euler_characteristic, 2, "{name}: {topology}");
@@ -93,7 +93,7 @@ fn smoothing_removes_the_bumps_of_particles() {
             params.smoothing_iterations = smoothing_iterations;
             params
         };
-        let (mesh, _) = reconstruct(&points, &params, executor).unwrap();
+        let (mesh, _) = reconstruct_with(&points, &params, executor).unwrap();
         // The mean angle between the normals of adjacent triangles.
         let normal = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| Vec3::from(mesh.vertices[v as usize]));
@@ -113,7 +113,7 @@ fn smoothing_removes_the_bumps_of_particles() {
 fn two_drops_are_two_components() {
     let mut points = ball(Vec3::ZERO, 0.15);
     points.extend(ball(Vec3::new(0.6, 0.1, 0.0), 0.2));
-    let (mesh, stats) = reconstruct(&points, &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
+    let (mesh, stats) = reconstruct_with(&points, &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
     assert_sound(&mesh, &stats);
     let topology = mesh.topology().unwrap();
     assert_eq!((topology.components, topology.euler_characteristic), (2, 4), "{topology}");
@@ -125,13 +125,13 @@ fn no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted() {
         testing::executors("no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted")
     {
         let params = SurfaceParams::new(SPACING);
-        let (mesh, stats) = reconstruct(&[], &params, &mut executor).unwrap();
+        let (mesh, stats) = reconstruct_with(&[], &params, &mut executor).unwrap();
         assert!(mesh.is_empty() && mesh.vertices.is_empty() && stats == SurfaceStats::default());
         let bad = [[f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0]];
-        let (mesh, stats) = reconstruct(&bad, &params, &mut executor).unwrap();
+        let (mesh, stats) = reconstruct_with(&bad, &params, &mut executor).unwrap();
         assert!(mesh.is_empty() && stats.not_finite == 2);
         let mixed = [bad[0], [0.1, 0.2, 0.3], bad[1]];
-        let (mesh, stats) = reconstruct(&mixed, &params, &mut executor).unwrap();
+        let (mesh, stats) = reconstruct_with(&mixed, &params, &mut executor).unwrap();
         assert_sound(&mesh, &stats);
         assert_eq!((mesh.topology().unwrap().components, stats.not_finite), (1, 2));
     }
@@ -140,8 +140,9 @@ fn no_particles_give_an_empty_mesh_and_non_finite_ones_are_counted() {
 #[test]
 fn invalid_parameters_and_too_large_regions_are_rejected() {
     let good = SurfaceParams::new(SPACING);
-    let refused =
-        |params: &SurfaceParams, points: &[[f32; 3]]| reconstruct(points, params, &mut cpu()).unwrap_err();
+    let refused = |params: &SurfaceParams, points: &[[f32; 3]]| {
+        reconstruct_with(points, params, &mut cpu()).unwrap_err()
+    };
     for value in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-30] {
         for params in [
             {
@@ -215,7 +216,7 @@ proptest! {
 
     #[test]
     fn any_particles_give_a_closed_manifold_oriented_mesh(points in clouds(), params in parameters()) {
-        let (mesh, stats) = match reconstruct(&points, &params, &mut cpu()) {
+        let (mesh, stats) = match reconstruct_with(&points, &params, &mut cpu()) {
             // Coarse cells miss single particles, and not every distribution reaches the highest
             // levels.
             Err(SurfaceError::NoSurface { given, highest }) => {
@@ -240,7 +241,8 @@ proptest! {
 
 #[test]
 fn a_missing_and_a_flipped_triangle_are_detected() {
-    let (mesh, _) = reconstruct(&ball(Vec3::ZERO, 0.2), &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
+    let (mesh, _) =
+        reconstruct_with(&ball(Vec3::ZERO, 0.2), &SurfaceParams::new(SPACING), &mut cpu()).unwrap();
     assert!(mesh.topology().unwrap().is_watertight());
     let mut holed = mesh.clone();
     holed.triangles.swap_remove(100);
@@ -344,11 +346,11 @@ fn reconstruction_and_refused_surfaces_leave_no_buffers() {
         let mut params = SurfaceParams::new(SPACING);
         params.smoothing_iterations = 2;
         let points = ball(Vec3::ZERO, 0.2);
-        let (mesh, _) = reconstruct(&points, &params, &mut executor).unwrap();
+        let (mesh, _) = reconstruct_with(&points, &params, &mut executor).unwrap();
         assert!(!mesh.is_empty());
         assert_eq!(executor.bytes(), 0, "{name}");
         params.iso_level = 5.0;
-        let error = reconstruct(&points, &params, &mut executor).unwrap_err();
+        let error = reconstruct_with(&points, &params, &mut executor).unwrap_err();
         assert!(matches!(error, SurfaceError::NoSurface { .. }), "{name}: {error}");
         assert_eq!(executor.bytes(), 0, "{name}");
         let input = simulation_input(&mut executor, 50);
@@ -412,14 +414,14 @@ fn meshes_are_bit_identical_for_any_number_of_threads() {
     let meshes: Vec<Mesh> = [1, 2, 8]
         .map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| reconstruct(&points, &params, &mut cpu()).unwrap().0)
+            pool.install(|| reconstruct_with(&points, &params, &mut cpu()).unwrap().0)
         })
         .into();
     assert_eq!(meshes[0], meshes[1]);
     assert_eq!(meshes[0], meshes[2]);
     if let Some(gpu) = testing::gpu_or_skip("meshes_are_bit_identical_for_any_number_of_threads") {
         let mut executor = Executor::from(splashdown_gpu::GpuExecutor::new(gpu));
-        let first = reconstruct(&points, &params, &mut executor).unwrap().0;
-        assert_eq!(reconstruct(&points, &params, &mut executor).unwrap().0, first);
+        let first = reconstruct_with(&points, &params, &mut executor).unwrap().0;
+        assert_eq!(reconstruct_with(&points, &params, &mut executor).unwrap().0, first);
     }
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
-use splashdown::surface::{SurfaceParams, reconstruct};
+use splashdown::surface::{SurfaceParams, reconstruct_with};
 use splashdown_gpu::testing;
 use splashdown_io::{Mesh, npy};
 use splashsurf_lib::nalgebra::Vector3;
@@ -92,7 +92,7 @@ fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
     let cell = params.cell_size;
     let theirs = oracle(points, &params);
     for (name, mut executor) in testing::executors(test_name) {
-        let (ours, _) = reconstruct(points, &params, &mut executor).unwrap();
+        let (ours, _) = reconstruct_with(points, &params, &mut executor).unwrap();
         assert!(ours.topology().unwrap().is_watertight());
         // Both use the same field, but their lattices may be offset by a fraction of a cell.
         let distance = hausdorff(&ours, &theirs, cell) / cell;
@@ -105,7 +105,7 @@ fn agree(points: &[[f32; 3]], cell_ratio: f32, test_name: &str) {
             params.iso_level = 0.5;
             params
         };
-        let (control, _) = reconstruct(points, &other, &mut executor).unwrap();
+        let (control, _) = reconstruct_with(points, &other, &mut executor).unwrap();
         let volume = control.volume() / theirs.volume();
         assert!(volume > 1.01, "{test_name}, {name}: the control's volume ratio is {volume}");
     }

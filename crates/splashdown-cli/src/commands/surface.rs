@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 use splashdown::sample::typical_spacing;
-use splashdown::surface::{SurfaceError, SurfaceParams, interpolate, reconstruct, remove_small_components};
+use splashdown::surface::{
+    SurfaceError, SurfaceParams, interpolate, reconstruct_with, remove_small_components,
+};
 use splashdown_gpu::Executor;
 use splashdown_io::{
     Format, IoError, Mesh, Particles, Topology, prepare_folder, read_particles,
@@ -107,8 +109,8 @@ fn one(
     let particles = read(input, arguments)?;
     let selected = attributes::selected(&particles, &arguments.attribute, input)?;
     let read = Instant::now();
-    let (mut surface, _) =
-        reconstruct(&particles.positions, params, executor).map_err(|error| input_failure(error, input))?;
+    let (mut surface, _) = reconstruct_with(&particles.positions, params, executor)
+        .map_err(|error| input_failure(error, input))?;
     let surface_seconds = read.elapsed().as_secs_f64();
     let dropped_blobs = if arguments.min_blob > 0.0 {
         remove_small_components(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use splashdown::{Checkpoint, CheckpointError};
+use splashdown::Checkpoint;
+use splashdown::error::CheckpointError;
 
 use crate::settings::Notes;
 use crate::{RunError, RunFolder};

@@ -6,8 +6,10 @@ mod tracker;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use splashdown::Stats;
+use splashdown::foam::DiffuseKind;
+use splashdown::run::Frame;
 use splashdown::scene::{Format, PictureKind, Scene};
-use splashdown::{DiffuseKind, Frame, Stats};
 use splashdown_io::usd::{MeshSeries, PointSeries};
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
 

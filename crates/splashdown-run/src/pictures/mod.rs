@@ -7,8 +7,9 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
+use splashdown::foam::DiffuseParticles;
 use splashdown::scene::{PictureKind, Scene};
-use splashdown::{BodyMesh, BodyState, DiffuseParticles};
+use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
 
@@ -98,7 +99,7 @@ impl Pictures {
     }
 
     /// Queues a frame; blocks while [`QUEUE`] frames wait.
-    pub fn submit(&self, frame: &splashdown::Frame) {
+    pub fn submit(&self, frame: &splashdown::run::Frame) {
         let data = FrameData {
             index: frame.index,
             time: frame.time,

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use splashdown::DiffuseKind;
+use splashdown::foam::DiffuseKind;
 use splashdown::scene::{PictureKind, Scene};
 use splashdown_io::WrittenFile;
 

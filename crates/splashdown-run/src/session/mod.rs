@@ -3,7 +3,8 @@
 mod earlier;
 mod start;
 
-use splashdown::{Event, Run, Summary};
+use splashdown::run::Summary;
+use splashdown::{Event, Run};
 use splashdown_io::WrittenFile;
 
 use crate::checkpoints::CheckpointWriter;

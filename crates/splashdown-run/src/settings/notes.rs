@@ -2,8 +2,9 @@
 //! run continues with the same output.
 
 use serde::{Deserialize, Serialize};
+use splashdown::Checkpoint;
+use splashdown::error::CheckpointError;
 use splashdown::scene::{Choice, Format, PictureKind};
-use splashdown::{Checkpoint, CheckpointError};
 
 use super::RunSettings;
 

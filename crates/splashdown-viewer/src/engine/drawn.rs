@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
+use splashdown::Simulation;
+use splashdown::foam::Foam;
 use splashdown::surface::{Surface, SurfaceStats};
-use splashdown::{Foam, Simulation};
 use splashdown_gpu::{Buffer, Executor, Gpu, GpuElement};
 use splashdown_render::{Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
 use wgpu::BufferUsages as Use;

@@ -36,7 +36,9 @@ mod plan;
 mod potentials;
 mod types;
 
-pub use types::{Diffuse, DiffuseKind, FoamParams, FoamState};
+pub use types::DiffuseKind;
+#[doc(hidden)]
+pub use types::{Diffuse, FoamParams, FoamState};
 
 use glam::Vec4;
 use splashdown_gpu::bytemuck::Zeroable;
@@ -71,6 +73,7 @@ const INTERVAL: f32 = 0.004;
 const IHMSEN_NEIGHBOURS: f32 = 33.5;
 
 /// The passes of this module.
+#[doc(hidden)]
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
         &begin::BEGIN,
@@ -224,6 +227,7 @@ impl Foam {
     ///
     /// # Errors
     /// If the device was lost.
+    #[doc(hidden)]
     pub fn clear(&self, executor: &mut Executor) -> Result<(), GpuError> {
         executor.write(self.state, &[FoamState::zeroed()])
     }
@@ -234,22 +238,26 @@ impl Foam {
     }
 
     /// The particles; the first [`FoamState::count`] are valid.
+    #[doc(hidden)]
     pub fn pool(&self) -> Buffer<Diffuse> {
         self.pool
     }
 
     /// The state, with the number of particles.
+    #[doc(hidden)]
     pub fn state(&self) -> Buffer<FoamState> {
         self.state
     }
 
     /// Trapped air (m/s), wave crest and energy (J/kg) of each particle of the fluid at the last
     /// update, in sorted order.
+    #[doc(hidden)]
     pub fn potentials(&self) -> Buffer<Vec4> {
         self.potentials
     }
 
     /// The constants, a uniform buffer.
+    #[doc(hidden)]
     pub fn params(&self) -> Buffer<FoamParams> {
         self.params
     }
@@ -271,7 +279,7 @@ impl Foam {
     }
 }
 
-/// The saved state of foam: [`Simulation::keep_foam_async`](crate::Simulation::keep_foam_async).
+/// The saved state of foam, for [checkpoints](crate::Checkpoint::set_foam).
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptFoam {
     pub(crate) state: FoamState,
@@ -295,6 +303,7 @@ pub struct DiffuseParticles {
 
 impl DiffuseParticles {
     /// Unpacks the contents of a pool.
+    #[doc(hidden)]
     pub fn new(pool: &[Diffuse]) -> Self {
         Self {
             ids: pool.iter().map(Diffuse::id).collect(),

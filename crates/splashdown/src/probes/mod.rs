@@ -12,6 +12,7 @@ mod sample;
 mod types;
 
 pub(crate) use fluid::FluidProbes;
+#[doc(hidden)]
 pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
 
 use glam::Vec3;
@@ -25,6 +26,7 @@ use crate::scene::{Domain, Probe, Quantity, Scene};
 const SPARE_ROWS: u32 = 64;
 
 /// The passes of this module.
+#[doc(hidden)]
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![&sample::SAMPLE, &flux::FLUX, &accumulate::ACCUMULATE]
 }
@@ -54,6 +56,7 @@ pub fn columns(probe: &Probe) -> &'static [&'static str] {
 
 /// The probes of a simulation, on its device.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Probes {
     /// The number of columns of each probe.
     columns: Vec<usize>,

@@ -6,9 +6,10 @@ use std::time::Duration;
 use splashdown_gpu::Timings;
 use splashdown_io::{Mesh, Particles};
 
+use crate::foam::DiffuseParticles;
 use crate::probes::ProbeRows;
 use crate::scene::Scene;
-use crate::{BodyState, Device, DiffuseParticles, Stats};
+use crate::{BodyState, Device, Stats};
 
 /// Options of a run: the device, and what is computed in addition to the motion of particles.
 #[derive(Clone, Debug)]

@@ -14,10 +14,11 @@ use splashdown_gpu::Gpu;
 use splashdown_io::Mesh;
 use web_time::Instant;
 
+use crate::foam::Foam;
 use crate::probes::FluidProbes;
 use crate::scene::{Domain, Motion, Scene};
 use crate::surface::{Surface, interpolate};
-use crate::{BodyMesh, BodyState, Foam, Simulation, SimulationError, Stats};
+use crate::{BodyMesh, BodyState, Simulation, SimulationError, Stats};
 
 /// Time between two [`Event::Progress`].
 const PROGRESS: Duration = Duration::from_millis(100);

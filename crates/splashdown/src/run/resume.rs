@@ -5,8 +5,9 @@ use splashdown_gpu::block_on;
 use web_time::Instant;
 
 use super::{Run, RunOptions, Stage};
+use crate::error::CheckpointError;
 use crate::scene::Scene;
-use crate::{Checkpoint, CheckpointError, Simulation, SimulationError};
+use crate::{Checkpoint, Simulation, SimulationError};
 
 /// The state of a run in addition to that of its simulation, stored in checkpoints.
 #[derive(Serialize, Deserialize)]

@@ -20,7 +20,7 @@ use super::types::Scene;
 ///     })
 ///     .build()?;
 /// assert_eq!(scene.probes.len(), 1);
-/// # Ok::<(), splashdown::SceneErrors>(())
+/// # Ok::<(), splashdown::error::SceneErrors>(())
 /// ```
 #[derive(Clone, Debug)]
 #[must_use = "a builder creates a scene only when `build` is called"]

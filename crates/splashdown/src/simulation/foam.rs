@@ -69,6 +69,7 @@ impl Simulation {
     ///
     /// # Errors
     /// Those of the device.
+    #[doc(hidden)]
     pub async fn foam_state_async(&mut self, foam: &mut Foam) -> Result<FoamState, SimulationError> {
         let state = self.executor.fetch(foam.state()).await?[0];
         self.warnings.extend(foam.overflow_warning(&state));

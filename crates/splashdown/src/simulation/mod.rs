@@ -118,23 +118,20 @@ impl Simulation {
     }
 
     /// The repairs of the meshes of the scene's bodies, in the order of the scene.
-    pub fn body_reports(&self) -> &[RepairReport] {
+    pub(crate) fn body_reports(&self) -> &[RepairReport] {
         self.bodies.as_ref().map_or(&[], Bodies::reports)
     }
 
     /// The constants of the simulation.
+    #[doc(hidden)]
     pub fn params(&self) -> &Params {
         &self.params
     }
 
     /// The buffers of the particles, for drawing without a copy.
+    #[doc(hidden)]
     pub fn fields(&self) -> &Fields {
         &self.fields
-    }
-
-    /// The sorting grid and its buffers.
-    pub fn cells(&self) -> &Cells {
-        &self.cells
     }
 
     /// The executor on which the simulation runs.

@@ -75,7 +75,7 @@ fn join(parents: &mut [u32], a: u32, b: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{SurfaceParams, reconstruct};
+    use crate::surface::{SurfaceParams, reconstruct_with};
     use splashdown_gpu::{CpuExecutor, Executor};
     use splashdown_io::Attribute;
 
@@ -87,8 +87,8 @@ mod tests {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = SurfaceParams::new(spacing);
         let block: Vec<_> = block.collect();
-        let (alone, _) = reconstruct(&block, &params, &mut executor).unwrap();
-        let (mut mesh, _) = reconstruct(&[&block[..], &lone].concat(), &params, &mut executor).unwrap();
+        let (alone, _) = reconstruct_with(&block, &params, &mut executor).unwrap();
+        let (mut mesh, _) = reconstruct_with(&[&block[..], &lone].concat(), &params, &mut executor).unwrap();
         mesh.velocities = mesh.vertices.clone();
         let heights = mesh.vertices.iter().map(|vertex| vertex[1]).collect();
         let places = mesh.vertices.as_flattened().to_vec();

@@ -109,7 +109,7 @@ impl<const N: usize> PointSum<6, 4> for Average<'_, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::reconstruct;
+    use crate::surface::reconstruct_with;
     use splashdown_gpu::{CpuExecutor, Executor};
 
     const SPACING: f32 = 0.05;
@@ -123,7 +123,7 @@ mod tests {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = SurfaceParams { smoothing_iterations, ..SurfaceParams::new(SPACING) };
         let positions = block();
-        let (mesh, _) = reconstruct(&positions, &params, &mut executor).unwrap();
+        let (mesh, _) = reconstruct_with(&positions, &params, &mut executor).unwrap();
         let velocities: Vec<_> = positions.iter().map(|&x| motion(x.into()).to_array()).collect();
         let found = interpolate(&mesh.vertices, &positions, &velocities, &params).unwrap();
         assert_eq!(found.len(), mesh.vertices.len());
@@ -148,7 +148,7 @@ mod tests {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = SurfaceParams::new(SPACING);
         let positions = block();
-        let (mesh, _) = reconstruct(&positions, &params, &mut executor).unwrap();
+        let (mesh, _) = reconstruct_with(&positions, &params, &mut executor).unwrap();
         let error = |field: fn(f32) -> f32| {
             let values: Vec<_> = positions.iter().map(|x| [field(x[0])]).collect();
             let found = interpolate(&mesh.vertices, &positions, &values, &params).unwrap();

@@ -52,10 +52,12 @@ pub struct SurfaceStats {
 
 /// Extracts the surface of the particles of a simulation repeatedly, on the device.
 ///
-/// With blocking: call [`extract`](Self::extract), then [`mesh`](Self::mesh) to read the mesh back.
-/// Without blocking: [`record`](Self::record) into the recording of a frame, draw with
-/// [`draw_args`](Self::draw_args), request [`status`](Self::status) and pass it to
-/// [`grow`](Self::grow) when it arrives; if that enlarges the buffers, record again.
+/// [`Simulation::surface`](crate::Simulation::surface) creates it,
+/// [`Simulation::extract`](crate::Simulation::extract) extracts the surface, and
+/// [`Simulation::mesh`](crate::Simulation::mesh) reads the mesh back.
+//
+// Without blocking: `record` into the recording of a frame, draw with `draw_args`, request `status`
+// and pass it to `grow` when it arrives; if that enlarges the buffers, record again.
 #[derive(Debug)]
 pub struct Surface {
     params: SurfaceParams,
@@ -202,6 +204,7 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError`] if a parameter is invalid, the cells of the grid are smaller than the
     /// support radius, or the device is too small.
+    #[doc(hidden)]
     pub fn new(
         executor: &mut Executor,
         params: SurfaceParams,
@@ -216,6 +219,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`new`](Self::new).
+    #[doc(hidden)]
     pub fn with_capacity(
         executor: &mut Executor,
         params: SurfaceParams,
@@ -279,6 +283,7 @@ impl Surface {
 
     /// Appends the extraction to a recording. It is valid until [`grow`](Self::grow) enlarges the
     /// buffers.
+    #[doc(hidden)]
     pub fn record(&self, recording: &mut Recording) {
         let buffers = self.b.by_name().and(&self.input.buffers());
         self.record_field(recording, &buffers);
@@ -369,6 +374,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`SurfaceError::Gpu`] if the device is out of memory.
+    #[doc(hidden)]
     pub fn grow(&mut self, executor: &mut Executor, status: &Status) -> Result<bool, SurfaceError> {
         if !status.overflowed() {
             return Ok(false);
@@ -445,27 +451,32 @@ impl Surface {
     }
 
     /// Positions of the vertices in m; w is internal. The first [`Status::vertices`] are valid.
+    #[doc(hidden)]
     pub fn vertices(&self) -> Buffer<Vec4> {
         self.b.vertex_positions
     }
 
     /// Unit normals of the vertices, pointing out of the fluid; w is 0.
+    #[doc(hidden)]
     pub fn normals(&self) -> Buffer<Vec4> {
         self.b.normals
     }
 
     /// Three vertex indices per triangle, counter-clockwise as seen from outside.
+    #[doc(hidden)]
     pub fn indices(&self) -> Buffer<u32> {
         self.b.indices
     }
 
     /// The arguments of an indexed indirect draw: index count, instance count, first index, base
     /// vertex, first instance.
+    #[doc(hidden)]
     pub fn draw_args(&self) -> Buffer<u32> {
         self.b.draw_args
     }
 
     /// The size of the mesh, and whether it exceeded the capacity.
+    #[doc(hidden)]
     pub fn status(&self) -> Buffer<Status> {
         self.b.status
     }

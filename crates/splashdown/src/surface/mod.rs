@@ -29,7 +29,7 @@
 //! | 0.25 | none | 231,858 | 92 ms | 533 ms | 245 ms |
 //!
 //! These are the times of the passes; `examples/surface_times.rs` also prints the times of
-//! [`reconstruct`] with sorting and copying. Two thirds of the time are square roots in the field.
+//! [`reconstruct_with`] with sorting and copying. Two thirds of the time are square roots in the field.
 //!
 //! # Why not the other way
 //!
@@ -57,14 +57,19 @@ mod volume;
 pub use components::remove_small_components;
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
+#[doc(hidden)]
+pub use mesh::SurfaceInput;
 pub(crate) use mesh::forecast;
-pub use mesh::{Surface, SurfaceInput, SurfaceStats};
-pub use params::{Status, SurfaceParams};
-pub use reconstruct::reconstruct;
+pub use mesh::{Surface, SurfaceStats};
+#[doc(hidden)]
+pub use params::Status;
+pub use params::SurfaceParams;
+pub use reconstruct::reconstruct_with;
 
 use splashdown_gpu::PassDesc;
 
 /// All passes of surface reconstruction, for the gate and the tests.
+#[doc(hidden)]
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
         &volume::VOLUME,

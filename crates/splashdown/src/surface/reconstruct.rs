@@ -7,26 +7,26 @@ use splashdown_io::Mesh;
 use super::{Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats};
 use crate::cells::Grid;
 
-/// Reconstructs the surface of particles in host memory from their positions in metres.
+/// As [`reconstruct`](crate::reconstruct()), on an executor that is already open. Several reconstructions in a row need
+/// to open the device only once.
 ///
 /// Positions that are not finite are skipped and counted in [`SurfaceStats::not_finite`]. Without
 /// particles the mesh is empty.
 ///
 /// ```
-/// use splashdown::surface::{SurfaceParams, reconstruct};
-/// use splashdown_gpu::{CpuExecutor, Executor};
-/// let mut executor = Executor::from(CpuExecutor::new());
+/// use splashdown::surface::{SurfaceParams, reconstruct_with};
+/// let mut executor = splashdown::Device::Cpu.executor()?;
 /// let drop = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.0, 0.05, 0.0]];
-/// let (mesh, stats) = reconstruct(&drop, &SurfaceParams::new(0.05), &mut executor)?;
+/// let (mesh, stats) = reconstruct_with(&drop, &SurfaceParams::new(0.05), &mut executor)?;
 /// assert_eq!(mesh.triangles.len(), stats.triangles as usize);
-/// # Ok::<(), splashdown::surface::SurfaceError>(())
+/// # Ok::<(), splashdown::SimulationError>(())
 /// ```
 ///
 /// # Errors
 /// [`SurfaceError`] if a parameter is invalid, there is no surface at the iso level, there are more
 /// than 2^32 - 1 particles, the particles are too far apart for the cell size, or the device is too
 /// small.
-pub fn reconstruct(
+pub fn reconstruct_with(
     positions: &[[f32; 3]],
     params: &SurfaceParams,
     executor: &mut Executor,

@@ -6,9 +6,10 @@ mod show;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use splashdown::foam::{Foam, KeptFoam};
 use splashdown::scene::Scene;
 use splashdown::surface::Surface;
-use splashdown::{BodyMesh, Checkpoint, Device, Foam, KeptFoam, MouseForce, Simulation, SimulationError};
+use splashdown::{BodyMesh, Checkpoint, Device, MouseForce, Simulation, SimulationError};
 use splashdown_gpu::{Executor, Gpu, GpuExecutor};
 use web_time::Instant;
 
