@@ -152,15 +152,10 @@ mod tests {
     use std::time::Duration;
 
     fn at(seconds: f64, steps: u64) -> Progress {
-        Progress {
-            frame: 1,
-            frames: 10,
-            time: steps as f64 * 1e-3,
-            duration: 1.0,
-            steps,
-            dt: 1e-3,
-            wall: Duration::from_secs_f64(seconds),
-        }
+        let mut progress = Progress::default();
+        (progress.time, progress.steps) = (steps as f64 * 1e-3, steps);
+        progress.wall = Duration::from_secs_f64(seconds);
+        progress
     }
 
     #[test]

@@ -169,7 +169,7 @@ fn the_particle_limit_is_respected_and_a_full_buffer_is_reported_once() {
         changed
     };
     scene.duration = 0.1;
-    let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(12), ..RunOptions::new(&scene) };
+    let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu).with_frames(12);
     let events: Vec<Event> = Run::new(&scene, options).unwrap().map(Result::unwrap).collect();
     let warnings =
         events.iter().filter(|event| matches!(event, Event::Warning(text) if text.contains("\"inlet\"")));

@@ -150,8 +150,7 @@ fn foam_of_a_resumed_run_is_bit_identical() {
     let mut scene = foaming_column();
     scene.surface.enabled = false;
     scene.foam.enabled = true;
-    let options =
-        |frames| RunOptions { device: Device::Cpu, frames: Some(frames), ..RunOptions::new(&scene) };
+    let options = |frames| RunOptions::new(&scene).with_device(Device::Cpu).with_frames(frames);
     let last = |run: &mut Run| {
         let frames = run.filter_map(|event| match event.unwrap() {
             Event::Frame(frame) => Some(frame),

@@ -169,7 +169,7 @@ fn the_measured_flow_equals_the_emitted_flow() {
 fn a_run_returns_probe_rows_with_its_frames() {
     let mut scene = Scene::parse(JET, "jet.toml").unwrap();
     scene.probes.truncate(1);
-    let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(2), ..RunOptions::new(&scene) };
+    let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu).with_frames(2);
     let mut counts = Vec::new();
     for event in Run::new(&scene, options).unwrap() {
         if let Event::Frame(frame) = event.unwrap() {
@@ -184,7 +184,7 @@ fn a_run_returns_probe_rows_with_its_frames() {
 fn a_probe_inside_a_body_is_reported() {
     let text = TANK.replace("position = [0, 0.2, 0.34]", "position = [0.2, 0.2, 0.2]");
     let scene = Scene::parse(&text, "tank.toml").unwrap();
-    let options = RunOptions { device: splashdown::Device::Cpu, frames: Some(0), ..RunOptions::new(&scene) };
+    let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu).with_frames(0);
     let warnings: Vec<String> = Run::new(&scene, options)
         .unwrap()
         .filter_map(|event| if let Event::Warning(text) = event.unwrap() { Some(text) } else { None })

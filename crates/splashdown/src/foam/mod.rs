@@ -288,6 +288,7 @@ pub struct KeptFoam {
 
 /// The diffuse particles at one time, on the host; in order of age, the oldest first.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct DiffuseParticles {
     /// Consecutive numbers in the order of generation.
     pub ids: Vec<u32>,

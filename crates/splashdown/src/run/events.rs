@@ -12,7 +12,16 @@ use crate::scene::Scene;
 use crate::{BodyState, Device, Stats};
 
 /// Options of a run: the device, and what is computed in addition to the motion of particles.
+///
+/// ```
+/// use splashdown::{Device, RunOptions, Scene};
+/// # let scene = Scene::parse(include_str!("../../scenes/dam-break-small.toml"), "dam-break-small.toml")?;
+/// let mut options = RunOptions::new(&scene).with_device(Device::Cpu).with_frames(10);
+/// options.timing = true;
+/// # Ok::<(), splashdown::error::SceneErrors>(())
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RunOptions {
     /// The device that runs the simulation.
     pub device: Device,
@@ -70,6 +79,21 @@ impl RunOptions {
         }
     }
 
+    /// The same options on this device.
+    pub fn with_device(self, device: Device) -> Self {
+        Self { device, ..self }
+    }
+
+    /// The same options with this number of frames, after the initial one.
+    pub fn with_frames(self, frames: u32) -> Self {
+        Self { frames: Some(frames), ..self }
+    }
+
+    /// The same options with or without the surface.
+    pub fn with_surface(self, surface: bool) -> Self {
+        Self { surface, ..self }
+    }
+
     /// Calls the progress callback, if there is one.
     pub(super) fn report_progress(&self) -> impl Fn(&str, f32) + Sync {
         |body, fraction| {
@@ -99,7 +123,8 @@ pub enum Event {
 }
 
 /// The start of a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Started {
     /// The device's name.
     pub device: String,
@@ -120,7 +145,8 @@ pub struct Started {
 }
 
 /// The progress of a run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct Progress {
     /// The frame being computed.
     pub frame: u32,
@@ -140,6 +166,7 @@ pub struct Progress {
 
 /// A complete frame.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Frame {
     /// Number, from 0.
     pub index: u32,
@@ -163,6 +190,7 @@ pub struct Frame {
 
 /// The summary of a run.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Summary {
     /// The final statistics of the simulation.
     pub stats: Stats,

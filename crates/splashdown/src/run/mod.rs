@@ -29,7 +29,7 @@ const PROGRESS: Duration = Duration::from_millis(100);
 /// use splashdown::{Event, Run, RunOptions, scene::Scene};
 /// # let text = include_str!("../../scenes/dam-break-small.toml");
 /// let scene = Scene::parse(text, "dam-break-small.toml")?;
-/// let options = RunOptions { frames: Some(1), ..RunOptions::new(&scene) };
+/// let options = RunOptions::new(&scene).with_frames(1);
 /// for event in Run::new(&scene, options)? {
 ///     if let Event::Frame(frame) = event? {
 ///         println!("{:.3} s: {} particles", frame.time, frame.particles.positions.len());

@@ -4,6 +4,7 @@ use super::types::Material;
 
 /// A liquid that a scene file can name.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct KnownMaterial {
     /// Its name in the scene file.
     pub name: &'static str,

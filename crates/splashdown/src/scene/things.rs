@@ -152,6 +152,7 @@ pub struct Sink {
 
 /// The shape of a sink.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum SinkRegion {
     /// Inside this box.
     Box {
@@ -185,6 +186,7 @@ pub struct Probe {
 
 /// The quantity that a probe measures.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Quantity {
     /// Pressure in Pa at a point (m).
     Pressure(Vec3),

@@ -73,6 +73,7 @@ impl Scene {
 
 /// An axis-aligned box with closed or open sides.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Domain {
     /// Lower corner in m.
     pub min: Vec3,
@@ -100,6 +101,7 @@ impl Domain {
 /// A harmonic motion of the domain: its displacement is `amplitude * sin(2 pi t / period)`. The simulation
 /// uses the domain's frame of reference, in which [`Oscillation::acceleration`] acts on the fluid.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Oscillation {
     /// Amplitude in m, per axis.
     pub amplitude: Vec3,
@@ -146,6 +148,7 @@ impl Fluid {
 
 /// Properties of a liquid; see [`crate::scene::MATERIALS`] for the known liquids and their sources.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// The name in the scene file, for example `water`.
     pub name: String,
@@ -168,6 +171,7 @@ pub struct Block {
 
 /// A closed mesh filled with fluid at t = 0.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FluidMesh {
     /// The mesh and its pose.
     pub mesh: MeshSource,
@@ -177,6 +181,7 @@ pub struct FluidMesh {
 
 /// A file of particles at t = 0.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FluidFile {
     /// Path of the file.
     pub path: PathBuf,
@@ -492,6 +497,7 @@ impl Default for FoamSettings {
 
 /// A camera that looks at `target` and can orbit it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Camera {
     /// The point at the centre of the picture, in m.
     pub target: Vec3,

@@ -109,7 +109,7 @@ fn a_body_that_leaves_the_domain_is_reported_once() {
         hinge: None,
     };
     scene.bodies.push(body("stone", "cube", 0.1, Vec3::new(0.2, 0.3, 0.2), up));
-    let options = RunOptions { device: Device::Cpu, surface: false, ..RunOptions::new(&scene) };
+    let options = RunOptions::new(&scene).with_device(Device::Cpu).with_surface(false);
     let warnings = Run::new(&scene, options).unwrap().filter_map(|event| match event.unwrap() {
         Event::Warning(text) if text.contains("body \"stone\" has left the domain") => Some(text),
         _ => None,
