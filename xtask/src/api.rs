@@ -53,12 +53,17 @@ pub fn run(arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// The layer of `cargo xtask test`. Without the tool it is skipped, unless `install` is set: building the tool takes
-/// several minutes once.
+/// The layer of `cargo xtask test`. A missing tool is installed with `install`, which takes several minutes once, and
+/// skips the layer without it. The layer is also skipped if the installation fails, for example without a registry.
 pub fn layer(install: bool) -> Result<Outcome> {
     let tool = match tool() {
         Some(tool) => tool,
-        None if install => install_tool()?,
+        None if install => match install_tool() {
+            Ok(tool) => tool,
+            Err(error) => {
+                return Ok(Outcome::Skipped(format!("{TOOL} {TOOL_VERSION} cannot be installed: {error:#}")));
+            }
+        },
         None => {
             let reason = format!("{TOOL} {TOOL_VERSION} is not installed; `cargo xtask api` installs it");
             return Ok(Outcome::Skipped(reason));

@@ -34,7 +34,8 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     ARGUMENTS are passed to `splashdown run` (for example --frames 20)
   test [--fast|--all]
                     check format, lints, tests, documentation, the web page and other systems (--fast: the first
-                    three only; --all or CI=true: also Blender, the optimized page, all code for other systems)
+                    three only; --all or CI=true: also Blender, the optimized page, all code for other systems,
+                    and the public API even if its tool has to be installed)
   bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)
   bench --peers [--quick] [--particles FILE SPACING]
                     compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md

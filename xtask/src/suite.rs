@@ -20,7 +20,8 @@ enum Extent {
     Fast,
     /// Also documentation, the web page and other systems, with quick builds.
     Usual,
-    /// Also Blender, the optimized page, and all code for other systems.
+    /// Also Blender, the optimized page, all code for other systems, and the public API even if its tool has to be
+    /// installed.
     All,
 }
 
@@ -66,7 +67,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
                 failed => Ok(failed),
             }
         });
-        report.layer("public API", |_| api::layer(false));
+        report.layer("public API", |_| api::layer(extent == Extent::All));
         report.layer("guide", |_| guide::test(extent == Extent::All));
         report.layer("web page", |_| page::test(extent == Extent::All));
         for (name, target) in OTHER_SYSTEMS {
