@@ -22,6 +22,15 @@ pub struct Package {
     pub uses: BTreeSet<String>,
 }
 
+impl Package {
+    /// The folder with its source files.
+    pub fn source(&self) -> PathBuf {
+        let folder = root().join(&self.folder);
+        // The crate of the documents' examples is a single file.
+        if folder.join("src").exists() { folder.join("src") } else { folder }
+    }
+}
+
 /// The generated files with their contents.
 ///
 /// # Errors
@@ -42,9 +51,27 @@ pub fn files() -> Result<Vec<(PathBuf, String)>> {
 /// # Errors
 /// If a manifest cannot be read.
 pub fn packages() -> Result<Vec<Package>> {
-    let mut folders = vec!["web".to_owned()];
-    for entry in fs::read_dir(root().join("crates"))? {
-        folders.push(format!("crates/{}", entry?.file_name().to_string_lossy()));
+    let mut packages = workspace()?;
+    packages.retain(|package| package.folder == "web" || package.folder.starts_with("crates/"));
+    Ok(packages)
+}
+
+/// All members of the workspace.
+///
+/// # Errors
+/// If a manifest cannot be read.
+pub fn workspace() -> Result<Vec<Package>> {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).context("cannot read Cargo.toml")?;
+    let mut folders = Vec::new();
+    for member in members(&manifest) {
+        match member.strip_suffix("/*") {
+            Some(folder) => {
+                for entry in fs::read_dir(root().join(folder))? {
+                    folders.push(format!("{folder}/{}", entry?.file_name().to_string_lossy()));
+                }
+            }
+            None => folders.push(member.to_owned()),
+        }
     }
     folders.sort();
     folders.retain(|folder| root().join(folder).join("Cargo.toml").exists());
@@ -54,6 +81,12 @@ pub fn packages() -> Result<Vec<Package>> {
         Ok(package(folder, &text))
     };
     folders.iter().map(manifest).collect()
+}
+
+/// The folders that the manifest of a workspace lists as members.
+fn members(manifest: &str) -> Vec<&str> {
+    let list = manifest.lines().find_map(|line| line.strip_prefix("members = ["));
+    list.into_iter().flat_map(|list| list.split('"').skip(1).step_by(2)).collect()
 }
 
 /// Reads the keys of a manifest that the map shows.
@@ -187,7 +220,7 @@ fn architecture(packages: &[Package]) -> Result<(PathBuf, String)> {
     sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
     let mut section = String::new();
     for package in sorted {
-        let modules = modules::read(&root().join(&package.folder).join("src"))?;
+        let modules = modules::read(&package.source())?;
         let problems = modules.problems();
         ensure!(problems.is_empty(), "imports of {}:\n  {}", package.name, problems.join("\n  "));
         let lines = modules.lines();
@@ -204,7 +237,7 @@ fn modules_table(packages: &[Package]) -> Result<String> {
     sorted.sort_by_key(|package| (levels[package.name.as_str()], &package.name));
     let mut text = String::new();
     for package in sorted {
-        let source = root().join(&package.folder).join("src");
+        let source = package.source();
         let (purposes, graph) = (purposes(&source)?, modules::read(&source)?);
         if purposes.is_empty() {
             continue;
@@ -268,7 +301,14 @@ fn cell(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{first_sentence, is_indirect, levels, package};
+    use super::{first_sentence, is_indirect, levels, members, package};
+
+    #[test]
+    fn the_members_of_a_workspace_are_read() {
+        let manifest = "[workspace]\nmembers = [\"crates/*\", \"web\"]\ndefault-members = [\"crates/*\"]\n";
+        assert_eq!(members(manifest), ["crates/*", "web"]);
+        assert_eq!(members("[package]\n"), [""; 0]);
+    }
 
     #[test]
     fn manifests_are_read() {

@@ -29,7 +29,8 @@ pub struct Modules {
 /// If a file cannot be read.
 pub fn read(source: &Path) -> Result<Modules> {
     let sources = graph::sources(source)?;
-    let root = ["lib.rs", "main.rs"].iter().map(|name| source.join(name)).find(|path| path.exists());
+    let roots = ["lib.rs", "main.rs", "examples.rs"];
+    let root = roots.iter().map(|name| source.join(name)).find(|path| path.exists());
     let root = root.with_context(|| format!("{} has no root", source.display()))?;
     let text = fs::read_to_string(&root).with_context(|| format!("cannot read {}", root.display()))?;
     Ok(Modules { graph: graph::graph(&sources), order: layers::declared(&text) })
@@ -74,7 +75,7 @@ mod tests {
     use crate::process::root;
 
     /// The crates of the workspace from bottom to top. A crate may depend only on those before it.
-    const CRATES: [&str; 8] = [
+    const CRATES: [&str; 12] = [
         "splashdown-gpu",
         "splashdown-io",
         "splashdown",
@@ -83,6 +84,10 @@ mod tests {
         "splashdown-viewer",
         "splashdown-cli",
         "splashdown-web",
+        "splashdown-docs",
+        "splashdown-bindgen",
+        "splashdown-packaging",
+        "xtask",
     ];
 
     /// The dependencies of each crate that do not point down.
@@ -104,9 +109,9 @@ mod tests {
     #[test]
     fn imports_between_modules_point_down() -> Result<()> {
         let mut problems = Vec::new();
-        for folder in map::packages()?.into_iter().map(|package| package.folder).chain(["xtask".to_owned()]) {
-            let modules = read(&root().join(&folder).join("src"))?;
-            problems.extend(modules.problems().into_iter().map(|problem| format!("{folder}: {problem}")));
+        for package in map::workspace()? {
+            let (found, name) = (read(&package.source())?.problems(), package.name);
+            problems.extend(found.into_iter().map(|problem| format!("{name}: {problem}")));
         }
         assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
         // Control: the largest crate declares its order, and its known imports are found.
@@ -118,7 +123,7 @@ mod tests {
 
     #[test]
     fn dependencies_between_crates_point_down() -> Result<()> {
-        let mut packages = map::packages()?;
+        let mut packages = map::workspace()?;
         assert_eq!(packages.len(), CRATES.len());
         assert_eq!(upward(&packages), [""; 0]);
         // Control: an upward dependency is found.
