@@ -148,7 +148,9 @@ impl Built {
         }
     }
 
-    /// As [`sample::count`]. Particles that have to be created for counting are kept for the simulation.
+    /// The number of particles at the start. The particles of blocks are counted without storing them: the number is
+    /// exact up to [`sample::MAX_PARTICLES`] and an estimate from the volumes above. Meshes are filled and files are
+    /// read, and these particles are kept for the simulation. If a mesh or file cannot be used, only blocks are counted.
     pub fn count(&self, scene: &Scene) -> u64 {
         let fluid = &scene.fluid;
         let mut parts = lock(&self.fluid);

@@ -76,38 +76,38 @@ fn is_once(counts: &work::Counts) -> bool {
 fn loading_and_running_a_scene_builds_everything_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path());
-    work::take();
-    let scene = Scene::load(&path).unwrap();
-    let derived = Derived::new(&scene);
-    assert!(memory_forecast(&scene) > 0);
-    let simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
-    let counts = work::take();
+    let ((scene, derived, simulation), counts) = work::counted(|| {
+        let scene = Scene::load(&path).unwrap();
+        let derived = Derived::new(&scene);
+        assert!(memory_forecast(&scene) > 0);
+        let simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+        (scene, derived, simulation)
+    });
     assert!(is_once(&counts), "{counts:?}");
     assert_eq!(derived.particles, 800 + 64 + 27);
     assert!(u64::from(simulation.stats().particles) <= derived.particles);
     // A value without influence on the geometry leaves the cache valid.
     let mut other = scene.clone();
     other.solver.cfl_factor = 0.2;
-    Derived::new(&other);
-    assert!(work::take().is_empty());
+    assert!(work::counted(|| Derived::new(&other)).1.is_empty());
     // Negative controls: a changed scene is sampled again, and so is one whose particles have been taken.
     other.fluid.particle_spacing = 0.06;
-    Derived::new(&other);
-    assert!(work::take()["fluid sampled"] == 1);
-    Simulation::new(&scene, &Device::Cpu).unwrap();
-    assert!(work::take()["fluid sampled"] == 1);
+    let (_, counts) = work::counted(|| Derived::new(&other));
+    assert_eq!(counts["fluid sampled"], 1);
+    let (_, counts) = work::counted(|| Simulation::new(&scene, &Device::Cpu).unwrap());
+    assert_eq!(counts["fluid sampled"], 1);
 }
 
 #[test]
 fn checking_a_scene_builds_everything_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path());
-    work::take();
-    let scene = Scene::load(&path).unwrap();
-    let counted = inventory(&scene).unwrap();
-    Derived::with_inventory(&scene, &counted);
-    assert!(memory_forecast_of(&scene, &counted) > 0);
-    let counts = work::take();
+    let ((), counts) = work::counted(|| {
+        let scene = Scene::load(&path).unwrap();
+        let counted = inventory(&scene).unwrap();
+        Derived::with_inventory(&scene, &counted);
+        assert!(memory_forecast_of(&scene, &counted) > 0);
+    });
     assert!(is_once(&counts), "{counts:?}");
 }
 
@@ -117,12 +117,12 @@ fn a_scene_of_models_is_built_once_from_its_text() {
         .replace("cube.stl", "cube")
         .replace("[[fluid.file]]", "[[fluid.mesh]]")
         .replace("file = \"drop.ply\"", "mesh = \"cube\"\nscale = 0.2\nposition = [0.2, 0.7, 0.8]");
-    work::take();
-    let scene = Scene::parse(&text, "models.toml").unwrap();
-    Derived::new(&scene);
-    memory_forecast(&scene);
-    Simulation::new(&scene, &Device::Cpu).unwrap();
-    let counts = work::take();
+    let ((), counts) = work::counted(|| {
+        let scene = Scene::parse(&text, "models.toml").unwrap();
+        Derived::new(&scene);
+        memory_forecast(&scene);
+        Simulation::new(&scene, &Device::Cpu).unwrap();
+    });
     assert_eq!(
         (counts["mesh read"], counts["solid built"], counts["fluid sampled"]),
         (5, 5, 1),
@@ -140,10 +140,10 @@ fn resuming_reads_every_file_once() {
         simulation.checkpoint(&scene.text).unwrap().to_bytes().unwrap()
     };
     let checkpoint = Checkpoint::from_bytes(&bytes).unwrap();
-    work::take();
-    checkpoint.scene().unwrap();
-    let resumed = Simulation::resume(&checkpoint, Device::Cpu.executor().unwrap()).unwrap();
-    let counts = work::take();
+    let (resumed, counts) = work::counted(|| {
+        checkpoint.scene().unwrap();
+        Simulation::resume(&checkpoint, Device::Cpu.executor().unwrap()).unwrap()
+    });
     assert!(is_once(&counts), "{counts:?}");
     assert_eq!(resumed.scene(), &scene);
 }

@@ -21,7 +21,7 @@ use serde::Serialize;
 use splashdown_io::{IoError, Particles};
 
 use crate::bodies::{BodyError, LoadedBody};
-use crate::scene::{DensityMode, Fluid, Scene, lattice, place};
+use crate::scene::{DensityMode, Fluid, Scene, place};
 
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
@@ -165,23 +165,6 @@ pub(crate) fn fill(scene: &Scene, sources: Sources) -> Result<Particles, SampleE
 /// True if no part of the fluid is a mesh or a file.
 pub(crate) fn has_blocks_only(fluid: &Fluid) -> bool {
     fluid.meshes.is_empty() && fluid.files.is_empty()
-}
-
-/// The number of particles that [`particles`] returns. The particles of blocks are counted without storing
-/// them: the number is exact up to [`MAX_PARTICLES`] and an estimate from the volumes above, so it is fast
-/// for blocks of any size. Meshes are filled and files are read. If one of them cannot be used, only blocks
-/// are counted.
-pub fn count(scene: &Scene) -> u64 {
-    let fluid = &scene.fluid;
-    let of_blocks = lattice::count(&scene.domain, fluid);
-    if of_blocks > MAX_PARTICLES || has_blocks_only(fluid) {
-        return of_blocks;
-    }
-    match particles(scene) {
-        Ok(particles) => particles.len() as u64,
-        Err(SampleError::TooMany { count, .. }) => count,
-        Err(_) => of_blocks,
-    }
 }
 
 /// The numbers of particles of a scene.

@@ -21,7 +21,7 @@
 //!     size = [0.5, 0.5, 0.5]
 //! "#;
 //! let scene = splashdown::scene::Scene::parse(text, "cube.toml")?;
-//! assert_eq!(splashdown::sample::count(&scene), 1000);
+//! assert_eq!(splashdown::scene::Derived::new(&scene).particles, 1000);
 //!
 //! let errors = splashdown::scene::Scene::parse(&text.replace("0.05", "-1"), "cube.toml").unwrap_err();
 //! assert!(errors.to_string().contains("fluid.particle_spacing is -1"));

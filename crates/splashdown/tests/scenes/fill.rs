@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use glam::Vec3;
-use splashdown::sample;
 use splashdown::scene::{Derived, Scene};
-use splashdown::{Device, Simulation, memory_forecast};
+use splashdown::{Device, Simulation, check, memory_forecast, sample};
 use splashdown_io::{Particles, write_particles};
 
 use crate::{changed, parse};
@@ -53,7 +52,7 @@ fn a_filled_mesh_has_the_volume_of_the_mesh() {
             ).replace("0.4", if model == "lighthouse" { "0.1" } else { "0.5" }),
         ));
         let particles = sample::particles(&scene).expect("it can be filled");
-        assert_eq!(sample::count(&scene), particles.len() as u64);
+        assert_eq!(check::count(&scene), particles.len() as u64);
         assert!(particles.velocities.iter().all(|v| *v == [0.0, -1.0, 0.0]));
         let exact = volume(&splashdown::models::build(model).expect("a model")) * f64::from(scale).powi(3);
         let error = particles.len() as f64 * f64::from(spacing).powi(3) / exact - 1.0;
@@ -78,7 +77,7 @@ fn a_filled_cube_is_the_block_of_its_size() {
 #[test]
 fn overlapping_fluid_is_removed_from_the_later_piece() {
     let ball = "[[fluid.mesh]]\nmesh = \"sphere\"\nscale = 2\nposition = [0.5, 0.5, 0.5]\n";
-    let alone = sample::count(&valid(&tank(0.02, ball)));
+    let alone = check::count(&valid(&tank(0.02, ball)));
     let folder = tempfile::tempdir().expect("a folder");
     let both = load(folder.path(), &tank(0.02, &format!("{BLOCK}{ball}"))).expect("valid");
     let warning = both.warnings.iter().map(ToString::to_string).collect::<String>();
@@ -87,7 +86,7 @@ fn overlapping_fluid_is_removed_from_the_later_piece() {
         "{warning}"
     );
     let points = sample::particles(&both).expect("sampled").positions;
-    let block = sample::count(&valid(&tank(0.02, BLOCK)));
+    let block = check::count(&valid(&tank(0.02, BLOCK)));
     // An eighth of the ball is in the block.
     let kept = points.len() as f64 - block as f64;
     assert!((kept / alone as f64 - 0.875).abs() < 0.04, "{kept} of {alone}");
@@ -120,7 +119,7 @@ fn particles_of_a_file_are_scaled_and_rotated_with_their_velocities() {
         let scene = load(folder.path(), &tank(0.05, piece)).expect("valid");
         assert!(scene.warnings.is_empty(), "{}", scene.warnings[0]);
         let particles = sample::particles(&scene).expect("read");
-        assert_eq!((particles.len(), sample::count(&scene)), (1000, 1000));
+        assert_eq!((particles.len(), check::count(&scene)), (1000, 1000));
         assert!(Vec3::from(particles.positions[9]).distance(Vec3::new(0.6, 0.55, 0.1)) < 1e-5);
         let expected = Vec3::new(0.0, if has_velocities { 1.0 } else { 0.0 }, 2.0);
         assert!(particles.velocities.iter().all(|v| Vec3::from(*v).distance(expected) < 1e-5));
@@ -172,7 +171,7 @@ fn a_scene_with_a_mesh_and_a_file_runs() {
     assert_eq!(u64::from(simulation.stats().particles), inventory.particles);
     assert_eq!(u64::from(simulation.removed()), inventory.removed);
     assert!(inventory.removed > 10 && inventory.emitted == 0, "{inventory:?}");
-    assert_eq!(inventory.particles + inventory.removed, sample::count(&scene));
+    assert_eq!(inventory.particles + inventory.removed, check::count(&scene));
     let stats = simulation.advance(0.002).expect("it runs");
     assert!(stats.steps > 0 && stats.non_finite == 0 && stats.escaped == 0, "{stats:?}");
     let (forecast, taken) = (memory_forecast(&scene), simulation.memory());

@@ -1,8 +1,8 @@
 //! No file contents make the reader panic, hang or run out of memory.
 
 use proptest::prelude::*;
-use splashdown::sample;
 use splashdown::scene::{Derived, Scene};
+use splashdown::{check, sample};
 
 use crate::{CUBE, changed, parse};
 
@@ -83,7 +83,7 @@ proptest! {
         match parse(&text) {
             Err(errors) => prop_assert!(!errors.errors.is_empty()),
             // Every accepted scene can be sampled.
-            Ok(scene) if sample::count(&scene) <= 1_000_000 => {
+            Ok(scene) if check::count(&scene) <= 1_000_000 => {
                 let particles = sample::particles(&scene);
                 prop_assert!(particles.is_ok(), "{particles:?}");
                 let derived = Derived::new(&scene);
@@ -125,7 +125,7 @@ fn the_sampler_rejects_invalid_scenes_built_in_code() {
         let mut scene = scene.clone();
         scene.fluid.particle_spacing = spacing;
         assert!(sample::particles(&scene).is_err(), "a spacing of {spacing} gave particles");
-        let _ = (sample::count(&scene), Derived::new(&scene));
+        let _ = (check::count(&scene), Derived::new(&scene));
     }
     let mut outside: Scene = scene;
     outside.domain.max.x = 0.2;

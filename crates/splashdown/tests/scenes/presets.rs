@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use splashdown::sample;
 use splashdown::scene::{Derived, Method, Scene, presets};
+use splashdown::{check, sample};
 
 /// The folder of the scenes.
 pub fn folder() -> PathBuf {
@@ -44,7 +44,7 @@ fn presets_have_the_promised_sizes() {
         let (_, text) = presets().iter().find(|(known, _)| *known == name).expect("a preset");
         let scene = Scene::parse(text, name).expect("a preset is valid");
         let particles = sample::particles(&scene).expect("a preset can be sampled");
-        assert_eq!(sample::count(&scene), particles.positions.len() as u64, "{name}");
+        assert_eq!(check::count(&scene), particles.positions.len() as u64, "{name}");
         (particles.positions.len(), scene.solver.method)
     };
     assert_eq!(count("thesis-8k"), (8_192, Method::Mueller2003));

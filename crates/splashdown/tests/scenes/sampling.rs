@@ -1,7 +1,7 @@
 //! Blocks to particles.
 
-use splashdown::sample;
 use splashdown::scene::Scene;
+use splashdown::{check, sample};
 
 use crate::{CUBE, changed, parse};
 
@@ -94,7 +94,7 @@ fn overlapping_blocks_are_sampled_once() {
     let scene = parse(&overlapping).expect("overlap is repaired");
     assert_eq!(scene.warnings.len(), 1);
     let points = positions(&scene);
-    assert_eq!(points.len() as u64, sample::count(&scene));
+    assert_eq!(points.len() as u64, check::count(&scene));
     // 0.76 m of the tank contain fluid: 15 layers of 0.05 m.
     assert_eq!(points.len(), 15 * 100);
     assert!(smallest_distance(&points) > 0.7 * 0.05);
@@ -139,14 +139,14 @@ fn a_block_of_fractional_spacings_touches_its_wall() {
     let full = changed("max = [1, 1, 1]", "max = [1, 1, 1.04]")
         .replace("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.5, 1.04]");
     assert!(low(&full, 2) >= 0.025 && high(&full, 2) <= 1.04 - 0.025);
-    assert_eq!(sample::count(&parse(&full).expect("valid")), 10 * 10 * 20);
+    assert_eq!(check::count(&parse(&full).expect("valid")), 10 * 10 * 20);
 }
 
 #[test]
 fn counting_does_not_create_particles() {
     let mut scene = parse(CUBE).expect("valid");
     scene.fluid.particle_spacing = 0.5e-4;
-    assert_eq!(sample::count(&scene), 1_000_000_000_000);
+    assert_eq!(check::count(&scene), 1_000_000_000_000);
     let error = sample::particles(&scene).expect_err("10^12 particles").to_string();
     let fitting: f32 = error
         .split("particle_spacing of ")
@@ -154,10 +154,10 @@ fn counting_does_not_create_particles() {
         .and_then(|rest| rest.split(' ').next()?.parse().ok())
         .expect("a spacing");
     scene.fluid.particle_spacing = fitting;
-    assert!(sample::count(&scene) <= sample::MAX_PARTICLES);
+    assert!(check::count(&scene) <= sample::MAX_PARTICLES);
     scene.fluid.particle_spacing = fitting * 0.9;
     assert!(
-        sample::count(&scene) > sample::MAX_PARTICLES,
+        check::count(&scene) > sample::MAX_PARTICLES,
         "control: the suggested spacing is not coarser than necessary"
     );
 }
