@@ -3,6 +3,7 @@
 
 use splashdown_gpu::{BufferSet, DispatchSize, PassDesc, Recording};
 
+use crate::boundary::part::Part;
 use crate::cells::Cells;
 use crate::state::Fields;
 
@@ -13,26 +14,16 @@ pub enum Stage {
     BoundaryLookup,
     /// After the density of the fluid: adds the boundary's contribution.
     BoundaryDensity,
-    /// After the accelerations by fluid and walls: boundary forces, their reactions, and the motion of bodies.
-    BoundaryForces,
+    /// After the accelerations by fluid and walls: adds a part of the boundary forces, and the reactions to it.
+    BoundaryForces(Part),
+    /// After all boundary forces: moves the bodies by the reactions.
+    BodyMotion,
     /// After all forces: changes accelerations, or removes particles.
     ExternalForces,
     /// After the integration of the particles: reads the fields before and after it.
     Measurement,
     /// At the end of the step: adds particles.
     Emission,
-}
-
-impl Stage {
-    /// All stages, in the order of the step.
-    pub const ALL: [Self; 6] = [
-        Self::BoundaryLookup,
-        Self::BoundaryDensity,
-        Self::BoundaryForces,
-        Self::ExternalForces,
-        Self::Measurement,
-        Self::Emission,
-    ];
 }
 
 /// A step during its recording. Couplings and schemes append their passes to it.

@@ -35,6 +35,7 @@ use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDe
 use splashdown_io::{Mesh, Particles};
 
 use crate::boundary::KernelPair;
+use crate::boundary::part::Part;
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
@@ -94,6 +95,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &boundary_force::MUELLER,
         &boundary_force::WENDLAND_C2_PRESSURE,
         &boundary_force::WENDLAND_C2_OTHER,
+        &boundary_force::CUBIC_SPLINE_PRESSURE,
+        &boundary_force::CUBIC_SPLINE_OTHER,
         &motion::MOTION,
     ]
 }
@@ -183,12 +186,17 @@ impl Bodies {
         });
     }
 
-    fn record_boundary_force(&self, step: &mut StepRecorder<'_>) {
-        step.dispatch_particles(self.by_kernels(
-            &boundary_force::WENDLAND_C2,
-            &boundary_force::CUBIC_SPLINE,
-            &boundary_force::MUELLER,
-        ));
+    fn record_boundary_force(&self, part: Part, step: &mut StepRecorder<'_>) {
+        step.dispatch_particles(match (self.kernels, part) {
+            (KernelPair::WendlandC2, Part::All) => &boundary_force::WENDLAND_C2,
+            (KernelPair::WendlandC2, Part::Pressure) => &boundary_force::WENDLAND_C2_PRESSURE,
+            (KernelPair::WendlandC2, Part::Other) => &boundary_force::WENDLAND_C2_OTHER,
+            (KernelPair::CubicSpline, Part::All) => &boundary_force::CUBIC_SPLINE,
+            (KernelPair::CubicSpline, Part::Pressure) => &boundary_force::CUBIC_SPLINE_PRESSURE,
+            (KernelPair::CubicSpline, Part::Other) => &boundary_force::CUBIC_SPLINE_OTHER,
+            (KernelPair::Mueller, Part::All) => &boundary_force::MUELLER,
+            (KernelPair::Mueller, _) => panic!("mueller2003 has no pass for {part:?}"),
+        });
     }
 
     fn record_motion(&self, step: &mut StepRecorder<'_>) {
@@ -392,7 +400,14 @@ impl Bodies {
 
 impl Coupling for Bodies {
     fn stages(&self) -> &'static [Stage] {
-        &[Stage::BoundaryLookup, Stage::BoundaryDensity, Stage::BoundaryForces]
+        &[
+            Stage::BoundaryLookup,
+            Stage::BoundaryDensity,
+            Stage::BoundaryForces(Part::All),
+            Stage::BoundaryForces(Part::Pressure),
+            Stage::BoundaryForces(Part::Other),
+            Stage::BodyMotion,
+        ]
     }
 
     fn buffers(&self) -> BufferSet {
@@ -403,10 +418,8 @@ impl Coupling for Bodies {
         match stage {
             Stage::BoundaryLookup => self.record_boundary_lookup(step),
             Stage::BoundaryDensity => self.record_boundary_density(step),
-            _ => {
-                self.record_boundary_force(step);
-                self.record_motion(step);
-            }
+            Stage::BoundaryForces(part) => self.record_boundary_force(part, step),
+            _ => self.record_motion(step),
         }
     }
 }

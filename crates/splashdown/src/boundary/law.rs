@@ -2,6 +2,8 @@
 //!
 //! Velocities are relative to the boundary. The WGSL side is `law.wgsl`.
 
+use glam::Vec3;
+
 use crate::state::Params;
 
 /// The smallest distance of a particle from a boundary, in spacings. A particle that would come nearer within a step
@@ -35,5 +37,11 @@ pub(crate) fn implicit_rate(k: f32, dt: f32) -> f32 {
 /// The largest speed towards a boundary at this distance, in m/s, that respects the [`CLEARANCE`] after a step.
 #[inline(always)]
 pub(crate) fn contact_speed(params: &Params, distance: f32, dt: f32) -> f32 {
-    (distance - CLEARANCE * params.particle_spacing).max(0.0) / dt
+    contact_speeds(params, Vec3::splat(distance), dt).x
+}
+
+/// [`contact_speed`] for the distances of three planes.
+#[inline(always)]
+pub(crate) fn contact_speeds(params: &Params, distances: Vec3, dt: f32) -> Vec3 {
+    (distances - Vec3::splat(CLEARANCE * params.particle_spacing)).max(Vec3::ZERO) / dt
 }

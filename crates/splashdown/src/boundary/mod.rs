@@ -8,8 +8,10 @@
 //! | pressure force, with its reaction | [`WallTerms::acceleration`] with [`part::PRESSURE`] | `bodies.boundary_force.*.pressure` |
 //! | all other forces, with theirs | [`WallTerms::acceleration`] with [`part::OTHER`] | `bodies.boundary_force.*.other` |
 //!
-//! An explicit scheme uses [`part::ALL`], which computes both in one pass. An implicit solver repeats the pressure part
-//! alone.
+//! An explicit scheme requests [`Part::All`](part::Part::All), which computes both forces in one pass. A scheme that
+//! treats the pressure implicitly requests the other forces and the pressure separately: the operation `acceleration` of
+//! its step for fluid and walls, and the stage [`BoundaryForces`](crate::coupling::Stage::BoundaryForces) for bodies.
+//! Every request adds its reaction to the sums of the bodies.
 
 mod contact;
 pub(crate) mod law;

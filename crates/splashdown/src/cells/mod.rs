@@ -182,11 +182,13 @@ fn bound(
 ) -> (&'static PassDesc, BufferSet) {
     let buffers = buffers.clone();
     match arrays {
-        Reordered::Scalar { persistent, sorted } => {
-            (scalar, buffers.with("carried", persistent).with("sorted_carried", sorted))
-        }
-        Reordered::Vector { persistent, sorted } => {
-            (vector, buffers.with("carried", persistent).with("sorted_carried", sorted))
-        }
+        Reordered::Scalar { persistent, sorted, emitted } => (
+            scalar,
+            buffers.with("carried", persistent).with("sorted_carried", sorted).with("emitted", emitted),
+        ),
+        Reordered::Vector { persistent, sorted, emitted } => (
+            vector,
+            buffers.with("carried", persistent).with("sorted_carried", sorted).with("emitted", emitted),
+        ),
     }
 }

@@ -29,8 +29,7 @@ fn kernel_g(q: f32) -> f32 {
         return 48.0 / PI * select(-t * t / max(q, 0.5), 3.0 * q - 2.0, q <= 0.5);
     }
     if (KERNEL == 2u) {
-        let s = max(1.0 - q * q, 0.0);
-        return -945.0 / (32.0 * PI) * s * s;
+        return poly6_g(q);
     }
     return -45.0 / PI * t * t / max(q, SMALLEST_Q);
 }

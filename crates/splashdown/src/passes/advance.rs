@@ -149,8 +149,11 @@ impl<'a> Mover<'a> {
         let p = p.xyz();
         let is_inner = p.cmpgt(inner[0]).all() && p.cmplt(inner[1]).all();
         if !is_inner {
-            let free = Vec3::splat(law::CLEARANCE * params.particle_spacing);
-            v = v.max(-(p - low - free).max(Vec3::ZERO) / dt).min((high - p - free).max(Vec3::ZERO) / dt);
+            v = v.max(-law::contact_speeds(params, p - low, dt)).min(law::contact_speeds(
+                params,
+                high - p,
+                dt,
+            ));
         }
         let mut x = p + dt * v;
         // `max` and `min` ignore a NaN operand, so the acceleration and the density are tested in addition to the result.

@@ -38,6 +38,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &acceleration::CUBIC_SPLINE,
         &acceleration::WENDLAND_C2_PRESSURE,
         &acceleration::WENDLAND_C2_OTHER,
+        &acceleration::CUBIC_SPLINE_PRESSURE,
+        &acceleration::CUBIC_SPLINE_OTHER,
         &force_integrate::WENDLAND_C2,
         &force_integrate::CUBIC_SPLINE,
         &mueller::MUELLER,

@@ -15,10 +15,12 @@ mod grid;
 mod sources;
 mod spacing;
 
+use std::iter::repeat_n;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use serde::Serialize;
-use splashdown_io::{IoError, Particles};
+use splashdown_io::{Attribute, IoError, Particles};
 
 use crate::bodies::{BodyError, LoadedBody};
 use crate::scene::{DensityMode, Fluid, Scene, place};
@@ -207,6 +209,10 @@ pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &
         retain_flagged(&mut particles.ids, &kept);
         retain_flagged(&mut particles.densities, &kept);
         retain_flagged(&mut particles.pressures, &kept);
+        for Attribute { components, values, .. } in &mut particles.attributes {
+            let kept: Vec<bool> = kept.iter().flat_map(|&kept| repeat_n(kept, *components)).collect();
+            retain_flagged(values, &kept);
+        }
     }
     removed as u32
 }

@@ -21,7 +21,11 @@ pub use step::{Couplings, Step};
 use splashdown_gpu::{DispatchSize, Recording};
 
 use crate::boundary::KernelPair;
+#[cfg(test)]
+use crate::boundary::part::Part;
 use crate::cells::{self, Cells};
+#[cfg(test)]
+use crate::coupling::Stage;
 use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
 use crate::state::{Fields, begin};
 
@@ -101,6 +105,26 @@ impl Scheme {
         step.initial_state();
         step.finish()
     }
+}
+
+/// The passes of a step up to the accelerations, of which only a part is computed.
+#[cfg(test)]
+pub(crate) fn part_of_forces(
+    scheme: Scheme,
+    cells: &Cells,
+    fields: &Fields,
+    couplings: &Couplings<'_>,
+    particles: u32,
+    part: Part,
+) -> Recording {
+    let mut step = Step::new(scheme, "part of forces", cells, fields, couplings, particles);
+    step.sort();
+    step.couple(Stage::BoundaryLookup);
+    step.density_and_pressure();
+    step.couple(Stage::BoundaryDensity);
+    step.acceleration(part);
+    step.couple(Stage::BoundaryForces(part));
+    step.finish()
 }
 
 /// Begins a frame whose duration is in the buffer `duration`, and counts the particles for the first sort.

@@ -1,6 +1,7 @@
 //! The scheme of Müller, Charypar & Gross 2003, which the thesis uses.
 
 use super::Step;
+use crate::boundary::part::Part;
 use crate::coupling::Stage;
 
 /// Viscosity that this scheme adds to the material's, over c0 H. Its density (poly6) and its pressure (spiky) do not
@@ -15,8 +16,9 @@ pub(super) fn mueller2003(step: &mut Step<'_>) {
     step.couple(Stage::BoundaryLookup);
     step.density_and_pressure();
     step.couple(Stage::BoundaryDensity);
-    step.acceleration();
-    step.couple(Stage::BoundaryForces);
+    step.acceleration(Part::All);
+    step.couple(Stage::BoundaryForces(Part::All));
+    step.couple(Stage::BodyMotion);
     step.couple(Stage::ExternalForces);
     step.integrate();
     step.couple(Stage::Measurement);

@@ -4,6 +4,7 @@ use splashdown_gpu::{DispatchSize, PassDesc, Recording};
 
 use super::Scheme;
 use crate::bodies::Bodies;
+use crate::boundary::part::Part;
 use crate::cells::Cells;
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::flow::Flow;
@@ -129,13 +130,26 @@ impl<'a> Step<'a> {
         self.recorder.dispatch_particles(pass);
     }
 
-    /// Accelerations by fluid, walls and body forces, in one loop over the neighbours.
-    pub(super) fn acceleration(&mut self) {
-        let wcsph = self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE);
-        self.recorder.dispatch_particles(match self.scheme.method {
-            Method::Wcsph => wcsph,
-            Method::Mueller2003 => &mueller::MUELLER,
-        });
+    /// Accelerations by a part of the forces of fluid, walls and body forces, in one loop over the neighbours. They
+    /// replace the previous accelerations. The forces of bodies follow by [`Stage::BoundaryForces`] of the same part.
+    ///
+    /// # Panics
+    /// If the scheme is `mueller2003`, which computes all forces in one pass, and the part is another.
+    pub(super) fn acceleration(&mut self, part: Part) {
+        let pass = match (self.scheme.method, part) {
+            (Method::Wcsph, Part::All) => {
+                self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE)
+            }
+            (Method::Wcsph, Part::Pressure) => {
+                self.by_kernel(&acceleration::WENDLAND_C2_PRESSURE, &acceleration::CUBIC_SPLINE_PRESSURE)
+            }
+            (Method::Wcsph, Part::Other) => {
+                self.by_kernel(&acceleration::WENDLAND_C2_OTHER, &acceleration::CUBIC_SPLINE_OTHER)
+            }
+            (Method::Mueller2003, Part::All) => &mueller::MUELLER,
+            (Method::Mueller2003, _) => panic!("mueller2003 has no pass for {part:?}"),
+        };
+        self.recorder.dispatch_particles(pass);
     }
 
     /// Forces and integration in one pass.
@@ -183,8 +197,8 @@ impl<'a> Step<'a> {
         recording.copy(fields.sorted_velocities, fields.velocities);
         for arrays in fields.carried.iter().filter_map(CarriedArrays::reordered) {
             match arrays {
-                Reordered::Scalar { persistent, sorted } => recording.copy(sorted, persistent),
-                Reordered::Vector { persistent, sorted } => recording.copy(sorted, persistent),
+                Reordered::Scalar { persistent, sorted, .. } => recording.copy(sorted, persistent),
+                Reordered::Vector { persistent, sorted, .. } => recording.copy(sorted, persistent),
             }
         }
         if self.scheme.is_density_integrated {

@@ -1,6 +1,7 @@
 //! Weakly compressible SPH (Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009).
 
 use super::Step;
+use crate::boundary::part::Part;
 use crate::coupling::Stage;
 
 /// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. Fitted with `examples/droplet.rs`: the period of an
@@ -18,8 +19,9 @@ pub(super) fn wcsph(step: &mut Step<'_>) {
         return step.force_integrate();
     }
     step.surface_normals();
-    step.acceleration();
-    step.couple(Stage::BoundaryForces);
+    step.acceleration(Part::All);
+    step.couple(Stage::BoundaryForces(Part::All));
+    step.couple(Stage::BodyMotion);
     step.couple(Stage::ExternalForces);
     step.integrate();
     step.couple(Stage::Measurement);

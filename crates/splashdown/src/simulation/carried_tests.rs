@@ -6,6 +6,7 @@ use splashdown_io::Particles;
 
 use super::Simulation;
 use crate::Scene;
+use crate::scene::Sort;
 use crate::state::{Carried, DENSITIES, IDS, Kind, POSITIONS, Update, VELOCITIES};
 
 /// A constant scalar.
@@ -14,6 +15,7 @@ const TAG: Carried = Carried {
     sorted: Some("sorted_tags"),
     kind: Kind::F32,
     update: Update::Constant,
+    emitted: [EMITTED, 0.0, 0.0, 0.0],
     initial: Some(|start, i| [start.attribute("tag", i, tag(i as u32)).to_bits(), 0, 0, 0]),
     output: |mut particles, values| {
         particles.attributes.push(values.attribute("tag"));
@@ -27,6 +29,7 @@ const SPIN: Carried = Carried {
     sorted: Some("sorted_spins"),
     kind: Kind::Vec4,
     update: Update::Constant,
+    emitted: [0.0, 0.0, 0.0, -EMITTED],
     initial: Some(|_, i| [tag(i as u32), 1.0, 2.0, -tag(i as u32)].map(f32::to_bits)),
     output: |mut particles, values| {
         let mut attribute = values.attribute("spin");
@@ -37,6 +40,11 @@ const SPIN: Carried = Carried {
 };
 
 static TABLE: &[Carried] = &[POSITIONS, VELOCITIES, DENSITIES, IDS, TAG, SPIN];
+
+const _: () = Carried::check(TABLE);
+
+/// The value of emitted particles.
+const EMITTED: f32 = -1.0;
 
 /// The value of the particle with this id.
 fn tag(id: u32) -> f32 {
@@ -53,15 +61,24 @@ fn scene() -> Scene {
 }
 
 fn start(executor: Executor) -> Simulation {
-    let scene = scene();
-    let particles = crate::sample::particles(&scene).unwrap();
-    block_on(Simulation::with_bodies(&scene, executor, &particles, Vec::new(), TABLE)).unwrap()
+    start_scene(&scene(), executor)
+}
+
+fn start_scene(scene: &Scene, executor: Executor) -> Simulation {
+    let particles = crate::sample::particles(scene).unwrap();
+    block_on(Simulation::with_bodies(scene, executor, &particles, Vec::new(), TABLE)).unwrap()
 }
 
 /// The number of particles whose values do not match their ids.
 fn mismatches(particles: &Particles) -> usize {
+    mismatches_with_emitters(particles, u32::MAX)
+}
+
+/// The number of particles whose values do not match their ids. Particles with ids from `initial` are emitted.
+fn mismatches_with_emitters(particles: &Particles, initial: u32) -> usize {
     let [tags, spins] = &particles.attributes[..] else { panic!("{:?}", particles.attributes) };
-    let wrong = |i: usize, id: u32| tags.values[i] != tag(id) || spins.values[i] != -tag(id);
+    let expected = |id: u32| if id < initial { tag(id) } else { EMITTED };
+    let wrong = |i: usize, id: u32| tags.values[i] != expected(id) || spins.values[i] != -expected(id);
     particles.ids.iter().enumerate().filter(|&(i, &id)| wrong(i, id)).count()
 }
 
@@ -111,5 +128,63 @@ fn additional_rows_do_not_change_the_other_quantities() {
     assert_eq!(particles, plain.particles().unwrap());
     // A persistent and a sorted array for the scalar (4 bytes) and for the vector (16 bytes).
     let more = with_rows.memory() - plain.memory();
-    assert_eq!(more, particles.len() as u64 * 2 * (4 + 16));
+    assert_eq!(more, (2 * particles.len() as u64 + 1) * (4 + 16));
+}
+
+#[test]
+fn the_bitonic_sort_moves_the_quantities_too() {
+    for (name, executor) in testing::executors("the_bitonic_sort_moves_the_quantities_too") {
+        let mut scene = scene();
+        scene.solver.sort = Sort::Bitonic;
+        let mut simulation = start_scene(&scene, executor);
+        simulation.advance(0.1).unwrap();
+        assert_eq!(mismatches(&simulation.particles().unwrap()), 0, "{name}");
+    }
+}
+
+#[test]
+fn emitted_particles_do_not_inherit_the_quantities_of_removed_ones() {
+    let text = "[scene]\nname = \"channel\"\nduration = 1.0\ngravity = [0, 0, 0]\n\
+                [domain]\nmin = [0, 0, 0]\nmax = [0.6, 0.4, 0.4]\n\
+                [fluid]\nparticle_spacing = 0.025\n\
+                [[fluid.block]]\nposition = [0.2, 0.1, 0.1]\nsize = [0.1, 0.2, 0.2]\nvelocity = [1, 0, 0]\n\
+                [[emitter]]\nname = \"inlet\"\nradius = 0.05\nposition = [0.05, 0.2, 0.2]\ndirection = [1, 0, 0]\nspeed = 1.0\n\
+                [[sink]]\nname = \"outlet\"\nmin = [0.4, 0, 0]\nmax = [0.6, 0.4, 0.4]\n\
+                [surface]\nenabled = false\n";
+    let scene = Scene::parse(text, "channel.toml").unwrap();
+    for (name, executor) in
+        testing::executors("emitted_particles_do_not_inherit_the_quantities_of_removed_ones")
+    {
+        let mut simulation = start_scene(&scene, executor);
+        let initial = simulation.particles().unwrap().len() as u32;
+        let capacity = simulation.params().particle_count;
+        let mut stats = simulation.stats();
+        while stats.time < 1.2 {
+            stats = simulation.advance(0.05).unwrap();
+            let particles = simulation.particles().unwrap();
+            assert_eq!(mismatches_with_emitters(&particles, initial), 0, "{name}: at {} s", stats.time);
+        }
+        // Control: emitted particles use the entries of drained ones.
+        assert!(stats.drained > initial / 2, "{name}: {stats:?}");
+        assert!(stats.emitted + initial > capacity, "{name}: {stats:?}, capacity {capacity}");
+    }
+}
+
+#[test]
+fn a_body_that_displaces_particles_does_not_shift_the_quantities() {
+    let mut scene = scene();
+    let mut simulation = start_scene(&scene, CpuExecutor::new().into());
+    simulation.advance(0.05).unwrap();
+    let before = simulation.particles().unwrap().len();
+    let text = "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nscale = 0.15\nposition = [0.15, 0.1, 0.2]\n";
+    scene = Scene::parse(&format!("{}\n{text}", scene.text), "column.toml").unwrap();
+    let mut rebuilt = simulation.rebuild_with(&scene).unwrap();
+    let particles = rebuilt.particles().unwrap();
+    assert!(particles.len() < before, "{} of {before}", particles.len());
+    // Ids are counted again, but positions and tags remain those of the same particles.
+    let old = simulation.particles().unwrap();
+    for (x, value) in particles.positions.iter().zip(&particles.attributes[0].values) {
+        let i = old.positions.iter().position(|other| other == x).expect("the particle has not moved");
+        assert_eq!(*value, old.attributes[0].values[i]);
+    }
 }

@@ -7,6 +7,8 @@ mod foam;
 mod frame;
 mod inventory;
 mod live;
+#[cfg(test)]
+mod part_tests;
 mod phases;
 mod results;
 mod start;

@@ -64,10 +64,30 @@ pub struct Carried {
     pub kind: Kind,
     /// What a step does with it.
     pub update: Update,
+    /// The value of an emitted particle, if passes of their own reorder the quantity; not used otherwise.
+    pub emitted: [f32; 4],
     /// The value of a particle at the start, as bits; `None` if the first density pass computes it.
     pub initial: Option<fn(&Initial<'_>, usize) -> [u32; 4]>,
     /// Puts the values of the active particles into what the simulation hands out.
     pub output: fn(Particles, &Ordered<'_>) -> Particles,
+}
+
+impl Carried {
+    /// Panics if there is no pass for a row. Called in a constant, it is an error of the compiler.
+    pub const fn check(table: &[Self]) {
+        let mut row = 0;
+        while row < table.len() {
+            let Self { sorted, kind, update, .. } = &table[row];
+            let has_sorted = !matches!(update, Update::Derived);
+            assert!(
+                sorted.is_some() == has_sorted,
+                "all rows but those of Update::Derived have a sorted array"
+            );
+            let has_pass = matches!(kind, Kind::F32 | Kind::Vec4);
+            assert!(has_pass || !update.needs_reordering(), "there is no pass that reorders this type");
+            row += 1;
+        }
+    }
 }
 
 /// The particles at the start of a simulation.
@@ -79,7 +99,7 @@ pub struct Initial<'a> {
 }
 
 impl Initial<'_> {
-    /// The value of an attribute of the particles, or `otherwise` where there is none: for the rows of the table whose
+    /// The value of an attribute of a particle, or `otherwise` if it has none: for the rows of the table whose
     /// quantity is an attribute in [`Particles`]. Particles that a scene places have no attributes.
     pub fn attribute(&self, name: &str, i: usize, otherwise: f32) -> f32 {
         let found = self.particles.attributes.iter().find(|attribute| attribute.name == name);
@@ -126,6 +146,7 @@ pub(crate) const POSITIONS: Carried = Carried {
     sorted: Some("sorted_positions"),
     kind: Kind::Vec4,
     update: Update::Motion,
+    emitted: [0.0; 4],
     initial: Some(|start, i| match start.particles.positions.get(i) {
         Some(&x) => bits(Vec3::from(x).extend(0.0)),
         None => bits(start.params.domain_min.extend(DEAD_UNBORN)),
@@ -142,6 +163,7 @@ pub(crate) const VELOCITIES: Carried = Carried {
     sorted: Some("sorted_velocities"),
     kind: Kind::Vec4,
     update: Update::Motion,
+    emitted: [0.0; 4],
     initial: Some(|start, i| {
         let velocity = start.particles.velocities.get(i).map_or(Vec3::ZERO, |&v| v.into());
         // Passes divide by densities. A density that is not positive becomes NaN, so that the particle is removed
@@ -160,6 +182,7 @@ pub(crate) const DENSITIES: Carried = Carried {
     sorted: None,
     kind: Kind::Vec2,
     update: Update::Derived,
+    emitted: [0.0; 4],
     initial: None,
     output: |particles, values| particles.with_densities(values.scalars(0)).with_pressures(values.scalars(1)),
 };
@@ -170,6 +193,7 @@ pub(crate) const IDS: Carried = Carried {
     sorted: Some("sorted_ids"),
     kind: Kind::U32,
     update: Update::Motion,
+    emitted: [0.0; 4],
     initial: Some(|start, i| {
         // Particles of higher index are not emitted yet.
         let n = start.particles.len();
@@ -186,6 +210,8 @@ pub(crate) const IDS: Carried = Carried {
 
 /// The quantities of every simulation. The order is that of the entries in a checkpoint.
 pub static CARRIED: &[Carried] = &[POSITIONS, VELOCITIES, DENSITIES, IDS];
+
+const _: () = Carried::check(CARRIED);
 
 /// The bits of a vector.
 pub fn bits(v: Vec4) -> [u32; 4] {
@@ -329,6 +355,8 @@ pub struct CarriedArrays {
     pub persistent: Array,
     /// In the order of the cells.
     pub sorted: Option<Array>,
+    /// The value of an emitted particle, in one entry; `None` if no pass of its own reorders the quantity.
+    emitted: Option<Array>,
 }
 
 /// Persistent and sorted array of a quantity that passes of their own reorder.
@@ -340,6 +368,8 @@ pub enum Reordered {
         persistent: Buffer<f32>,
         /// In the order of the cells.
         sorted: Buffer<f32>,
+        /// The value of an emitted particle.
+        emitted: Buffer<f32>,
     },
     /// Of [`Kind::Vec4`].
     Vector {
@@ -347,6 +377,8 @@ pub enum Reordered {
         persistent: Buffer<Vec4>,
         /// In the order of the cells.
         sorted: Buffer<Vec4>,
+        /// The value of an emitted particle.
+        emitted: Buffer<Vec4>,
     },
 }
 
@@ -361,30 +393,30 @@ impl CarriedArrays {
         n: usize,
     ) -> Result<Vec<Self>, GpuError> {
         let create = |quantity: &'static Carried| {
-            let mut array = |label| Array::create(executor, label, quantity.kind, n);
-            let persistent = array(quantity.name)?;
-            let sorted = quantity.sorted.map(array).transpose()?;
-            Ok(Self { quantity, persistent, sorted })
+            let mut array = |label, n| Array::create(executor, label, quantity.kind, n);
+            let persistent = array(quantity.name, n)?;
+            let sorted = quantity.sorted.map(|label| array(label, n)).transpose()?;
+            let mut emitted = None;
+            if quantity.update.needs_reordering() {
+                let one = array("emitted", 1)?;
+                one.write(executor, &quantity.emitted.map(f32::to_bits)[..quantity.kind.components()])?;
+                emitted = Some(one);
+            }
+            Ok(Self { quantity, persistent, sorted, emitted })
         };
         table.iter().map(create).collect()
     }
 
     /// The arrays if passes of their own reorder the quantity.
     pub fn reordered(&self) -> Option<Reordered> {
-        if !self.quantity.update.needs_reordering() {
-            return None;
-        }
-        match (self.persistent, self.sorted) {
-            (Array::F32(persistent), Some(Array::F32(sorted))) => {
-                Some(Reordered::Scalar { persistent, sorted })
+        match (self.persistent, self.sorted, self.emitted) {
+            (Array::F32(persistent), Some(Array::F32(sorted)), Some(Array::F32(emitted))) => {
+                Some(Reordered::Scalar { persistent, sorted, emitted })
             }
-            (Array::Vec4(persistent), Some(Array::Vec4(sorted))) => {
-                Some(Reordered::Vector { persistent, sorted })
+            (Array::Vec4(persistent), Some(Array::Vec4(sorted)), Some(Array::Vec4(emitted))) => {
+                Some(Reordered::Vector { persistent, sorted, emitted })
             }
-            _ => unreachable!(
-                "the carried quantity {} has no sorted array, or a type without a pass that reorders it",
-                self.quantity.name
-            ),
+            _ => None,
         }
     }
 

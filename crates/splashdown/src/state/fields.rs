@@ -116,8 +116,11 @@ impl Fields {
 
     /// The buffers by name, for recordings.
     pub fn buffers(&self) -> BufferSet {
-        let mut set =
-            buffer_set!(self => params, state, duration, counters, wall_table, accelerations, normals);
+        // The names of the fields are compared with the labels in the table.
+        let mut set = buffer_set!(self =>
+            params, state, duration, counters, wall_table, positions, velocities, ids, sorted_positions,
+            sorted_velocities, sorted_ids, densities, accelerations, normals,
+        );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));
         set
     }

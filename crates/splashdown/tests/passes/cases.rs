@@ -249,11 +249,11 @@ fn same_motion(
 /// `counts`: whether the pass counts the particles for the next step.
 fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bool) -> Case {
     let mut world = World::new(params, 1500);
-    let (living, n) = (world.living(), world.len());
+    let (active, n) = (world.active(), world.len());
     let signed = |i: usize| testing::noise(i as u32 + 9) as f32 / (u32::MAX / 2) as f32 - 1.0;
     let mut accelerations: Vec<Vec4> =
         (0..n).map(|i| 50.0 * Vec4::new(signed(3 * i), signed(3 * i + 1), signed(3 * i + 2), 0.0)).collect();
-    for (i, a) in accelerations.iter_mut().enumerate().take(living) {
+    for (i, a) in accelerations.iter_mut().enumerate().take(active) {
         match i % 50 {
             // Faster than half a spacing per step, some by orders of magnitude.
             7 => world.velocities[i].x = 80.0 * signed(i),

@@ -60,8 +60,8 @@ fn plan() -> Case {
     // Room for the first and the second, but not for another one like the first; the last has reached its limit.
     let mut nozzles = due.clone();
     nozzles.extend([due[0], Nozzle { most: 100, ..due[1] }]);
-    let living = world.living() as u32;
-    world.params.particle_count = living + 25;
+    let active = world.active() as u32;
+    world.params.particle_count = active + 25;
     let dt = world.state.dt;
     let phases = [SPACING, 0.999_9 * SPACING, SPACING, SPACING, SPACING, SPACING];
     let emitted = [24, 0, 0, 0, 5, 95];
@@ -79,7 +79,7 @@ fn plan() -> Case {
     let mut set = |k: usize, word: usize, value: u32| expected[k * EmissionSchedule::WORDS + word] = value;
     let rest =
         |k: usize| (f64::from(phases[k]) + f64::from(due[k % 4].speed * dt) - f64::from(SPACING)) as f32;
-    for (k, slot, id) in [(0, living, 4000), (1, living + 12, 4012)] {
+    for (k, slot, id) in [(0, active, 4000), (1, active + 12, 4012)] {
         set(k, EmissionSchedule::PHASE, rest(k).to_bits());
         set(k, EmissionSchedule::DISTANCE, rest(k).to_bits());
         set(k, EmissionSchedule::LAYER, due[k].points);
@@ -125,9 +125,9 @@ fn plan() -> Case {
 fn emit() -> Case {
     let world = World::new(params(2.0), 1500);
     let (nozzles, points) = (nozzles(), points());
-    let living = world.living();
+    let active = world.active();
     let mut plans = vec![0; 4 * EmissionSchedule::WORDS + 1];
-    for (k, slot, id) in [(0, living, 9000), (1, living + 12, 9012)] {
+    for (k, slot, id) in [(0, active, 9000), (1, active + 12, 9012)] {
         let plan = &mut plans[k * EmissionSchedule::WORDS..];
         plan[EmissionSchedule::EMITTED] = 5;
         plan[EmissionSchedule::LAYER] = nozzles[k].points;
@@ -135,8 +135,8 @@ fn emit() -> Case {
         plan[EmissionSchedule::ID] = id;
         plan[EmissionSchedule::DISTANCE] = 0.004_f32.to_bits();
     }
-    // After the living particles: dead ones and unused slots.
-    let n = living + 25;
+    // After the active particles: dead ones and unused slots.
+    let n = active + 25;
     let mut positions = world.positions.clone();
     positions.resize(n, Vec4::new(0.0, 0.0, 0.0, DEAD_UNBORN));
     let mut velocities = world.velocities.clone();
@@ -161,11 +161,11 @@ fn emit() -> Case {
                 blocked += 1;
                 continue;
             }
-            let slot = living + if k == 0 { 0 } else { 12 } + place;
+            let slot = active + if k == 0 { 0 } else { 12 } + place;
             expected.0[k * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] += 1;
             expected.1[slot] = x.as_vec3().extend(0.0);
             expected.2[slot] = (nozzle.speed * nozzle.direction).extend(1000.0);
-            expected.3[slot] = 9000 + (slot - living) as u32;
+            expected.3[slot] = 9000 + (slot - active) as u32;
             expected.4[slot] = Vec2::new(1000.0, 0.0);
         }
     }
@@ -224,7 +224,7 @@ fn drive() -> Case {
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
     let mut expected = accelerations.clone();
     let mut driven = 0;
-    for (i, a) in expected.iter_mut().enumerate().take(world.living()) {
+    for (i, a) in expected.iter_mut().enumerate().take(world.active()) {
         let holds = |nozzle: &Nozzle| {
             let o: DVec3 = (world.positions[i].xyz() - nozzle.back).as_dvec3();
             let [along, a, b] =
@@ -239,7 +239,7 @@ fn drive() -> Case {
             driven += 1;
         }
     }
-    assert!(driven > 20 && driven < world.living() / 2, "{driven}");
+    assert!(driven > 20 && driven < world.active() / 2, "{driven}");
     let same = |a: &[f32], b: &[f32]| {
         let b = wide(b);
         let tolerance: Vec<f64> = b.iter().map(|b| 2e-6 * b.abs() + 1e-3).collect();
@@ -311,7 +311,7 @@ fn drain() -> Case {
     };
     let mut expected = world.positions.clone();
     let mut by = [0; 3];
-    for p in &mut expected[..world.living()] {
+    for p in &mut expected[..world.active()] {
         let x = p.xyz();
         let within = |drain: &SinkShape| x.cmpge(drain.low).all() && x.cmplt(drain.high).all();
         let takes =

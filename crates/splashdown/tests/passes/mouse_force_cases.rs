@@ -22,7 +22,7 @@ fn mouse_force() -> Case {
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
     let mut expected: Vec<f64> = wide(Data::Vec4(accelerations.clone()).floats());
     let mut stirred = 0;
-    for i in 0..world.living() {
+    for i in 0..world.active() {
         // The component of the remaining velocity perpendicular to the axis, by two cross products.
         let (x, v): (DVec3, DVec3) =
             (world.positions[i].xyz().as_dvec3(), world.velocities[i].xyz().as_dvec3());
@@ -37,7 +37,7 @@ fn mouse_force() -> Case {
             stirred += 1;
         }
     }
-    assert!(stirred > 20 && stirred < world.living() / 2, "{stirred}");
+    assert!(stirred > 20 && stirred < world.active() / 2, "{stirred}");
     let same = |a: &[f32], b: &[f64]| {
         let tolerance: Vec<f64> = b.iter().map(|b| 2e-6 * b.abs() + 2e-5).collect();
         close("accelerations", a, b, &tolerance)

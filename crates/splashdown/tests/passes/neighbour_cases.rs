@@ -60,16 +60,14 @@ pub fn cases() -> Vec<Case> {
             (".pressure", Parts { pressure: true, other: false }),
             (".other", Parts { pressure: false, other: true }),
         ] {
-            if kernels.density == Kernel::WendlandC2 {
-                cases.push(part_of_acceleration(suffix, "walls", kernels, params(2.0), parts));
-                cases.push(part_of_acceleration(
-                    suffix,
-                    "surface tension, open above",
-                    kernels,
-                    tension_open(),
-                    parts,
-                ));
-            }
+            cases.push(part_of_acceleration(suffix, "walls", kernels, params(2.0), parts));
+            cases.push(part_of_acceleration(
+                suffix,
+                "surface tension, open above",
+                kernels,
+                tension_open(),
+                parts,
+            ));
         }
         cases.push(motion("pressure, viscosities, walls", kernels, params(2.0), 0.01));
         cases.push(motion("wider support, clamped, open above", kernels, rich, 0.01));
@@ -102,7 +100,7 @@ struct Expected {
 }
 
 impl Expected {
-    /// The `poison` entries after the living particles stay unchanged.
+    /// The `poison` entries after the active particles stay unchanged.
     fn new() -> Self {
         Self { values: Vec::new(), rounding: Vec::new(), tables: Vec::new() }
     }
@@ -300,7 +298,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
         tolerances[0].extend([2e-7 + dt * velocity; 4]);
         tolerances[1].extend([velocity; 4]);
     }
-    // The dead particles after the living ones stay unchanged.
+    // The dead particles after the active ones stay unchanged.
     tolerances.iter_mut().for_each(|list| list.resize(4 * world.len(), 0.0));
     let grid = world.grid;
     let is_last = world.state.is_last_step();

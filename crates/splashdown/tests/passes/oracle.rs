@@ -104,10 +104,10 @@ fn speed(world: &World, i: usize) -> DVec3 {
     world.velocities[i].xyz().as_dvec3()
 }
 
-/// Calls `visit(j, x_i - x_j)` for all living particles within the support, itself included.
+/// Calls `visit(j, x_i - x_j)` for all active particles within the support, itself included.
 fn neighbours(world: &World, i: usize, mut visit: impl FnMut(usize, DVec3)) {
     let (x, reach) = (place(world, i), f64::from(world.params.support_radius));
-    for j in 0..world.living() {
+    for j in 0..world.active() {
         let d = x - place(world, j);
         if d.length_squared() < reach * reach {
             visit(j, d);
@@ -132,7 +132,7 @@ pub fn density(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<f64> {
         neighbours(world, i, |_, d| sum += kernel.w(d.length() / c.support));
         c.mass * sum / c.support.powi(3) + c.rest * walls[i].density
     };
-    (0..world.living()).map(sum).collect()
+    (0..world.active()).map(sum).collect()
 }
 
 /// n_i = H sum (m / rho_j) grad W.
@@ -145,7 +145,7 @@ pub fn normals(world: &World, kernel: Kernel) -> Vec<Sum> {
         });
         sum
     };
-    (0..world.living()).map(sum).collect()
+    (0..world.active()).map(sum).collect()
 }
 
 /// The density after a step of the continuity equation; `value.x` of the sum.
@@ -169,7 +169,7 @@ pub fn continuity(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
         add(c.dt * 2.0 * rho(i) * speed(world, i).dot(walls[i].gradient));
         sum
     };
-    (0..world.living()).map(step).collect()
+    (0..world.active()).map(step).collect()
 }
 
 /// The sum of the neighbours (`pairs`) and of the walls, whose pressure force has the factor `push` = 2 p / rho.
@@ -273,7 +273,7 @@ pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts)
         let push = c.rest * (own.y / own.x.powi(2) + own.y / c.rest.powi(2));
         contact(world, &c, i, &walls[i], sum, push, parts)
     };
-    (0..world.living()).map(sum).collect()
+    (0..world.active()).map(sum).collect()
 }
 
 /// The gradient of the colour field over its threshold, per particle: near one, rounding determines whether there is
@@ -309,11 +309,11 @@ pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
         }
         (contact(world, &c, i, &walls[i], sum, own.y / own.x, Parts::ALL), Steepness(steepness * 2.0 * h))
     };
-    (0..world.living()).map(sum).collect()
+    (0..world.active()).map(sum).collect()
 }
 
-/// The walls of every living particle.
+/// The walls of every active particle.
 pub fn walls(world: &World, kernels: Kernels) -> Vec<Wall> {
     let solids = super::walls::Solids::new(kernels);
-    (0..world.living()).map(|i| solids.at(&world.params, place(world, i))).collect()
+    (0..world.active()).map(|i| solids.at(&world.params, place(world, i))).collect()
 }

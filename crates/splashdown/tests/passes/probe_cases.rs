@@ -60,7 +60,7 @@ fn sample() -> Case {
         let (mut weight, mut pressure, mut offset, mut acceleration) = (0.0, 0.0, DVec3::ZERO, DVec3::ZERO);
         let mut count = 0;
         let support = if probe.kind == ProbePoint::HEIGHT { 1.5 * support } else { support };
-        for (i, drive) in accelerations.iter().enumerate().take(world.living()) {
+        for (i, drive) in accelerations.iter().enumerate().take(world.active()) {
             let mut d = world.positions[i].xyz().as_dvec3() - probe.position.as_dvec3();
             if probe.kind == ProbePoint::HEIGHT {
                 let normal = probe.normal.as_dvec3();
@@ -132,7 +132,7 @@ fn flux() -> Case {
     let before: Vec<u32> = (0..probes.len() as u32).map(|k| k.wrapping_sub(3)).collect();
     let mut expected = before.clone();
     let mut crossed = [0; 2];
-    for (before, after) in world.positions.iter().zip(&moved).take(world.living()) {
+    for (before, after) in world.positions.iter().zip(&moved).take(world.active()) {
         let [a, b] = [before, after].map(|p| p.xyz().as_dvec3());
         for (k, probe) in probes.iter().enumerate().skip(6) {
             let [center, normal] = [probe.position, probe.normal].map(|v| v.as_dvec3());

@@ -144,8 +144,8 @@ impl World {
         }
     }
 
-    /// Number of living particles.
-    pub fn living(&self) -> usize {
+    /// Number of active particles.
+    pub fn active(&self) -> usize {
         self.cell_start[self.grid.cell_count as usize] as usize
     }
 

@@ -78,6 +78,22 @@ pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
     ..WENDLAND_C2
 };
 
+/// The pressure part, and its reaction, with the cubic spline.
+pub static CUBIC_SPLINE_PRESSURE: PassDesc = PassDesc {
+    label: "bodies.boundary_force.cubic_spline.pressure",
+    constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64), ("FORCES", part::PRESSURE as f64)],
+    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::PRESSURE }>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// The other forces, and their reaction, with the cubic spline.
+pub static CUBIC_SPLINE_OTHER: PassDesc = PassDesc {
+    label: "bodies.boundary_force.cubic_spline.other",
+    constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64), ("FORCES", part::OTHER as f64)],
+    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::OTHER }>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// The other forces, and their reaction, with the Wendland C2 kernel.
 pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
     label: "bodies.boundary_force.wendland_c2.other",

@@ -1,5 +1,6 @@
 //! Copies a carried quantity into the order of the cells, as [`reorder`](super::reorder) does with position and
-//! velocity. Once for each quantity with [`Update::Constant`](crate::state::Update::Constant) or
+//! velocity, and resets it for removed particles to the value of an emitted one, because emitters reuse their entries.
+//! Once for each quantity with [`Update::Constant`](crate::state::Update::Constant) or
 //! [`Update::Evolved`](crate::state::Update::Evolved).
 
 mod cpu;
@@ -17,6 +18,7 @@ bindings! {
         cell_start: read [u32],
         entries: read [UVec2],
         carried: read [f32],
+        emitted: read [f32],
         sorted_carried: write [f32],
     }
 }
@@ -29,6 +31,7 @@ bindings! {
         cell_start: read [u32],
         entries: read [UVec2],
         carried: read [Vec4],
+        emitted: read [Vec4],
         sorted_carried: write [Vec4],
     }
 }
@@ -43,8 +46,9 @@ pub static SCALAR: PassDesc = PassDesc {
     constants: &[],
     bindings: ScalarBindings::LIST,
     cpu: |_, slots| {
-        let ScalarBindings { cell_start, entries, carried, sorted_carried, .. } = slots.into();
-        cpu::reorder_carried(cell_start, entries, carried, sorted_carried);
+        let ScalarBindings { grid, cell_start, entries, carried, emitted, sorted_carried, .. } = slots.into();
+        cpu::reorder_carried(grid, cell_start, entries, carried, sorted_carried);
+        cpu::reset_removed(grid, cell_start, emitted, sorted_carried);
     },
 };
 
@@ -53,8 +57,9 @@ pub static VECTOR: PassDesc = PassDesc {
     label: "cells.reorder_carried.vec4",
     bindings: VectorBindings::LIST,
     cpu: |_, slots| {
-        let VectorBindings { cell_start, entries, carried, sorted_carried, .. } = slots.into();
-        cpu::reorder_carried(cell_start, entries, carried, sorted_carried);
+        let VectorBindings { grid, cell_start, entries, carried, emitted, sorted_carried, .. } = slots.into();
+        cpu::reorder_carried(grid, cell_start, entries, carried, sorted_carried);
+        cpu::reset_removed(grid, cell_start, emitted, sorted_carried);
     },
     ..SCALAR
 };

@@ -11,5 +11,10 @@ fn reorder_carried(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
         return;
     }
     let entry = entries[k];
-    sorted_carried[sorted_index(k, entry.y, entry.x)] = carried[entry.y];
+    let index = sorted_index(k, entry.y, entry.x);
+    if (index < cell_start[grid.cell_count]) {
+        sorted_carried[index] = carried[entry.y];
+    } else {
+        sorted_carried[index] = emitted[0];
+    }
 }

@@ -77,6 +77,30 @@ pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
     ..WENDLAND_C2
 };
 
+/// The pressure part with the cubic spline.
+pub static CUBIC_SPLINE_PRESSURE: PassDesc = PassDesc {
+    label: "acceleration.cubic_spline.pressure",
+    constants: &[
+        ("KERNEL", CubicSpline::ID as f64),
+        ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64),
+        ("FORCES", part::PRESSURE as f64),
+    ],
+    cpu: |_, slots| cpu::acceleration::<CubicSpline, { part::PRESSURE }>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// The other forces with the cubic spline.
+pub static CUBIC_SPLINE_OTHER: PassDesc = PassDesc {
+    label: "acceleration.cubic_spline.other",
+    constants: &[
+        ("KERNEL", CubicSpline::ID as f64),
+        ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64),
+        ("FORCES", part::OTHER as f64),
+    ],
+    cpu: |_, slots| cpu::acceleration::<CubicSpline, { part::OTHER }>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// The other forces with the Wendland C2 kernel.
 pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
     label: "acceleration.wendland_c2.other",

@@ -116,11 +116,11 @@ pub(super) fn plan(name: &'static str, capacity: u32, wanted: u32) -> Case {
 
 pub(super) fn emit(name: &'static str, share: u32) -> Case {
     let world = World::new(params(2.0), 1500);
-    let living = world.living();
+    let active = world.active();
     // One fluid particle moves vertically, where the default perpendicular direction is degenerate.
     let mut world = world;
     world.velocities[7] = Vec4::new(0.0, 1.5, 0.0, 1000.0);
-    let counts: Vec<u32> = (0..living).map(|i| if i % 4 == 0 { 3 } else { u32::from(i % 7 == 0) }).collect();
+    let counts: Vec<u32> = (0..active).map(|i| if i % 4 == 0 { 3 } else { u32::from(i % 7 == 0) }).collect();
     let mut starts = vec![0; world.len() + 1];
     for i in 0..world.len() {
         starts[i + 1] = starts[i] + counts.get(i).copied().unwrap_or(0);
@@ -134,7 +134,7 @@ pub(super) fn emit(name: &'static str, share: u32) -> Case {
     let mut expected = numbers(&words(&pool));
     let mut edge = vec![false; pool.len()];
     let radius = f64::from(SPACING);
-    for i in 0..living {
+    for i in 0..active {
         for turn in 0..counts[i] {
             let m = starts[i] + turn;
             if place_of(m) == place_of(m + 1) {

@@ -16,7 +16,7 @@ pub(super) fn normals() -> Case {
     let mut expected = vec![f64::NAN; 4 * world.len()];
     let mut edge = vec![false; world.len()];
     let mut count = 0;
-    for i in 0..world.living() {
+    for i in 0..world.active() {
         let x = place(&world, i);
         let mut n = DVec3::ZERO;
         near(&world, x, |_, d, r| {
@@ -43,7 +43,7 @@ pub(super) fn normals() -> Case {
         count += usize::from(on_surface);
         expected[4 * i..4 * i + 4].copy_from_slice(&[n.x, n.y, n.z, f64::from(u8::from(on_surface))]);
     }
-    assert!(count > 200 && count + 200 < world.living(), "{count} on the surface");
+    assert!(count > 200 && count + 200 < world.active(), "{count} on the surface");
     let tolerance = vec![2e-5; expected.len()];
     let same = move |a: &[f32], b: &[f64]| masked("normals", a, b, &tolerance, &edge);
     let again = same.clone();
@@ -79,7 +79,7 @@ pub(super) fn potentials() -> Case {
     let mut tolerance = vec![1e-6; 4 * world.len()];
     let mut edge = vec![false; world.len()];
     let (mut slow, mut crests) = (0, 0);
-    for i in 0..world.living() {
+    for i in 0..world.active() {
         let (x, v, n) = (place(&world, i), speed(&world, i), normals[i].xyz().as_dvec3());
         let energy = v.length_squared() / 2.0;
         let (mut trapped, mut curvature, mut doubtful) = (0.0, 0.0, 0.0);
@@ -148,7 +148,7 @@ pub(super) fn count() -> Case {
     };
     let mut expected = vec![u32::MAX; world.len()];
     let mut edge = vec![false; world.len()];
-    for i in 0..world.living() {
+    for i in 0..world.active() {
         let p = potentials[i];
         let rate = f64::from(foam.trapped_air) * ramp(p.x, foam.trapped_air_least, foam.trapped_air_scale)
             + f64::from(foam.wave_crest) * ramp(p.y, foam.wave_crest_least, foam.wave_crest_scale);

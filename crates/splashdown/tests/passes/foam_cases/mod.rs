@@ -124,11 +124,11 @@ fn volume() -> f64 {
     f64::from(SPACING).powi(3)
 }
 
-/// All living particles within the support of `x`, except those at the same position, with their
+/// All active particles within the support of `x`, except those at the same position, with their
 /// distances.
 fn near(world: &World, x: DVec3, mut visit: impl FnMut(usize, DVec3, f64)) {
     let support = f64::from(world.params.support_radius);
-    for j in 0..world.living() {
+    for j in 0..world.active() {
         let d = x - place(world, j);
         if d.length() < support {
             visit(j, d, d.length());

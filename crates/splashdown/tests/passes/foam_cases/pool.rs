@@ -36,7 +36,7 @@ pub(super) fn around(world: &World, x: DVec3) -> (DVec3, f64, bool) {
         weight += W.w(r / support);
         number += 1.0;
     });
-    let edge = (0..world.living()).any(|j| ((x - place(world, j)).length() - support).abs() < 1e-6);
+    let edge = (0..world.active()).any(|j| ((x - place(world, j)).length() - support).abs() < 1e-6);
     (if weight > 0.0 { sum / weight } else { sum }, number / part_inside(world, x), edge)
 }
 
