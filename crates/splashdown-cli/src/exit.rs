@@ -39,7 +39,7 @@ Exit codes:
     2  the command line is invalid, or another run writes into the same folder
     3  the scene file, or another input file, is missing or invalid
     4  the device is missing, too small, or was lost; or pictures were requested and no
-       device can draw them
+       device can draw them; or no window can be opened
     5  a file or folder could not be written (frames already written are complete), or a
        checkpoint cannot be used
   130  stopped by Ctrl-C (frames already written are complete)";
@@ -141,7 +141,11 @@ impl From<RunError> for Failure {
 #[cfg(feature = "window")]
 impl From<ViewerError> for Failure {
     fn from(error: ViewerError) -> Self {
-        Self::new(Exit::Device, error.to_string())
+        match error {
+            ViewerError::Checkpoint(error) => error.into(),
+            // No display, device or driver.
+            error => Self::new(Exit::Device, error.to_string()),
+        }
     }
 }
 

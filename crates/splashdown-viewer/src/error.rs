@@ -1,5 +1,6 @@
 //! Errors when opening the window.
 
+use splashdown::error::CheckpointError;
 use splashdown_render::RenderError;
 
 /// Why the window cannot be opened.
@@ -12,7 +13,21 @@ pub enum ViewerError {
          use `splashdown run` to write pictures and a film"
     )]
     NoDisplay,
-    /// No driver, or one that cannot open windows.
+    /// The display cannot be used.
+    #[error(
+        "no window could be opened: {reason}. Check that DISPLAY or WAYLAND_DISPLAY names a running display"
+    )]
+    Display {
+        /// The system's message.
+        reason: String,
+    },
+    /// The device that was named cannot draw into the window, or there is none.
+    #[error("no window could be opened: {reason}")]
+    NoDevice {
+        /// The message of [`splashdown_gpu::GpuError`], which contains a hint.
+        reason: String,
+    },
+    /// A driver that cannot open windows.
     #[error("no window could be opened: {reason}. A window needs a graphics driver: {hint}")]
     NoWindow {
         /// The system's message.
@@ -23,4 +38,7 @@ pub enum ViewerError {
     /// The device cannot draw.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The checkpoint cannot be used.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
 }

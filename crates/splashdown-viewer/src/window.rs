@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
 use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
@@ -27,8 +27,11 @@ pub struct ViewOptions {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// [`ViewerError::NoDisplay`] and [`ViewerError::NoWindow`], without a display or a driver.
+/// [`ViewerError`]: the checkpoint cannot be used, or there is no display, no device or no driver.
 pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
+    if let Some(checkpoint) = &options.checkpoint {
+        checkpoint.check()?;
+    }
     let unset = |name: &str| std::env::var_os(name).is_none_or(|value| value.is_empty());
     if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
         return Err(ViewerError::NoDisplay);
@@ -44,18 +47,42 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
         wgpu_options: wgpu_options(device),
         ..eframe::NativeOptions::default()
     };
-    let create = move |context: &eframe::CreationContext<'_>| {
-        let render_state = context.wgpu_render_state.as_ref().ok_or("the window has no device")?;
+    let create = move |context: &eframe::CreationContext<'_>| -> Result<Viewer, ViewerError> {
+        let render_state =
+            context.wgpu_render_state.as_ref().ok_or_else(|| no_window("the window has no device"))?;
         let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
         if let Some(checkpoint) = checkpoint {
             viewer.resume(checkpoint)?;
         }
-        Ok(Box::new(viewer) as Box<dyn eframe::App>)
+        Ok(viewer)
     };
-    eframe::run_native("splashdown", native, Box::new(create)).map_err(|error| ViewerError::NoWindow {
-        reason: error.to_string().trim_end_matches('.').to_owned(),
-        hint: MISSING_DRIVER_HINT,
-    })
+    let create: eframe::AppCreator<'_> = Box::new(move |context| Ok(Box::new(create(context)?)));
+    eframe::run_native("splashdown", native, create).map_err(viewer_error)
+}
+
+/// The cause of a failure of eframe.
+fn viewer_error(error: eframe::Error) -> ViewerError {
+    match error {
+        eframe::Error::AppCreation(error) => match error.downcast::<ViewerError>() {
+            Ok(error) => *error,
+            Err(error) => no_window(error),
+        },
+        eframe::Error::Winit(error) => ViewerError::Display { reason: sentence(error) },
+        eframe::Error::WinitEventLoop(error) => ViewerError::Display { reason: sentence(error) },
+        eframe::Error::Wgpu(WgpuError::CustomNativeAdapterSelectionError(reason)) => {
+            ViewerError::NoDevice { reason }
+        }
+        error => no_window(error),
+    }
+}
+
+fn no_window(reason: impl ToString) -> ViewerError {
+    ViewerError::NoWindow { reason: sentence(reason), hint: MISSING_DRIVER_HINT }
+}
+
+/// A message without its final full stop, for use inside another one.
+fn sentence(message: impl ToString) -> String {
+    message.to_string().trim_end_matches('.').to_owned()
 }
 
 /// A device with the capabilities of its adapter: buffers as large as the memory allows, and timestamps for passes.
@@ -76,4 +103,29 @@ fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
         ..defaults
     };
     WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use splashdown::error::CheckpointError;
+
+    #[test]
+    fn each_failure_has_its_own_error() {
+        let creation = |error: ViewerError| viewer_error(eframe::Error::AppCreation(error.into()));
+        let unusable = creation(CheckpointError::FlowChanged.into());
+        assert!(matches!(unusable, ViewerError::Checkpoint(_)), "{unusable}");
+        assert!(!unusable.to_string().contains("driver"), "{unusable}");
+        let other = "no named adapter; choose another".to_owned();
+        let device = viewer_error(eframe::Error::Wgpu(WgpuError::CustomNativeAdapterSelectionError(other)));
+        assert!(
+            matches!(&device, ViewerError::NoDevice { reason } if reason.contains("another")),
+            "{device}"
+        );
+        let driver = viewer_error(eframe::Error::Wgpu(WgpuError::NoSurfaceFormatsAvailable));
+        assert!(
+            matches!(&driver, ViewerError::NoWindow { reason, .. } if !reason.ends_with('.')),
+            "{driver}"
+        );
+    }
 }

@@ -159,3 +159,33 @@ fn invalid_notes_in_a_checkpoint_are_refused() -> Outcome {
     assert!(output.status.success() && stderr(&output).contains("skipped"), "{}", stderr(&output));
     Ok(())
 }
+
+/// Each reason why the window does not open has its own message and exit code.
+#[test]
+#[cfg(all(feature = "window", target_os = "linux"))]
+fn the_window_reports_a_checkpoint_or_a_display_that_cannot_be_used() -> Outcome {
+    let place = two_frames()?;
+    let newest = "out/checkpoints/checkpoint_0002.splashdown";
+    let view = |what: &str, display: &str| {
+        let mut command = place.splashdown(&["view", what]);
+        for variable in ["WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(variable);
+        }
+        command.env("DISPLAY", display).output()
+    };
+    assert_refused(&view("small.toml", "")?, 4, &["no display", "splashdown run"]);
+    // No display has this number.
+    let output = view("small.toml", ":6346")?;
+    assert_refused(&output, 4, &["DISPLAY"]);
+    assert!(!stderr(&output).contains("driver"), "{}", stderr(&output));
+    // The checkpoint is checked before the display.
+    assert_refused(&view(newest, "")?, 4, &["no display"]);
+    let path = place.path(newest);
+    let mut archive = Archive::read(&path)?;
+    archive.set_array("ids", &[1_u32, 2], 1);
+    archive.write(&path)?;
+    let output = view(newest, "")?;
+    assert_refused(&output, 5, &["checkpoint", "ids"]);
+    assert!(!stderr(&output).contains("driver"), "{}", stderr(&output));
+    Ok(())
+}

@@ -6,6 +6,7 @@ use egui::Context;
 #[cfg(not(target_arch = "wasm32"))]
 use glam::Vec3;
 use splashdown::Checkpoint;
+use splashdown::error::CheckpointError;
 use splashdown::scene::Scene;
 
 use super::Viewer;
@@ -69,7 +70,11 @@ impl Viewer {
             "toml" => open_scene(path, bytes).map(|scene| self.open(scene)),
             Checkpoint::ENDING => {
                 let checkpoint = Checkpoint::from_bytes(bytes).map_err(|error| error.to_string());
-                checkpoint.and_then(|checkpoint| self.resume(checkpoint))
+                checkpoint.and_then(|checkpoint| {
+                    // An unusable checkpoint does not replace the running simulation.
+                    let resumed = checkpoint.check().and_then(|()| self.resume(checkpoint));
+                    resumed.map_err(|error| error.to_string())
+                })
             }
             _ => Err(format!(
                 "the web page opens scenes (.toml) and checkpoints (.{}); `splashdown view` also opens meshes",
@@ -81,11 +86,9 @@ impl Viewer {
         }
     }
 
-    /// Resumes from a checkpoint, at its time.
-    pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), String> {
-        // An unusable checkpoint does not replace the running simulation.
-        checkpoint.check().map_err(|error| error.to_string())?;
-        let scene = checkpoint.scene().map_err(|error| error.to_string())?;
+    /// Resumes from a checked checkpoint, at its time.
+    pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        let scene = checkpoint.scene()?;
         self.state.open(scene);
         self.engine.send(Command::MouseForce(None));
         self.engine.send(Command::Resume(Box::new(checkpoint)));
