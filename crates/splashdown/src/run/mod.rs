@@ -170,10 +170,9 @@ impl Run {
     }
 
     fn start(&mut self) -> Event {
-        self.stage = match self.first {
-            0 if self.next_duration.is_none() => Stage::Fetch(0),
-            frame => self.after(frame),
-        };
+        // A run that is resumed after frame 0 does not repeat it.
+        let is_new = self.complete.is_none() && self.next_duration.is_none();
+        self.stage = if is_new { Stage::Fetch(0) } else { self.after(self.first) };
         for (body, report) in self.simulation.body_meshes().iter().zip(self.simulation.body_reports()) {
             self.pending_events.push_back(Event::Note(format!("body {:?}: {report}", body.name)));
         }
