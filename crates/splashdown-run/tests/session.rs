@@ -111,6 +111,28 @@ fn a_stopped_run_resumes_bit_identically() -> Outcome {
 }
 
 #[test]
+fn the_report_of_a_resumed_run_says_that_it_is_running() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("out");
+    let stopped = run(request(&out)?, &mut (), &|| Stop::AfterFrame)?;
+    let report = || fs::read_to_string(stopped.folder.report());
+    assert!(report()?.contains("\"interrupted\""), "{}", report()?);
+    // A refused start keeps the report.
+    let mut settings = RunSettings::default();
+    settings.frames = Some(stopped.complete_frames as u32 - 1);
+    let refused = RunRequest::resume(&out, settings).and_then(|short| Session::start(short, &mut ()));
+    assert!(refused.is_err());
+    assert!(report()?.contains("\"interrupted\""), "{}", report()?);
+    // The report of a run that is killed, which a dropped session resembles.
+    drop(Session::start(RunRequest::resume(&out, RunSettings::default())?, &mut ())?);
+    let frames = format!("\"complete_frames\": {}", stopped.complete_frames);
+    assert!(report()?.contains("\"running\"") && report()?.contains(&frames), "{}", report()?);
+    assert_finished(&run(RunRequest::resume(&out, RunSettings::default())?, &mut (), &|| Stop::No)?);
+    assert!(report()?.contains("\"finished\""), "{}", report()?);
+    Ok(())
+}
+
+#[test]
 fn a_folder_is_used_by_one_run_at_a_time() -> Outcome {
     let folder = tempfile::tempdir()?;
     let out = folder.path().join("out");

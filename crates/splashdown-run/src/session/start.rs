@@ -107,13 +107,15 @@ impl Session {
                 if let Some(found) = &found {
                     session.find_earlier(found, frame, reporter)?;
                 }
-                session.probes = ProbeFiles::resume(&scene, &session.folder, &probe_bytes)?;
             }
-            None => {
-                session.replace_earlier(&scene, subfolders, reporter)?;
-                session.probes = ProbeFiles::create(&scene, &session.folder)?;
-            }
+            None => session.replace_earlier(subfolders, reporter)?,
         }
+        // A killed run must not leave the report of an earlier run.
+        session.report.write(&session.folder)?;
+        session.probes = match resumed_after {
+            Some(_) => ProbeFiles::resume(&scene, &session.folder, &probe_bytes)?,
+            None => ProbeFiles::create(&scene, &session.folder)?,
+        };
         Ok(session)
     }
 
@@ -136,20 +138,14 @@ impl Session {
         Ok(())
     }
 
-    /// Removes the files of an earlier run and writes the first report of this one.
-    fn replace_earlier(
-        &self,
-        scene: &Scene,
-        subfolders: Subfolders,
-        reporter: &mut dyn Reporter,
-    ) -> Result<(), RunError> {
+    /// Removes the files of an earlier run.
+    fn replace_earlier(&self, subfolders: Subfolders, reporter: &mut dyn Reporter) -> Result<(), RunError> {
         let files = self.folder.remove_earlier();
         if files > 0 {
             let (files, root) = (count_of(files, "file"), self.folder.root().display());
             reporter.note(&format!("Removed {files} of an earlier run in {root}."));
         }
-        self.folder.create_subfolders(subfolders)?;
-        Ok(Report::new(scene).write(&self.folder)?)
+        Ok(self.folder.create_subfolders(subfolders)?)
     }
 
     fn start_pictures(
