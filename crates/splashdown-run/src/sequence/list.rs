@@ -78,13 +78,84 @@ fn natural(name: &str) -> Vec<(String, u64)> {
     parts
 }
 
-/// Whether a name matches a pattern, where `*` stands for any bytes and `?` for one.
+/// Whether a name matches a pattern, where `*` stands for any bytes and `?` for one. The time is at most proportional
+/// to the product of the lengths: a mismatch extends the last star only, because an earlier star has no need to be
+/// longer if the part up to the last one has matched.
 pub fn matches(pattern: &[u8], name: &[u8]) -> bool {
-    match (pattern, name) {
-        ([], []) => true,
-        ([b'*', rest @ ..], _) => (0..=name.len()).any(|skipped| matches(rest, &name[skipped..])),
-        ([b'?', rest @ ..], [_, others @ ..]) => matches(rest, others),
-        ([byte, rest @ ..], [other, others @ ..]) if byte == other => matches(rest, others),
-        _ => false,
+    let (mut at, mut read) = (0, 0);
+    // The position after the last star, and where the bytes that it stands for end.
+    let mut star: Option<(usize, usize)> = None;
+    while read < name.len() {
+        match (pattern.get(at), &mut star) {
+            (Some(b'*'), _) => {
+                at += 1;
+                star = Some((at, read));
+            }
+            (Some(byte), _) if *byte == b'?' || *byte == name[read] => {
+                at += 1;
+                read += 1;
+            }
+            (_, Some((after, end))) => {
+                *end += 1;
+                (at, read) = (*after, *end);
+            }
+            (_, None) => return false,
+        }
+    }
+    pattern[at..].iter().all(|byte| *byte == b'*')
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::matches;
+
+    /// The definition of a pattern, in exponential time.
+    fn reference(pattern: &[u8], name: &[u8]) -> bool {
+        match (pattern, name) {
+            ([], _) => name.is_empty(),
+            ([b'*', rest @ ..], _) => (0..=name.len()).any(|skipped| reference(rest, &name[skipped..])),
+            ([byte, rest @ ..], [other, others @ ..]) => {
+                (*byte == b'?' || byte == other) && reference(rest, others)
+            }
+            _ => false,
+        }
+    }
+
+    /// All texts of up to `length` of these bytes.
+    fn texts(bytes: &[u8], length: usize) -> Vec<Vec<u8>> {
+        let mut all = vec![Vec::new()];
+        let mut longest = 0;
+        for _ in 0..length {
+            let next = all.len();
+            for i in longest..next {
+                all.extend(bytes.iter().map(|byte| [&all[i][..], &[*byte]].concat()).collect::<Vec<_>>());
+            }
+            longest = next;
+        }
+        all
+    }
+
+    #[test]
+    fn short_patterns_match_as_defined() {
+        let names = texts(b"ab", 6);
+        let mut matching = 0;
+        for pattern in texts(b"ab*?", 5) {
+            for name in &names {
+                let expected = reference(&pattern, name);
+                matching += usize::from(expected);
+                assert_eq!(matches(&pattern, name), expected, "{pattern:?} {name:?}");
+            }
+        }
+        assert!(matching > 10_000, "{matching}");
+    }
+
+    #[test]
+    fn many_stars_take_no_exponential_time() {
+        let begun = Instant::now();
+        let pattern = [b"*a".repeat(9), b"*b".to_vec()].concat();
+        assert!(!matches(&pattern, &b"a".repeat(44)));
+        assert!(begun.elapsed() < Duration::from_millis(500), "{:?}", begun.elapsed());
     }
 }
