@@ -132,6 +132,12 @@ impl<'a> Frame<'a> {
                 dashes: if edge.wall { 0.0 } else { 24.0 },
             };
         }
+        if let Some(bodies) = &self.bodies {
+            bodies.check()?;
+            // The value for bodies alone. That of particles or of a liquid replaces it below; the shadow
+            // of bodies is opaque with each of them.
+            globals.shadow_absorption = [1.0; 3];
+        }
         if let Some(particles) = &self.particles {
             particles.fill(&mut globals)?;
         }
@@ -140,11 +146,6 @@ impl<'a> Frame<'a> {
         }
         if let Some(foam) = &self.foam {
             foam.fill(&mut globals)?;
-        }
-        if let Some(bodies) = &self.bodies {
-            bodies.check()?;
-            // Bodies are opaque. The value of the liquid, if there is one, replaces this one below.
-            globals.shadow_absorption = [1.0; 3];
         }
         if let Some(surface) = &self.surface {
             surface.fill(&mut globals)?;

@@ -257,3 +257,38 @@ fn draw_into(harness: &Harness, format: wgpu::TextureFormat, frame: &Frame<'_>) 
         bytes.chunks_exact(row as usize).flat_map(|line| line[..4 * SIZE[0] as usize].to_vec()).collect();
     Picture { size: SIZE, rgba }
 }
+
+#[test]
+fn a_body_leaves_the_shadow_of_particles_as_it_is() {
+    let Some(mut harness) = common::harness() else { return };
+    let domain = Domain::closed([0.0; 3], [2.0, 1.0, 1.0]);
+    let empty = Frame::new(Camera::framing(&domain, 28.0, 18.0, 35.0, 1.25), domain);
+    let cloud = sample::collapsing_column([0.8, 1.0, 0.8], 0.05);
+    let particles = UploadedParticles::new(&harness.device, &cloud.positions, &[], &[], &[]).unwrap();
+    let colouring = Colouring::new(Quantity::Speed, [0.0, 1.0]).with_colour_bar(false);
+    let drawn = DrawnParticles::new(particles.buffers(), 0.025, colouring);
+    let ball = sample::ball([1.7, 0.5, 0.6], 0.15, 24);
+    let body = PlacedBody::new(&ball.vertices, &ball.triangles, [0.8, 0.1, 0.1]).unwrap();
+    let bodies = UploadedBodies::new(&harness.device, [(&body, [0.0; 3], [0.0, 0.0, 0.0, 1.0])]);
+    let with_body = harness.draw(SIZE, &empty.with_bodies(bodies.buffers()));
+    let both = harness.draw(SIZE, &empty.with_particles(drawn).with_bodies(bodies.buffers()));
+    let particles = harness.draw(SIZE, &empty.with_particles(drawn));
+    let empty = harness.draw(SIZE, &empty);
+    let differ_by = |least: u8, a: &Picture, b: &Picture, at| {
+        a.pixel(at).iter().zip(b.pixel(at)).any(|(a, b)| a.abs_diff(b) >= least)
+    };
+    let differ = |a: &Picture, b: &Picture, at| differ_by(8, a, b, at);
+    let (mut of_particles, mut of_body, mut changed) = (0, 0, 0);
+    for at in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+        // Where the body and its shadow are invisible.
+        if differ_by(1, &with_body, &empty, at) {
+            of_body += usize::from(!differ(&particles, &empty, at) && differ(&both, &empty, at));
+        } else {
+            of_particles += usize::from(differ(&particles, &empty, at));
+            changed += usize::from(differ(&both, &particles, at));
+        }
+    }
+    assert!(of_particles > 1000 && of_body > 300, "{of_particles} and {of_body} pixels");
+    // The blurred outline of the shadow of the body is darker together with particles.
+    assert!(changed < 100, "{changed} pixels");
+}
