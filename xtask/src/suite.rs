@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 
 use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
+use crate::test_output::Filter;
 use crate::watch::Watch;
 use crate::{api, guide, page, python, setup};
 
@@ -20,8 +21,8 @@ enum Extent {
     Fast,
     /// Also documentation, the web page and other systems, with quick builds.
     Usual,
-    /// Also Blender, the optimized page, all code for other systems, and the public API even if its tool has to be
-    /// installed.
+    /// Also Blender, the optimized page, all code for other systems, the tests of the command line without features,
+    /// and the public API even if its tool has to be installed.
     All,
 }
 
@@ -73,8 +74,20 @@ pub fn run(arguments: &[String]) -> Result<()> {
         for (name, target) in OTHER_SYSTEMS {
             report.layer(&format!("{name} ({target})"), |_| check_for(target, extent == Extent::All));
         }
+        // Other features of the dependencies are needed, so that 40 crates are built again, in five minutes on two
+        // cores.
+        if extent == Extent::All {
+            report.layer("command line without features", without_features);
+        }
     }
     report.close()
+}
+
+/// Tests the messages of the command line without Cargo features.
+fn without_features(filter: &mut Filter) -> Result<Outcome> {
+    let mut tests = cargo(["test", "--package", "splashdown-cli", "--no-default-features"]);
+    tests.args(["--test", "without_features", "--", "--show-output"]);
+    layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
 }
 
 /// Type-checks the code for another system; skipped only if its standard library cannot be installed. By default this
