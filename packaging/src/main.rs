@@ -1,5 +1,5 @@
 //! Builds release archives and the Debian package, and sets the version number. `cargo xtask dist` and
-//! `cargo xtask release` start this program; it is a separate crate so that `xtask` depends only on `anyhow`.
+//! `cargo xtask release` start this program; it is a separate crate so that `xtask` has few dependencies.
 
 mod command;
 mod dist;
