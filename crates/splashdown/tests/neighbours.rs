@@ -61,7 +61,7 @@ impl Sorted {
         f32::from_bits(self.positions[k][3])
     }
 
-    fn living(&self) -> usize {
+    fn active(&self) -> usize {
         self.cell_start[grid().cell_count as usize] as usize
     }
 }
@@ -123,7 +123,7 @@ fn walk(sorted: &Sorted, k: usize) -> HashSet<usize> {
 
 fn brute_force(sorted: &Sorted, k: usize) -> HashSet<usize> {
     let x = sorted.position(k);
-    (0..sorted.living()).filter(|&j| sorted.position(j).distance_squared(x) < SUPPORT * SUPPORT).collect()
+    (0..sorted.active()).filter(|&j| sorted.position(j).distance_squared(x) < SUPPORT * SUPPORT).collect()
 }
 
 /// Checks all properties of a sort of these points; neighbours are compared for about `sample` of them.
@@ -141,11 +141,11 @@ fn check(sorted: &Sorted, points: &[Vec3], sample: usize) -> Result<(), String> 
         sorted.cell_start[grid.cell_count as usize + 1] as usize == n,
         "the last entry of `cell_start` is not the number of particles",
     )?;
-    let living = points.iter().filter(|p| inside(p)).count();
-    expect(sorted.living() == living, "the number of living particles")?;
+    let active = points.iter().filter(|p| inside(p)).count();
+    expect(sorted.active() == active, "the number of active particles")?;
     let finite = points.iter().filter(|p| p.is_finite()).count();
     expect(
-        sorted.counters[StepCounters::ESCAPED] as usize == finite - living,
+        sorted.counters[StepCounters::ESCAPED] as usize == finite - active,
         "the number of escaped particles",
     )?;
     expect(
@@ -178,7 +178,7 @@ fn check(sorted: &Sorted, points: &[Vec3], sample: usize) -> Result<(), String> 
             expect(grid.cell_of(sorted.position(k)) as usize == cell, "a particle in the wrong cell")?;
         }
     }
-    for k in (0..living).step_by((living / sample.max(1)).max(1)) {
+    for k in (0..active).step_by((active / sample.max(1)).max(1)) {
         expect(walk(sorted, k) == brute_force(sorted, k), "neighbours differ from brute force")?;
     }
     Ok(())
@@ -259,7 +259,7 @@ fn sorting_without_particles_succeeds() {
         for way in [Sort::Counting, Sort::Bitonic] {
             let sorted = sort(&mut executor, &[], way);
             assert!(sorted.cell_start.iter().all(|&start| start == 0), "{device}, {way:?}");
-            assert_eq!((sorted.ids.len(), sorted.living()), (0, 0));
+            assert_eq!((sorted.ids.len(), sorted.active()), (0, 0));
         }
     }
 }

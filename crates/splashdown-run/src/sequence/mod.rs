@@ -30,7 +30,10 @@ pub fn expand(given: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, RunEr
         } else if name.contains(['*', '?']) && !path.exists() {
             let found = list(parent(path), |file| matches(name.as_bytes(), file.as_bytes()))?;
             if found.is_empty() {
-                return Err(RunError::Input(format!("no file matches `{}`", path.display())));
+                return Err(RunError::Input(format!(
+                    "no file matches `{}`; `*` and `?` stand for parts of a file name, not of a folder",
+                    path.display()
+                )));
             }
             files.extend(found);
         } else {

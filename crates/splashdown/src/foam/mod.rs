@@ -8,7 +8,7 @@
 //! advances them to the simulated time every few milliseconds or once per frame, at the cost of two
 //! neighbour loops. A simulation without foam has no overhead.
 //!
-//! *Reproducibility.* Nothing depends on the order of invocations: living particles are compacted
+//! *Reproducibility.* Nothing depends on the order of invocations: active particles are compacted
 //! in order, new ones are counted and appended by a scan, and random numbers are a hash of a
 //! particle's id and the number of the update.
 //!
@@ -141,7 +141,7 @@ pub(crate) fn capacity(settings: &FoamSettings, particles: u64, largest: u64) ->
 /// Bytes in the foam buffers of a scene.
 pub(crate) fn forecast(settings: &FoamSettings, particles: u64) -> u64 {
     let most = capacity(settings, particles, u64::MAX).map_or(0, u64::from);
-    // The pool and a copy, flags of living particles, their scan and list; normals, potentials,
+    // The pool and a copy, flags of active particles, their scan and list; normals, potentials,
     // counts, starts.
     most * (2 * LARGEST_PER_DIFFUSE + 3 * 4) + particles.saturating_mul(2 * 16 + 2 * 4)
 }

@@ -7,7 +7,7 @@ use super::Simulation;
 use crate::SimulationError;
 use crate::bodies::BodyState;
 use crate::scene::{Probe, Quantity, SurfaceSettings};
-use crate::state::{Carried, CarriedArrays, Values};
+use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, Values};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
 
 impl Simulation {
@@ -28,7 +28,7 @@ impl Simulation {
         let values = self.fetch_carried().await?;
         let find =
             |name: &str| values.iter().find(|(quantity, _)| quantity.name == name).map(|(_, v)| v.words());
-        let (Some(ids), Some(positions)) = (find("ids"), find("positions")) else {
+        let (Some(ids), Some(positions)) = (find(IDS.name), find(POSITIONS.name)) else {
             unreachable!("the table has rows for ids and positions")
         };
         // The fourth component of a position marks removed particles.

@@ -16,7 +16,8 @@ pub use carried::{
     bytes_per_particle,
 };
 #[cfg(test)]
-pub(crate) use carried::{DENSITIES, IDS, POSITIONS, VELOCITIES};
+pub(crate) use carried::{DENSITIES, VELOCITIES};
+pub(crate) use carried::{IDS, POSITIONS};
 pub use counters::{
     DEAD_DRAINED, DEAD_ESCAPED, DEAD_NON_FINITE, DEAD_UNBORN, StepCounters, WGSL as STEP_COUNTERS,
 };

@@ -16,7 +16,7 @@ use crate::marching_cubes;
 pub struct SurfaceInput {
     /// Positions in m, sorted by cell; w is ignored.
     pub sorted_positions: Buffer<Vec4>,
-    /// First particle of every cell, followed by the number of living particles.
+    /// First particle of every cell, followed by the number of active particles.
     pub cell_start: Buffer<u32>,
     /// The neighbour grid on the device.
     pub grid: Buffer<Grid>,

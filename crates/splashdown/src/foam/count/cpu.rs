@@ -17,9 +17,9 @@ pub(super) fn count(buffers: CountBindings<'_>) {
     if now.is_due == 0 {
         return;
     }
-    let living = cell_start[grid.cell_count as usize] as usize;
+    let active = cell_start[grid.cell_count as usize] as usize;
     let ids = sorted_ids;
-    counts[..living].par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, count)| {
+    counts[..active].par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, count)| {
         *count = (foam.expected(potentials[i], now.dt) + unit(seed_of(ids[i], now.step))) as u32;
     });
 }

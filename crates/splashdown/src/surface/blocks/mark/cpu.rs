@@ -9,11 +9,11 @@ use crate::surface::params::SIDE;
 
 pub(super) fn mark(buffers: MarkBindings<'_>) {
     let MarkBindings { lattice, grid, cell_start, sorted_positions, marks } = buffers;
-    let living = cell_start[grid.cell_count as usize].min(lattice.particle_capacity) as usize;
+    let active = cell_start[grid.cell_count as usize].min(lattice.particle_capacity) as usize;
     let blocks = UVec3::new(lattice.blocks_x, lattice.blocks_y, lattice.blocks_z);
     let most = (blocks * SIDE - 1).as_vec3();
     let marks = as_atomic(marks);
-    sorted_positions[..living].par_iter().with_min_len(1024).for_each(|position| {
+    sorted_positions[..active].par_iter().with_min_len(1024).for_each(|position| {
         let p = position.truncate() - lattice.origin;
         let low = ((p - lattice.support_radius) * lattice.inverse_cell).floor() - 1.0;
         let high = ((p + lattice.support_radius) * lattice.inverse_cell).floor();
