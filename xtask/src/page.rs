@@ -10,7 +10,6 @@ use crate::{serve, setup, web};
 
 /// Names under which Chromium is installed.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-const PACKAGES: [&str; 3] = ["chromium", "nodejs", "npm"];
 
 /// Builds the page and operates it like a user; skipped only if there is no browser and none can be installed.
 /// `published` selects the optimized page, which takes minutes to build; otherwise a quick build is tested.
@@ -18,8 +17,9 @@ pub fn test(published: bool) -> Result<Outcome> {
     let mut browser = browser();
     let missing = |browser: Option<&str>| browser.is_none() || !process::exists("npm", "--version");
     if missing(browser) && setup::can_install() {
-        say(format!("Installing {} (apt-get) ...", PACKAGES.join(", ")));
-        if let Err(error) = setup::install(&PACKAGES) {
+        let packages = packages(browser.is_some(), process::exists("npm", "--version"));
+        say(format!("Installing {} (apt-get) ...", packages.join(", ")));
+        if let Err(error) = setup::install(&packages) {
             say(format!("WARNING: the installation failed: {error:#}. Check the network connection."));
         }
         browser = self::browser();
@@ -53,6 +53,13 @@ pub fn test(published: bool) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
+/// The packages of what is missing. Debian's npm conflicts with the Node.js of other sources, which contains npm.
+fn packages(has_browser: bool, has_npm: bool) -> Vec<&'static str> {
+    let browser = if has_browser { &[][..] } else { &["chromium"] };
+    let npm = if has_npm { &[][..] } else { &["nodejs", "npm"] };
+    [browser, npm].concat()
+}
+
 fn browser() -> Option<&'static str> {
     BROWSERS.into_iter().find(|name| process::exists(name, "--version"))
 }
@@ -62,4 +69,16 @@ fn which(program: &str) -> Result<String> {
     let output = command("which").arg(program).output()?;
     ensure!(output.status.success(), "`which {program}` finds nothing");
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::packages;
+
+    #[test]
+    fn only_missing_packages_are_installed() {
+        assert_eq!(packages(false, true), ["chromium"]);
+        assert_eq!(packages(true, false), ["nodejs", "npm"]);
+        assert_eq!(packages(false, false), ["chromium", "nodejs", "npm"]);
+    }
 }
