@@ -118,7 +118,6 @@ mod tests {
     use splashdown_gpu::{CpuExecutor, Executor};
 
     use super::*;
-    use crate::boundary::{KernelPair, wall_table};
     use crate::cells::Cells;
     use crate::scene::{Derived, SurfaceSettings};
     use crate::state::Fields;
@@ -129,8 +128,7 @@ mod tests {
     fn in_arrays(particles: u32, normals: bool, sort: Sort) -> u64 {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = Params { particle_count: particles, ..bytemuck::Zeroable::zeroed() };
-        let mut fields =
-            Fields::new(&mut executor, &params, &wall_table(KernelPair::WendlandC2), normals).unwrap();
+        let mut fields = Fields::new(&mut executor, &params, normals).unwrap();
         if normals {
             fields.make_accelerations(&mut executor).unwrap();
         }

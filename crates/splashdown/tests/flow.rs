@@ -97,7 +97,9 @@ fn a_submerged_inlet_is_stable() {
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
     let before = simulation.stats();
     let (stats, highest) = run(&mut simulation, 3, 0.1);
-    assert!(highest < 0.25, "density {highest}");
+    // The gate was 0.25 with walls as half-spaces (0.22 measured). Now that walls are planes of symmetry, fluid that enters
+    // behind the newest layer also meets its image (0.252 measured).
+    assert!(highest < 0.3, "density {highest}");
     assert!(stats.max_speed < 4.0, "{}", stats.max_speed);
     let wanted = 36.0 * 0.3 / SPACING;
     let flux = stats.emitted as f32 / wanted;

@@ -4,7 +4,6 @@ use std::collections::HashSet;
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use proptest::prelude::*;
-use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::cells::{Cells, Grid, Sort};
 use splashdown::scene::Scene;
 use splashdown::schemes;
@@ -75,7 +74,7 @@ fn id(i: usize, n: usize) -> u32 {
 fn sort(executor: &mut Executor, points: &[Vec3], way: Sort) -> Sorted {
     let n = points.len();
     let params = params(n as u32);
-    let fields = Fields::new(executor, &params, &wall_table(KernelPair::WendlandC2), false).unwrap();
+    let fields = Fields::new(executor, &params, false).unwrap();
     let cells = Cells::new(executor, grid(), n as u32, way).unwrap();
     let positions: Vec<Vec4> = points.iter().map(|p| p.extend(0.0)).collect();
     let velocities: Vec<Vec4> = (0..n).map(|i| Vec4::new(i as f32, -(i as f32), 0.5, 1000.0)).collect();

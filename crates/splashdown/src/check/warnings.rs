@@ -2,9 +2,7 @@
 
 use std::f32::consts::PI;
 
-use crate::scene::{
-    DensityMode, Derived, Method, Outlet, Quantity, Reported, Scene, Section, Shape, SinkRegion, outlet,
-};
+use crate::scene::{Derived, Method, Outlet, Reported, Scene, Section, Shape, SinkRegion, outlet};
 
 /// A scene with more steps than this takes days and gives a warning.
 const MANY_STEPS: u64 = 10_000_000;
@@ -51,30 +49,6 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             message,
             &format!("the density may vary by about {percent:.0} %; a ratio of ten keeps it within 1 %"),
         );
-    }
-    let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
-    if let Some(gauge) = gauge
-        && scene.solver.density == DensityMode::Summation
-    {
-        // The pressure is a tenth too low on a floor at rest. In an impact it is a fifth of the correct one,
-        // also because of the walls' damping (docs/validation.md).
-        let message = format!(
-            "probe {:?} measures pressure, but with density = \"summation\" the pressure near walls is too low",
-            gauge.name
-        );
-        solver.warn("density", message, "set density = \"continuity\" under [solver] to measure pressure");
-    }
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let width = scene.domain.size()[axis];
-        // The tolerance allows for rounding in a domain exactly two support radii wide.
-        if scene.domain.closed[axis] == [true; 2] && width < 1.999 * derived.support_radius {
-            let message = format!(
-                "the domain is {width} m wide along {name}, less than two support radii of {} m: \
-                 only the nearer of two closed sides acts on a particle",
-                derived.support_radius
-            );
-            fluid.warn("particle_spacing", message, "use a finer particle_spacing, or open one of the sides");
-        }
     }
     let spacing = f64::from(scene.fluid.particle_spacing);
     for (index, block) in scene.fluid.blocks.iter().enumerate() {

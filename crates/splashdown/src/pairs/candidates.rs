@@ -6,6 +6,8 @@ use glam::Vec3;
 
 use super::Sorted;
 use super::columns::Columns;
+use super::vector::reflected_point;
+use crate::boundary::Reflection;
 use crate::simd::{BLOCK, Register, sum};
 
 /// Coordinate of the padding: beyond every support radius, with a finite square.
@@ -15,8 +17,8 @@ const MARGIN: f32 = 1.0001;
 
 /// All points within reach of a bounding box.
 pub(super) struct Region {
-    low: [f32; 3],
-    high: [f32; 3],
+    pub low: [f32; 3],
+    pub high: [f32; 3],
     /// Square of the largest distance from the box.
     reach2: f32,
 }
@@ -52,10 +54,32 @@ impl<const F: usize> Candidates<F> {
     /// Packs the particles of `runs` that are in the region.
     #[inline(always)]
     pub fn pack<V: Register>(&mut self, all: &Columns<F>, runs: &[Range<usize>], region: &Region) {
-        self.reserve(runs.iter().map(|run| run.len()).sum());
+        self.pack_images::<V>(all, runs, region, std::iter::empty(), |_, values| values);
+    }
+
+    /// Packs the particles of `runs` that are in the region, and those of their images that are. `reflect` computes the
+    /// columns of an image after the position.
+    #[inline(always)]
+    pub fn pack_images<V: Register>(
+        &mut self,
+        all: &Columns<F>,
+        runs: &[Range<usize>],
+        region: &Region,
+        reflections: impl Iterator<Item = Reflection> + Clone,
+        reflect: impl Fn(&Reflection, [V; F]) -> [V; F],
+    ) {
+        let particles: usize = runs.iter().map(|run| run.len()).sum();
+        self.reserve(particles * (1 + reflections.clone().count()));
         let mut count = 0;
         for run in runs {
             count = self.append::<V>(all, run.clone(), region, count);
+        }
+        for reflection in reflections {
+            for run in runs {
+                let place = |x| reflected_point(&reflection, x);
+                let reflect = |values| reflect(&reflection, values);
+                count = self.append_with::<V>(all, run.clone(), region, count, place, reflect);
+            }
         }
         self.pad(count);
     }
@@ -110,7 +134,22 @@ impl<const F: usize> Candidates<F> {
         all: &Columns<F>,
         run: Range<usize>,
         region: &Region,
+        count: usize,
+    ) -> usize {
+        self.append_with::<V>(all, run, region, count, |x| x, |values| values)
+    }
+
+    /// As [`append`](Self::append), for particles that are elsewhere: `place` computes the positions, which decide, and
+    /// `change` all columns.
+    #[inline(always)]
+    fn append_with<V: Register>(
+        &mut self,
+        all: &Columns<F>,
+        run: Range<usize>,
+        region: &Region,
         mut count: usize,
+        place: impl Fn([V; 3]) -> [V; 3],
+        change: impl Fn([V; F]) -> [V; F],
     ) -> usize {
         let from: [&[f32]; F] = std::array::from_fn(|f| all.column(f));
         let length = self.columns[0].len();
@@ -122,10 +161,10 @@ impl<const F: usize> Candidates<F> {
         for j in run.clone().step_by(V::WIDTH) {
             // SAFETY: `j` is below the end of the run, and the columns extend a block beyond it.
             let load = |f: usize| unsafe { V::load(from[f].as_ptr().add(j)) };
+            let x = place([load(0), load(1), load(2)]);
             let mut distance2 = zero;
             for axis in 0..3 {
-                let x = load(axis);
-                let outside = (low[axis] - x).max(x - high[axis]).max(zero);
+                let outside = (low[axis] - x[axis]).max(x[axis] - high[axis]).max(zero);
                 distance2 = distance2 + outside * outside;
             }
             let of_run = u32::MAX >> (32 - V::WIDTH.min(run.end - j));
@@ -133,10 +172,11 @@ impl<const F: usize> Candidates<F> {
             if near == 0 {
                 continue;
             }
-            for (f, to) in to.iter().enumerate() {
+            let values = change(std::array::from_fn(load));
+            for (to, value) in to.iter().zip(values) {
                 // SAFETY: at most the particles of the run were appended, and there is a block
                 // after them.
-                unsafe { load(f).compress(near).store(to.add(count)) };
+                unsafe { value.compress(near).store(to.add(count)) };
             }
             count += near.count_ones() as usize;
         }

@@ -37,11 +37,12 @@ use std::ops::Range;
 
 use glam::Vec4;
 
+use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
 pub(crate) use particles::{PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
-pub(crate) use vector::{difference, dot, scaled, splat};
+pub(crate) use vector::{difference, dot, reflected, reflected_point, scaled, splat};
 
 /// Particles sorted by cell.
 #[derive(Clone, Copy)]
@@ -54,11 +55,18 @@ pub(crate) struct Sorted<'a> {
     pub positions: &'a [Vec4],
     /// Radius within which particles are neighbours, in metres; at most the cell size.
     pub support_radius: f32,
+    /// Closed sides behind which the particles have images.
+    pub images: Images,
 }
 
 impl<'a> Sorted<'a> {
     pub fn new(support_radius: f32, grid: &'a Grid, cell_start: &'a [u32], positions: &'a [Vec4]) -> Self {
-        Self { grid, cell_start, positions, support_radius }
+        Self { grid, cell_start, positions, support_radius, images: Images::NONE }
+    }
+
+    /// The same particles with their images behind closed sides. Only [`for_each`] visits images.
+    pub fn with_images(self, images: Images) -> Self {
+        Self { images, ..self }
     }
 
     /// Number of active particles.

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 use super::Sorted;
 use super::candidates::{Candidates, Region};
 use super::columns::Columns;
+use super::vector::reflected_point;
+use crate::boundary::Reflection;
 use crate::simd::{Leaf, Register, Simd, run_with};
 
 /// A pass that sums `S` quantities over the neighbours of every particle, including itself, from
@@ -26,6 +28,14 @@ pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
 
     /// Computes the result of particle `i` from its sums.
     fn finish(&self, i: usize, sums: [f32; S], out: &mut Self::Output);
+
+    /// The columns of the images of a register of neighbours behind a wall.
+    #[inline(always)]
+    fn reflect<V: Register>(&self, reflection: &Reflection, values: [V; F]) -> [V; F] {
+        let mut image = values;
+        image[..3].copy_from_slice(&reflected_point(reflection, [values[0], values[1], values[2]]));
+        image
+    }
 
     /// Whether the sums of particle `i` are needed. If not, they are zero.
     fn wants(&self, _i: usize) -> bool {
@@ -92,7 +102,12 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>> Leaf for Row<'_, F, S, P>
             if particles.clone().any(|i| pass.wants(i)) {
                 let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
                 let region = Region::around(targets, sorted.support_radius);
-                candidates.pack::<V>(columns, &sorted.runs_around(cell), &region);
+                let runs = sorted.runs_around(cell);
+                let reflections =
+                    sorted.images.near(region.low.into(), region.high.into(), sorted.support_radius);
+                candidates.pack_images::<V>(columns, &runs, &region, reflections, |by, values| {
+                    pass.reflect(by, values)
+                });
             }
             for i in particles {
                 let sums = if pass.wants(i) { candidates.sum::<V, S>(pass.pair::<V>(i)) } else { [0.0; S] };

@@ -2,6 +2,7 @@
 
 use glam::Vec4;
 
+use crate::boundary::Reflection;
 use crate::simd::Lanes;
 
 /// The first three components, in every lane.
@@ -26,4 +27,17 @@ pub(crate) fn dot<V: Lanes>(a: [V; 3], b: [V; 3]) -> V {
 #[inline(always)]
 pub(crate) fn scaled<V: Lanes>(factor: V, a: [V; 3]) -> [V; 3] {
     [factor * a[0], factor * a[1], factor * a[2]]
+}
+
+/// The image of a position, in every lane.
+#[inline(always)]
+pub(crate) fn reflected_point<V: Lanes>(by: &Reflection, x: [V; 3]) -> [V; 3] {
+    let [a, b, c] = reflected(by, x);
+    [a + V::splat(by.shift.x), b + V::splat(by.shift.y), c + V::splat(by.shift.z)]
+}
+
+/// The image of a velocity or another vector, in every lane.
+#[inline(always)]
+pub(crate) fn reflected<V: Lanes>(by: &Reflection, v: [V; 3]) -> [V; 3] {
+    [v[0] * V::splat(by.sign.x), v[1] * V::splat(by.sign.y), v[2] * V::splat(by.sign.z)]
 }

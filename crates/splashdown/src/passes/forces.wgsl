@@ -1,7 +1,7 @@
 // The part FORCES of the acceleration of a particle by its neighbours, the walls and body forces; see
 // passes/acceleration. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
 // `densities`; a constant `HAS_TENSION`; and a function `tension_between`: the acceleration of particle i by surface
-// tension with particle j, where d is x_i - x_j.
+// tension with the image of particle j that has the reflection `sign`, where d is the distance from the image.
 fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f32> {
     let rho = own.x;
     let pressure = own.y;
@@ -14,36 +14,45 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     let scale5 = scale * scale * scale * scale * scale;
     let reach = support * support;
     let soft = 0.01 * reach;
-    let mass = params.particle_mass;
+    let mass = params.summed_mass;
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
     let artificial = params.artificial_viscosity * params.sound_speed * 0.5 * support * volume;
     let tension = HAS_TENSION && (FORCES & OTHER_FORCES) != 0u && params.surface_tension > 0.0;
 
     var a = vec3(0.0);
-    for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
-        for (var j = range.x; j < range.y; j++) {
-            let d = x - sorted_positions[j].xyz;
-            let r2 = dot(d, d);
-            if (r2 >= reach || j == i) {
-                continue;
-            }
-            let q = sqrt(r2) * scale;
-            let g = kernel_g(q) * scale5;
-            let other = densities[j];
-            let vx = dot(v - sorted_velocities[j].xyz, d);
-            let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-            let pressure_sum = mass * (specific + other.y / (other.x * other.x));
-            a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
-                - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
-            if (tension) {
-                a += tension_between(i, j, d, q, rho, other.x);
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let p = sorted_positions[j].xyz;
+                let image = reflected_point(by, p);
+                let d = x - image;
+                let r2 = dot(d, d);
+                if (r2 >= reach) {
+                    continue;
+                }
+                let q = sqrt(r2) * scale;
+                let g = kernel_g(q) * scale5;
+                let other = densities[j];
+                let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
+                let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
+                // The pressure of an image continues hydrostatically, but not to tension.
+                let own = other.y / (other.x * other.x);
+                let more = dot(body, image - p) / params.rest_density;
+                let pressure_sum = mass * (specific + max(own + more, min(own, 0.0)));
+                a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
+                    - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
+                if (tension) {
+                    a += tension_between(i, j, by.sign, d, q, rho, other.x);
+                }
             }
         }
     }
 
-    let pressure_factor = params.rest_density * specific + pressure / params.rest_density;
-    a = wall_acceleration(wall_terms(x), v, body, a, pressure_factor, state.dt);
-    return a + select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
+    if ((FORCES & OTHER_FORCES) != 0u) {
+        a += body + wall_friction(x, v, state.dt);
+    }
+    return a;
 }

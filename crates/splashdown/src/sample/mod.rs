@@ -5,13 +5,14 @@
 //!   spacing above it, the distance for which the wall's kernel integral is computed (`boundary`).
 //! * A ball gets the points of a lattice around its centre that lie inside it.
 //! * A closed mesh gets the points inside it of the lattice of its bounding box.
-//! * The particles of a file retain_flagged their positions.
+//! * The particles of a file keep their positions.
 //!
 //! Blocks come first, then meshes, then files. Where two sources overlap, the particles of the later one are
 //! left out. Within a source, x varies fastest, then y, then z. Ids count from 0.
 
 mod filler;
 mod grid;
+mod hydrostatic;
 mod sources;
 mod spacing;
 
@@ -28,6 +29,7 @@ use crate::scene::{DensityMode, Fluid, Scene, place};
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
 pub(crate) use filler::{Added, Filler};
+pub(crate) use hydrostatic::start_at_rest;
 pub(crate) use sources::{Sources, file_title, mesh_title};
 pub use spacing::typical_spacing;
 

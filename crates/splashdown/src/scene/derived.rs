@@ -23,8 +23,7 @@ pub struct Derived {
     pub emitted: u64,
     /// Average number of particles over the scene's duration, if none are removed.
     pub mean_particles: f64,
-    /// Mass of a particle in kg: `rest_density * particle_spacing^3 / lattice_sum`. The initial lattice then
-    /// has exactly the rest density.
+    /// Mass of a particle in kg: `rest_density * particle_spacing^3`.
     pub particle_mass: f32,
     /// The sum of `W * particle_spacing^3` over the infinite lattice, with the kernel of the density.
     pub lattice_sum: f64,
@@ -118,7 +117,7 @@ impl Derived {
             particles: 0,
             emitted: 0,
             mean_particles: 0.0,
-            particle_mass: (f64::from(density) * volume / lattice_sum) as f32,
+            particle_mass: (f64::from(density) * volume) as f32,
             lattice_sum,
             volume: 0.0,
             support_radius,

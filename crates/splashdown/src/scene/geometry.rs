@@ -4,7 +4,7 @@
 use super::lattice::{self, MAX_PARTICLES, Sampler};
 use super::reader::{Read, Reported, Section};
 use super::spec::rounded;
-use super::types::{Block, Domain, Fluid, Material};
+use super::types::{Block, Domain, Fluid, InitialPressure, Material};
 
 /// Maximum distance from the origin in spacings. Coordinates in f32 are accurate to half a per cent of a
 /// spacing there.
@@ -44,6 +44,7 @@ pub(crate) fn check(
         blocks: whole,
         meshes: Vec::new(),
         files: Vec::new(),
+        initial_pressure: InitialPressure::Zero,
     };
     let count = lattice::estimate(&fluid);
     if count > MAX_PARTICLES {

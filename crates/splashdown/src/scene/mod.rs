@@ -75,6 +75,6 @@ pub use things::{
 };
 pub use types::{
     Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format,
-    KernelKind, Material, Method, NegativePressure, Oscillation, Output, PictureKind, Scene, Shape, Solver,
-    Sort, SurfaceSettings, SurfaceTension,
+    InitialPressure, KernelKind, Material, Method, NegativePressure, Oscillation, Output, PictureKind, Scene,
+    Shape, Solver, Sort, SurfaceSettings, SurfaceTension,
 };

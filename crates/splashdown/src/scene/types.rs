@@ -137,6 +137,8 @@ pub struct Fluid {
     pub meshes: Vec<FluidMesh>,
     /// Particle files that provide fluid at the start.
     pub files: Vec<FluidFile>,
+    /// The pressure of the blocks at the start.
+    pub initial_pressure: InitialPressure,
 }
 
 impl Fluid {
@@ -260,6 +262,13 @@ choices! {
         Clamp = "clamp",
         /// They are kept: needed to compare pressures with measurements.
         Keep = "keep",
+    }
+    /// The pressure at the start.
+    InitialPressure {
+        /// That of fluid at rest in blocks that stand on a closed side below them, zero elsewhere.
+        Hydrostatic = "hydrostatic",
+        /// Zero: fluid that rests on a floor oscillates for seconds.
+        Zero = "zero",
     }
     /// The model of surface tension.
     SurfaceTension {

@@ -53,5 +53,11 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
         particle_count: particles,
         wall_damping: if scheme.is_density_integrated { 0.0 } else { 1.0 },
+        summed_mass: if scheme.is_density_integrated {
+            derived.particle_mass
+        } else {
+            (f64::from(derived.particle_mass) / derived.lattice_sum) as f32
+        },
+        ..bytemuck::Zeroable::zeroed()
     }
 }

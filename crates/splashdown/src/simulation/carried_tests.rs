@@ -65,7 +65,8 @@ fn start(executor: Executor) -> Simulation {
 }
 
 fn start_scene(scene: &Scene, executor: Executor) -> Simulation {
-    let particles = crate::sample::particles(scene).unwrap();
+    let mut particles = crate::sample::particles(scene).unwrap();
+    crate::sample::start_at_rest(scene, &mut particles);
     block_on(Simulation::with_bodies(scene, executor, &particles, Vec::new(), TABLE)).unwrap()
 }
 
@@ -146,7 +147,7 @@ fn the_bitonic_sort_moves_the_quantities_too() {
 fn emitted_particles_do_not_inherit_the_quantities_of_removed_ones() {
     let text = "[scene]\nname = \"channel\"\nduration = 1.0\ngravity = [0, 0, 0]\n\
                 [domain]\nmin = [0, 0, 0]\nmax = [0.6, 0.4, 0.4]\n\
-                [fluid]\nparticle_spacing = 0.025\n\
+                [fluid]\nparticle_spacing = 0.025\ninitial_pressure = \"zero\"\n\
                 [[fluid.block]]\nposition = [0.2, 0.1, 0.1]\nsize = [0.1, 0.2, 0.2]\nvelocity = [1, 0, 0]\n\
                 [[emitter]]\nname = \"inlet\"\nradius = 0.05\nposition = [0.05, 0.2, 0.2]\ndirection = [1, 0, 0]\nspeed = 1.0\n\
                 [[sink]]\nname = \"outlet\"\nmin = [0.4, 0, 0]\nmax = [0.6, 0.4, 0.4]\n\

@@ -19,6 +19,7 @@ const SCENE: &str = r#"
     min = [0, 0, 0]
     max = [0.4, 0.4, 0.3]
     [fluid]
+    initial_pressure = "zero"
     particle_spacing = 0.025
     [[fluid.block]]
     position = [0, 0, 0]

@@ -9,7 +9,6 @@ use super::Simulation;
 use super::frame::{HOST_STEPS, MOST_STEPS};
 use super::phases::{HostAction, Phase, Schedule};
 use crate::bodies::{Bodies, LoadedBody};
-use crate::boundary::wall_table;
 use crate::cells::{Cells, Grid};
 use crate::check::Built;
 use crate::flow::{Flow, LoadedFlow};
@@ -62,6 +61,7 @@ impl Simulation {
         let bodies = Self::load_bodies(scene, progress)?;
         let mut particles = Built::of(scene).take_particles(scene)?;
         let removed = sample::remove_inside(scene, &mut particles, &bodies);
+        sample::start_at_rest(scene, &mut particles);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
         }
@@ -139,8 +139,7 @@ impl Simulation {
                 allowed: 1 << 31,
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
-        let walls = wall_table(scheme.walls());
-        let fields = Fields::with_table(&mut executor, &params, &walls, scheme.needs_normals(), table)?;
+        let fields = Fields::with_table(&mut executor, &params, scheme.needs_normals(), table)?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {
             None

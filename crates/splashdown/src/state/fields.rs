@@ -17,8 +17,6 @@ pub struct Fields {
     pub duration: Buffer<f32>,
     /// Counters and maxima, [`StepCounters::WORDS`] words.
     pub counters: Buffer<u32>,
-    /// Overlap of half-spaces; see [`boundary::wall_table`](crate::boundary::wall_table).
-    pub wall_table: Buffer<Vec4>,
     /// Persistent: position in metres; the fourth component is 0 for an active particle, else why it is not active.
     pub positions: Buffer<Vec4>,
     /// Persistent: velocity in m/s, and density in kg/m^3.
@@ -45,17 +43,12 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Creates the buffers; `wall_table` is the table of the [overlaps](crate::boundary::wall_table).
+    /// Creates the buffers.
     ///
     /// # Errors
     /// As [`Executor::create`].
-    pub fn new(
-        executor: &mut Executor,
-        params: &Params,
-        wall_table: &[Vec4],
-        normals: bool,
-    ) -> Result<Self, GpuError> {
-        Self::with_table(executor, params, wall_table, normals, CARRIED)
+    pub fn new(executor: &mut Executor, params: &Params, normals: bool) -> Result<Self, GpuError> {
+        Self::with_table(executor, params, normals, CARRIED)
     }
 
     /// [`new`](Self::new) with another table of carried quantities, which begins with the rows of [`CARRIED`].
@@ -65,7 +58,6 @@ impl Fields {
     pub fn with_table(
         executor: &mut Executor,
         params: &Params,
-        wall_table: &[Vec4],
         normals: bool,
         table: &'static [Carried],
     ) -> Result<Self, GpuError> {
@@ -94,7 +86,6 @@ impl Fields {
             state: executor.create_small("state", &[StepState::zeroed()])?,
             duration: executor.create_from("duration", &[0.0])?,
             counters: executor.create_from("counters", &[0; StepCounters::WORDS])?,
-            wall_table: executor.create_small("wall_table", wall_table)?,
             positions,
             velocities,
             ids,
@@ -118,7 +109,7 @@ impl Fields {
     pub fn buffers(&self) -> BufferSet {
         // The names of the fields are compared with the labels in the table.
         let mut set = buffer_set!(self =>
-            params, state, duration, counters, wall_table, positions, velocities, ids, sorted_positions,
+            params, state, duration, counters, positions, velocities, ids, sorted_positions,
             sorted_velocities, sorted_ids, densities, accelerations, normals,
         );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));

@@ -19,7 +19,7 @@ gpu_struct! {
         particle_spacing: f32,
         /// Upper corner of the domain in metres.
         domain_max: Vec3,
-        /// Mass of a particle in kg.
+        /// Mass of a particle in kg: rest_density * particle_spacing^3.
         particle_mass: f32,
         /// Amplitude of the inertial acceleration in an oscillating domain, in m/s^2.
         oscillation: Vec3,
@@ -56,8 +56,17 @@ gpu_struct! {
         clamp_pressure: u32,
         /// Number of particles, including removed ones and those not yet emitted.
         particle_count: u32,
-        /// Damping of the velocity towards closed sides: 1 if the density is summed, 0 if it is integrated.
+        /// Damping of the velocity towards bodies: 1 if the density is summed, 0 if it is integrated.
         wall_damping: f32,
+        /// The mass in kg with which a particle enters sums over neighbours. Where the density is summed, it is
+        /// particle_mass divided by the kernel's sum over the lattice, which then has the rest density.
+        summed_mass: f32,
+        /// Padding.
+        unused: f32,
+        /// Padding.
+        unused_2: f32,
+        /// Padding.
+        unused_3: f32,
     }
 }
 

@@ -25,6 +25,10 @@ struct Params {
     clamp_pressure: u32,
     particle_count: u32,
     wall_damping: f32,
+    summed_mass: f32,
+    unused: f32,
+    unused_2: f32,
+    unused_3: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -2,7 +2,6 @@
 //! position, and dead ones.
 
 use glam::{Vec2, Vec4};
-use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::state::{Params, StepCounters};
 use splashdown_gpu::{CpuExecutor, DispatchSize};
 
@@ -10,27 +9,21 @@ use super::cases::cell_counts_of;
 use super::harness::{Case, Data, close, exact, wide};
 use super::oracle::{self, Kernel, Parts, Sum};
 use super::sort_cases::{pass, zero_cell_counts};
-use super::walls::{Kernels, Wall};
 use super::world::{World, params};
 
 /// A term of a sum has a dozen roundings, amplified tenfold by the steep slopes of the kernels; the errors of a hundred
 /// terms add up like a random walk. Divisions and square roots on a GPU may be off by 2.5 units in the last place.
 const ROUNDING: f64 = 2e-5;
-/// The tables of edges interpolate linearly over 1/32 of the support; in corners the overlap of three solids is a
-/// product formula, which its unit test checks to 6e-3.
-const WALL_TABLE: [f64; 4] = [2e-6, 2e-6, 3e-3, 1e-2];
+/// The kernels of the density and of the gradient.
+#[derive(Clone, Copy)]
+struct Kernels {
+    density: Kernel,
+    gradient: Kernel,
+}
 
 const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
 const CUBIC: Kernels = Kernels { density: Kernel::CubicSpline, gradient: Kernel::CubicSpline };
 const MUELLER: Kernels = Kernels { density: Kernel::Poly6, gradient: Kernel::Spiky };
-
-fn pair(kernels: Kernels) -> KernelPair {
-    match kernels.density {
-        Kernel::WendlandC2 => KernelPair::WendlandC2,
-        Kernel::CubicSpline => KernelPair::CubicSpline,
-        _ => KernelPair::Mueller,
-    }
-}
 
 fn word(kernels: Kernels) -> &'static str {
     if kernels.density == Kernel::WendlandC2 { "wendland_c2" } else { "cubic_spline" }
@@ -88,35 +81,29 @@ fn world(params: Params) -> World {
     World::new(params, 1500)
 }
 
-fn table(kernels: Kernels) -> Data {
-    Data::Vec4(wall_table(pair(kernels)))
-}
-
-/// Expected values with tolerances for the comparison of the executors and with the oracle.
+/// Expected values with tolerances.
 struct Expected {
     values: Vec<f64>,
     rounding: Vec<f64>,
-    tables: Vec<f64>,
 }
 
 impl Expected {
     /// The `poison` entries after the active particles stay unchanged.
     fn new() -> Self {
-        Self { values: Vec::new(), rounding: Vec::new(), tables: Vec::new() }
+        Self { values: Vec::new(), rounding: Vec::new() }
     }
 
-    /// One component: its value, the magnitude of its terms, and that of the contribution of the wall tables.
-    fn push(&mut self, value: f64, size: f64, by_walls: f64) {
+    /// One component: its value and the magnitude of its terms.
+    fn push(&mut self, value: f64, size: f64) {
         self.values.push(value);
         self.rounding.push(ROUNDING * size);
-        self.tables.push(ROUNDING * size + by_walls);
     }
 
-    fn vector(&mut self, sum: &Sum, by_walls: f64) {
+    fn vector(&mut self, sum: &Sum) {
         for k in 0..3 {
-            self.push(sum.value[k], sum.size, by_walls);
+            self.push(sum.value[k], sum.size);
         }
-        self.push(0.0, 0.0, 0.0);
+        self.push(0.0, 0.0);
     }
 
     fn case(
@@ -129,18 +116,19 @@ impl Expected {
         control: fn(&mut [Data]),
     ) -> Case {
         let total = output.words().len();
-        for list in [&mut self.values, &mut self.rounding, &mut self.tables] {
+        for list in [&mut self.values, &mut self.rounding] {
             list.resize(total, f64::NAN);
         }
         input.push(output.poison());
-        let Self { values, rounding, tables } = self;
+        let Self { values, rounding } = self;
+        let same = rounding.clone();
         Case {
             pass: pass(&label),
             name: name.into(),
             size: DispatchSize::Items(world.len() as u32),
             input,
-            compare: Box::new(move |a, b| close("GPU, CPU", a[0].floats(), &wide(b[0].floats()), &rounding)),
-            oracle: Box::new(move |out| close("sums", out[0].floats(), &values, &tables)),
+            compare: Box::new(move |a, b| close("GPU, CPU", a[0].floats(), &wide(b[0].floats()), &same)),
+            oracle: Box::new(move |out| close("sums", out[0].floats(), &values, &rounding)),
             control,
         }
     }
@@ -148,7 +136,7 @@ impl Expected {
 
 /// A mass that is wrong by 1/500.
 fn heavier(input: &mut [Data]) {
-    input[0].params().particle_mass *= 1.002;
+    input[0].params().summed_mass *= 1.002;
 }
 
 fn base(world: &World) -> Vec<Data> {
@@ -163,36 +151,30 @@ fn stiffness(world: &World, rho: f64) -> (f64, f64) {
     (c2 * (rho / rest).powf(f64::from(p.exponent) - 1.0), rest * c2)
 }
 
-fn push_density(expected: &mut Expected, world: &World, rho: f64, size: f64, by_walls: f64) {
-    let (slope, scale) = stiffness(world, rho + by_walls);
-    expected.push(rho, size, by_walls);
-    expected.push(oracle::pressure(world, rho), slope * size + 0.2 * scale, slope * by_walls);
+fn push_density(expected: &mut Expected, world: &World, rho: f64, size: f64) {
+    let (slope, scale) = stiffness(world, rho);
+    expected.push(rho, size);
+    expected.push(oracle::pressure(world, rho), slope * size + 0.2 * scale);
 }
 
 fn density(name: &str, kernels: Kernels, params: Params) -> Case {
     let world = world(params);
-    let walls = oracle::walls(&world, kernels);
     let mut expected = Expected::new();
-    for (rho, wall) in oracle::density(&world, kernels.density, &walls).into_iter().zip(&walls) {
-        push_density(&mut expected, &world, rho, rho, 1000.0 * WALL_TABLE[wall.near]);
+    for rho in oracle::density(&world, kernels.density) {
+        push_density(&mut expected, &world, rho, rho);
     }
     let label = if kernels.density == Kernel::Poly6 { "poly6" } else { word(kernels) };
     let mut input = base(&world);
-    input.extend([Data::U32(world.cell_start.clone()), Data::Vec4(world.positions.clone()), table(kernels)]);
+    input.extend([Data::U32(world.cell_start.clone()), Data::Vec4(world.positions.clone())]);
     let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
     expected.case(format!("density.{label}"), name, &world, input, output, heavier)
 }
 
 fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
     let world = world(params);
-    let walls = oracle::walls(&world, kernels);
     let mut expected = Expected::new();
-    let dt = f64::from(world.state.dt);
-    for (i, sum) in oracle::continuity(&world, kernels.gradient, &walls).into_iter().enumerate() {
-        let v = world.velocities[i];
-        let scale =
-            2.0 * dt * f64::from(v.w) * f64::from(v.truncate().length()) / f64::from(params.support_radius);
-        push_density(&mut expected, &world, sum.value.x, sum.size, scale * WALL_TABLE[walls[i].near]);
+    for sum in oracle::continuity(&world, kernels.gradient) {
+        push_density(&mut expected, &world, sum.value.x, sum.size);
     }
     let mut input = base(&world);
     input.extend([
@@ -200,11 +182,10 @@ fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
         Data::Vec4(world.velocities.clone()),
-        table(kernels),
     ]);
     let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
     // A step changes the density only slightly, so a larger error of the mass is needed than elsewhere.
-    let control = |input: &mut [Data]| input[0].params().particle_mass *= 1.2;
+    let control = |input: &mut [Data]| input[0].params().summed_mass *= 1.2;
     expected.case(format!("continuity.{}", word(kernels)), name, &world, input, output, control)
 }
 
@@ -212,7 +193,7 @@ fn normals(name: &str, kernels: Kernels, params: Params) -> Case {
     let world = world(params);
     let mut expected = Expected::new();
     for sum in oracle::normals(&world, kernels.gradient) {
-        expected.vector(&sum, 0.0);
+        expected.vector(&sum);
     }
     let mut input = base(&world);
     input.extend([
@@ -224,17 +205,6 @@ fn normals(name: &str, kernels: Kernels, params: Params) -> Case {
     expected.case(format!("normals.{}", word(kernels)), name, &world, input, output, heavier)
 }
 
-/// The error of an acceleration that corresponds to the error of the wall tables.
-fn push_error(world: &World, wall: &Wall, i: usize) -> f64 {
-    let (p, density) = (&world.params, world.densities[i].as_dvec2());
-    let support = f64::from(p.support_radius);
-    let push = density.y.abs() * (1.0 / density.x + density.x / 1e6) / 500.0;
-    // The pressure force depends on the slope's error over H; body forces on the density's error and on slope times
-    // distance over H.
-    let body = 2.0 * f64::from(p.gravity.length() + p.oscillation.length());
-    WALL_TABLE[wall.near] * (push * 500.0 / support + body)
-}
-
 fn acceleration(name: &str, kernels: Kernels, params: Params) -> Case {
     part_of_acceleration("", name, kernels, params, Parts::ALL)
 }
@@ -242,10 +212,9 @@ fn acceleration(name: &str, kernels: Kernels, params: Params) -> Case {
 /// `suffix` is the end of the label of the pass that computes these parts.
 fn part_of_acceleration(suffix: &str, name: &str, kernels: Kernels, params: Params, parts: Parts) -> Case {
     let world = world(params);
-    let walls = oracle::walls(&world, kernels);
     let mut expected = Expected::new();
-    for (i, sum) in oracle::acceleration(&world, kernels.gradient, &walls, parts).iter().enumerate() {
-        expected.vector(sum, push_error(&world, &walls[i], i));
+    for sum in oracle::acceleration(&world, kernels.gradient, parts) {
+        expected.vector(&sum);
     }
     let mut input = base(&world);
     input.extend(pair_input(&world));
@@ -255,7 +224,6 @@ fn part_of_acceleration(suffix: &str, name: &str, kernels: Kernels, params: Para
         // As in a simulation without surface tension.
         Data::Vec4(vec![Vec4::NAN])
     });
-    input.push(table(kernels));
     let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
     expected.case(format!("acceleration.{}{suffix}", word(kernels)), name, &world, input, output, heavier)
 }
@@ -289,10 +257,9 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
     let mut world = world(params);
     world.state.remaining = remaining;
     let expected = two_passes(&world, kernels);
-    let walls = oracle::walls(&world, kernels);
     let dt = f64::from(world.state.dt);
     let mut tolerances = [Vec::new(), Vec::new()];
-    for sum in oracle::acceleration(&world, kernels.gradient, &walls, Parts::ALL) {
+    for sum in oracle::acceleration(&world, kernels.gradient, Parts::ALL) {
         // Contacts divide the rounding error of a position by the step.
         let velocity = 2.0 * dt * ROUNDING * sum.size + 1.3e-7 / dt;
         tolerances[0].extend([2e-7 + dt * velocity; 4]);
@@ -334,7 +301,6 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
             Data::Params(world.params),
             Data::Grid(grid),
             state,
-            table(kernels),
             starts,
             positions.clone(),
             velocities.clone(),
@@ -377,23 +343,21 @@ fn pair_input(world: &World) -> [Data; 5] {
 
 fn mueller(name: &str, params: Params) -> Case {
     let world = world(params);
-    let walls = oracle::walls(&world, MUELLER);
     let mut expected = Expected::new();
     let mut undecided = 0;
-    let sums = oracle::mueller(&world, &walls);
-    for (i, (sum, steepness)) in sums.iter().enumerate() {
+    let sums = oracle::mueller(&world);
+    for (sum, steepness) in &sums {
         if params.surface_tension > 0.0 && (steepness.0 - 1.0).abs() < 1e-4 {
             // At the threshold the result depends on rounding, so such a particle is skipped.
             undecided += 1;
-            expected.vector(&Sum { size: f64::INFINITY, ..*sum }, 0.0);
+            expected.vector(&Sum { size: f64::INFINITY, ..*sum });
         } else {
-            expected.vector(sum, push_error(&world, &walls[i], i));
+            expected.vector(sum);
         }
     }
     assert!(undecided * 100 < sums.len(), "{undecided} of {} are on the threshold", sums.len());
     let mut input = base(&world);
     input.extend(pair_input(&world));
-    input.push(table(MUELLER));
     let output = Data::Vec4(vec![Vec4::ZERO; world.len()]);
     expected.case("mueller".into(), name, &world, input, output, heavier)
 }

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec4Swizzles};
 
-use super::walls::{Kernels, Wall};
+use super::walls::{self, Reflection};
 use super::world::World;
 
 /// The kernels (W H^3, dW/dq H^3) as functions of q = r / H.
@@ -87,7 +87,7 @@ fn constants(world: &World) -> C {
     let phase = f64::from(p.oscillation_rate) * f64::from(world.state.time);
     C {
         support: p.support_radius.into(),
-        mass: p.particle_mass.into(),
+        mass: p.summed_mass.into(),
         rest: p.rest_density.into(),
         sound: p.sound_speed.into(),
         spacing: p.particle_spacing.into(),
@@ -104,13 +104,17 @@ fn speed(world: &World, i: usize) -> DVec3 {
     world.velocities[i].xyz().as_dvec3()
 }
 
-/// Calls `visit(j, x_i - x_j)` for all active particles within the support, itself included.
-fn neighbours(world: &World, i: usize, mut visit: impl FnMut(usize, DVec3)) {
+/// Calls `visit(j, x_i - x, by, x - x_j)` for the images x within the support of all active particles, by all
+/// reflections and by none.
+fn neighbours(world: &World, i: usize, mut visit: impl FnMut(usize, DVec3, &Reflection, DVec3)) {
     let (x, reach) = (place(world, i), f64::from(world.params.support_radius));
-    for j in 0..world.active() {
-        let d = x - place(world, j);
-        if d.length_squared() < reach * reach {
-            visit(j, d);
+    for by in walls::reflections(&world.params) {
+        for j in 0..world.active() {
+            let image = by.sign * place(world, j) + by.shift;
+            let d = x - image;
+            if d.length_squared() < reach * reach {
+                visit(j, d, &by, image - place(world, j));
+            }
         }
     }
 }
@@ -124,13 +128,13 @@ pub fn pressure(world: &World, rho: f64) -> f64 {
     if p.clamp_pressure == 1 { value.max(0.0) } else { value }
 }
 
-/// rho_i = m sum W + rho0 D.
-pub fn density(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<f64> {
+/// rho_i = m sum W.
+pub fn density(world: &World, kernel: Kernel) -> Vec<f64> {
     let c = constants(world);
     let sum = |i: usize| {
         let mut sum = 0.0;
-        neighbours(world, i, |_, d| sum += kernel.w(d.length() / c.support));
-        c.mass * sum / c.support.powi(3) + c.rest * walls[i].density
+        neighbours(world, i, |_, d, _, _| sum += kernel.w(d.length() / c.support));
+        c.mass * sum / c.support.powi(3)
     };
     (0..world.active()).map(sum).collect()
 }
@@ -140,7 +144,7 @@ pub fn normals(world: &World, kernel: Kernel) -> Vec<Sum> {
     let c = constants(world);
     let sum = |i: usize| {
         let mut sum = Sum::default();
-        neighbours(world, i, |j, d| {
+        neighbours(world, i, |j, d, _, _| {
             sum.add(c.support * c.mass / f64::from(world.densities[j].x) * kernel.gradient(d, c.support));
         });
         sum
@@ -149,68 +153,47 @@ pub fn normals(world: &World, kernel: Kernel) -> Vec<Sum> {
 }
 
 /// The density after a step of the continuity equation; `value.x` of the sum.
-pub fn continuity(world: &World, kernel: Kernel, walls: &[Wall]) -> Vec<Sum> {
+pub fn continuity(world: &World, kernel: Kernel) -> Vec<Sum> {
     let (c, delta) = (constants(world), f64::from(world.params.density_diffusion));
     let rho = |i: usize| f64::from(world.velocities[i].w);
     let step = |i: usize| {
         let mut sum = Sum::default();
         let mut add = |term: f64| sum.add(DVec3::X * term);
         add(rho(i));
-        neighbours(world, i, |j, d| {
+        neighbours(world, i, |j, d, by, away| {
             let (g, volume) = (kernel.gradient(d, c.support), c.mass / rho(j));
-            add(c.dt * rho(i) * volume * (speed(world, i) - speed(world, j)).dot(g));
+            add(c.dt * rho(i) * volume * (speed(world, i) - by.sign * speed(world, j)).dot(g));
             // The hydrostatic density difference: rho0 / c0^2 body.(x_j - x_i).
-            let still = c.rest / c.sound.powi(2) * c.body.dot(-d);
-            let psi = rho(j) - rho(i) - still;
+            let per_length = c.rest / c.sound.powi(2) * c.body;
+            // That of an image continues the particle's.
+            let psi = rho(j) + per_length.dot(away) - rho(i) - per_length.dot(-d);
             let softened = d.length_squared() + 0.01 * c.support.powi(2);
             add(c.dt * 2.0 * delta * (0.5 * c.support) * c.sound * volume * psi * (-d).dot(g) / softened);
         });
-        // The velocity of the walls is the mirrored velocity of the particle: twice v.G.
-        add(c.dt * 2.0 * rho(i) * speed(world, i).dot(walls[i].gradient));
         sum
     };
     (0..world.active()).map(step).collect()
 }
 
-/// The sum of the neighbours (`pairs`) and of the walls, whose pressure force has the factor `push` = 2 p / rho.
-fn contact(world: &World, c: &C, i: usize, wall: &Wall, pairs: Sum, push: f64, parts: Parts) -> Sum {
+/// The acceleration by the friction of the walls.
+fn friction(world: &World, c: &C, i: usize, kernel: Kernel) -> Sum {
     let p = &world.params;
+    let wall = walls::at(p, kernel, place(world, i));
     let v = speed(world, i);
     let mut sum = Sum::default();
-    if parts.other {
-        sum = Sum { value: c.body, size: c.body.length() };
-    }
     for axis in 0..3 {
-        let e = DVec3::AXES[axis];
-        // Along the walls of the other axes the state is that of the fluid, of which the kernel covers only this part.
-        let seen = (1.0 - wall.plane[(axis + 1) % 3]) * (1.0 - wall.plane[(axis + 2) % 3]);
-        sum.value += pairs.value[axis] / seen * e;
-        sum.size += pairs.size / seen;
         let Some(distance) = wall.distance[axis] else { continue };
-        if parts.pressure {
-            let mut own = -push * wall.gradient[axis];
-            sum.size += own.abs() / seen;
-            if push > 0.0 {
-                let fraction = wall.plane[axis] + wall.single[axis] * distance / c.support;
-                own -= fraction * c.body[axis];
-            }
-            sum.add(own / seen * e);
-        }
-        if !parts.other {
-            continue;
-        }
-        let q = distance / c.support;
-        let implicit = |k: f64| k / (1.0 + k * c.dt);
-        if v[axis] * wall.normal[axis] < 0.0 {
-            let morris = 7.0 * (1.0 - q).powi(5) * (1.0 + 2.0 * q) / c.support.powi(2);
-            let damping = f64::from(p.wall_damping) * c.sound * c.support * morris;
-            sum.add(-implicit(damping) * v[axis] * e);
-        }
-        let friction = f64::from(p.wall_friction) * 2.0 * f64::from(p.viscosity) * wall.single[axis]
-            / (c.support * distance.max(0.25 * c.spacing));
-        sum.add(-implicit(friction) * (v - v[axis] * e));
+        let rate = f64::from(p.wall_friction) * 2.0 * f64::from(p.viscosity) * wall.gradient[axis]
+            / distance.max(0.25 * c.spacing);
+        sum.add(-rate / (1.0 + rate * c.dt) * (v - v[axis] * DVec3::AXES[axis]));
     }
     sum
+}
+
+/// The pressure of an image: that of the particle and the hydrostatic difference, but not below the smaller of the
+/// particle's pressure and zero.
+fn continued(pressure: f64, more: f64) -> f64 {
+    (pressure + more).max(pressure.min(0.0))
 }
 
 /// Akinci's cohesion kernel.
@@ -231,29 +214,27 @@ impl Parts {
 }
 
 /// Accelerations of the acceleration pass.
-pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts) -> Vec<Sum> {
+pub fn acceleration(world: &World, kernel: Kernel, parts: Parts) -> Vec<Sum> {
     let (c, p) = (constants(world), &world.params);
     let [nu, alpha, gamma] = [p.viscosity, p.artificial_viscosity, p.surface_tension].map(f64::from);
     let state = |i: usize| world.densities[i].as_dvec2();
     let sum = |i: usize| {
         let mut sum = Sum::default();
-        neighbours(world, i, |j, d| {
-            if i == j {
-                return;
-            }
+        neighbours(world, i, |j, d, by, away| {
             let g = kernel.gradient(d, c.support);
             let (own, other) = (state(i), state(j));
             if parts.pressure {
                 sum.add_parts(&[
                     -c.mass * own.y / own.x.powi(2) * g,
-                    -c.mass * other.y / other.x.powi(2) * g,
+                    // The difference is for the density at rest.
+                    -c.mass * continued(other.y / other.x.powi(2), c.body.dot(away) / c.rest) * g,
                 ]);
             }
             if !parts.other {
                 return;
             }
             let softened = d.length_squared() + 0.01 * c.support.powi(2);
-            let approach = (speed(world, i) - speed(world, j)).dot(d);
+            let approach = (speed(world, i) - by.sign * speed(world, j)).dot(d);
             sum.add(10.0 * nu * c.mass / c.rest * approach / softened * g);
             if approach < 0.0 {
                 // -m Pi grad W with Pi = -alpha c0 mu / rho0, mu = h v.x / (r^2 + 0.01 H^2), h = H / 2.
@@ -265,13 +246,14 @@ pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts)
                 let r = d.length();
                 let pull = if r == 0.0 { DVec3::ZERO } else { c.mass * cohesion(r, c.support) * d / r };
                 let [a, b] = [i, j].map(|k| world.normals[k].xyz().as_dvec3());
-                sum.add_parts(&[k * pull, k * a, -k * b]);
+                sum.add_parts(&[k * pull, k * a, -k * by.sign * b]);
             }
         });
-        // The image in the wall has the rest density.
-        let own = state(i);
-        let push = c.rest * (own.y / own.x.powi(2) + own.y / c.rest.powi(2));
-        contact(world, &c, i, &walls[i], sum, push, parts)
+        if parts.other {
+            let friction = friction(world, &c, i, kernel);
+            sum.add_parts(&[c.body, friction.value]);
+        }
+        sum
     };
     (0..world.active()).map(sum).collect()
 }
@@ -281,7 +263,7 @@ pub fn acceleration(world: &World, kernel: Kernel, walls: &[Wall], parts: Parts)
 pub struct Steepness(pub f64);
 
 /// Accelerations of Mueller 2003.
-pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
+pub fn mueller(world: &World) -> Vec<(Sum, Steepness)> {
     let (c, p) = (constants(world), &world.params);
     let [nu, sigma] = [p.viscosity, p.surface_tension].map(f64::from);
     let state = |i: usize| world.densities[i].as_dvec2();
@@ -289,13 +271,14 @@ pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
         let (own, h) = (state(i), c.support);
         let mut sum = Sum::default();
         let (mut normal, mut laplacian) = (Sum::default(), Sum::default());
-        neighbours(world, i, |j, d| {
+        neighbours(world, i, |j, d, by, away| {
             let other = state(j);
             let (volume, r) = (c.mass / other.x, d.length());
             let push = -volume * Kernel::Spiky.gradient(d, h) / (2.0 * own.x);
-            sum.add_parts(&[push * own.y, push * other.y]);
+            let image = continued(other.y, c.rest * c.body.dot(away));
+            sum.add_parts(&[push * own.y, push * image]);
             let rub = nu * c.rest * volume * 45.0 / (PI * h.powi(6)) * (h - r);
-            sum.add(rub * (speed(world, j) - speed(world, i)) / own.x);
+            sum.add(rub * (by.sign * speed(world, j) - speed(world, i)) / own.x);
             normal.add(volume * Kernel::Poly6.gradient(d, h));
             let second = -945.0 / (32.0 * PI * h.powi(9)) * (h * h - r * r) * (3.0 * h * h - 7.0 * r * r);
             laplacian.add(DVec3::X * volume * second);
@@ -307,13 +290,8 @@ pub fn mueller(world: &World, walls: &[Wall]) -> Vec<(Sum, Steepness)> {
             // The uncertainty of the direction of a nearly cancelled sum is that of its terms.
             sum.size += per * (laplacian.size * steepness + laplacian.value.x.abs() * normal.size);
         }
-        (contact(world, &c, i, &walls[i], sum, own.y / own.x, Parts::ALL), Steepness(steepness * 2.0 * h))
+        sum.add_parts(&[c.body, friction(world, &c, i, Kernel::Spiky).value]);
+        (sum, Steepness(steepness * 2.0 * h))
     };
     (0..world.active()).map(sum).collect()
-}
-
-/// The walls of every active particle.
-pub fn walls(world: &World, kernels: Kernels) -> Vec<Wall> {
-    let solids = super::walls::Solids::new(kernels);
-    (0..world.active()).map(|i| solids.at(&world.params, place(world, i))).collect()
 }

@@ -1,7 +1,6 @@
 //! One whole step: the CPU runs it up to a pass, the GPU from there, and the result is compared with the CPU's.
 
 use glam::{Vec2, Vec4};
-use splashdown::boundary::{KernelPair, wall_table};
 use splashdown::cells::{Cells, Grid};
 use splashdown::sample;
 use splashdown::scene::Scene;
@@ -45,9 +44,7 @@ impl Rig {
         let particles = sample::particles(scene).unwrap();
         let n = particles.positions.len() as u32;
         let (params, way) = (schemes::params(scene, n), Scheme::new(scene));
-        let kernels: KernelPair = way.walls();
-        let mut fields =
-            Fields::new(&mut executor, &params, &wall_table(kernels), way.needs_normals()).unwrap();
+        let mut fields = Fields::new(&mut executor, &params, way.needs_normals()).unwrap();
         if !way.is_fused() {
             fields.make_accelerations(&mut executor).unwrap();
         }

@@ -35,6 +35,7 @@ pub fn params(support_ratio: f32) -> Params {
         particle_spacing: SPACING,
         domain_max: Vec3::new(0.3, 0.5, 0.7),
         particle_mass: 1000.0 * SPACING.powi(3),
+        summed_mass: 1000.0 * SPACING.powi(3),
         oscillation: Vec3::new(1.5, 0.0, -0.5),
         oscillation_rate: 3.0,
         rest_density: 1000.0,

@@ -20,8 +20,8 @@ fn derived_values_of_the_cube() {
     assert_eq!((cube.particles, cube.frames), (1000, 25));
     assert!(near(cube.volume, 0.125));
     assert!(near(cube.support_radius, 0.1));
-    // 998.2 * 0.05^3 / 1.0338
-    assert!(near(cube.particle_mass, 0.120_695), "{}", cube.particle_mass);
+    // 998.2 * 0.05^3
+    assert!(near(cube.particle_mass, 0.124_775), "{}", cube.particle_mass);
     // 2 sqrt(9.81 * 0.5), ten times that, 0.3 * 0.05 / 44.294
     assert!(near(cube.head, 0.5));
     assert!(near(cube.reference_speed, 4.42945));

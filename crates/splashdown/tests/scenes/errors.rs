@@ -55,12 +55,6 @@ snapshot!(
     several_wrong_items,
     changed("[1, 1, 1]", "[nan, \"1\", -1e9]\nopen = [\"y_max\", \"y-min\", \"y_max\", 3]")
 );
-snapshot!(
-    narrower_than_two_supports,
-    changed("[1, 1, 1]", "[1, 1, 0.35]")
-        .replace("0.5, 0.5, 0.5", "0.5, 0.5, 0.35")
-        .replace("\"wcsph\"", "\"wcsph\"\nsupport_ratio = 4")
-);
 snapshot!(outside_the_domain, changed("position = [0, 0, 0]", "position = [0.6, -0.1, 0]"));
 snapshot!(far_too_many_particles, changed("0.05", "0.0005"));
 snapshot!(too_fine_for_the_domain, changed("0.05", "0.0005").replace("0.5, 0.5, 0.5", "0.1, 0.1, 0.1"));

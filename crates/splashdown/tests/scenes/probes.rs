@@ -65,14 +65,3 @@ fn errors_in_probes_are_reported() {
         assert!(message.contains(part), "{text}\n{message}");
     }
 }
-
-#[test]
-fn a_pressure_probe_with_summed_densities_gives_a_warning() {
-    let probe = "[[probe]]\nname = \"a\"\nquantity = \"pressure\"\nposition = [0, 0, 0]\n";
-    let warnings = |text: &str| parse(text).unwrap_or_else(|errors| panic!("{errors}")).warnings;
-    let found = warnings(&format!("{CUBE}\n{probe}"));
-    assert!(found.iter().any(|warning| warning.to_string().contains("pressure near walls is too low")));
-    let exact = CUBE.replace("[solver]", "[solver]\ndensity = \"continuity\"");
-    assert_ne!(exact, CUBE);
-    assert!(warnings(&format!("{exact}\n{probe}")).is_empty());
-}

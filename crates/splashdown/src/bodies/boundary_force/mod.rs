@@ -1,12 +1,12 @@
 //! The forces of bodies on particles, and their reactions: all forces, the pressure part, or the others.
 //!
-//! A body acts like the closed sides of the domain; for the reasons see
-//! [`WallTerms::acceleration`](crate::boundary::WallTerms::acceleration):
+//! A body is an integral of the kernel over its solid:
 //!
-//! * the pressure of the particle and of its image acts along the gradient of the kernel fraction;
+//! * the pressure of the particle and of its image in the solid acts along the gradient of the kernel fraction;
 //! * a positive pressure grows hydrostatically inside the solid;
 //! * tangential accelerations are divided by the part of the kernel, 1 - D, that other walls and bodies leave open;
-//! * the approach is damped;
+//! * where the density is summed, the approach is damped, because the pressure of the image does work that the density
+//!   does not account for;
 //! * friction is 2 nu A / (H d), where nu is the sum of the material's viscosity and the artificial one
 //!   (alpha c0 H / 20, Monaghan 2005), so that no slip drags water at any resolution;
 //! * adhesion follows the spline of Akinci et al. (2013);

@@ -3,7 +3,8 @@
 #import sph/grid
 #import sph/rows
 #import sph/kernel
-#import sph/walls
+#import sph/images
+#import sph/wall_friction
 #import sph/forces
 
 #bindings
@@ -18,11 +19,19 @@ fn cohesion(q: f32) -> f32 {
     return 32.0 / PI * select(t3, 2.0 * t3 - 1.0 / 64.0, q <= 0.5);
 }
 
-fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {
+fn tension_between(
+    i: u32,
+    j: u32,
+    sign: vec3<f32>,
+    d: vec3<f32>,
+    q: f32,
+    rho_i: f32,
+    rho_j: f32,
+) -> vec3<f32> {
     let scale = 1.0 / params.support_radius;
     let k = -params.surface_tension * 2.0 * params.rest_density / (rho_i + rho_j);
-    let pull = params.particle_mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
-    return k * (pull * d + own_normal - normals[j].xyz);
+    let pull = params.summed_mass * scale * scale * scale * scale * cohesion(q) / max(q, SMALLEST_Q);
+    return k * (pull * d + own_normal - sign * normals[j].xyz);
 }
 
 @compute @workgroup_size(64)

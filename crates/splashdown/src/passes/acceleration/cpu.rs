@@ -4,9 +4,9 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::AccelerationBindings;
-use crate::boundary::{NearWalls, WallKernel, part};
+use crate::boundary::{Images, Reflection, WallKernel, part, wall_friction};
 use crate::kernel::{Kernel, SMALLEST_Q};
-use crate::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
 use crate::simd::{Lanes, Register};
 use crate::state::{Params, StepState};
 
@@ -20,11 +20,11 @@ pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(buffers: A
         sorted_velocities: velocities,
         densities,
         normals,
-        wall_table,
         accelerations,
     } = buffers;
-    let pass = Acceleration::<K, FORCES>::new(params, state, positions, velocities, densities, wall_table);
-    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
+    let pass = Acceleration::<K, FORCES>::new(params, state, positions, velocities, densities);
+    let sorted =
+        Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let out = accelerations;
     // Scenes without surface tension skip its columns and arithmetic.
     if FORCES & part::OTHER != 0 && params.surface_tension > 0.0 {
@@ -42,7 +42,6 @@ pub(crate) struct Acceleration<'a, K, const FORCES: u32> {
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
     densities: &'a [Vec2],
-    walls: NearWalls<'a>,
     scale: f32,
     factor: f32,
     soft: f32,
@@ -53,17 +52,16 @@ pub(crate) struct Acceleration<'a, K, const FORCES: u32> {
 }
 
 impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
-    /// Uses the arrays of a step and the table of the walls.
+    /// Uses the arrays of a step.
     pub fn new(
         params: &'a Params,
         state: &StepState,
         positions: &'a [Vec4],
         velocities: &'a [Vec4],
         densities: &'a [Vec2],
-        wall_table: &'a [Vec4],
     ) -> Self {
         let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
-        let volume = params.particle_mass / params.rest_density;
+        let volume = params.summed_mass / params.rest_density;
         let laminar = 10.0 * params.viscosity * volume;
         Self {
             params,
@@ -72,7 +70,6 @@ impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
             positions,
             velocities,
             densities,
-            walls: NearWalls::new(params.walls(K::WALLS), wall_table),
             scale,
             factor: (scale * scale) * (scale * scale) * scale,
             soft: 0.01 * support * support,
@@ -83,31 +80,27 @@ impl<'a, K: WallKernel, const FORCES: u32> Acceleration<'a, K, FORCES> {
     }
 }
 
-impl<K, const FORCES: u32> Acceleration<'_, K, FORCES> {
+impl<K: WallKernel, const FORCES: u32> Acceleration<'_, K, FORCES> {
     /// The acceleration of a particle from its sums.
     #[inline(always)]
     pub fn acceleration(&self, i: usize, sums: [f32; 3]) -> Vec3 {
-        let (params, x) = (self.params, self.positions[i].xyz());
-        let mut a = self.factor * Vec3::from(sums);
-        if let Some(terms) = self.walls.terms(x) {
-            let [rho, pressure] = self.densities[i].to_array();
-            let pressure_factor =
-                params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
-            let v = self.velocities[i].xyz();
-            a = terms.acceleration::<FORCES>(params, v, self.body, a, pressure_factor, self.dt);
+        let a = self.factor * Vec3::from(sums);
+        if FORCES & part::OTHER == 0 {
+            return a;
         }
-        if FORCES & part::OTHER != 0 { a + self.body } else { a }
+        let (x, v) = (self.positions[i].xyz(), self.velocities[i].xyz());
+        a + self.body + wall_friction(self.params, K::WALLS, x, v, self.dt)
     }
 
     /// Mass times pressure over the square of the density.
     #[inline(always)]
     fn pressure_term(&self, j: usize) -> f32 {
         let [rho, pressure] = self.densities[j].to_array();
-        self.params.particle_mass * pressure / (rho * rho)
+        self.params.summed_mass * pressure / (rho * rho)
     }
 }
 
-impl<K: Kernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'_, K, FORCES> {
+impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'_, K, FORCES> {
     type Output = Vec4;
 
     #[inline(always)]
@@ -139,6 +132,19 @@ impl<K: Kernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'_, K, FORCES>
     }
 
     #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 7]) -> [V; 7] {
+        let [x, y, z, u, v, w, pressure] = values;
+        let image = reflected_point(by, [x, y, z]);
+        let [u, v, w] = reflected(by, [u, v, w]);
+        // The pressure continues hydrostatically, but not to tension.
+        let gradient = self.params.summed_mass / self.params.rest_density * self.body;
+        let more = dot(gradient.to_array().map(V::splat), difference(image, [x, y, z]));
+        let zero = V::splat(0.0);
+        let lowest = zero - (zero - pressure).max(zero);
+        [image[0], image[1], image[2], u, v, w, (pressure + more).max(lowest)]
+    }
+
+    #[inline(always)]
     fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
         *out = self.acceleration(i, sums).extend(0.0);
     }
@@ -150,7 +156,7 @@ struct WithTension<'a, K, const FORCES: u32> {
     normals: &'a [Vec4],
 }
 
-impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES> {
+impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES> {
     type Output = Vec4;
 
     #[inline(always)]
@@ -166,7 +172,7 @@ impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES>
         let (x, n, rho) = (splat::<V>(positions[i]), splat::<V>(self.normals[i]), V::splat(densities[i].x));
         // Divided by the factor, because `finish` multiplies the sums by it.
         let tension = V::splat(-2.0 * params.surface_tension * params.rest_density / factor);
-        let pull = params.particle_mass * (scale * scale) * (scale * scale);
+        let pull = params.summed_mass * (scale * scale) * (scale * scale);
         let (zero, one, smallest) = (V::splat(0.0), V::splat(1.0), V::splat(SMALLEST_Q));
         let forces = self.forces.pair::<V>(i);
         #[inline(always)]
@@ -179,6 +185,14 @@ impl<K: Kernel, const FORCES: u32> PairSum<11, 3> for WithTension<'_, K, FORCES>
             let normal_change = difference(n, [n_x, n_y, n_z]);
             std::array::from_fn(|axis| a[axis] + weight * (pull * d[axis] + normal_change[axis]))
         }
+    }
+
+    #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 11]) -> [V; 11] {
+        let [x, y, z, u, v, w, pressure, rho, nx, ny, nz] = values;
+        let [x, y, z, u, v, w, pressure] = self.forces.reflect(by, [x, y, z, u, v, w, pressure]);
+        let [nx, ny, nz] = reflected(by, [nx, ny, nz]);
+        [x, y, z, u, v, w, pressure, rho, nx, ny, nz]
     }
 
     #[inline(always)]

@@ -8,8 +8,9 @@
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
 //! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
-//! Walls exert the pressure of the particle and of its image, -rho0 (p_i/rho_i^2 + p_i/rho0^2) G. For their other forces
-//! see [`WallTerms::acceleration`](boundary::WallTerms::acceleration).
+//! The sums include the [images](boundary::Images) behind walls. The pressure of an image is that of the particle plus
+//! rho0 times the body acceleration times the distance, as in a fluid at rest, but not below the particle's own or zero.
+//! Walls with friction add [`wall_friction`](boundary::wall_friction).
 
 pub(crate) mod cpu;
 
@@ -33,7 +34,6 @@ bindings! {
         sorted_velocities: read [Vec4],
         densities: read [Vec2],
         normals: read [Vec4],
-        wall_table: read [Vec4],
         accelerations: write [Vec4],
     }
 }
@@ -49,9 +49,10 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         GRID,
         ROWS,
         kernel::WGSL,
+        boundary::IMAGES,
         boundary::PLANES,
         boundary::LAW,
-        boundary::WGSL,
+        boundary::WALL_FRICTION,
         FORCES,
     ],
     entry: "acceleration",

@@ -1,11 +1,11 @@
 use std::marker::PhantomData;
 
-use glam::{Vec2, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec4};
 
 use super::ContinuityBindings;
-use crate::boundary::{NearWalls, WallKernel};
+use crate::boundary::{Images, Reflection, WallKernel};
 use crate::kernel::Kernel;
-use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -17,7 +17,6 @@ pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>
         cell_start,
         sorted_positions: positions,
         sorted_velocities: velocities,
-        wall_table,
         densities,
     } = buffers;
     let scale = 1.0 / params.support_radius;
@@ -27,14 +26,14 @@ pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>
         dt: state.dt,
         positions,
         velocities,
-        walls: NearWalls::new(params.walls(K::WALLS), wall_table),
         scale,
         soft: 0.01 * params.support_radius * params.support_radius,
         diffusion: params.density_diffusion * params.support_radius * params.sound_speed,
         hydrostatic: (hydrostatic * params.body_acceleration(state.time)).extend(0.0),
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
+    let sorted =
+        Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     pairs::for_each(sorted, densities, &pass);
 }
 
@@ -44,7 +43,6 @@ struct Continuity<'a, K> {
     positions: &'a [Vec4],
     /// The density is the fourth component.
     velocities: &'a [Vec4],
-    walls: NearWalls<'a>,
     scale: f32,
     soft: f32,
     diffusion: f32,
@@ -59,7 +57,7 @@ impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 8] {
         let (p, v, scale) = (self.positions[j], self.velocities[j], self.scale);
-        let weight = self.params.particle_mass * (scale * scale) * (scale * scale) * scale / v.w;
+        let weight = self.params.summed_mass * (scale * scale) * (scale * scale) * scale / v.w;
         [p.x, p.y, p.z, v.x, v.y, v.z, v.w, weight]
     }
 
@@ -79,14 +77,19 @@ impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
         }
     }
 
+    /// The density of an image continues hydrostatically.
+    #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 8]) -> [V; 8] {
+        let [x, y, z, u, v, w, rho, weight] = values;
+        let [xi, yi, zi] = reflected_point(by, [x, y, z]);
+        let [ui, vi, wi] = reflected(by, [u, v, w]);
+        let more = dot(splat::<V>(self.hydrostatic), difference([xi, yi, zi], [x, y, z]));
+        [xi, yi, zi, ui, vi, wi, rho + more, weight]
+    }
+
     #[inline(always)]
     fn finish(&self, i: usize, [sum]: [f32; 1], out: &mut Vec2) {
-        let (x, v) = (self.positions[i].xyz(), self.velocities[i]);
-        let mut rate = sum;
-        if let Some(terms) = self.walls.terms(x) {
-            rate -= 2.0 * v.w * self.scale * (terms.slope * terms.normal).dot(v.xyz());
-        }
-        let next = v.w + self.dt * rate;
+        let next = self.velocities[i].w + self.dt * sum;
         *out = Vec2::new(next, self.params.pressure_at(next));
     }
 }

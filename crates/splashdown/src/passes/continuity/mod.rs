@@ -3,13 +3,11 @@
 //! ```text
 //! d rho_i / dt = rho_i sum (m/rho_j) v.grad W
 //!              + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
-//!              + 2 rho_i v_i.G
 //! ```
 //!
 //! with v = v_i - v_j and h = H / 2. The second term is the diffusion of Molteni & Colagrossi (2009), where psi_ij is
-//! rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The contribution of walls is twice the v_i.G
-//! of a solid at rest, because each particle has an image behind the wall: the image has the pressure of the particle
-//! (see [`acceleration`](super::acceleration)) and mirrors its motion.
+//! rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the
+//! [images](boundary::Images) behind walls.
 //!
 //! The density is advanced first with the old velocities, and the velocities then with the pressure of the new density,
 //! which is symplectic for sound waves. Advancing both from the old state, as explicit Euler does, would amplify every
@@ -20,7 +18,7 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use crate::boundary::{self, KernelPair};
+use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, StepState};
@@ -34,7 +32,6 @@ bindings! {
         cell_start: read [u32],
         sorted_positions: read [Vec4],
         sorted_velocities: read [Vec4],
-        wall_table: read [Vec4],
         densities: write [Vec2],
     }
 }
@@ -43,20 +40,10 @@ bindings! {
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "continuity.wendland_c2",
     wgsl: include_str!("continuity.wgsl"),
-    imports: &[
-        wgsl::INDEX,
-        STATE,
-        PARAMS,
-        GRID,
-        ROWS,
-        kernel::WGSL,
-        boundary::PLANES,
-        boundary::LAW,
-        boundary::WGSL,
-    ],
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES],
     entry: "continuity",
     workgroup_size: [64, 1, 1],
-    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
+    constants: &[("KERNEL", 0.0)],
     bindings: ContinuityBindings::LIST,
     cpu: |_, slots| cpu::continuity::<kernel::WendlandC2>(slots.into()),
 };
@@ -64,7 +51,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "continuity.cubic_spline",
-    constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
+    constants: &[("KERNEL", CubicSpline::ID as f64)],
     cpu: |_, slots| cpu::continuity::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };

@@ -3,32 +3,30 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
 use super::DensityBindings;
-use crate::boundary::{NearWalls, WallKernel};
+use crate::boundary::{Images, WallKernel};
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
 pub(super) fn density<K: Kernel + WallKernel>(buffers: DensityBindings<'_>) {
-    let DensityBindings { params, grid, cell_start, sorted_positions: positions, wall_table, densities } =
-        buffers;
+    let DensityBindings { params, grid, cell_start, sorted_positions: positions, densities } = buffers;
     let scale = 1.0 / params.support_radius;
     let pass = Density::<K> {
         params,
         positions,
-        walls: NearWalls::new(params.walls(K::WALLS), wall_table),
         scale,
-        factor: params.particle_mass * scale * scale * scale,
+        factor: params.summed_mass * scale * scale * scale,
         kernel: PhantomData,
     };
-    let sorted = Sorted::new(params.support_radius, grid, cell_start, positions);
+    let sorted =
+        Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     pairs::for_each(sorted, densities, &pass);
 }
 
 struct Density<'a, K> {
     params: &'a Params,
     positions: &'a [Vec4],
-    walls: NearWalls<'a>,
     scale: f32,
     factor: f32,
     kernel: PhantomData<K>,
@@ -53,9 +51,8 @@ impl<K: Kernel> PairSum<3, 1> for Density<'_, K> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, [sum]: [f32; 1], out: &mut Vec2) {
-        let (params, x) = (self.params, self.positions[i].xyz());
-        out.x = self.factor * sum + params.rest_density * self.walls.density(x);
-        out.y = params.pressure_at(out.x);
+    fn finish(&self, _: usize, [sum]: [f32; 1], out: &mut Vec2) {
+        out.x = self.factor * sum;
+        out.y = self.params.pressure_at(out.x);
     }
 }

@@ -3,7 +3,7 @@
 #import sph/grid
 #import sph/rows
 #import sph/kernel
-#import sph/walls
+#import sph/images
 
 #bindings
 
@@ -18,16 +18,19 @@ fn density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var sum = 0.0;
-    for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
-        for (var j = range.x; j < range.y; j++) {
-            let d = x - sorted_positions[j].xyz;
-            let r2 = dot(d, d);
-            if (r2 < reach) {
-                sum += kernel_w(sqrt(r2) * scale);
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let r2 = dot(d, d);
+                if (r2 < reach) {
+                    sum += kernel_w(sqrt(r2) * scale);
+                }
             }
         }
     }
-    let rho = params.particle_mass * scale * scale * scale * sum + params.rest_density * wall_terms(x).density;
+    let rho = params.summed_mass * scale * scale * scale * sum;
     densities[i] = vec2(rho, pressure_at(rho));
 }

@@ -1,20 +1,19 @@
 //! Density by summation, and the resulting pressure.
 //!
-//! rho_i = m sum_j W(x_i - x_j) (j = i included) + rho0 D(x_i), with the kernel fraction D of the walls
-//! ([`crate::boundary`]); p_i by the equation of state (Batchelor 1967; Monaghan 1994).
+//! rho_i = m sum_j W(x_i - x_j) (j = i included), over fluid and [images](boundary::Images); p_i by the
+//! equation of state (Batchelor 1967; Monaghan 1994).
 
 mod cpu;
 
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
-use crate::boundary::{self, KernelPair};
+use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
 use crate::state::{PARAMS, Params, STATE};
 
-const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::PLANES, boundary::LAW, boundary::WGSL];
+const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES];
 
 bindings! {
     /// The buffers of `density.wgsl`.
@@ -23,7 +22,6 @@ bindings! {
         grid: uniform Grid,
         cell_start: read [u32],
         sorted_positions: read [Vec4],
-        wall_table: read [Vec4],
         densities: write [Vec2],
     }
 }
@@ -35,7 +33,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     imports: IMPORTS,
     entry: "density",
     workgroup_size: [64, 1, 1],
-    constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
+    constants: &[("KERNEL", 0.0)],
     bindings: DensityBindings::LIST,
     cpu: |_, slots| cpu::density::<kernel::WendlandC2>(slots.into()),
 };
@@ -43,7 +41,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "density.cubic_spline",
-    constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
+    constants: &[("KERNEL", CubicSpline::ID as f64)],
     cpu: |_, slots| cpu::density::<CubicSpline>(slots.into()),
     ..WENDLAND_C2
 };
@@ -51,7 +49,7 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 /// With the poly6 kernel of Mueller 2003.
 pub static POLY6: PassDesc = PassDesc {
     label: "density.poly6",
-    constants: &[("KERNEL", Poly6::ID as f64), ("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
+    constants: &[("KERNEL", Poly6::ID as f64)],
     cpu: |_, slots| cpu::density::<Poly6>(slots.into()),
     ..WENDLAND_C2
 };

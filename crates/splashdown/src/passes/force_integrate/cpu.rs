@@ -1,7 +1,7 @@
 use glam::Vec4Swizzles;
 
 use super::ForceIntegrateBindings;
-use crate::boundary::{WallKernel, part};
+use crate::boundary::{Images, WallKernel, part};
 use crate::kernel::Kernel;
 use crate::pairs;
 use crate::passes::acceleration::cpu::Acceleration;
@@ -14,7 +14,6 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBin
         params,
         grid,
         state,
-        wall_table,
         cell_start,
         sorted_positions,
         sorted_velocities,
@@ -30,9 +29,9 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBin
     let before = Before { positions: sorted_positions, velocities: sorted_velocities, densities };
     let persistent = Persistent { positions, velocities, counters, cell_counts };
     let Before { positions, velocities, densities } = before;
-    let forces =
-        Acceleration::<K, { part::ALL }>::new(params, state, positions, velocities, densities, wall_table);
-    let places = pairs::Sorted::new(params.support_radius, grid, cell_start, positions);
+    let forces = Acceleration::<K, { part::ALL }>::new(params, state, positions, velocities, densities);
+    let places = pairs::Sorted::new(params.support_radius, grid, cell_start, positions)
+        .with_images(Images::new(params));
     pairs::for_each(places, persistent.velocities, &forces);
     advance_all((params, grid, state), before, persistent, true, |_, a| a.xyz());
 }

@@ -3,7 +3,8 @@
 #import sph/grid
 #import sph/rows
 #import sph/kernel
-#import sph/walls
+#import sph/images
+#import sph/wall_friction
 #import sph/forces
 #import sph/advance
 
@@ -12,7 +13,15 @@
 // Surface tension needs a ninth storage buffer; scenes with it use the separate passes.
 const HAS_TENSION: bool = false;
 
-fn tension_between(i: u32, j: u32, d: vec3<f32>, q: f32, rho_i: f32, rho_j: f32) -> vec3<f32> {
+fn tension_between(
+    i: u32,
+    j: u32,
+    sign: vec3<f32>,
+    d: vec3<f32>,
+    q: f32,
+    rho_i: f32,
+    rho_j: f32,
+) -> vec3<f32> {
     return vec3(0.0);
 }
 

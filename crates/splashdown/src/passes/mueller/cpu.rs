@@ -1,9 +1,9 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::MuellerBindings;
-use crate::boundary::{KernelPair, NearWalls, part};
+use crate::boundary::{Images, KernelPair, Reflection, wall_friction};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
-use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -16,7 +16,6 @@ pub(super) fn mueller(buffers: MuellerBindings<'_>) {
         sorted_positions: positions,
         sorted_velocities: velocities,
         densities,
-        wall_table,
         accelerations,
     } = buffers;
     let pass = Mueller {
@@ -26,10 +25,11 @@ pub(super) fn mueller(buffers: MuellerBindings<'_>) {
         positions,
         velocities,
         densities,
-        walls: NearWalls::new(params.walls(KernelPair::Mueller), wall_table),
         scale: 1.0 / params.support_radius,
     };
-    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), accelerations, &pass);
+    let sorted =
+        Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
+    pairs::for_each(sorted, accelerations, &pass);
 }
 
 struct Mueller<'a> {
@@ -39,7 +39,6 @@ struct Mueller<'a> {
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
     densities: &'a [Vec2],
-    walls: NearWalls<'a>,
     scale: f32,
 }
 
@@ -49,7 +48,7 @@ impl PairSum<8, 7> for Mueller<'_> {
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 8] {
         let (p, v, [rho, pressure]) = (self.positions[j], self.velocities[j], self.densities[j].to_array());
-        [p.x, p.y, p.z, v.x, v.y, v.z, pressure, self.params.particle_mass / rho]
+        [p.x, p.y, p.z, v.x, v.y, v.z, pressure, self.params.summed_mass / rho]
     }
 
     /// Pressure and viscosity; the gradient of the colour field and its Laplacian.
@@ -79,10 +78,22 @@ impl PairSum<8, 7> for Mueller<'_> {
     }
 
     #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 8]) -> [V; 8] {
+        let [x, y, z, u, v, w, pressure, volume] = values;
+        let image = reflected_point(by, [x, y, z]);
+        let [u, v, w] = reflected(by, [u, v, w]);
+        // The pressure continues hydrostatically, but not to tension.
+        let gradient = (self.params.rest_density * self.body).to_array().map(V::splat);
+        let more = dot(gradient, difference(image, [x, y, z]));
+        let zero = V::splat(0.0);
+        let lowest = zero - (zero - pressure).max(zero);
+        [image[0], image[1], image[2], u, v, w, (pressure + more).max(lowest), volume]
+    }
+
+    #[inline(always)]
     fn finish(&self, i: usize, sums: [f32; 7], out: &mut Vec4) {
         let (params, scale) = (self.params, self.scale);
-        let (x, v, [rho, pressure]) =
-            (self.positions[i].xyz(), self.velocities[i].xyz(), self.densities[i].to_array());
+        let (x, v, rho) = (self.positions[i].xyz(), self.velocities[i].xyz(), self.densities[i].x);
         let scale5 = (scale * scale) * (scale * scale) * scale;
         let [fx, fy, fz, nx, ny, nz, laplacian] = sums.map(|sum| scale5 * sum);
         let (mut force, normal) = (Vec3::new(fx, fy, fz), Vec3::new(nx, ny, nz));
@@ -90,10 +101,7 @@ impl PairSum<8, 7> for Mueller<'_> {
         if steepness > 0.5 * scale {
             force -= params.surface_tension * laplacian / steepness * normal;
         }
-        let mut a = force / rho;
-        if let Some(terms) = self.walls.terms(x) {
-            a = terms.acceleration::<{ part::ALL }>(params, v, self.body, a, pressure / rho, self.dt);
-        }
-        *out = (a + self.body).extend(0.0);
+        let friction = wall_friction(params, KernelPair::Mueller, x, v, self.dt);
+        *out = (force / rho + friction + self.body).extend(0.0);
     }
 }

@@ -25,7 +25,6 @@ bindings! {
         sorted_positions: read [Vec4],
         sorted_velocities: read [Vec4],
         densities: read [Vec2],
-        wall_table: read [Vec4],
         accelerations: write [Vec4],
     }
 }
@@ -41,9 +40,10 @@ pub static MUELLER: PassDesc = PassDesc {
         GRID,
         ROWS,
         kernel::WGSL,
+        boundary::IMAGES,
         boundary::PLANES,
         boundary::LAW,
-        boundary::WGSL,
+        boundary::WALL_FRICTION,
     ],
     entry: "mueller",
     workgroup_size: [64, 1, 1],

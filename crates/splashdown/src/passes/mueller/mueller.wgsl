@@ -3,7 +3,8 @@
 #import sph/grid
 #import sph/rows
 #import sph/kernel
-#import sph/walls
+#import sph/images
+#import sph/wall_friction
 
 #bindings
 
@@ -28,21 +29,29 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     var force = vec3(0.0);
     var normal = vec3(0.0);
     var laplacian = 0.0;
-    for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
-        for (var j = range.x; j < range.y; j++) {
-            let d = x - sorted_positions[j].xyz;
-            let r2 = dot(d, d);
-            if (r2 >= reach) {
-                continue;
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let p = sorted_positions[j].xyz;
+                let image = reflected_point(by, p);
+                let d = x - image;
+                let r2 = dot(d, d);
+                if (r2 >= reach) {
+                    continue;
+                }
+                let q = sqrt(r2) * scale;
+                let other = densities[j];
+                let volume = params.summed_mass / other.x;
+                // The pressure of an image continues hydrostatically, but not to tension.
+                let more = params.rest_density * dot(body, image - p);
+                let other_pressure = max(other.y + more, min(other.y, 0.0));
+                force -= (volume * 0.5 * (pressure + other_pressure) * kernel_g(q)) * d;
+                force += (friction * volume * viscosity_laplacian(q)) * (by.sign * sorted_velocities[j].xyz - v);
+                normal += (volume * poly6_g(q)) * d;
+                laplacian += volume * poly6_laplacian(q);
             }
-            let q = sqrt(r2) * scale;
-            let other = densities[j];
-            let volume = params.particle_mass / other.x;
-            force -= (volume * 0.5 * (pressure + other.y) * kernel_g(q)) * d;
-            force += (friction * volume * viscosity_laplacian(q)) * (sorted_velocities[j].xyz - v);
-            normal += (volume * poly6_g(q)) * d;
-            laplacian += volume * poly6_laplacian(q);
         }
     }
     force *= scale5;
@@ -52,8 +61,5 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     if (steepness > 0.5 * scale) {
         force -= (params.surface_tension * laplacian / steepness) * normal;
     }
-    var a = force / rho;
-
-    a = wall_acceleration(wall_terms(x), v, body, a, pressure / rho, state.dt);
-    accelerations[i] = vec4(a + body, 0.0);
+    accelerations[i] = vec4(force / rho + wall_friction(x, v, state.dt) + body, 0.0);
 }

@@ -3,6 +3,7 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SurfaceNormalsBindings;
+use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, scaled, splat};
 use crate::simd::Register;
@@ -15,10 +16,12 @@ pub(super) fn normals<K: Kernel>(buffers: SurfaceNormalsBindings<'_>) {
         positions,
         densities,
         scale,
-        factor: params.particle_mass * (scale * scale) * (scale * scale),
+        factor: params.summed_mass * (scale * scale) * (scale * scale),
         kernel: PhantomData,
     };
-    pairs::for_each(Sorted::new(params.support_radius, grid, cell_start, positions), normals, &pass);
+    let sorted =
+        Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
+    pairs::for_each(sorted, normals, &pass);
 }
 
 struct Normals<'a, K> {

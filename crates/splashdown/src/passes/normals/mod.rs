@@ -1,11 +1,13 @@
 //! Normals of the fluid's free surface, for surface tension (Akinci, Akinci & Teschner 2013):
-//! n_i = H sum_j (m / rho_j) grad W(x_i - x_j), without unit; its length grows with the curvature.
+//! n_i = H sum_j (m / rho_j) grad W(x_i - x_j), over fluid and [images](boundary::Images), without unit; its length
+//! grows with the curvature. With images the surface meets walls at a right angle.
 
 mod cpu;
 
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
+use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE};
@@ -26,7 +28,7 @@ bindings! {
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "normals.wendland_c2",
     wgsl: include_str!("surface_normals.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL],
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES],
     entry: "surface_normals",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0)],

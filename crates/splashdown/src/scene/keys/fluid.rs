@@ -5,6 +5,7 @@ use super::mesh::{MESH, POSITION, ROTATION, SCALE, UP};
 use super::words::ShapeWord;
 use crate::scene::materials::MATERIALS;
 use crate::scene::spec::{Kind, Table, Word, a_number, a_vector, key, range, words};
+use crate::scene::types::InitialPressure;
 
 /// Maximum number of blocks, of fluid meshes, and of fluid files in a scene.
 const MAX_BLOCKS: usize = 256;
@@ -40,6 +41,12 @@ pub(super) static FLUID: Table = Table {
             "Fluid at the start; at least one block unless a mesh, a file or an emitter provides fluid.",
         )
         .also(&["blocks"]),
+        key(
+            "initial_pressure",
+            Kind::Word(words::<InitialPressure>),
+            "Pressure at the start of blocks that stand on a closed side below them.",
+        )
+        .default("\"hydrostatic\""),
         key("mesh", Kind::Tables(&FLUID_MESH, MAX_BLOCKS), "Closed meshes filled with fluid at the start.")
             .also(&["meshes", "shape", "fill"]),
         key("file", Kind::Tables(&FLUID_FILE, MAX_BLOCKS), "Particle files that provide fluid at the start.")

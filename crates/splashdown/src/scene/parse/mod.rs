@@ -21,7 +21,7 @@ use super::keys::{ROOT, Side};
 use super::reader::{Read, Reader, Reported, Section};
 use super::slot::BuiltSlot;
 use super::source::Source;
-use super::types::{Domain, Fluid, Oscillation, Scene};
+use super::types::{Domain, Fluid, InitialPressure, Oscillation, Scene};
 
 /// Maximum number of frames of a run.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -85,6 +85,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
         let meshes = read_all(section, "mesh", fluid::read_fluid_mesh);
         let files = read_all(section, "file", fluid::read_fluid_file);
         let material = fluid::read_material(section);
+        let initial_pressure = section.choice("initial_pressure");
         // The geometry is checked even if other values are invalid, so that a wrong viscosity does not hide a
         // block outside the domain.
         let geometry_result =
@@ -97,6 +98,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
             blocks,
             meshes: meshes?,
             files: files?,
+            initial_pressure: initial_pressure?.unwrap_or(InitialPressure::Hydrostatic),
         };
         geometry_result.map(|()| fluid)
     });

@@ -1,0 +1,68 @@
+use super::*;
+
+const ALL: [KernelPair; 3] = [KernelPair::WendlandC2, KernelPair::CubicSpline, KernelPair::Mueller];
+
+/// The integral of the kernels over the part of the ball behind a plane at `q`, by the midpoint rule.
+fn solid_integral(kernels: KernelPair, q: f64) -> [f64; 2] {
+    const N: i32 = 80;
+    let mut sum = [0.0; 2];
+    let at = |i: i32| (f64::from(i) + 0.5) / f64::from(N);
+    for (i, j, k) in cube(N) {
+        let y = [at(i), at(j), at(k)];
+        let r = (y[0] * y[0] + y[1] * y[1] + y[2] * y[2]).sqrt();
+        if r < 1.0 && y[0] < -q {
+            let w = kernels.both(r);
+            sum[0] += w[0];
+            sum[1] += w[1];
+        }
+    }
+    sum.map(|s| s / f64::from(N).powi(3))
+}
+
+#[test]
+fn the_kernel_fraction_of_a_plane_is_the_integral_over_the_solid() {
+    for kernels in ALL {
+        for q in [0.05, 0.3, 0.7] {
+            let [density, gradient] = solid_integral(kernels, q);
+            // The midpoint rule is accurate to 3e-3 (steps of 1/80 across a surface).
+            assert!((f64::from(kernels.density(q as f32).0) - density).abs() < 4e-3, "{kernels:?} {q}");
+            assert!((f64::from(kernels.gradient(q as f32).0) - gradient).abs() < 4e-3, "{kernels:?} {q}");
+        }
+        // Control: a distance off by a twentieth of the support exceeds the tolerance.
+        assert!((f64::from(kernels.density(0.35).0) - solid_integral(kernels, 0.3)[0]).abs() > 4e-3);
+    }
+}
+
+#[test]
+fn closed_forms_are_continuous_and_start_at_one_half() {
+    for kernels in ALL {
+        for f in [KernelPair::density, KernelPair::gradient] {
+            assert!((f(kernels, 0.0).0 - 0.5).abs() < 1e-6);
+            assert!(f(kernels, 1.0).0.abs() < 1e-6 && f(kernels, 1.0).1.abs() < 1e-6);
+            for i in 1..100 {
+                let q = i as f32 / 100.0;
+                let slope = (f(kernels, q + 1e-2).0 - f(kernels, q - 1e-2).0) / 2e-2;
+                assert!((slope + f(kernels, q).1).abs() < 5e-3, "{kernels:?} q = {q}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lattice_half_a_spacing_from_a_plane_has_the_rest_density() {
+    for (kernels, ratio) in ALL.into_iter().map(|k| (k, 2.0)).chain([(KernelPair::WendlandC2, 3.0)]) {
+        let lattice = |inside: bool| -> f64 {
+            cube(ratio as i32)
+                .filter(|&(x, _, _)| !inside || x >= 0)
+                .map(|(x, y, z)| kernels.both(f64::from(x * x + y * y + z * z).sqrt() / ratio)[0])
+                .sum()
+        };
+        let fluid = lattice(true) / lattice(false);
+        let error =
+            |offset: f32| (fluid + f64::from(kernels.density((0.5 + offset) / ratio as f32).0) - 1.0).abs();
+        let offset = wall_offset(kernels, ratio as f32);
+        assert!(error(offset) < 1e-3, "{kernels:?} {ratio}: off by {}", error(offset));
+        // Control: without the offset the error is larger.
+        assert!(error(0.0) > error(offset), "{kernels:?} {ratio}");
+    }
+}

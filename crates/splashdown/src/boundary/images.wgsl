@@ -1,0 +1,43 @@
+// The images of the fluid behind closed sides; see images.rs. Needs `params`.
+
+struct Reflection {
+    sign: vec3<f32>,
+    shift: vec3<f32>,
+}
+
+fn is_side_near(bit: u32, distance: f32) -> u32 {
+    return select(0u, 1u, ((params.closed >> bit) & 1u) == 1u && distance < params.support_radius);
+}
+
+// The reflections whose images of the fluid can be within the support of a point: bit k for the reflection whose digits
+// of base 3 are 0 for no reflection, 1 for the lower side and 2 for the upper side of an axis. Bit 0 is the fluid itself.
+fn reflections_near(x: vec3<f32>) -> u32 {
+    let low = x - params.domain_min;
+    let high = params.domain_max - x;
+    // Bits of the digits that are possible, per axis.
+    var digits = vec3(1u);
+    for (var axis = 0u; axis < 3u; axis++) {
+        digits[axis] |= 2u * is_side_near(2u * axis, low[axis]) + 4u * is_side_near(2u * axis + 1u, high[axis]);
+    }
+    if (all(digits == vec3(1u))) {
+        return 1u;
+    }
+    var found = 0u;
+    for (var k = 0u; k < 27u; k++) {
+        let is_possible = (digits.x >> (k % 3u)) & (digits.y >> (k / 3u % 3u)) & (digits.z >> (k / 9u)) & 1u;
+        found |= is_possible << k;
+    }
+    return found;
+}
+
+fn reflection(k: u32) -> Reflection {
+    let digits = vec3(k % 3u, k / 3u % 3u, k / 9u);
+    var by: Reflection;
+    by.sign = select(vec3(1.0), vec3(-1.0), digits > vec3(0u));
+    by.shift = 2.0 * select(select(vec3(0.0), params.domain_min, digits == vec3(1u)), params.domain_max, digits == vec3(2u));
+    return by;
+}
+
+fn reflected_point(by: Reflection, x: vec3<f32>) -> vec3<f32> {
+    return by.sign * x + by.shift;
+}

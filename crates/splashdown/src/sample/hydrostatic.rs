@@ -1,0 +1,168 @@
+//! The hydrostatic pressure of blocks at the start.
+
+use glam::Vec3;
+use splashdown_io::Particles;
+
+use crate::scene::{Block, DensityMode, Derived, InitialPressure, Method, Scene, Shape};
+
+/// A direction within this angle (in radians) of an axis is that axis.
+const STRAIGHT: f32 = 1e-3;
+
+/// Gives particles of blocks that stand on a closed side below them, or on such a block, the pressure of fluid at rest.
+/// Where the density is integrated, they get its initial value. Where it is summed, their layers move closer together.
+///
+/// A fluid that starts without pressure falls on itself: in a tank at rest the pressure at the floor oscillates by an
+/// eighth of rho g h for seconds.
+pub(crate) fn start_at_rest(scene: &Scene, particles: &mut Particles) {
+    let Some(columns) = Columns::new(scene) else { return };
+    let derived = Derived::without_particles(scene);
+    let (rest, exponent) = (scene.fluid.material.rest_density, scene.solver.exponent);
+    let per_depth = scene.gravity.length() / (derived.sound_speed * derived.sound_speed);
+    let is_integrated =
+        scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
+    if is_integrated && particles.densities.is_empty() {
+        particles.densities = vec![rest; particles.positions.len()];
+    }
+    for i in 0..particles.positions.len() {
+        let x = Vec3::from(particles.positions[i]);
+        let Some((height, depth)) = columns.at(x) else { continue };
+        if is_integrated {
+            // The inverse of Tait's equation of state.
+            particles.densities[i] = rest * (1.0 + exponent * per_depth * depth).powf(exponent.recip());
+        } else {
+            // The compression of the fluid below, to first order.
+            let lowered = per_depth * height * (depth + 0.5 * height);
+            particles.positions[i] = (x - lowered * columns.up).into();
+        }
+    }
+}
+
+/// Boxes of fluid without velocity, and the direction in which they are stacked.
+struct Columns<'a> {
+    scene: &'a Scene,
+    up: Vec3,
+    axis: usize,
+    boxes: Vec<(Vec3, Vec3)>,
+}
+
+impl<'a> Columns<'a> {
+    /// `None` if no block can be at rest.
+    fn new(scene: &'a Scene) -> Option<Self> {
+        let up = -scene.gravity.try_normalize()?;
+        let axis = (0..3).find(|&axis| (up[axis].abs() - 1.0).abs() < STRAIGHT * STRAIGHT)?;
+        if scene.fluid.initial_pressure == InitialPressure::Zero {
+            return None;
+        }
+        let at_rest = |block: &Block| match block.shape {
+            Shape::Box { min, size } if block.velocity == Vec3::ZERO => Some((min, min + size)),
+            _ => None,
+        };
+        let boxes: Vec<_> = scene.fluid.blocks.iter().filter_map(at_rest).collect();
+        (!boxes.is_empty()).then_some(Self { scene, up: up.round(), axis, boxes })
+    }
+
+    /// The height above the floor and the depth below the surface of a point, in metres, if it lies in a column of boxes
+    /// that stands on a closed side.
+    fn at(&self, x: Vec3) -> Option<(f32, f32)> {
+        let near = 0.51 * self.scene.fluid.particle_spacing;
+        let [low, high] = [self.scene.domain.min, self.scene.domain.max];
+        let is_upwards = self.up[self.axis] > 0.0;
+        // Heights grow against gravity.
+        let height = |x: Vec3| x.dot(self.up);
+        let floor = height(if is_upwards { low } else { high });
+        let is_closed = self.scene.domain.closed[self.axis][usize::from(!is_upwards)];
+        let beside = |&&(min, max): &&(Vec3, Vec3)| {
+            (0..3).all(|axis| axis == self.axis || (min[axis] <= x[axis] && x[axis] <= max[axis]))
+        };
+        let spans: Vec<(f32, f32)> = self
+            .boxes
+            .iter()
+            .filter(beside)
+            .map(|&(min, max)| (height(min).min(height(max)), height(min).max(height(max))))
+            .collect();
+        let own = spans.iter().find(|&&(bottom, top)| bottom <= height(x) && height(x) <= top)?;
+        let (mut bottom, mut top) = *own;
+        // Every round extends the column by at least one of the boxes.
+        for _ in &spans {
+            for &(lower, upper) in &spans {
+                if lower <= top + near && upper > top {
+                    top = upper;
+                }
+                if upper >= bottom - near && lower < bottom {
+                    bottom = lower;
+                }
+            }
+        }
+        (is_closed && (bottom - floor).abs() <= near).then_some((height(x) - floor, top - height(x)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tank with two stacked boxes, one beside them in mid-air, and one that moves.
+    fn scene(density: &str, gravity: [f32; 3]) -> Scene {
+        let text = format!(
+            "[scene]\nname = \"t\"\nduration = 1\ngravity = {gravity:?}\n[domain]\nmin = [0, 0, 0]\nmax = [4, 4, 1]\n\
+             open = [\"y_max\"]\n[solver]\ndensity = \"{density}\"\n[fluid]\nparticle_spacing = 0.1\n\
+             [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, 1]\n\
+             [[fluid.block]]\nposition = [0, 1, 0]\nsize = [0.5, 1, 1]\n\
+             [[fluid.block]]\nposition = [2, 1, 0]\nsize = [1, 1, 1]\n\
+             [[fluid.block]]\nposition = [3, 0, 0]\nsize = [1, 1, 1]\nvelocity = [1, 0, 0]\n"
+        );
+        Scene::parse(&text, "t.toml").unwrap()
+    }
+
+    fn start(scene: &Scene, x: [f32; 3]) -> Particles {
+        let mut particles = Particles::default();
+        particles.positions.push(x);
+        start_at_rest(scene, &mut particles);
+        particles
+    }
+
+    #[test]
+    fn the_density_is_that_of_water_at_rest() {
+        let scene = scene("continuity", [0.0, -9.81, 0.0]);
+        let params = crate::schemes::params(&scene, 0);
+        for (x, depth) in [
+            ([0.75, 0.25, 0.5], 0.75),
+            // Below the second box.
+            ([0.25, 0.25, 0.5], 1.75),
+            ([0.25, 1.5, 0.5], 0.5),
+            // In mid-air, and in motion.
+            ([2.5, 1.5, 0.5], 0.0),
+            ([3.5, 0.5, 0.5], 0.0),
+        ] {
+            let pressure = params.pressure_at(start(&scene, x).densities[0]);
+            assert!(
+                (pressure - 9.81 * params.rest_density * depth).abs() < 30.0,
+                "{x:?}: {pressure} Pa at {depth} m"
+            );
+        }
+    }
+
+    #[test]
+    fn layers_are_closer_where_the_density_is_summed() {
+        let scene = scene("summation", [0.0, -9.81, 0.0]);
+        let lowered = |x: [f32; 3]| f64::from(x[1]) - f64::from(start(&scene, x).positions[0][1]);
+        let per_depth = 9.81 / f64::from(crate::schemes::params(&scene, 0).sound_speed).powi(2);
+        for (y, depth) in [(0.05, 0.95), (0.95, 0.05)] {
+            // The strain at a depth is the change of the displacement.
+            let strain = (lowered([0.75, y + 0.05, 0.5]) - lowered([0.75, y - 0.05, 0.5])) / 0.1;
+            assert!((strain - per_depth * depth).abs() < 0.02 * per_depth, "{y}: {strain}");
+        }
+        assert_eq!(lowered([2.5, 1.5, 0.5]), 0.0);
+    }
+
+    #[test]
+    fn only_gravity_along_an_axis_to_a_closed_side_counts() {
+        let density =
+            |gravity| start(&scene("continuity", gravity), [0.75, 0.25, 0.5]).densities.first().copied();
+        assert_eq!(density([0.0, 0.0, 0.0]), None);
+        assert_eq!(density([1.0, -9.81, 0.0]), None);
+        // Upwards: the upper side is open, and no box is near it.
+        let rest = scene("continuity", [0.0; 3]).fluid.material.rest_density;
+        assert_eq!(density([0.0, 9.81, 0.0]), Some(rest));
+    }
+}
