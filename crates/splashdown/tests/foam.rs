@@ -91,7 +91,7 @@ fn a_collapsing_column_generates_foam_and_water_at_rest_does_not() {
 
     let column = scene(COLUMN);
     let (mut simulation, mut foam) = cpu(&column);
-    advance(&mut simulation, &foam, 30);
+    advance(&mut simulation, &foam, 40);
     let diffuse = simulation.diffuse(&mut foam).unwrap();
 
     let kinds = [DiffuseKind::Spray, DiffuseKind::Foam, DiffuseKind::Bubble].map(|kind| diffuse.count(kind));

@@ -100,7 +100,7 @@ pub fn compare(sides: &Sides, page: &mut Page) -> Result<()> {
         "Scene: SPlisHSPlasH's `DamBreakModel.json` with twice the edge lengths, and a block that is one spacing longer, so that it has 40 \
          particles along every edge. WCSPH uses a stiffness of 50,000, an exponent of 7 and time steps of 0.1 ms.\n\n\
          *Equal*: spacing, support radius, size of block and box, threads, single precision.\n\n\
-         *Different*: the kernel (Wendland C2 in Splashdown, cubic spline in SPlisHSPlasH), the walls (integrals, volume maps; neither has \
+         *Different*: the kernel (Wendland C2 in Splashdown, cubic spline in SPlisHSPlasH), the walls (images, volume maps; neither has \
          boundary particles, so both visit fluid neighbours only), the viscosity, and the length of the time steps. Splashdown's follow the \
          speed of sound. A DFSPH step is at least ten times longer and contains several iterations, so its row is for information.\n\n\
          Peak memory is that of the whole process, including Python. On a busy machine the threads of SPlisHSPlasH wait for each other \

@@ -90,13 +90,9 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &boundary_lookup::MUELLER,
         &boundary_density::SUMMATION,
         &boundary_density::CONTINUITY,
-        &boundary_force::WENDLAND_C2,
-        &boundary_force::CUBIC_SPLINE,
-        &boundary_force::MUELLER,
-        &boundary_force::WENDLAND_C2_PRESSURE,
-        &boundary_force::WENDLAND_C2_OTHER,
-        &boundary_force::CUBIC_SPLINE_PRESSURE,
-        &boundary_force::CUBIC_SPLINE_OTHER,
+        &boundary_force::ALL,
+        &boundary_force::PRESSURE,
+        &boundary_force::OTHER,
         &motion::MOTION,
     ]
 }
@@ -187,15 +183,10 @@ impl Bodies {
     }
 
     fn record_boundary_force(&self, part: Part, step: &mut StepRecorder<'_>) {
-        step.dispatch_particles(match (self.kernels, part) {
-            (KernelPair::WendlandC2, Part::All) => &boundary_force::WENDLAND_C2,
-            (KernelPair::WendlandC2, Part::Pressure) => &boundary_force::WENDLAND_C2_PRESSURE,
-            (KernelPair::WendlandC2, Part::Other) => &boundary_force::WENDLAND_C2_OTHER,
-            (KernelPair::CubicSpline, Part::All) => &boundary_force::CUBIC_SPLINE,
-            (KernelPair::CubicSpline, Part::Pressure) => &boundary_force::CUBIC_SPLINE_PRESSURE,
-            (KernelPair::CubicSpline, Part::Other) => &boundary_force::CUBIC_SPLINE_OTHER,
-            (KernelPair::Mueller, Part::All) => &boundary_force::MUELLER,
-            (KernelPair::Mueller, _) => panic!("mueller2003 has no pass for {part:?}"),
+        step.dispatch_particles(match part {
+            Part::All => &boundary_force::ALL,
+            Part::Pressure => &boundary_force::PRESSURE,
+            Part::Other => &boundary_force::OTHER,
         });
     }
 

@@ -66,7 +66,7 @@ impl KernelPair {
     }
 }
 
-/// A kernel of the density for which walls are implemented.
+/// A kernel of the density whose integrals over half-spaces are implemented.
 pub trait WallKernel {
     /// The kernels of the walls.
     const WALLS: KernelPair;
@@ -99,7 +99,7 @@ fn cubic_spline(q: f32) -> (f32, f32) {
 }
 
 fn poly6(q: f32) -> (f32, f32) {
-    // Expressed in t = 1 - q, so that D stays positive near q = 1, where corners divide by it.
+    // Expressed in t = 1 - q, so that D stays positive near q = 1.
     let (t, s) = (1.0 - q, 1.0 - q * q);
     let inner = 16.0 / 5.0 + t * (-16.0 / 3.0 + t * (24.0 / 7.0 + t * (t / 9.0 - 1.0)));
     (315.0 / 256.0 * t * t * t * t * t * inner, 315.0 / 256.0 * s * s * s * s)

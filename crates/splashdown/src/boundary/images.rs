@@ -1,16 +1,21 @@
 //! Images of the fluid behind the closed sides of the domain.
 //!
 //! A plane wall with free slip is a plane of symmetry. Behind it the fluid has an image: position and velocity are
-//! reflected, the density is the same, and the pressure continues with the gradient that the fluid has at the wall,
-//! rho0 times the body acceleration. Every sum of SPH then includes the images. Two sides that meet reflect twice, so
+//! reflected, and the density is the same. Every sum of SPH includes the images. Two sides that meet reflect twice, so
 //! that an edge has three images and a corner seven.
+//!
+//! The pressure of an image is extrapolated with the gradient that the fluid has at the wall, rho0 times the body
+//! acceleration. It is not below the smaller of zero and the particle's pressure, so that a ceiling exerts no suction.
+//! Fluid that falls freely feels a floor within the support radius: the difference slows it by up to g.
 //!
 //! The support radius contains an image only if it contains the particle itself: the distance along the wall is the
 //! same, and the distance across it is larger. So images need no cells of their own; a particle near a wall visits its
-//! neighbours once more per image.
+//! neighbours once more per image. A domain is at least a support radius wide, so that an image of an image is never
+//! within the support.
 //!
-//! Symmetry conserves what SPH conserves: the images do the work that the density accounts for, in the integrated and in
-//! the summed form. Nothing needs an offset, a correction along the wall, or damping (Colagrossi & Landrini 2003).
+//! Without body forces, density and pressure force follow from one energy, which is conserved, as is the momentum along
+//! the wall. Nothing needs an offset, a correction along the wall, or damping (Colagrossi & Landrini 2003). The
+//! hydrostatic difference is not exactly symmetric along the wall.
 
 use glam::{BVec3, Vec3};
 

@@ -1,4 +1,5 @@
-//! The forces of a boundary on a particle, apart from pressure: one law for walls and bodies.
+//! The forces of a boundary on a particle, apart from pressure: friction and contact of walls and bodies, and the
+//! damping of the approach to bodies.
 //!
 //! Velocities are relative to the boundary. The WGSL side is `law.wgsl`.
 
@@ -10,7 +11,7 @@ use crate::state::Params;
 /// loses the part of its velocity that would carry it there.
 pub(crate) const CLEARANCE: f32 = 0.25;
 
-/// The rate in 1/s at which the velocity towards a boundary is damped, at a distance q in support radii:
+/// The rate in 1/s at which the velocity towards a body is damped, at a distance q in support radii:
 /// k = c0 H B with B = 7 (1-q)^5 (1+2q) / H^2, the Morris operator over a solid at rest. Zero where the density is
 /// integrated.
 #[inline(always)]

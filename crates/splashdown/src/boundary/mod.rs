@@ -6,8 +6,8 @@
 //! | operation | walls | bodies |
 //! |---|---|---|
 //! | density contribution | images, in the density passes | `bodies.boundary_density` |
-//! | pressure force, with its reaction | images, in the passes of [`part::PRESSURE`] | `bodies.boundary_force.*.pressure` |
-//! | all other forces, with theirs | images and friction, in the passes of [`part::OTHER`] | `bodies.boundary_force.*.other` |
+//! | pressure force, with its reaction | images, in the passes of [`part::PRESSURE`] | `bodies.boundary_force.pressure` |
+//! | all other forces, with theirs | images and friction, in the passes of [`part::OTHER`] | `bodies.boundary_force.other` |
 //!
 //! An explicit scheme requests [`Part::All`](part::Part::All), which computes both forces in one pass. A scheme that
 //! treats the pressure implicitly requests the other forces and the pressure separately: the operation `acceleration` of

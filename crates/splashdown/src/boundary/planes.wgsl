@@ -1,4 +1,4 @@
-// The integrals of one plane; see walls.rs. WALL_KERNEL selects the kernels.
+// The integrals of one plane; see half_space.rs. WALL_KERNEL selects the kernels.
 override WALL_KERNEL: u32 = 0u;
 
 // (D, A) of the density's kernel.

@@ -2,7 +2,9 @@
 
 use std::f32::consts::PI;
 
-use crate::scene::{Derived, Method, Outlet, Reported, Scene, Section, Shape, SinkRegion, outlet};
+use crate::scene::{
+    DensityMode, Derived, Method, Outlet, Quantity, Reported, Scene, Section, Shape, SinkRegion, outlet,
+};
 
 /// A scene with more steps than this takes days and gives a warning.
 const MANY_STEPS: u64 = 10_000_000;
@@ -49,6 +51,18 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             message,
             &format!("the density may vary by about {percent:.0} %; a ratio of ten keeps it within 1 %"),
         );
+    }
+    let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
+    if let Some(gauge) = gauge
+        && scene.solver.density == DensityMode::Summation
+        && !scene.bodies.is_empty()
+    {
+        // In an impact it is a fifth of the correct one, because the approach to bodies is damped (docs/validation.md).
+        let message = format!(
+            "probe {:?} measures pressure, but with density = \"summation\" the pressure near bodies is too low",
+            gauge.name
+        );
+        solver.warn("density", message, "set density = \"continuity\" under [solver] to measure pressure");
     }
     let spacing = f64::from(scene.fluid.particle_spacing);
     for (index, block) in scene.fluid.blocks.iter().enumerate() {

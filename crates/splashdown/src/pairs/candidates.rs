@@ -57,8 +57,8 @@ impl<const F: usize> Candidates<F> {
         self.pack_images::<V>(all, runs, region, std::iter::empty(), |_, values| values);
     }
 
-    /// Packs the particles of `runs` that are in the region, and those of their images that are. `reflect` computes the
-    /// columns of an image after the position.
+    /// Packs the particles of `runs` that are in the region, and those of their images that are. `reflect` computes all
+    /// columns of an image.
     #[inline(always)]
     pub fn pack_images<V: Register>(
         &mut self,

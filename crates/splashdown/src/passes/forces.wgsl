@@ -38,7 +38,7 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
                 let other = densities[j];
                 let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
                 let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-                // The pressure of an image continues hydrostatically, but not to tension.
+                // The pressure of an image is extrapolated hydrostatically; see images.rs.
                 let own = other.y / (other.x * other.x);
                 let more = dot(body, image - p) / params.rest_density;
                 let pressure_sum = mass * (specific + max(own + more, min(own, 0.0)));

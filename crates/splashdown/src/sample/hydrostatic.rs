@@ -1,15 +1,17 @@
 //! The hydrostatic pressure of blocks at the start.
 
 use glam::Vec3;
+use rayon::prelude::*;
 use splashdown_io::Particles;
 
 use crate::scene::{Block, DensityMode, Derived, InitialPressure, Method, Scene, Shape};
 
-/// A direction within this angle (in radians) of an axis is that axis.
+/// The largest distance of the direction of gravity from an axis.
 const STRAIGHT: f32 = 1e-3;
 
-/// Gives particles of blocks that stand on a closed side below them, or on such a block, the pressure of fluid at rest.
-/// Where the density is integrated, they get its initial value. Where it is summed, their layers move closer together.
+/// Gives particles of boxes that stand on a closed side below them, or on such a box, the pressure of fluid at rest.
+/// Where the density is integrated, they get its initial value. Where it is summed, their layers move closer together,
+/// unless the scene has bodies, into which they might move.
 ///
 /// A fluid that starts without pressure falls on itself: in a tank at rest the pressure at the floor oscillates by an
 /// eighth of rho g h for seconds.
@@ -20,21 +22,38 @@ pub(crate) fn start_at_rest(scene: &Scene, particles: &mut Particles) {
     let per_depth = scene.gravity.length() / (derived.sound_speed * derived.sound_speed);
     let is_integrated =
         scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
-    if is_integrated && particles.densities.is_empty() {
-        particles.densities = vec![rest; particles.positions.len()];
+    let Particles { positions, velocities, densities, .. } = particles;
+    let at = |(x, v): (&[f32; 3], &[f32; 3])| if *v == [0.0; 3] { columns.at(Vec3::from(*x)) } else { None };
+    if is_integrated {
+        densities.resize(positions.len(), rest);
+        let all = positions.par_iter().zip(velocities.par_iter()).zip(densities.par_iter_mut());
+        all.for_each(|(particle, density)| {
+            if let Some((_, depth)) = at(particle) {
+                *density = rest * (1.0 + exponent * per_depth * depth).powf(exponent.recip());
+            }
+        });
+    } else if scene.bodies.is_empty() {
+        positions.par_iter_mut().zip(velocities.par_iter()).for_each(|(x, v)| {
+            if let Some((height, depth)) = at((x, v)) {
+                let lowered = height - compressed(height, height + depth, per_depth, exponent);
+                *x = (Vec3::from(*x) - lowered * columns.up).into();
+            }
+        });
     }
-    for i in 0..particles.positions.len() {
-        let x = Vec3::from(particles.positions[i]);
-        let Some((height, depth)) = columns.at(x) else { continue };
-        if is_integrated {
-            // The inverse of Tait's equation of state.
-            particles.densities[i] = rest * (1.0 + exponent * per_depth * depth).powf(exponent.recip());
-        } else {
-            // The compression of the fluid below, to first order.
-            let lowered = per_depth * height * (depth + 0.5 * height);
-            particles.positions[i] = (x - lowered * columns.up).into();
-        }
-    }
+}
+
+/// The height to which fluid at a height falls when a column of this total height is compressed by its weight: the
+/// integral of rho0 / rho from the floor, with Tait's equation of state.
+fn compressed(height: f32, total: f32, per_depth: f32, exponent: f32) -> f32 {
+    let (k, n) = (f64::from(per_depth), f64::from(exponent));
+    let stretched = |height: f32| 1.0 + n * k * f64::from(total - height);
+    let (floor, here) = (stretched(0.0), stretched(height));
+    let above = if exponent == 1.0 {
+        (floor / here).ln() / k
+    } else {
+        (floor.powf(1.0 - 1.0 / n) - here.powf(1.0 - 1.0 / n)) / (k * (n - 1.0))
+    };
+    above as f32
 }
 
 /// Boxes of fluid without velocity, and the direction in which they are stacked.
@@ -49,7 +68,7 @@ impl<'a> Columns<'a> {
     /// `None` if no block can be at rest.
     fn new(scene: &'a Scene) -> Option<Self> {
         let up = -scene.gravity.try_normalize()?;
-        let axis = (0..3).find(|&axis| (up[axis].abs() - 1.0).abs() < STRAIGHT * STRAIGHT)?;
+        let axis = (0..3).find(|&axis| (up - up[axis].signum() * Vec3::AXES[axis]).length() < STRAIGHT)?;
         if scene.fluid.initial_pressure == InitialPressure::Zero {
             return None;
         }
@@ -74,23 +93,25 @@ impl<'a> Columns<'a> {
         let beside = |&&(min, max): &&(Vec3, Vec3)| {
             (0..3).all(|axis| axis == self.axis || (min[axis] <= x[axis] && x[axis] <= max[axis]))
         };
-        let spans: Vec<(f32, f32)> = self
-            .boxes
-            .iter()
-            .filter(beside)
-            .map(|&(min, max)| (height(min).min(height(max)), height(min).max(height(max))))
-            .collect();
-        let own = spans.iter().find(|&&(bottom, top)| bottom <= height(x) && height(x) <= top)?;
-        let (mut bottom, mut top) = *own;
-        // Every round extends the column by at least one of the boxes.
-        for _ in &spans {
-            for &(lower, upper) in &spans {
+        let spans = || {
+            let span =
+                |&(min, max): &(Vec3, Vec3)| (height(min).min(height(max)), height(min).max(height(max)));
+            self.boxes.iter().filter(beside).map(span)
+        };
+        let (mut bottom, mut top) = spans().find(|&(bottom, top)| bottom <= height(x) && height(x) <= top)?;
+        // Every round extends the column by at least one of the boxes, or ends.
+        loop {
+            let before = (bottom, top);
+            for (lower, upper) in spans() {
                 if lower <= top + near && upper > top {
                     top = upper;
                 }
                 if upper >= bottom - near && lower < bottom {
                     bottom = lower;
                 }
+            }
+            if (bottom, top) == before {
+                break;
             }
         }
         (is_closed && (bottom - floor).abs() <= near).then_some((height(x) - floor, top - height(x)))
@@ -117,6 +138,7 @@ mod tests {
     fn start(scene: &Scene, x: [f32; 3]) -> Particles {
         let mut particles = Particles::default();
         particles.positions.push(x);
+        particles.velocities.push([0.0; 3]);
         start_at_rest(scene, &mut particles);
         particles
     }
@@ -164,5 +186,28 @@ mod tests {
         // Upwards: the upper side is open, and no box is near it.
         let rest = scene("continuity", [0.0; 3]).fluid.material.rest_density;
         assert_eq!(density([0.0, 9.81, 0.0]), Some(rest));
+    }
+
+    #[test]
+    fn strong_compression_keeps_the_order_of_the_layers() {
+        for exponent in [1.0, 7.0] {
+            let heights = [0.0, 0.1, 0.5, 0.9, 1.0].map(|height| compressed(height, 1.0, 1.6, exponent));
+            assert_eq!(heights[0], 0.0);
+            assert!(heights.windows(2).all(|pair| pair[0] < pair[1]), "{exponent}: {heights:?}");
+            // rho0 / rho at the surface is 1.
+            let slope = (heights[4] - heights[3]) / 0.1;
+            assert!((0.9..=1.0).contains(&slope), "{exponent}: {slope}");
+        }
+    }
+
+    #[test]
+    fn moving_particles_inside_a_box_start_without_pressure() {
+        let scene = scene("continuity", [0.0, -9.81, 0.0]);
+        let mut particles = Particles::default();
+        particles.positions = vec![[0.75, 0.25, 0.5]; 2];
+        particles.velocities = vec![[0.0; 3], [1.0, 0.0, 0.0]];
+        start_at_rest(&scene, &mut particles);
+        assert!(particles.densities[0] > scene.fluid.material.rest_density);
+        assert_eq!(particles.densities[1], scene.fluid.material.rest_density);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! * A box whose size is a multiple of the spacing gets `size / particle_spacing` particles along each axis.
 //!   The outermost ones lie half a spacing inside its faces: fluid that rests on a floor starts half a
-//!   spacing above it, the distance for which the wall's kernel integral is computed (`boundary`).
+//!   spacing above it, so that its image behind the wall continues the lattice (`boundary`).
 //! * A ball gets the points of a lattice around its centre that lie inside it.
 //! * A closed mesh gets the points inside it of the lattice of its bounding box.
 //! * The particles of a file keep their positions.
@@ -138,8 +138,8 @@ impl From<BodyError> for SampleError {
     }
 }
 
-/// The particles of a scene at t = 0, with ids, positions (m) and velocities (m/s), without densities and
-/// pressures. Particles of a file that lie outside the domain are left out.
+/// The particles of a scene, with ids, positions (m) and velocities (m/s), without densities and pressures.
+/// A simulation of the scene then applies `initial_pressure`. Particles of a file that lie outside the domain are left out.
 ///
 /// # Errors
 /// [`SampleError`] if there are no particles or too many, if a block or mesh reaches outside the domain, or

@@ -265,9 +265,9 @@ choices! {
     }
     /// The pressure at the start.
     InitialPressure {
-        /// That of fluid at rest in blocks that stand on a closed side below them, zero elsewhere.
+        /// rho g depth.
         Hydrostatic = "hydrostatic",
-        /// Zero: fluid that rests on a floor oscillates for seconds.
+        /// None: water in a tank at rest then oscillates for seconds.
         Zero = "zero",
     }
     /// The model of surface tension.

@@ -56,7 +56,7 @@ impl Scheme {
         }
     }
 
-    /// The kernels whose integrals the walls use.
+    /// The kernels whose integrals bodies and the friction of walls use.
     pub fn walls(&self) -> KernelPair {
         match (self.method, self.kernel) {
             (Method::Mueller2003, _) => KernelPair::Mueller,

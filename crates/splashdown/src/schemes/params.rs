@@ -58,6 +58,8 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         } else {
             (f64::from(derived.particle_mass) / derived.lattice_sum) as f32
         },
-        ..bytemuck::Zeroable::zeroed()
+        unused: 0.0,
+        unused_2: 0.0,
+        unused_3: 0.0,
     }
 }

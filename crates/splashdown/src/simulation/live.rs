@@ -74,6 +74,8 @@ impl Simulation {
         (twin.duration, twin.frame_rate, twin.gravity) = (old.duration, old.frame_rate, old.gravity);
         (twin.surface, twin.camera, twin.output) = (old.surface.clone(), old.camera, old.output.clone());
         twin.foam = old.foam;
+        // It has had its effect.
+        twin.fluid.initial_pressure = old.fluid.initial_pressure;
         twin.domain.oscillation = old.domain.oscillation;
         twin.fluid.material.name.clone_from(&old.fluid.material.name);
         // The rest density must not change: it determines the particle mass.

@@ -29,7 +29,7 @@ gpu_struct! {
         rest_density: f32,
         /// Numerical speed of sound in m/s.
         sound_speed: f32,
-        /// Distance between a closed side and the solid behind it in metres: see
+        /// Distance between the surface of a body and the solid behind it in metres: see
         /// [`wall_offset`](crate::boundary::wall_offset).
         wall_offset: f32,
         /// Exponent of the equation of state.

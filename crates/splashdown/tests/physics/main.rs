@@ -15,6 +15,7 @@ mod spheric2;
 mod submerged;
 mod tilted;
 mod torricelli;
+mod waves;
 
 use glam::DVec3;
 use splashdown::scene::Scene;

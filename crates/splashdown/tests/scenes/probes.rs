@@ -65,3 +65,18 @@ fn errors_in_probes_are_reported() {
         assert!(message.contains(part), "{text}\n{message}");
     }
 }
+
+#[test]
+fn a_pressure_probe_near_bodies_with_summed_densities_gives_a_warning() {
+    let probe = "[[probe]]\nname = \"a\"\nquantity = \"pressure\"\nposition = [0, 0, 0]\n";
+    let body = "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nscale = 0.2\nposition = [0.8, 0.2, 0.8]\n";
+    let is_warned = |text: &str| {
+        let warnings = parse(text).unwrap_or_else(|errors| panic!("{errors}")).warnings;
+        warnings.iter().any(|warning| warning.to_string().contains("pressure near bodies is too low"))
+    };
+    assert!(is_warned(&format!("{CUBE}\n{body}\n{probe}")));
+    assert!(!is_warned(&format!("{CUBE}\n{probe}")));
+    let exact = CUBE.replace("[solver]", "[solver]\ndensity = \"continuity\"");
+    assert_ne!(exact, CUBE);
+    assert!(!is_warned(&format!("{exact}\n{body}\n{probe}")));
+}

@@ -2,7 +2,7 @@
 //!
 //! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), with the contributions delta of the two nearest bodies;
 //! the product counts their overlap once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, with the factor 2
-//! explained in [`continuity`](crate::passes::continuity).
+//! because the image of the fluid in the body mirrors its motion.
 
 mod cpu;
 

@@ -1,6 +1,5 @@
 #import gpu/index
 #import sph/params
-#import sph/planes
 #import sph/boundary_law
 #import sph/body
 
@@ -26,26 +25,6 @@ fn react(b: u32, point: vec3<f32>, force: vec3<f32>) {
     }
 }
 
-// The part of the kernel that the sides of the domain do not cover, for a force along `n`: only sides across this
-// direction count.
-fn open_beside(x: vec3<f32>, n: vec3<f32>) -> f32 {
-    let low = x - params.domain_min;
-    let high = params.domain_max - x;
-    var open = 1.0;
-    for (var axis = 0u; axis < 3u; axis++) {
-        var distance = 1e30;
-        if (((params.closed >> (2u * axis)) & 1u) == 1u) {
-            distance = low[axis];
-        }
-        if (((params.closed >> (2u * axis + 1u)) & 1u) == 1u) {
-            distance = min(distance, high[axis]);
-        }
-        let kernel_fraction = wall_plane_gradient(max(distance, 0.0) / params.support_radius).x;
-        open *= 1.0 - kernel_fraction * (1.0 - n[axis] * n[axis]);
-    }
-    return open;
-}
-
 struct Effect {
     // The acceleration by the body.
     direct: vec3<f32>,
@@ -60,7 +39,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
     let steep = length(contact.slope);
     let n = select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
     let across = dot(n, other_normal);
-    let open = open_beside(x, n) * (1.0 - other_fraction * (1.0 - across * across));
+    let open = 1.0 - other_fraction * (1.0 - across * across);
 
     let rho = densities[i].x;
     let pressure = densities[i].y;

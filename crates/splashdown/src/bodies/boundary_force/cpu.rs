@@ -3,12 +3,12 @@ use rayon::prelude::*;
 
 use super::{BoundaryForceBindings, quantum};
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
-use crate::boundary::{KernelPair, WallKernel, law, part};
+use crate::boundary::{law, part};
 use crate::state::Params;
 
 const CHUNK: usize = 4096;
 
-pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: BoundaryForceBindings<'_>) {
+pub(super) fn boundary_force<const FORCES: u32>(buffers: BoundaryForceBindings<'_>) {
     let BoundaryForceBindings {
         params,
         state,
@@ -38,7 +38,6 @@ pub(super) fn boundary_force<K: WallKernel, const FORCES: u32>(buffers: Boundary
                     params,
                     dt: state.dt,
                     wall_body,
-                    kernels: K::WALLS,
                     x: positions[i].xyz(),
                     v: velocities[i].xyz(),
                     density: densities[i],
@@ -65,7 +64,6 @@ struct ParticleForces<'a> {
     params: &'a Params,
     dt: f32,
     wall_body: Vec3,
-    kernels: KernelPair,
     x: Vec3,
     v: Vec3,
     density: Vec2,
@@ -129,7 +127,7 @@ impl ParticleForces<'_> {
         let n = if steep > 1e-3 * scale { contact.slope / steep.max(1e-20) } else { contact.normal };
         let across = n.dot(other.normal);
         let other_fraction = if both { other.kernel_fraction } else { 0.0 };
-        let open = self.open_beside(n) * (1.0 - other_fraction * (1.0 - across * across));
+        let open = 1.0 - other_fraction * (1.0 - across * across);
 
         let [rho, pressure] = self.density.to_array();
         let pressure_factor = params.rest_density * pressure / (rho * rho) + pressure / params.rest_density;
@@ -161,23 +159,6 @@ impl ParticleForces<'_> {
             a -= body.adhesion * (4.0 * spline).sqrt().sqrt() * n;
         }
         (a, n)
-    }
-
-    /// The part of the kernel that the sides of the domain do not cover, for a force along `n`: only sides across this
-    /// direction count.
-    fn open_beside(&self, n: Vec3) -> f32 {
-        let params = self.params;
-        let (low, high) = (self.x - params.domain_min, params.domain_max - self.x);
-        let closed = |bit: usize| params.closed >> bit & 1 == 1;
-        (0..3)
-            .map(|axis| {
-                let below = if closed(2 * axis) { low[axis] } else { 1e30 };
-                let above = if closed(2 * axis + 1) { high[axis] } else { 1e30 };
-                let q = below.min(above).max(0.0) / params.support_radius;
-                let kernel_fraction = if q < 1.0 { self.kernels.gradient(q).0 } else { 0.0 };
-                1.0 - kernel_fraction * (1.0 - n[axis] * n[axis])
-            })
-            .product()
     }
 
     /// The contact acceleration that prevents a particle from entering a body, if `v` is its velocity after this step.

@@ -4,7 +4,7 @@
 //!
 //! * the pressure of the particle and of its image in the solid acts along the gradient of the kernel fraction;
 //! * a positive pressure grows hydrostatically inside the solid;
-//! * tangential accelerations are divided by the part of the kernel, 1 - D, that other walls and bodies leave open;
+//! * tangential accelerations are divided by the part of the kernel, 1 - D, that another body leaves open;
 //! * where the density is summed, the approach is damped, because the pressure of the image does work that the density
 //!   does not account for;
 //! * friction is 2 nu A / (H d), where nu is the sum of the material's viscosity and the artificial one
@@ -21,11 +21,10 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use super::types::{self, Body, Contact};
-use crate::boundary::{self, KernelPair, part};
-use crate::kernel;
+use crate::boundary::{self, part};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
-const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::PLANES, boundary::LAW, types::WGSL];
+const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, boundary::LAW, types::WGSL];
 
 bindings! {
     /// The buffers of `boundary_force.wgsl`.
@@ -42,64 +41,32 @@ bindings! {
     }
 }
 
-/// With the Wendland C2 kernel.
-pub static WENDLAND_C2: PassDesc = PassDesc {
-    label: "bodies.boundary_force.wendland_c2",
+/// All forces.
+pub static ALL: PassDesc = PassDesc {
+    label: "bodies.boundary_force",
     wgsl: include_str!("boundary_force.wgsl"),
     imports: IMPORTS,
     entry: "boundary_force",
     workgroup_size: [64, 1, 1],
-    constants: &[("WALL_KERNEL", 0.0)],
+    constants: &[],
     bindings: BoundaryForceBindings::LIST,
-    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::ALL }>(slots.into()),
+    cpu: |_, slots| cpu::boundary_force::<{ part::ALL }>(slots.into()),
 };
 
-/// With the cubic spline.
-pub static CUBIC_SPLINE: PassDesc = PassDesc {
-    label: "bodies.boundary_force.cubic_spline",
-    constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::ALL }>(slots.into()),
-    ..WENDLAND_C2
+/// The pressure part, and its reaction.
+pub static PRESSURE: PassDesc = PassDesc {
+    label: "bodies.boundary_force.pressure",
+    constants: &[("FORCES", part::PRESSURE as f64)],
+    cpu: |_, slots| cpu::boundary_force::<{ part::PRESSURE }>(slots.into()),
+    ..ALL
 };
 
-/// With the kernels of Mueller 2003.
-pub static MUELLER: PassDesc = PassDesc {
-    label: "bodies.boundary_force.mueller",
-    constants: &[("WALL_KERNEL", KernelPair::Mueller.id() as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::Poly6, { part::ALL }>(slots.into()),
-    ..WENDLAND_C2
-};
-
-/// The pressure part, and its reaction, with the Wendland C2 kernel.
-pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
-    label: "bodies.boundary_force.wendland_c2.pressure",
-    constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::PRESSURE as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::PRESSURE }>(slots.into()),
-    ..WENDLAND_C2
-};
-
-/// The pressure part, and its reaction, with the cubic spline.
-pub static CUBIC_SPLINE_PRESSURE: PassDesc = PassDesc {
-    label: "bodies.boundary_force.cubic_spline.pressure",
-    constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64), ("FORCES", part::PRESSURE as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::PRESSURE }>(slots.into()),
-    ..WENDLAND_C2
-};
-
-/// The other forces, and their reaction, with the cubic spline.
-pub static CUBIC_SPLINE_OTHER: PassDesc = PassDesc {
-    label: "bodies.boundary_force.cubic_spline.other",
-    constants: &[("WALL_KERNEL", KernelPair::CubicSpline.id() as f64), ("FORCES", part::OTHER as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::CubicSpline, { part::OTHER }>(slots.into()),
-    ..WENDLAND_C2
-};
-
-/// The other forces, and their reaction, with the Wendland C2 kernel.
-pub static WENDLAND_C2_OTHER: PassDesc = PassDesc {
-    label: "bodies.boundary_force.wendland_c2.other",
-    constants: &[("WALL_KERNEL", 0.0), ("FORCES", part::OTHER as f64)],
-    cpu: |_, slots| cpu::boundary_force::<kernel::WendlandC2, { part::OTHER }>(slots.into()),
-    ..WENDLAND_C2
+/// The other forces, and their reaction.
+pub static OTHER: PassDesc = PassDesc {
+    label: "bodies.boundary_force.other",
+    constants: &[("FORCES", part::OTHER as f64)],
+    cpu: |_, slots| cpu::boundary_force::<{ part::OTHER }>(slots.into()),
+    ..ALL
 };
 
 /// The force in N of one unit of the sums: the particle mass times 1e-5 m/s^2. The unit of torques is this times the

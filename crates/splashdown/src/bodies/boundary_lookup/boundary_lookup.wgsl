@@ -3,6 +3,7 @@
 #import sph/step_counters
 #import sph/kernel
 #import sph/planes
+#import sph/images
 #import sph/body
 
 #bindings
@@ -142,6 +143,31 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
     return contact;
 }
 
+// The contact with a body and its images behind walls; see cpu.rs.
+fn completed(b: u32, x: vec3<f32>) -> Contact {
+    var contact = contact_with(b, x);
+    if (contact.body == NO_BODY) {
+        return contact;
+    }
+    let support = params.support_radius;
+    let most = max(contact.kernel_fraction, plane_through(contact.distance / support).x);
+    for (var left = reflections_near(x) & ~1u; left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        let image = contact_with(b, reflected_point(by, x));
+        if (image.body == NO_BODY || image.kernel_fraction <= 0.0) {
+            continue;
+        }
+        let part = clamp((most - contact.kernel_fraction) / image.kernel_fraction, 0.0, 1.0);
+        if (part > 0.0) {
+            contact.kernel_fraction += part * image.kernel_fraction;
+            contact.density += part * image.density;
+            contact.slope += part * (by.sign * image.slope);
+            contact.effective = support * q_of_fraction(contact.kernel_fraction);
+        }
+    }
+    return contact;
+}
+
 @compute @workgroup_size(64)
 fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
@@ -152,7 +178,7 @@ fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     var first = no_contact();
     var second = no_contact();
     for (var b = 0u; b < arrayLength(&bodies); b++) {
-        let contact = contact_with(b, x);
+        let contact = completed(b, x);
         let rank = min(contact.distance, contact.effective);
         if (rank < min(first.distance, first.effective)) {
             second = first;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use super::BoundaryLookupBindings;
 use crate::bodies::field;
 use crate::bodies::types::{Body, Contact};
-use crate::boundary::{KernelPair, WallKernel};
+use crate::boundary::{Images, KernelPair, WallKernel};
 use crate::kernel::Kernel;
 use crate::state::{Params, StepCounters};
 
@@ -22,6 +22,7 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
         counters,
     } = buffers;
     let n = cell_start[cell_start.len() - 2] as usize;
+    let images = &Images::new(params);
     let corrections: u32 = positions[..n]
         .par_chunks_mut(CHUNK)
         .zip(contacts.par_chunks_mut(2 * CHUNK))
@@ -33,7 +34,7 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
             for (p, contacts) in positions.iter_mut().zip(pairs) {
                 *contacts = [NO_CONTACT; 2];
                 for &b in near.iter() {
-                    insert(contacts, contact_with::<K>(params, bodies, maps, b, p.xyz()));
+                    insert(contacts, completed::<K>(params, images, bodies, maps, b, p.xyz()));
                 }
                 corrections += u32::from(move_outside(params, p, contacts));
             }
@@ -91,6 +92,40 @@ fn move_outside(params: &Params, p: &mut Vec4, contacts: &[Contact; 2]) -> bool 
     let x = p.xyz() + (-inside).min(0.1 * params.particle_spacing) * deeper.normal;
     *p = x.clamp(params.domain_min, params.domain_max).extend(p.w);
     true
+}
+
+/// The contact with a body and its images behind walls. The image of a body that stands on a floor fills the kernel
+/// below the floor. A body that reaches through the floor fills that part itself: so the body and its images fill at most
+/// what a plane at its distance does.
+#[inline]
+fn completed<K: Kernel + WallKernel>(
+    params: &Params,
+    images: &Images,
+    bodies: &[Body],
+    maps: &[Vec2],
+    b: usize,
+    x: Vec3,
+) -> Contact {
+    let mut contact = contact_with::<K>(params, bodies, maps, b, x);
+    if contact.body == Contact::NONE {
+        return contact;
+    }
+    let support = params.support_radius;
+    let most = contact.kernel_fraction.max(plane_through(K::WALLS, contact.distance / support).0);
+    for by in images.near(x, x, support) {
+        let image = contact_with::<K>(params, bodies, maps, b, by.sign * x + by.shift);
+        if image.body == Contact::NONE || image.kernel_fraction <= 0.0 {
+            continue;
+        }
+        let part = ((most - contact.kernel_fraction) / image.kernel_fraction).clamp(0.0, 1.0);
+        if part > 0.0 {
+            contact.kernel_fraction += part * image.kernel_fraction;
+            contact.density += part * image.density;
+            contact.slope += part * (by.sign * image.slope);
+            contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
+        }
+    }
+    contact
 }
 
 #[inline]

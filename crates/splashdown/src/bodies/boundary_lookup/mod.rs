@@ -22,8 +22,16 @@ use crate::boundary::{self, KernelPair};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS};
 
-const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, PARAMS, STEP_COUNTERS, kernel::WGSL, boundary::PLANES, types::WGSL];
+const IMPORTS: &[WgslModule] = &[
+    wgsl::INDEX,
+    STATE,
+    PARAMS,
+    STEP_COUNTERS,
+    kernel::WGSL,
+    boundary::PLANES,
+    boundary::IMAGES,
+    types::WGSL,
+];
 
 bindings! {
     /// The buffers of `boundary_lookup.wgsl`.

@@ -136,7 +136,6 @@ impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'
         let [x, y, z, u, v, w, pressure] = values;
         let image = reflected_point(by, [x, y, z]);
         let [u, v, w] = reflected(by, [u, v, w]);
-        // The pressure continues hydrostatically, but not to tension.
         let gradient = self.params.summed_mass / self.params.rest_density * self.body;
         let more = dot(gradient.to_array().map(V::splat), difference(image, [x, y, z]));
         let zero = V::splat(0.0);

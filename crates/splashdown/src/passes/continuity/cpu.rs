@@ -3,13 +3,13 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec4};
 
 use super::ContinuityBindings;
-use crate::boundary::{Images, Reflection, WallKernel};
+use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
-pub(super) fn continuity<K: Kernel + WallKernel>(buffers: ContinuityBindings<'_>) {
+pub(super) fn continuity<K: Kernel>(buffers: ContinuityBindings<'_>) {
     let ContinuityBindings {
         params,
         grid,

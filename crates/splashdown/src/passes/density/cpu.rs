@@ -3,13 +3,13 @@ use std::marker::PhantomData;
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
 use super::DensityBindings;
-use crate::boundary::{Images, WallKernel};
+use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
-pub(super) fn density<K: Kernel + WallKernel>(buffers: DensityBindings<'_>) {
+pub(super) fn density<K: Kernel>(buffers: DensityBindings<'_>) {
     let DensityBindings { params, grid, cell_start, sorted_positions: positions, densities } = buffers;
     let scale = 1.0 / params.support_radius;
     let pass = Density::<K> {

@@ -2,8 +2,8 @@
 //! written nor read, and position and velocity are read once.
 //!
 //! Used in steps without couplings (bodies, emitters, sinks, probes, mouse force) and without surface tension. The
-//! fused pass and the separate ones use the same WGSL (`forces.wgsl`, `advance.wgsl`) and the same Rust. The state and
-//! the table of walls are bound as uniforms, because a pass may bind at most eight storage buffers.
+//! fused pass and the separate ones use the same WGSL (`forces.wgsl`, `advance.wgsl`) and the same Rust. The state is
+//! bound as a uniform, because a pass may bind at most eight storage buffers.
 
 mod cpu;
 

@@ -82,7 +82,6 @@ impl PairSum<8, 7> for Mueller<'_> {
         let [x, y, z, u, v, w, pressure, volume] = values;
         let image = reflected_point(by, [x, y, z]);
         let [u, v, w] = reflected(by, [u, v, w]);
-        // The pressure continues hydrostatically, but not to tension.
         let gradient = (self.params.rest_density * self.body).to_array().map(V::splat);
         let more = dot(gradient, difference(image, [x, y, z]));
         let zero = V::splat(0.0);

@@ -44,7 +44,7 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
                 let q = sqrt(r2) * scale;
                 let other = densities[j];
                 let volume = params.summed_mass / other.x;
-                // The pressure of an image continues hydrostatically, but not to tension.
+                // The pressure of an image is extrapolated hydrostatically; see images.rs.
                 let more = params.rest_density * dot(body, image - p);
                 let other_pressure = max(other.y + more, min(other.y, 0.0));
                 force -= (volume * 0.5 * (pressure + other_pressure) * kernel_g(q)) * d;

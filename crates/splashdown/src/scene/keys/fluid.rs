@@ -44,7 +44,7 @@ pub(super) static FLUID: Table = Table {
         key(
             "initial_pressure",
             Kind::Word(words::<InitialPressure>),
-            "Pressure at the start of blocks that stand on a closed side below them.",
+            "Pressure at the start of boxes at rest that stand on a closed side, if gravity is along an axis; other fluid starts without pressure.",
         )
         .default("\"hydrostatic\""),
         key("mesh", Kind::Tables(&FLUID_MESH, MAX_BLOCKS), "Closed meshes filled with fluid at the start.")

@@ -1,0 +1,161 @@
+//! A standing wave in a tank: linear theory gives its frequency, omega^2 = g k tanh(k h), and Lamb (1932, art. 348) the
+//! decay of its height by viscosity, exp(-2 nu k^2 t) without friction at the walls.
+//!
+//! The wave starts as a level surface with the velocities of the potential, so that the particles form a lattice. A slab
+//! six spacings thick represents two dimensions. The first mode shifts the centre of mass along the tank in proportion
+//! to its height.
+
+use splashdown::{Simulation, sample};
+
+use super::cpu;
+use super::figures::{Figures, Series, full};
+use super::scene;
+
+const GRAVITY: f64 = 9.81;
+/// Length and depth of the water in metres.
+const LENGTH: f64 = 1.0;
+const DEPTH: f64 = 0.5;
+/// Height of the wave over the depth.
+const STEEPNESS: f64 = 0.04;
+
+struct Wave {
+    /// Spacings across the depth.
+    across: u32,
+    /// Kinematic viscosity in m^2/s.
+    viscosity: f64,
+    solver: &'static str,
+    periods: f64,
+}
+
+/// The period and the loss of height per period, both by the zeros and the extremes of the centre of mass.
+struct Measured {
+    period: f64,
+    loss: f64,
+    curve: Series,
+}
+
+fn wave_number() -> f64 {
+    std::f64::consts::PI / LENGTH
+}
+
+fn frequency() -> f64 {
+    (GRAVITY * wave_number() * (wave_number() * DEPTH).tanh()).sqrt()
+}
+
+impl Wave {
+    fn measure(&self) -> Measured {
+        let spacing = DEPTH / f64::from(self.across);
+        let thick = 6.0 * spacing;
+        let scene = scene(&format!(
+            r#"
+            [scene]
+            name = "wave"
+            duration = 10
+            [domain]
+            min = [0, 0, 0]
+            max = [{LENGTH}, {}, {thick}]
+            open = ["y_max"]
+            [fluid]
+            particle_spacing = {spacing}
+            viscosity = {}
+            [[fluid.block]]
+            position = [0, 0, 0]
+            size = [{LENGTH}, {DEPTH}, {thick}]
+            [solver]
+            {}
+            "#,
+            1.3 * DEPTH,
+            self.viscosity,
+            self.solver
+        ));
+        let mut particles = sample::particles(&scene).unwrap();
+        let params = splashdown::schemes::params(&scene, 0);
+        let (k, omega) = (wave_number(), frequency());
+        let amplitude = STEEPNESS * DEPTH * omega / (k * DEPTH).sinh();
+        for (x, v) in particles.positions.iter().zip(&mut particles.velocities) {
+            let (x, y) = (f64::from(x[0]), f64::from(x[1]));
+            *v = [
+                (-amplitude * (k * y).cosh() * (k * x).sin()) as f32,
+                (amplitude * (k * y).sinh() * (k * x).cos()) as f32,
+                0.0,
+            ];
+        }
+        let per_depth = GRAVITY as f32 / params.sound_speed.powi(2);
+        let still = |x: &[f32; 3]| params.rest_density * (1.0 + per_depth * (DEPTH as f32 - x[1]));
+        particles.densities = particles.positions.iter().map(still).collect();
+        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let (period, samples) = (std::f64::consts::TAU / omega, 80.0);
+        let mut curve = vec![(0.0, 0.0)];
+        for _ in 0..(self.periods * samples) as u32 {
+            let stats = simulation.advance((period / samples) as f32).unwrap();
+            assert_eq!((stats.escaped, stats.non_finite, stats.wall_corrections), (0, 0, 0), "{stats:?}");
+            let particles = simulation.particles().unwrap();
+            let sum: f64 = particles.positions.iter().map(|x| f64::from(x[0])).sum();
+            curve.push((stats.time, sum / particles.positions.len() as f64 - 0.5 * LENGTH));
+        }
+        analyse(curve)
+    }
+}
+
+/// The period and the loss per period of a decaying oscillation that starts at zero.
+fn analyse(curve: Series) -> Measured {
+    let mut zeros = vec![0.0];
+    let mut extremes: Vec<f64> = Vec::new();
+    let mut largest = 0.0_f64;
+    for pair in curve.windows(2).skip(1) {
+        let ((t0, a), (t1, b)) = (pair[0], pair[1]);
+        largest = largest.max(b.abs());
+        if a * b < 0.0 {
+            zeros.push(t0 + (t1 - t0) * a / (a - b));
+            extremes.push(largest);
+            largest = 0.0;
+        }
+    }
+    let halves = (zeros.len() - 1) as f64;
+    let period = 2.0 * zeros[zeros.len() - 1] / halves;
+    let (first, last) = (extremes[0], extremes[extremes.len() - 1]);
+    let loss = 1.0 - (last / first).powf(2.0 / (extremes.len() - 1) as f64);
+    Measured { period, loss, curve }
+}
+
+/// The gates: the period against linear theory, and the loss of height per period at 20 spacings of depth and at 40.
+const PERIOD: f64 = 0.01;
+const LOSS: [(u32, f64); 2] = [(20, 0.03), (40, 0.01)];
+
+const INVISCID: &str = "density = \"continuity\"\nsupport_ratio = 3\nartificial_viscosity = 0";
+const VISCOUS: &str = "density = \"continuity\"\nsupport_ratio = 3\nartificial_viscosity = 0.1";
+
+#[test]
+fn a_standing_wave_keeps_its_height_and_its_period() {
+    for &(across, loss) in if full() { &LOSS[..] } else { &LOSS[..1] } {
+        let mut figures = Figures::new(format!("standing wave, {across} spacings deep, continuity, CPU"));
+        let wave =
+            Wave { across, viscosity: 1e-6, solver: INVISCID, periods: if full() { 5.1 } else { 1.6 } };
+        let measured = wave.measure();
+        // A wave must not grow either.
+        figures.within("loss of height per period", measured.loss, -loss, loss);
+        let error = measured.period * frequency() / std::f64::consts::TAU - 1.0;
+        if full() {
+            figures.within("relative error of the period", error, -PERIOD, PERIOD);
+        } else {
+            figures.report("relative error of the period", error);
+        }
+        let theory = |t: f64| measured.curve[20].1 * (frequency() * t).sin();
+        let exact: Series = measured.curve.iter().map(|&(t, _)| (t, theory(t))).collect();
+        figures.plot(
+            "Standing wave: centre of mass (dots: linear theory)",
+            ["t (s)", "x (m)"],
+            &exact,
+            &[("continuity", &measured.curve)],
+        );
+        figures.close();
+    }
+}
+
+#[test]
+fn artificial_viscosity_is_detected() {
+    let wave = Wave { across: 10, viscosity: 1e-6, solver: VISCOUS, periods: 1.6 };
+    let mut figures = Figures::new("standing wave, controls, CPU");
+    figures.control("loss of height per period", wave.measure().loss, LOSS[0].1);
+    figures.close();
+}
