@@ -6,7 +6,7 @@ use glam::{Mat3, Quat, Vec2, Vec3, Vec4};
 use splashdown_io::{IoError, Mesh};
 
 use super::types::{Body, Contact};
-use crate::boundary::{KernelPair, wall_offset};
+use crate::boundary::{KernelPair, solid_offset};
 use crate::models;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
 use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
@@ -352,7 +352,7 @@ fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Ve
         places.iter().map(|&x| 1.0 / near.sum(x, |r| kernels.w(r / support) / support.powi(3))).collect();
     let mut scale = 1.0;
     if !shell {
-        let offset = spacing * wall_offset(kernels, support / spacing);
+        let offset = spacing * solid_offset(kernels, support / spacing);
         let wanted = kernels.density((0.5 * spacing + offset) / support).0;
         let (mut kernel_fraction, mut count) = (0.0f64, 0.0f64);
         for &x in &places {

@@ -118,7 +118,7 @@ fn spiky(q: f32) -> (f32, f32) {
 /// (Wendland C2, two spacings of support). The offset solves D((spacing/2 + offset)/H) = 1 - (lattice sum of the
 /// half-space). The gradient of the lattice agrees with the integral without the offset (within 3 %; with the offset it
 /// would be 16 % too weak), so slopes do not use it.
-pub fn wall_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
+pub fn solid_offset(kernels: KernelPair, support_ratio: f32) -> f32 {
     let ratio = f64::from(support_ratio);
     let (mut whole, mut behind) = (0.0, 0.0);
     for (x, y, z) in cube(support_ratio.ceil() as i32) {

@@ -38,6 +38,11 @@ fn reflection(k: u32) -> Reflection {
     return by;
 }
 
+// The pressure of an image, or a multiple of it, for that of the particle and the hydrostatic difference `more`.
+fn extrapolated(pressure: f32, more: f32) -> f32 {
+    return max(pressure + more, min(pressure, 0.0));
+}
+
 fn reflected_point(by: Reflection, x: vec3<f32>) -> vec3<f32> {
     return by.sign * x + by.shift;
 }

@@ -18,7 +18,7 @@ pub(crate) const CLEARANCE: f32 = 0.25;
 pub(crate) fn approach_damping(params: &Params, q: f32) -> f32 {
     let scale = 1.0 / params.support_radius;
     let t = 1.0 - q;
-    params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q)
+    params.approach_damping_factor * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q)
 }
 
 /// The rate in 1/s at which the velocity along a boundary is damped: k = 2 nu A / (H d), the closed form for a velocity

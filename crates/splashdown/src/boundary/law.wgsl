@@ -10,7 +10,7 @@ const BOUNDARY_CLEARANCE: f32 = 0.25;
 fn approach_damping(q: f32) -> f32 {
     let scale = 1.0 / params.support_radius;
     let t = 1.0 - q;
-    return params.wall_damping * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
+    return params.approach_damping_factor * 7.0 * params.sound_speed * scale * t * t * t * t * t * (1.0 + 2.0 * q);
 }
 
 fn boundary_friction(friction: f32, viscosity: f32, gradient: f32, distance: f32) -> f32 {

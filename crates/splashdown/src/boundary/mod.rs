@@ -1,6 +1,6 @@
 //! The boundary of the fluid: the closed sides of the domain, and the code shared with [`bodies`](crate::bodies).
 //!
-//! Walls are planes of symmetry: every sum over the neighbours of a particle includes their [`Images`]. Bodies have any
+//! Walls are planes of symmetry: every sum over the neighbours of a particle includes their `Images`. Bodies have any
 //! shape and are integrals over their solid. Both implement the same three operations, which a scheme calls separately:
 //!
 //! | operation | walls | bodies |
@@ -20,7 +20,7 @@ pub(crate) mod law;
 pub mod part;
 mod wall_friction;
 
-pub use half_space::{KernelPair, WallKernel, wall_offset};
+pub use half_space::{KernelPair, WallKernel, solid_offset};
 pub(crate) use images::{Images, Reflection, closed_bounds};
 pub(crate) use wall_friction::wall_friction;
 

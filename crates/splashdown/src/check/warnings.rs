@@ -2,8 +2,10 @@
 
 use std::f32::consts::PI;
 
+use crate::sample;
 use crate::scene::{
-    DensityMode, Derived, Method, Outlet, Quantity, Reported, Scene, Section, Shape, SinkRegion, outlet,
+    DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, Shape,
+    SinkRegion, outlet,
 };
 
 /// A scene with more steps than this takes days and gives a warning.
@@ -51,6 +53,15 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             message,
             &format!("the density may vary by about {percent:.0} %; a ratio of ten keeps it within 1 %"),
         );
+    }
+    if fluid.has("initial_pressure")
+        && scene.fluid.initial_pressure == InitialPressure::Hydrostatic
+        && !sample::can_start_at_rest(scene)
+    {
+        let message = "fluid.initial_pressure has no effect: all fluid starts without pressure".to_owned();
+        let hint = "it needs a box at rest on a closed side and gravity along an axis; with summed densities it also \
+                    needs a scene without bodies";
+        fluid.warn("initial_pressure", message, hint);
     }
     let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
     if let Some(gauge) = gauge

@@ -42,7 +42,7 @@ use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
 pub(crate) use particles::{PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
-pub(crate) use vector::{difference, dot, reflected, reflected_point, scaled, splat};
+pub(crate) use vector::{difference, dot, extrapolated, reflected, reflected_point, scaled, splat};
 
 /// Particles sorted by cell.
 #[derive(Clone, Copy)]

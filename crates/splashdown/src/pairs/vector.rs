@@ -41,3 +41,11 @@ pub(crate) fn reflected_point<V: Lanes>(by: &Reflection, x: [V; 3]) -> [V; 3] {
 pub(crate) fn reflected<V: Lanes>(by: &Reflection, v: [V; 3]) -> [V; 3] {
     [v[0] * V::splat(by.sign.x), v[1] * V::splat(by.sign.y), v[2] * V::splat(by.sign.z)]
 }
+
+/// The pressure of an image, or a multiple of it, for that of the particle and the hydrostatic difference: not below the
+/// smaller of zero and the particle's pressure.
+#[inline(always)]
+pub(crate) fn extrapolated<V: Lanes>(pressure: V, more: V) -> V {
+    let zero = V::splat(0.0);
+    (pressure + more).max(pressure.if_less(zero, pressure, zero))
+}

@@ -38,10 +38,9 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
                 let other = densities[j];
                 let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
                 let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-                // The pressure of an image is extrapolated hydrostatically; see images.rs.
                 let own = other.y / (other.x * other.x);
                 let more = dot(body, image - p) / params.rest_density;
-                let pressure_sum = mass * (specific + max(own + more, min(own, 0.0)));
+                let pressure_sum = mass * (specific + extrapolated(own, more));
                 a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
                     - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
                 if (tension) {

@@ -15,13 +15,12 @@ const STRAIGHT: f32 = 1e-3;
 ///
 /// A fluid that starts without pressure falls on itself: in a tank at rest the pressure at the floor oscillates by an
 /// eighth of rho g h for seconds.
-pub(crate) fn start_at_rest(scene: &Scene, particles: &mut Particles) {
+pub fn start_at_rest(scene: &Scene, particles: &mut Particles) {
     let Some(columns) = Columns::new(scene) else { return };
     let derived = Derived::without_particles(scene);
     let (rest, exponent) = (scene.fluid.material.rest_density, scene.solver.exponent);
     let per_depth = scene.gravity.length() / (derived.sound_speed * derived.sound_speed);
-    let is_integrated =
-        scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
+    let is_integrated = is_density_integrated(scene);
     let Particles { positions, velocities, densities, .. } = particles;
     let at = |(x, v): (&[f32; 3], &[f32; 3])| if *v == [0.0; 3] { columns.at(Vec3::from(*x)) } else { None };
     if is_integrated {
@@ -40,6 +39,19 @@ pub(crate) fn start_at_rest(scene: &Scene, particles: &mut Particles) {
             }
         });
     }
+}
+
+/// True if [`start_at_rest`] has an effect.
+pub(crate) fn can_start_at_rest(scene: &Scene) -> bool {
+    let is_possible = is_density_integrated(scene) || scene.bodies.is_empty();
+    is_possible
+        && Columns::new(scene).is_some_and(|columns| {
+            columns.boxes.iter().any(|&(min, max)| columns.at(0.5 * (min + max)).is_some())
+        })
+}
+
+fn is_density_integrated(scene: &Scene) -> bool {
+    scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity
 }
 
 /// The height to which fluid at a height falls when a column of this total height is compressed by its weight: the

@@ -29,7 +29,8 @@ use crate::scene::{DensityMode, Fluid, Scene, place};
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
 pub(crate) use filler::{Added, Filler};
-pub(crate) use hydrostatic::start_at_rest;
+pub(crate) use hydrostatic::can_start_at_rest;
+pub use hydrostatic::start_at_rest;
 pub(crate) use sources::{Sources, file_title, mesh_title};
 pub use spacing::typical_spacing;
 

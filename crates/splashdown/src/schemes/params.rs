@@ -1,7 +1,7 @@
 //! Computes the constants of a simulation from its scene.
 
 use super::{Scheme, mueller2003, wcsph};
-use crate::boundary::wall_offset;
+use crate::boundary::solid_offset;
 use crate::scene::{Derived, Method, NegativePressure, Scene, SurfaceTension};
 use crate::state::Params;
 
@@ -33,7 +33,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         oscillation_rate,
         rest_density,
         sound_speed: derived.sound_speed,
-        wall_offset: scene.fluid.particle_spacing * wall_offset(scheme.walls(), solver.support_ratio),
+        solid_offset: scene.fluid.particle_spacing * solid_offset(scheme.walls(), solver.support_ratio),
         exponent: solver.exponent,
         viscosity: material.viscosity + numerical_viscosity,
         artificial_viscosity: solver.artificial_viscosity,
@@ -52,7 +52,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
         clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
         particle_count: particles,
-        wall_damping: if scheme.is_density_integrated { 0.0 } else { 1.0 },
+        approach_damping_factor: if scheme.is_density_integrated { 0.0 } else { 1.0 },
         summed_mass: if scheme.is_density_integrated {
             derived.particle_mass
         } else {

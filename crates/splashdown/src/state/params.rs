@@ -30,8 +30,8 @@ gpu_struct! {
         /// Numerical speed of sound in m/s.
         sound_speed: f32,
         /// Distance between the surface of a body and the solid behind it in metres: see
-        /// [`wall_offset`](crate::boundary::wall_offset).
-        wall_offset: f32,
+        /// [`solid_offset`](crate::boundary::solid_offset).
+        solid_offset: f32,
         /// Exponent of the equation of state.
         exponent: f32,
         /// Kinematic viscosity in m^2/s.
@@ -57,7 +57,7 @@ gpu_struct! {
         /// Number of particles, including removed ones and those not yet emitted.
         particle_count: u32,
         /// Damping of the velocity towards bodies: 1 if the density is summed, 0 if it is integrated.
-        wall_damping: f32,
+        approach_damping_factor: f32,
         /// The mass in kg with which a particle enters sums over neighbours. Where the density is summed, it is
         /// particle_mass divided by the kernel's sum over the lattice, which then has the rest density.
         summed_mass: f32,

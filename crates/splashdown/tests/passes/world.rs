@@ -40,7 +40,7 @@ pub fn params(support_ratio: f32) -> Params {
         oscillation_rate: 3.0,
         rest_density: 1000.0,
         sound_speed: 20.0,
-        wall_offset: 0.11 * SPACING,
+        solid_offset: 0.11 * SPACING,
         exponent: 7.0,
         viscosity: 0.01,
         artificial_viscosity: 0.1,
@@ -52,7 +52,7 @@ pub fn params(support_ratio: f32) -> Params {
         min_dt: 1e-7,
         closed: 0b111111,
         clamp_pressure: 0,
-        wall_damping: 1.0,
+        approach_damping_factor: 1.0,
         ..bytemuck::Zeroable::zeroed()
     }
 }
@@ -91,7 +91,7 @@ pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
     points.splice(0..6, corners);
     // In a corner where the solid of the third side barely reaches the support: its integral is a difference near zero.
     for i in 0..60 {
-        let depth = (params.support_radius - if i % 2 == 0 { 0.0 } else { params.wall_offset })
+        let depth = (params.support_radius - if i % 2 == 0 { 0.0 } else { params.solid_offset })
             * (1.0 - 1e-7 * (1 << (i / 3)) as f32);
         let mut x = Vec3::splat(0.14 * SPACING + 1e-4 * i as f32);
         x[i % 3] = depth;

@@ -80,3 +80,20 @@ fn a_pressure_probe_near_bodies_with_summed_densities_gives_a_warning() {
     assert_ne!(exact, CUBE);
     assert!(!is_warned(&format!("{exact}\n{body}\n{probe}")));
 }
+
+#[test]
+fn an_initial_pressure_without_effect_gives_a_warning() {
+    let is_warned = |text: &str| {
+        let warnings = parse(text).unwrap_or_else(|errors| panic!("{errors}")).warnings;
+        warnings.iter().any(|warning| warning.to_string().contains("initial_pressure has no effect"))
+    };
+    let explicit = CUBE.replace("[fluid]", "[fluid]\ninitial_pressure = \"hydrostatic\"");
+    assert_ne!(explicit, CUBE);
+    assert!(!is_warned(&explicit));
+    let tilted = |text: &str| text.replace("[scene]", "[scene]\ngravity = [1, -9.81, 0]");
+    assert!(is_warned(&tilted(&explicit)));
+    // The default is silent.
+    assert!(!is_warned(&tilted(CUBE)));
+    let body = "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nscale = 0.2\nposition = [0.8, 0.2, 0.8]\n";
+    assert!(is_warned(&format!("{explicit}\n{body}")));
+}

@@ -138,7 +138,7 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.kernel_fraction = plane.x;
         contact.slope = turned(orientation, plane.y / support * field.effective_gradient);
         contact.effective = field.effective;
-        contact.density = density_through((field.effective + params.wall_offset) / support);
+        contact.density = density_through((field.effective + params.solid_offset) / support);
     }
     return contact;
 }

@@ -163,7 +163,7 @@ fn contact_with<K: Kernel + WallKernel>(
         contact.kernel_fraction = kernel_fraction;
         contact.slope = rotation * (slope / support * field.effective_gradient);
         contact.effective = field.effective;
-        contact.density = density_through(K::WALLS, (field.effective + params.wall_offset) / support);
+        contact.density = density_through(K::WALLS, (field.effective + params.solid_offset) / support);
     }
     contact
 }

@@ -60,7 +60,7 @@ fn a_lattice_half_a_spacing_from_a_plane_has_the_rest_density() {
         let fluid = lattice(true) / lattice(false);
         let error =
             |offset: f32| (fluid + f64::from(kernels.density((0.5 + offset) / ratio as f32).0) - 1.0).abs();
-        let offset = wall_offset(kernels, ratio as f32);
+        let offset = solid_offset(kernels, ratio as f32);
         assert!(error(offset) < 1e-3, "{kernels:?} {ratio}: off by {}", error(offset));
         // Control: without the offset the error is larger.
         assert!(error(0.0) > error(offset), "{kernels:?} {ratio}");

@@ -6,7 +6,9 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::AccelerationBindings;
 use crate::boundary::{Images, Reflection, WallKernel, part, wall_friction};
 use crate::kernel::{Kernel, SMALLEST_Q};
-use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
+use crate::pairs::{
+    self, PairSum, Sorted, difference, dot, extrapolated, reflected, reflected_point, scaled, splat,
+};
 use crate::simd::{Lanes, Register};
 use crate::state::{Params, StepState};
 
@@ -138,9 +140,7 @@ impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'
         let [u, v, w] = reflected(by, [u, v, w]);
         let gradient = self.params.summed_mass / self.params.rest_density * self.body;
         let more = dot(gradient.to_array().map(V::splat), difference(image, [x, y, z]));
-        let zero = V::splat(0.0);
-        let lowest = zero - (zero - pressure).max(zero);
-        [image[0], image[1], image[2], u, v, w, (pressure + more).max(lowest)]
+        [image[0], image[1], image[2], u, v, w, extrapolated(pressure, more)]
     }
 
     #[inline(always)]

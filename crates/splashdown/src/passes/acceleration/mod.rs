@@ -8,8 +8,8 @@
 //! * artificial viscosity for approaching pairs: alpha c0 h V (v.x) / (r^2 + 0.01 H^2) grad W (Monaghan 1992);
 //! * surface tension: -gamma 2 rho0/(rho_i + rho_j) [m C(r) x/r + (n_i - n_j)] (Akinci, Akinci & Teschner 2013).
 //!
-//! The sums include the [images](boundary::Images) behind walls. The pressure of an image is extrapolated.
-//! Walls with friction add [`wall_friction`](boundary::wall_friction).
+//! The sums include the images behind walls. The pressure of an image is extrapolated.
+//! Walls with friction add `boundary::wall_friction`.
 
 pub(crate) mod cpu;
 

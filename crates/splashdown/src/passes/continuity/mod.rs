@@ -7,7 +7,7 @@
 //!
 //! with v = v_i - v_j and h = H / 2. The second term is the diffusion of Molteni & Colagrossi (2009), where psi_ij is
 //! rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the
-//! [images](boundary::Images) behind walls.
+//! images behind walls.
 //!
 //! The density is advanced first with the old velocities, and the velocities then with the pressure of the new density,
 //! which is symplectic for sound waves. Advancing both from the old state, as explicit Euler does, would amplify every

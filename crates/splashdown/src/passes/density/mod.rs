@@ -1,6 +1,6 @@
 //! Density by summation, and the resulting pressure.
 //!
-//! rho_i = m sum_j W(x_i - x_j) (j = i included), over fluid and [images](boundary::Images); p_i by the
+//! rho_i = m sum_j W(x_i - x_j) (j = i included), over fluid and images; p_i by the
 //! equation of state (Batchelor 1967; Monaghan 1994).
 
 mod cpu;

@@ -3,7 +3,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::MuellerBindings;
 use crate::boundary::{Images, KernelPair, Reflection, wall_friction};
 use crate::kernel::{Kernel, Poly6, Spiky, viscosity_laplacian};
-use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, extrapolated, reflected, reflected_point, splat};
 use crate::simd::Register;
 use crate::state::Params;
 
@@ -84,9 +84,7 @@ impl PairSum<8, 7> for Mueller<'_> {
         let [u, v, w] = reflected(by, [u, v, w]);
         let gradient = (self.params.rest_density * self.body).to_array().map(V::splat);
         let more = dot(gradient, difference(image, [x, y, z]));
-        let zero = V::splat(0.0);
-        let lowest = zero - (zero - pressure).max(zero);
-        [image[0], image[1], image[2], u, v, w, (pressure + more).max(lowest), volume]
+        [image[0], image[1], image[2], u, v, w, extrapolated(pressure, more), volume]
     }
 
     #[inline(always)]

@@ -44,9 +44,8 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
                 let q = sqrt(r2) * scale;
                 let other = densities[j];
                 let volume = params.summed_mass / other.x;
-                // The pressure of an image is extrapolated hydrostatically; see images.rs.
                 let more = params.rest_density * dot(body, image - p);
-                let other_pressure = max(other.y + more, min(other.y, 0.0));
+                let other_pressure = extrapolated(other.y, more);
                 force -= (volume * 0.5 * (pressure + other_pressure) * kernel_g(q)) * d;
                 force += (friction * volume * viscosity_laplacian(q)) * (by.sign * sorted_velocities[j].xyz - v);
                 normal += (volume * poly6_g(q)) * d;
