@@ -3,53 +3,68 @@
 use crate::cells::Grid;
 use crate::check::Built;
 use crate::sample::{self, Inventory};
-use crate::scene::{Scene, Sort, SurfaceTension};
+use crate::scene::{Scene, Sort};
 use crate::schemes::Scheme;
 use crate::state::{CARRIED, bytes_per_particle};
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
-/// Bytes per particle in the largest single buffer: a position is four floats.
-const LARGEST_PER_PARTICLE: u64 = 16;
+/// Bytes per particle in the largest single buffer: a position is four floats, the correction of a gradient eight.
+const POSITION: u64 = 16;
+const CORRECTION_MATRIX: u64 = 32;
 /// Bytes per particle in all buffers of [`Fields`](crate::state::Fields) and [`Cells`](crate::cells::Cells): the carried
 /// quantities, a cell and an entry.
 const PER_PARTICLE: u64 = bytes_per_particle(CARRIED) + 4 + 8;
-/// Bytes per particle of buffers that only some scenes need: accelerations, normals, pairs of the bitonic sort.
+/// Bytes per particle of buffers that only some scenes need: accelerations, normals, corrections of the gradients and
+/// shifting velocities, contributions of bodies to the corrections, pairs of the bitonic sort.
 const ACCELERATION: u64 = 16;
 const NORMAL: u64 = 16;
+const CORRECTION: u64 = 32 + 16;
+const BOUNDARY_MATRIX: u64 = 32;
 const PAIR: u64 = 8;
 /// Bytes per cell: its count and its start.
 const PER_CELL: u64 = 8;
 
-/// The largest number of particles whose buffers fit a device that binds at most this many bytes.
+/// The largest number of particles whose buffers fit a device that binds at most this many bytes, where the density is
+/// summed.
 pub fn largest_particle_count(largest_buffer: u64) -> u64 {
-    (largest_buffer / LARGEST_PER_PARTICLE).min(u64::from(u32::MAX) - 1)
+    count_in(largest_buffer, POSITION)
 }
 
-/// Checks that a device can hold a number of particles. The error contains the largest number and the smallest spacing
+/// [`largest_particle_count`] for a scene.
+pub(crate) fn largest_particle_count_of(scene: &Scene, largest_buffer: u64) -> u64 {
+    count_in(largest_buffer, largest_per_particle(scene))
+}
+
+fn count_in(largest_buffer: u64, per_particle: u64) -> u64 {
+    (largest_buffer / per_particle).min(u64::from(u32::MAX) - 1)
+}
+
+fn largest_per_particle(scene: &Scene) -> u64 {
+    if Scheme::new(scene).extras(false).corrections { CORRECTION_MATRIX } else { POSITION }
+}
+
+/// Checks that a device can hold a number of particles of a scene. The error contains the largest number and the smallest spacing
 /// that fit. Every buffer is bound as a whole: buffers are not split, because each pass would then have to determine the
 /// part that contains a neighbour.
 ///
 /// # Errors
 /// [`SimulationError::TooMany`].
-pub fn check_particles(
-    particles: u64,
-    largest_buffer: u64,
-    particle_spacing: f32,
-) -> Result<(), SimulationError> {
-    let allowed = largest_particle_count(largest_buffer);
+pub fn check_particles(particles: u64, largest_buffer: u64, scene: &Scene) -> Result<(), SimulationError> {
+    let allowed = largest_particle_count_of(scene, largest_buffer);
     if particles <= allowed {
         return Ok(());
     }
-    let fitting = sample::fitting_spacing(particle_spacing, particles, allowed);
+    let fitting = sample::fitting_spacing(scene.fluid.particle_spacing, particles, allowed);
     Err(SimulationError::TooMany {
         what: "particles",
         given: particles,
         allowed,
         advice: format!(
-            "a buffer of this device holds {} MB, and a position takes {LARGEST_PER_PARTICLE} bytes. Use a fluid.particle_spacing of {fitting} m \
+            "a buffer of this device holds {} MB, and a particle takes {} bytes of the largest. Use a fluid.particle_spacing of {fitting} m \
              or more, or a device with larger buffers (`splashdown doctor` lists them)",
-            largest_buffer / 1_000_000
+            largest_buffer / 1_000_000,
+            largest_per_particle(scene)
         ),
     })
 }
@@ -100,9 +115,12 @@ fn per_particle(scene: &Scene) -> u64 {
         && scene.probes.is_empty()
         && Scheme::new(scene).is_fused();
     let some = |needed: bool, bytes: u64| if needed { bytes } else { 0 };
+    let extras = Scheme::new(scene).extras(!scene.bodies.is_empty());
     PER_PARTICLE
         + some(!is_plain, ACCELERATION)
-        + some(scene.solver.surface_tension == SurfaceTension::Akinci2013, NORMAL)
+        + some(extras.normals, NORMAL)
+        + some(extras.corrections, CORRECTION)
+        + some(extras.boundary_matrices, BOUNDARY_MATRIX)
         + some(scene.solver.sort == Sort::Bitonic, PAIR)
 }
 
@@ -120,16 +138,16 @@ mod tests {
     use super::*;
     use crate::cells::Cells;
     use crate::scene::{Derived, SurfaceSettings};
-    use crate::state::Fields;
     use crate::state::Params;
+    use crate::state::{Extras, Fields};
     use crate::{Device, Simulation};
 
     /// The size in bytes of all buffers for this number of particles in one grid.
-    fn in_arrays(particles: u32, normals: bool, sort: Sort) -> u64 {
+    fn in_arrays(particles: u32, extras: Extras, sort: Sort) -> u64 {
         let mut executor = Executor::from(CpuExecutor::new());
         let params = Params { particle_count: particles, ..bytemuck::Zeroable::zeroed() };
-        let mut fields = Fields::new(&mut executor, &params, normals).unwrap();
-        if normals {
+        let mut fields = Fields::new(&mut executor, &params, extras).unwrap();
+        if extras.normals {
             fields.make_accelerations(&mut executor).unwrap();
         }
         let grid = Grid::new(Vec3::ZERO, Vec3::ONE, 0.1).unwrap();
@@ -138,17 +156,17 @@ mod tests {
     }
 
     #[test]
-    fn with_all_optional_buffers_a_particle_takes_at_most_160_bytes() {
-        let per_particle = |normals, sort| {
-            (in_arrays(3 << 16, normals, sort) - in_arrays(1 << 16, normals, sort)) / (2 << 16)
-        };
-        let plain = per_particle(false, Sort::Counting);
+    fn with_all_optional_buffers_a_particle_takes_at_most_212_bytes() {
+        let per_particle =
+            |extras, sort| (in_arrays(3 << 16, extras, sort) - in_arrays(1 << 16, extras, sort)) / (2 << 16);
+        let plain = per_particle(Extras::default(), Sort::Counting);
         assert_eq!(plain, 92);
         assert_eq!(plain, PER_PARTICLE);
         // With all optional buffers.
-        let most = per_particle(true, Sort::Bitonic);
-        assert_eq!(most, PER_PARTICLE + ACCELERATION + NORMAL + PAIR);
-        assert!(most <= 160, "{most}");
+        let all = Extras { normals: true, corrections: true, boundary_matrices: true };
+        let most = per_particle(all, Sort::Bitonic);
+        assert_eq!(most, PER_PARTICLE + ACCELERATION + NORMAL + CORRECTION + BOUNDARY_MATRIX + PAIR);
+        assert!(most <= 212, "{most}");
     }
 
     #[test]
@@ -218,6 +236,15 @@ mod tests {
         assert!(each <= 160.0, "{each} bytes");
     }
 
+    fn scene(particle_spacing: f64, density: &str) -> Scene {
+        let text = format!(
+            "[scene]\nname = \"box\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+             particle_spacing = {particle_spacing}\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n\
+             [solver]\ndensity = \"{density}\"\n"
+        );
+        Scene::parse(&text, "box.toml").unwrap()
+    }
+
     #[test]
     fn ten_million_particles_fit_four_gibibytes() {
         let budget = 4 << 30;
@@ -232,13 +259,16 @@ mod tests {
         // Control: sixty million do not fit.
         assert!(memory_forecast(&scene(0.0032)) > budget);
         // Their largest buffer exceeds the size that every device supports.
-        assert!(check_particles(10_000_000, 128 << 20, 0.00584).is_err());
-        assert!(check_particles(10_000_000, 160_000_000, 0.00584).is_ok());
+        assert!(check_particles(10_000_000, 128 << 20, &scene(0.00584, "summation")).is_err());
+        assert!(check_particles(10_000_000, 160_000_000, &scene(0.00584, "summation")).is_ok());
+        // A correction takes twice as much as a position.
+        assert!(check_particles(10_000_000, 160_000_000, &scene(0.00584, "continuity")).is_err());
+        assert!(check_particles(10_000_000, 320_000_000, &scene(0.00584, "continuity")).is_ok());
     }
 
     #[test]
     fn the_reported_count_and_spacing_fit() {
-        let error = check_particles(20_000_000, 128 << 20, 0.01).unwrap_err();
+        let error = check_particles(20_000_000, 128 << 20, &scene(0.01, "summation")).unwrap_err();
         assert!(matches!(error, SimulationError::TooMany { allowed: 8_388_608, .. }), "{error}");
         let text = error.to_string();
         assert!(text.contains("at most 8388608 fit") && text.contains("134 MB"), "{text}");

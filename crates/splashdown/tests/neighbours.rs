@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use splashdown::cells::{Cells, Grid, Sort};
 use splashdown::scene::Scene;
 use splashdown::schemes;
-use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Fields, Params, StepCounters, StepState};
+use splashdown::state::{DEAD_ESCAPED, DEAD_NON_FINITE, Extras, Fields, Params, StepCounters, StepState};
 use splashdown_gpu::{CpuExecutor, Executor, Recording, bytemuck, testing};
 
 const SUPPORT: f32 = 0.1;
@@ -74,7 +74,7 @@ fn id(i: usize, n: usize) -> u32 {
 fn sort(executor: &mut Executor, points: &[Vec3], way: Sort) -> Sorted {
     let n = points.len();
     let params = params(n as u32);
-    let fields = Fields::new(executor, &params, false).unwrap();
+    let fields = Fields::new(executor, &params, Extras::default()).unwrap();
     let cells = Cells::new(executor, grid(), n as u32, way).unwrap();
     let positions: Vec<Vec4> = points.iter().map(|p| p.extend(0.0)).collect();
     let velocities: Vec<Vec4> = (0..n).map(|i| Vec4::new(i as f32, -(i as f32), 0.5, 1000.0)).collect();

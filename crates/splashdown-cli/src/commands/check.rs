@@ -62,7 +62,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let largest = arguments.device.device.executor()?.largest_buffer();
-    let fits = check_particles(inventory.particles, largest, scene.fluid.particle_spacing);
+    let fits = check_particles(inventory.particles, largest, &scene);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
     if arguments.json {
         console::print_json(&Report {

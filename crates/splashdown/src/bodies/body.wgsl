@@ -53,6 +53,12 @@ struct Contact {
     unused: u32,
 }
 
+// The unit vector along which the body's pressure acts; see Contact in types.rs.
+fn direction(contact: Contact, scale: f32) -> vec3<f32> {
+    let steep = length(contact.slope);
+    return select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
+}
+
 struct ScriptSample {
     position: vec3<f32>,
     unused: f32,

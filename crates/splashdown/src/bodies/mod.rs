@@ -1,14 +1,16 @@
 //! Bodies in the fluid: meshes that are static, scripted or dynamic.
 //!
 //! *How it works.* The solid of a body ([`crate::solid`]) is a grid of distances in the frame of its mesh. Every step
-//! runs four passes on the device, without the host. `boundary_lookup` finds the bodies near each particle and the
-//! distances to them. `boundary_density` adds the bodies' contribution to the density. `boundary_force` adds their
-//! forces and sums the reactions. `motion` moves the bodies. Between batches of steps the host resolves collisions of
-//! bodies with one another and with the domain (`rigid`).
+//! runs its passes on the device, without the host. `boundary_lookup` finds the bodies near each particle and the
+//! distances to them. `boundary_matrix` computes what they contribute to corrected gradients, where the density is
+//! integrated. `boundary_density` adds their contribution to the density. `boundary_force` adds their forces and sums
+//! the reactions. `motion` moves the bodies. Between batches of steps the host resolves collisions of bodies with one
+//! another and with the domain (`rigid`).
 
 mod boundary_density;
 mod boundary_force;
 mod boundary_lookup;
+mod boundary_matrix;
 mod closed;
 mod field;
 mod key;
@@ -90,7 +92,9 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &boundary_lookup::MUELLER,
         &boundary_density::SUMMATION,
         &boundary_density::CONTINUITY,
+        &boundary_matrix::BOUNDARY_MATRIX,
         &boundary_force::ALL,
+        &boundary_force::CORRECTED,
         &boundary_force::PRESSURE,
         &boundary_force::OTHER,
         &motion::MOTION,
@@ -172,6 +176,9 @@ impl Bodies {
             &boundary_lookup::CUBIC_SPLINE,
             &boundary_lookup::MUELLER,
         ));
+        if step.is_density_integrated {
+            step.dispatch_particles(&boundary_matrix::BOUNDARY_MATRIX);
+        }
     }
 
     fn record_boundary_density(&self, step: &mut StepRecorder<'_>) {
@@ -184,6 +191,7 @@ impl Bodies {
 
     fn record_boundary_force(&self, part: Part, step: &mut StepRecorder<'_>) {
         step.dispatch_particles(match part {
+            Part::All if step.is_density_integrated => &boundary_force::CORRECTED,
             Part::All => &boundary_force::ALL,
             Part::Pressure => &boundary_force::PRESSURE,
             Part::Other => &boundary_force::OTHER,

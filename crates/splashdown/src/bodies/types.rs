@@ -191,6 +191,14 @@ impl Body {
 impl Contact {
     /// No body.
     pub const NONE: u32 = u32::MAX;
+
+    /// The unit vector along which the body's pressure acts: that of the slope, or the normal where the slope vanishes.
+    /// `scale` is one over the support radius.
+    #[inline]
+    pub fn direction(&self, scale: f32) -> Vec3 {
+        let steep = self.slope.length();
+        if steep > 1e-3 * scale { self.slope / steep.max(1e-20) } else { self.normal }
+    }
 }
 
 fn symmetric(d: Vec3, p: Vec3) -> Mat3 {

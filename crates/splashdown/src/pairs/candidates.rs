@@ -172,7 +172,11 @@ impl<const F: usize> Candidates<F> {
             if near == 0 {
                 continue;
             }
-            let values = change(std::array::from_fn(load));
+            let mut values = [zero; F];
+            for (f, value) in values.iter_mut().enumerate() {
+                *value = load(f);
+            }
+            let values = change(values);
             for (to, value) in to.iter().zip(values) {
                 // SAFETY: at most the particles of the run were appended, and there is a block
                 // after them.
@@ -208,8 +212,12 @@ impl<const F: usize> Candidates<F> {
         for part in (0..BLOCK).step_by(V::WIDTH) {
             let mut sums = [V::splat(0.0); S];
             for k in (part..self.count).step_by(BLOCK) {
-                // SAFETY: the count is a multiple of the block, and the width divides the block.
-                let values = columns.map(|column| unsafe { V::load(column.as_ptr().add(k)) });
+                // Not `map`: for many columns the compiler calls it, which passes registers in memory.
+                let mut values = [V::splat(0.0); F];
+                for (value, column) in values.iter_mut().zip(&columns) {
+                    // SAFETY: the count is a multiple of the block, and the width divides the block.
+                    *value = unsafe { V::load(column.as_ptr().add(k)) };
+                }
                 let contributions = pair(values);
                 for s in 0..S {
                     sums[s] = sums[s] + contributions[s];

@@ -26,8 +26,8 @@ pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
     /// The contributions of a register of neighbours to the sums of particle `i`.
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; F]) -> [V; S];
 
-    /// Computes the result of particle `i` from its sums.
-    fn finish(&self, i: usize, sums: [f32; S], out: &mut Self::Output);
+    /// The result of particle `i` for its sums.
+    fn finish(&self, i: usize, sums: [f32; S]) -> Self::Output;
 
     /// The columns of the images of a register of neighbours behind a wall.
     #[inline(always)]
@@ -43,10 +43,43 @@ pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
     }
 }
 
-/// Runs a pass over all active particles. `outputs` has their results, in the same order.
+/// Where results of particles are stored.
+pub(crate) trait Outputs<T>: Send + Sized {
+    /// Divides it before particle `middle`.
+    fn split_at(self, middle: usize) -> (Self, Self);
+    /// Stores the result of particle `i`.
+    fn put(&mut self, i: usize, value: T);
+}
+
+impl<T: Send> Outputs<T> for &mut [T] {
+    fn split_at(self, middle: usize) -> (Self, Self) {
+        self.split_at_mut(middle)
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, value: T) {
+        self[i] = value;
+    }
+}
+
+/// Two results per particle.
+impl<A: Send, B: Send> Outputs<(A, B)> for (&mut [A], &mut [B]) {
+    fn split_at(self, middle: usize) -> (Self, Self) {
+        let (first, second) = (self.0.split_at_mut(middle), self.1.split_at_mut(middle));
+        ((first.0, second.0), (first.1, second.1))
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, (a, b): (A, B)) {
+        self.0[i] = a;
+        self.1[i] = b;
+    }
+}
+
+/// Runs a pass over all active particles. `outputs` takes their results, in the same order.
 pub(crate) fn for_each<const F: usize, const S: usize, P: PairSum<F, S>>(
     sorted: Sorted<'_>,
-    outputs: &mut [P::Output],
+    outputs: impl Outputs<P::Output>,
     pass: &P,
 ) {
     for_each_with(Simd::in_use(), sorted, outputs, pass);
@@ -55,7 +88,7 @@ pub(crate) fn for_each<const F: usize, const S: usize, P: PairSum<F, S>>(
 pub(super) fn for_each_with<const F: usize, const S: usize, P: PairSum<F, S>>(
     simd: Simd,
     sorted: Sorted<'_>,
-    outputs: &mut [P::Output],
+    outputs: impl Outputs<P::Output>,
     pass: &P,
 ) {
     let columns = &Columns::new(sorted.active_count(), |j| pass.load(j));
@@ -68,13 +101,13 @@ pub(super) fn for_each_with<const F: usize, const S: usize, P: PairSum<F, S>>(
 }
 
 /// The rows of cells that contain particles, each with the outputs of its particles.
-fn rows<'a, T>(sorted: Sorted<'_>, mut outputs: &'a mut [T]) -> Vec<(Range<usize>, &'a mut [T])> {
+fn rows<T, O: Outputs<T>>(sorted: Sorted<'_>, mut outputs: O) -> Vec<(Range<usize>, O)> {
     let mut rows = Vec::new();
     let width = sorted.grid.size_x as usize;
     for first in (0..sorted.grid.cell_count as usize).step_by(width) {
         let particles = sorted.cell_start[first + width] - sorted.cell_start[first];
         if particles > 0 {
-            let (piece, rest) = outputs.split_at_mut(particles as usize);
+            let (piece, rest) = outputs.split_at(particles as usize);
             outputs = rest;
             rows.push((first..first + width, piece));
         }
@@ -83,19 +116,19 @@ fn rows<'a, T>(sorted: Sorted<'_>, mut outputs: &'a mut [T]) -> Vec<(Range<usize
 }
 
 /// One row of cells.
-struct Row<'a, const F: usize, const S: usize, P: PairSum<F, S>> {
+struct Row<'a, const F: usize, const S: usize, P: PairSum<F, S>, O> {
     sorted: Sorted<'a>,
     columns: &'a Columns<F>,
     candidates: &'a mut Candidates<F>,
     row: Range<usize>,
-    outputs: &'a mut [P::Output],
+    outputs: O,
     pass: &'a P,
 }
 
-impl<const F: usize, const S: usize, P: PairSum<F, S>> Leaf for Row<'_, F, S, P> {
+impl<const F: usize, const S: usize, P: PairSum<F, S>, O: Outputs<P::Output>> Leaf for Row<'_, F, S, P, O> {
     #[inline(always)]
     fn run<V: Register>(self) {
-        let Self { sorted, columns, candidates, row, outputs, pass } = self;
+        let Self { sorted, columns, candidates, row, mut outputs, pass } = self;
         let first = sorted.cell_start[row.start] as usize;
         for cell in row {
             let particles = sorted.run(cell, 1);
@@ -111,7 +144,7 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>> Leaf for Row<'_, F, S, P>
             }
             for i in particles {
                 let sums = if pass.wants(i) { candidates.sum::<V, S>(pass.pair::<V>(i)) } else { [0.0; S] };
-                pass.finish(i, sums, &mut outputs[i - first]);
+                outputs.put(i - first, pass.finish(i, sums));
             }
         }
     }

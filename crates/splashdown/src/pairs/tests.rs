@@ -38,8 +38,8 @@ impl PairSum<4, 2> for Count<'_> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: usize, sums: [f32; 2], out: &mut [f32; 2]) {
-        *out = sums;
+    fn finish(&self, _: usize, sums: [f32; 2]) -> [f32; 2] {
+        sums
     }
 }
 
@@ -135,7 +135,7 @@ impl Case {
     fn found(&self) -> Vec<(Simd, Counts)> {
         let run = |simd| {
             let mut out = vec![[0.0; 2]; self.positions.len()];
-            for_each_with(simd, self.sorted(), &mut out, &self.pass());
+            for_each_with(simd, self.sorted(), out.as_mut_slice(), &self.pass());
             (simd, out)
         };
         kinds().map(run).collect()

@@ -1,6 +1,6 @@
 //! The integration of particles on the CPU, for all passes that integrate.
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::WgslModule;
 
@@ -20,7 +20,24 @@ const CHUNK: usize = 4096;
 pub(crate) struct Before<'a> {
     pub positions: &'a [Vec4],
     pub velocities: &'a [Vec4],
-    pub densities: &'a [Vec2],
+}
+
+/// What a step does to a particle.
+pub(crate) struct Change {
+    /// In m/s^2.
+    pub acceleration: Vec3,
+    /// The shifting velocity in m/s, which moves the particle only.
+    pub shift: Vec3,
+    /// In kg/m^3.
+    pub density: f32,
+}
+
+impl Change {
+    /// Without shifting.
+    #[inline]
+    pub fn unshifted(acceleration: Vec3, density: f32) -> Self {
+        Self { acceleration, shift: Vec3::ZERO, density }
+    }
 }
 
 /// The output of the integration.
@@ -31,14 +48,14 @@ pub(crate) struct Persistent<'a> {
     pub cell_counts: &'a mut [u32],
 }
 
-/// Integrates all particles, and counts them for the next step if `counts`. `acceleration` is called with the index of a
+/// Integrates all particles, and counts them for the next step if `counts`. `change` is called with the index of a
 /// particle and the value at this index of the persistent velocities.
 pub(crate) fn advance_all(
     (params, grid, state): (&Params, &Grid, &StepState),
     sorted: Before<'_>,
     persistent: Persistent<'_>,
     counts: bool,
-    acceleration: impl Fn(usize, Vec4) -> Vec3 + Sync,
+    change: impl Fn(usize, Vec4) -> Change + Sync,
 ) {
     let n = state.run_count as usize;
     let mover = Mover::new(params, grid, state.dt);
@@ -48,18 +65,16 @@ pub(crate) fn advance_all(
     let found: Vec<ChunkCounters> = sorted.positions[..n]
         .par_chunks(CHUNK)
         .zip(sorted.velocities[..n].par_chunks(CHUNK))
-        .zip(sorted.densities[..n].par_chunks(CHUNK))
         .zip(persistent.positions[..n].par_chunks_mut(CHUNK))
         .zip(persistent.velocities[..n].par_chunks_mut(CHUNK))
         .zip(cells[..n].par_chunks_mut(CHUNK))
         .enumerate()
-        .map(|(chunk, (((((p, v), density), new_p), new_v), cells))| {
+        .map(|(chunk, ((((p, v), new_p), new_v), cells))| {
             let mut found = ChunkCounters::default();
             let mut counter = CellCounter::new(counts);
             for k in 0..p.len() {
-                let a = acceleration(chunk * CHUNK + k, new_v[k]);
-                let particle = (p[k], v[k], density[k].x, a);
-                let moved = mover.advance(particle, &mut found);
+                let change = change(chunk * CHUNK + k, new_v[k]);
+                let moved = mover.advance(p[k], v[k], &change, &mut found);
                 (new_p[k], new_v[k]) = (moved.position, moved.velocity);
                 if counting {
                     cells[k] = moved.cell;
@@ -110,8 +125,10 @@ struct Moved {
     cell: u32,
 }
 
-/// The largest distance that a particle moves per step, in spacings.
+/// The largest distance that a particle moves per step by its velocity, in spacings.
 const LONGEST: f32 = 0.5;
+/// The largest distance by which the shifting moves a particle per step in addition, in spacings.
+const LONGEST_SHIFT: f32 = 0.1;
 
 /// Integrates particles over one step.
 struct Mover<'a> {
@@ -128,15 +145,16 @@ struct Mover<'a> {
 impl<'a> Mover<'a> {
     fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
         let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
-        let margin = 1.01 * (LONGEST + law::CLEARANCE) * params.particle_spacing;
+        let margin = 1.01 * (LONGEST + LONGEST_SHIFT + law::CLEARANCE) * params.particle_spacing;
         let inner = [params.domain_min + margin, params.domain_max - margin];
         Self { params, grid, dt, low, high, inner }
     }
 
-    /// Integrates a particle, given its position, velocity, density in kg/m^3 and acceleration.
+    /// Integrates a particle, given its position and velocity.
     #[inline]
-    fn advance(&self, (p, old, rho, a): (Vec4, Vec4, f32, Vec3), found: &mut ChunkCounters) -> Moved {
+    fn advance(&self, p: Vec4, old: Vec4, change: &Change, found: &mut ChunkCounters) -> Moved {
         let Self { params, grid, dt, low, high, inner } = *self;
+        let Change { acceleration: a, shift, density: rho } = *change;
         if p.w != 0.0 {
             return Moved { position: p, velocity: old, cell: grid.cell_count };
         }
@@ -148,14 +166,15 @@ impl<'a> Mover<'a> {
         }
         let p = p.xyz();
         let is_inner = p.cmpgt(inner[0]).all() && p.cmplt(inner[1]).all();
+        // A wall limits the velocity, and its sum with the shifting.
+        let mut motion = v + shift.clamp_length_max(LONGEST_SHIFT * params.particle_spacing / dt);
         if !is_inner {
-            v = v.max(-law::contact_speeds(params, p - low, dt)).min(law::contact_speeds(
-                params,
-                high - p,
-                dt,
-            ));
+            let slowest = -law::contact_speeds(params, p - low, dt);
+            let fastest = law::contact_speeds(params, high - p, dt);
+            v = v.max(slowest).min(fastest);
+            motion = motion.max(slowest).min(fastest);
         }
-        let mut x = p + dt * v;
+        let mut x = p + dt * motion;
         // `max` and `min` ignore a NaN operand, so the acceleration and the density are tested in addition to the result.
         if !(x.is_finite() && a.is_finite() && rho.is_finite()) {
             found.non_finite += 1;

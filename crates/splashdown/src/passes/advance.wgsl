@@ -31,8 +31,17 @@ fn raise(k: u32, value: f32) {
     atomicMax(&highest[k], bitcast<u32>(value));
 }
 
+// What a step does to a particle; see Change in advance.rs.
+struct Change {
+    acceleration: vec3<f32>,
+    shift: vec3<f32>,
+    density: f32,
+}
+
 // Integrates particle `i` and returns its new cell.
-fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, rho: f32, a: vec3<f32>) -> u32 {
+fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, change: Change) -> u32 {
+    let a = change.acceleration;
+    let rho = change.density;
     if (p.w != 0.0) {
         positions[i] = p;
         velocities[i] = old;
@@ -46,15 +55,22 @@ fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, rho: f32, a: vec3<f32>) -> u32 
         v *= most / step;
         atomicAdd(&counters[COUNTER_LIMITED], 1u);
     }
+    // A wall limits the velocity, and its sum with the shifting.
+    let most_shift = 0.1 * params.particle_spacing / dt;
+    var motion = v + change.shift * min(1.0, most_shift / max(length(change.shift), 1e-20));
     for (var axis = 0u; axis < 3u; axis++) {
         if (is_closed(2u * axis)) {
-            v[axis] = max(v[axis], -contact_speed(p[axis] - params.domain_min[axis], dt));
+            let slowest = -contact_speed(p[axis] - params.domain_min[axis], dt);
+            v[axis] = max(v[axis], slowest);
+            motion[axis] = max(motion[axis], slowest);
         }
         if (is_closed(2u * axis + 1u)) {
-            v[axis] = min(v[axis], contact_speed(params.domain_max[axis] - p[axis], dt));
+            let fastest = contact_speed(params.domain_max[axis] - p[axis], dt);
+            v[axis] = min(v[axis], fastest);
+            motion[axis] = min(motion[axis], fastest);
         }
     }
-    var x = p.xyz + dt * v;
+    var x = p.xyz + dt * motion;
     // `max` and `min` may ignore a NaN operand, so the acceleration and the density are tested too.
     if (!is_finite(x) || !is_finite(a) || !is_finite(vec3(rho))) {
         positions[i] = vec4(p.xyz, DEAD_NON_FINITE);

@@ -8,16 +8,21 @@
 
 pub mod acceleration;
 pub mod continuity;
+pub mod corrected_acceleration;
 pub mod density;
 pub mod force_integrate;
 pub mod integrate;
 pub mod mueller;
 pub mod normals;
+pub mod shifted_integrate;
 pub mod state_equation;
 
 pub(crate) mod advance;
+pub(crate) mod correction;
+pub(crate) mod tension;
 
 pub use advance::WGSL as ADVANCE;
+pub use tension::WGSL as TENSION;
 
 use splashdown_gpu::{PassDesc, WgslModule};
 
@@ -29,6 +34,12 @@ pub fn passes() -> Vec<&'static PassDesc> {
     vec![
         &continuity::WENDLAND_C2,
         &continuity::CUBIC_SPLINE,
+        &continuity::WENDLAND_C2_BODIES,
+        &continuity::CUBIC_SPLINE_BODIES,
+        &corrected_acceleration::WENDLAND_C2,
+        &corrected_acceleration::CUBIC_SPLINE,
+        &shifted_integrate::SHIFTED_INTEGRATE,
+        &shifted_integrate::UNCOUNTED,
         &density::WENDLAND_C2,
         &density::CUBIC_SPLINE,
         &density::POLY6,

@@ -249,11 +249,19 @@ choices! {
         /// The cubic spline of Monaghan and Lattanzio.
         CubicSpline = "cubic_spline",
     }
+    /// The purpose that determines the defaults of the other keys of the solver.
+    Accuracy {
+        /// Fast: fronts, water heights and draughts are right, pressures are noisy.
+        Standard = "standard",
+        /// For pressures, forces and waves: density = "continuity" and support_ratio = 3.
+        Engineering = "engineering",
+    }
     /// The computation of the density.
     DensityMode {
         /// Sum over the neighbours in every step: robust.
         Summation = "summation",
-        /// Continuity equation with diffusion (delta-SPH): smooth pressure.
+        /// Continuity equation with diffusion (delta-SPH), corrected gradients and particle shifting: smooth pressure, and
+        /// waves of the right period and height.
         Continuity = "continuity",
     }
     /// The treatment of negative pressures.

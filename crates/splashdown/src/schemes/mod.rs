@@ -27,13 +27,21 @@ use crate::cells::{self, Cells};
 #[cfg(test)]
 use crate::coupling::Stage;
 use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
-use crate::state::{Fields, begin};
+use crate::state::{Extras, Fields, begin};
 
 /// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
 /// its output from its input alone, and with empty cells there is no input. `flow.emit` follows the schedule, which is
 /// empty after the end of a frame. All other passes of a step read the flag.
-pub(crate) const REPEATABLE: &[&str] =
-    &["scan.", "sort.", "cells.reorder", "density.", "normals.", "bodies.boundary_lookup.", "flow.emit"];
+pub(crate) const REPEATABLE: &[&str] = &[
+    "scan.",
+    "sort.",
+    "cells.reorder",
+    "density.",
+    "normals.",
+    "bodies.boundary_lookup.",
+    "bodies.boundary_matrix",
+    "flow.emit",
+];
 
 /// A scheme with the choices of a scene's `[solver]` section that select passes.
 #[derive(Clone, Copy, Debug)]
@@ -65,14 +73,18 @@ impl Scheme {
         }
     }
 
-    /// True if the normals of the surface are computed; they take memory for each particle.
-    pub fn needs_normals(&self) -> bool {
-        self.has_tension
+    /// The arrays that it needs for each particle, for a scene with or without bodies.
+    pub fn extras(&self, bodies: bool) -> Extras {
+        Extras {
+            normals: self.has_tension,
+            corrections: self.is_density_integrated,
+            boundary_matrices: self.is_density_integrated && bodies,
+        }
     }
 
     /// True if the forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
     pub fn is_fused(&self) -> bool {
-        self.method == Method::Wcsph && !self.has_tension
+        self.method == Method::Wcsph && !self.has_tension && !self.is_density_integrated
     }
 
     /// Records one step. [`begin_frame`] precedes the first step of a frame, and

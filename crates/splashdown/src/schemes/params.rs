@@ -2,7 +2,7 @@
 
 use super::{Scheme, mueller2003, wcsph};
 use crate::boundary::solid_offset;
-use crate::scene::{Derived, Method, NegativePressure, Scene, SurfaceTension};
+use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
 use crate::state::Params;
 
 /// The constants of a scene with this number of particles.
@@ -21,6 +21,13 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     let numerical_viscosity = match solver.method {
         Method::Wcsph => 0.0,
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
+    };
+    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero, and the friction
+    // uses at least the default of the other form.
+    let boundary_alpha = if scheme.is_density_integrated {
+        solver.artificial_viscosity.max(Solver::default().artificial_viscosity)
+    } else {
+        solver.artificial_viscosity
     };
     Params {
         gravity: scene.gravity,
@@ -58,8 +65,8 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         } else {
             (f64::from(derived.particle_mass) / derived.lattice_sum) as f32
         },
+        inverse_kernel_at_spacing: 1.0 / scheme.walls().w(1.0 / solver.support_ratio),
+        boundary_viscosity: boundary_alpha * derived.sound_speed * support_radius / 20.0,
         unused: 0.0,
-        unused_2: 0.0,
-        unused_3: 0.0,
     }
 }

@@ -10,7 +10,8 @@ use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
-    acceleration, continuity, density, force_integrate, integrate, mueller, normals, state_equation,
+    acceleration, continuity, corrected_acceleration, density, force_integrate, integrate, mueller, normals,
+    shifted_integrate, state_equation,
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method};
@@ -113,6 +114,9 @@ impl<'a> Step<'a> {
     pub(super) fn density_and_pressure(&mut self) {
         let pass = match self.scheme.method {
             Method::Mueller2003 => &density::POLY6,
+            Method::Wcsph if self.scheme.is_density_integrated && self.couplings.bodies.is_some() => {
+                self.by_kernel(&continuity::WENDLAND_C2_BODIES, &continuity::CUBIC_SPLINE_BODIES)
+            }
             Method::Wcsph if self.scheme.is_density_integrated => {
                 self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE)
             }
@@ -134,9 +138,15 @@ impl<'a> Step<'a> {
     /// replace the previous accelerations. The forces of bodies follow by [`Stage::BoundaryForces`] of the same part.
     ///
     /// # Panics
-    /// If the scheme is `mueller2003`, which computes all forces in one pass, and the part is another.
+    /// If the scheme is `mueller2003` or integrates the density, whose forces are one pass, and the part is another.
     pub(super) fn acceleration(&mut self, part: Part) {
         let pass = match (self.scheme.method, part) {
+            (Method::Wcsph, Part::All) if self.scheme.is_density_integrated => {
+                self.by_kernel(&corrected_acceleration::WENDLAND_C2, &corrected_acceleration::CUBIC_SPLINE)
+            }
+            (Method::Wcsph, _) if self.scheme.is_density_integrated => {
+                panic!("corrected accelerations have no pass for {part:?}")
+            }
             (Method::Wcsph, Part::All) => {
                 self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE)
             }
@@ -161,10 +171,11 @@ impl<'a> Step<'a> {
 
     /// Velocity, then position (symplectic Euler), and the count for the next sort.
     pub(super) fn integrate(&mut self) {
-        let pass = if self.couplings.act_in(Stage::Emission) {
-            &integrate::UNCOUNTED
-        } else {
-            &integrate::INTEGRATE
+        let pass = match (self.scheme.is_density_integrated, self.couplings.act_in(Stage::Emission)) {
+            (false, false) => &integrate::INTEGRATE,
+            (false, true) => &integrate::UNCOUNTED,
+            (true, false) => &shifted_integrate::SHIFTED_INTEGRATE,
+            (true, true) => &shifted_integrate::UNCOUNTED,
         };
         self.recorder.dispatch_particles(pass);
         self.store_carried();

@@ -32,7 +32,7 @@ fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static s
     let scene = scene(size, solver);
     let (solver, params) = (Scheme::new(&scene), params(&scene, 64));
     let mut executor = Executor::from(CpuExecutor::new());
-    let fields = Fields::new(&mut executor, &params, solver.needs_normals()).unwrap();
+    let fields = Fields::new(&mut executor, &params, solver.extras(true)).unwrap();
     let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap();
     let cells = Cells::new(&mut executor, grid, 64, Sort::Counting).unwrap();
     let mouse_force = with_mouse_force.then(|| MouseForceCoupling::new(&mut executor).unwrap());

@@ -103,8 +103,7 @@ impl Simulation {
         let host = checkpoint.host()?;
         let loaded = Self::load_bodies(&scene, progress)?;
         let loaded_flow = built.flow(&scene)?;
-        let spacing = scene.fluid.particle_spacing;
-        memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), spacing)?;
+        memory::check_particles(u64::from(host.capacity), executor.largest_buffer(), &scene)?;
         let mut simulation = Self::assemble(&scene, executor, host.capacity, 0, loaded, &loaded_flow, table)?;
         simulation.restore(checkpoint, host).await?;
         Ok(simulation)

@@ -104,11 +104,12 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         let n = particles.positions.len();
         let largest = executor.largest_buffer();
-        memory::check_particles(n as u64, largest, scene.fluid.particle_spacing)?;
+        memory::check_particles(n as u64, largest, scene)?;
         let loaded_flow = Built::of(scene).flow(scene)?;
         // Particles that are not yet emitted follow the initial ones.
         let initial = n as u32;
-        let capacity = loaded_flow.capacity(n as u64, memory::largest_particle_count(largest)) as u32;
+        let capacity =
+            loaded_flow.capacity(n as u64, memory::largest_particle_count_of(scene, largest)) as u32;
         let next_id = particles.ids.iter().max().map_or(initial, |&id| id.saturating_add(1));
         let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow, table)?;
         simulation.initial = initial;
@@ -139,7 +140,7 @@ impl Simulation {
                 allowed: 1 << 31,
                 advice: "make the domain smaller or particle_spacing larger".into(),
             })?;
-        let fields = Fields::with_table(&mut executor, &params, scheme.needs_normals(), table)?;
+        let fields = Fields::with_table(&mut executor, &params, scheme.extras(!loaded.is_empty()), table)?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {
             None

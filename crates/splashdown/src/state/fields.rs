@@ -6,6 +6,17 @@ use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
 use super::{Array, CARRIED, Carried, CarriedArrays, Params, StepCounters, StepState};
 
+/// The arrays that a scheme needs in addition; without them the buffers have a single entry.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras {
+    /// Normals for surface tension.
+    pub normals: bool,
+    /// Corrections and shifting velocities.
+    pub corrections: bool,
+    /// The contributions of bodies to the corrections.
+    pub boundary_matrices: bool,
+}
+
 /// The buffers shared by all passes, except those of the sort. One entry per particle unless noted otherwise.
 #[derive(Clone)]
 pub struct Fields {
@@ -32,11 +43,18 @@ pub struct Fields {
     /// Density in kg/m^3 and pressure in Pa, in the order of the last step's sort, which is also the order of the
     /// persistent arrays after the step.
     pub densities: Buffer<Vec2>,
-    /// Acceleration in m/s^2; the fourth component is zero. Order as `densities`. A single entry if forces and
+    /// Acceleration in m/s^2; the fourth component is 1 where a nozzle determines the motion, else 0. Order as `densities`. A single entry if forces and
     /// integration are one pass.
     pub accelerations: Buffer<Vec4>,
     /// Normals for surface tension; order as `densities`. A single entry without surface tension.
     pub normals: Buffer<Vec4>,
+    /// The matrices that correct kernel gradients, and the coefficients of the shifting: two vectors per particle, as
+    /// `passes::continuity` describes. Order as `densities`. A single entry where the density is summed.
+    pub corrections: Buffer<Vec4>,
+    /// Shifting velocity in m/s, and density. Order and size as `corrections`, one vector per particle.
+    pub shifts: Buffer<Vec4>,
+    /// The contributions of bodies to the matrices, two vectors per particle. A single entry without bodies.
+    pub boundary_matrices: Buffer<Vec4>,
     /// The arrays of the carried quantities, row by row of their table: those above, and others.
     pub carried: Vec<CarriedArrays>,
     table: &'static [Carried],
@@ -47,8 +65,8 @@ impl Fields {
     ///
     /// # Errors
     /// As [`Executor::create`].
-    pub fn new(executor: &mut Executor, params: &Params, normals: bool) -> Result<Self, GpuError> {
-        Self::with_table(executor, params, normals, CARRIED)
+    pub fn new(executor: &mut Executor, params: &Params, extras: Extras) -> Result<Self, GpuError> {
+        Self::with_table(executor, params, extras, CARRIED)
     }
 
     /// [`new`](Self::new) with another table of carried quantities, which begins with the rows of [`CARRIED`].
@@ -58,10 +76,11 @@ impl Fields {
     pub fn with_table(
         executor: &mut Executor,
         params: &Params,
-        normals: bool,
+        extras: Extras,
         table: &'static [Carried],
     ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
+        let some = |needed: bool, entries: usize| if needed { entries } else { 1 };
         let carried = CarriedArrays::create(executor, table, n)?;
         let [
             CarriedArrays {
@@ -94,7 +113,10 @@ impl Fields {
             sorted_ids,
             densities,
             accelerations: executor.create("accelerations", 1)?,
-            normals: executor.create("normals", if normals { n } else { 1 })?,
+            normals: executor.create("normals", some(extras.normals, n))?,
+            corrections: executor.create("corrections", some(extras.corrections, 2 * n))?,
+            shifts: executor.create("shifts", some(extras.corrections, n))?,
+            boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
             carried,
             table,
         })
@@ -110,7 +132,8 @@ impl Fields {
         // The names of the fields are compared with the labels in the table.
         let mut set = buffer_set!(self =>
             params, state, duration, counters, positions, velocities, ids, sorted_positions,
-            sorted_velocities, sorted_ids, densities, accelerations, normals,
+            sorted_velocities, sorted_ids, densities, accelerations, normals, corrections, shifts,
+            boundary_matrices,
         );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));
         set

@@ -10,6 +10,7 @@ pub mod end_step;
 mod fields;
 mod params;
 mod step;
+mod symmetric;
 
 pub use carried::{
     Array, CARRIED, Carried, CarriedArrays, Initial, Kind, Reordered, Update, Values, bits,
@@ -22,9 +23,11 @@ pub use counters::{
     DEAD_DRAINED, DEAD_ESCAPED, DEAD_NON_FINITE, DEAD_UNBORN, StepCounters, WGSL as STEP_COUNTERS,
 };
 pub(crate) use end_step::finish_step;
-pub use fields::Fields;
+pub use fields::{Extras, Fields};
 pub use params::{Params, WGSL as PARAMS};
 pub use step::{STEPS, StepState, WGSL as STATE};
+pub(crate) use symmetric::Symmetric;
+pub use symmetric::WGSL as SYMMETRIC;
 
 use splashdown_gpu::PassDesc;
 

@@ -61,12 +61,12 @@ gpu_struct! {
         /// The mass in kg with which a particle enters sums over neighbours. Where the density is summed, it is
         /// particle_mass divided by the kernel's sum over the lattice, which then has the rest density.
         summed_mass: f32,
+        /// One over the kernel at a distance of one spacing, as W H^3.
+        inverse_kernel_at_spacing: f32,
+        /// Numerical viscosity in m^2/s in the friction of bodies, in addition to that of the material.
+        boundary_viscosity: f32,
         /// Padding.
         unused: f32,
-        /// Padding.
-        unused_2: f32,
-        /// Padding.
-        unused_3: f32,
     }
 }
 

@@ -26,9 +26,9 @@ struct Params {
     particle_count: u32,
     approach_damping_factor: f32,
     summed_mass: f32,
+    inverse_kernel_at_spacing: f32,
+    boundary_viscosity: f32,
     unused: f32,
-    unused_2: f32,
-    unused_3: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -31,6 +31,9 @@ pub fn cases() -> Vec<Case> {
     cases.push(integrate("integrate", "open above and at one side", open, 0.01, true));
     cases.push(integrate("integrate", "the last step of a frame", params(2.0), 4e-4, false));
     cases.push(integrate("integrate.uncounted", "before births", open, 0.01, false));
+    cases.push(integrate("shifted_integrate", "closed", params(2.0), 0.01, true));
+    cases.push(integrate("shifted_integrate", "open above and at one side", open, 0.01, true));
+    cases.push(integrate("shifted_integrate.uncounted", "before births", open, 0.01, false));
     cases
 }
 
@@ -258,6 +261,8 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
             // Faster than half a spacing per step, some by orders of magnitude.
             7 => world.velocities[i].x = 80.0 * signed(i),
             8 => a.y = 1e7 * signed(i),
+            // Held by a nozzle: not shifted.
+            9 => a.w = 1.0,
             // Particles that must be removed.
             21 if i % 100 < 50 => a.z = f32::NAN,
             21 => a.x = f32::INFINITY,
@@ -269,20 +274,31 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
     }
     let grid = world.grid;
     let cell_counts = zero_cell_counts(&grid, n);
+    let is_shifted = label.starts_with("shifted");
+    let size = if is_shifted { 0.5 } else { 0.0 };
+    let shifts: Vec<Vec4> = (0..n)
+        .map(|i| {
+            // Some exceed a tenth of a spacing per step.
+            let size = if i % 5 == 0 { 60.0 * size } else { size };
+            [3 * i, 3 * i + 1, 3 * i + 2].map(|k| size * signed(k + 17))
+        })
+        .zip(&world.densities)
+        .map(|([x, y, z], density)| Vec4::new(x, y, z, density.x))
+        .collect();
     let input = vec![
         Data::Params(params),
         Data::Grid(grid),
         Data::State(StepState { remaining, ..world.state }),
         Data::Vec4(world.positions.clone()),
         Data::Vec4(world.velocities.clone()),
-        Data::Vec2(world.densities.clone()),
+        if is_shifted { Data::Vec4(shifts.clone()) } else { Data::Vec2(world.densities.clone()) },
         Data::Vec4(accelerations.clone()),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0, 0]),
         Data::U32(cell_counts.clone()),
     ];
-    let (positions, velocities, counters) = moved(&world, &accelerations);
+    let (positions, velocities, counters) = moved(&world, &accelerations, &shifts);
     assert!((1..4).all(|k| counters[k] > 5) || params.closed != 0b111111, "{counters:?}");
     Case {
         pass: pass(label),
@@ -319,7 +335,7 @@ pub fn cell_counts_of(grid: &Grid, positions: &Data) -> Vec<u32> {
 }
 
 /// Symplectic Euler with its limits, for each particle in f64.
-fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>) {
+fn moved(world: &World, accelerations: &[Vec4], shifts: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>) {
     let (params, dt) = (&world.params, f64::from(world.state.dt));
     let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
     let closed = |axis: usize, side: usize| params.closed >> (2 * axis + side) & 1 == 1;
@@ -349,15 +365,19 @@ fn moved(world: &World, accelerations: &[Vec4]) -> (Vec<f64>, Vec<f64>, Vec<u32>
         }
         // Not closer to a closed side than a quarter of a spacing; particles that are closer may not approach it.
         let near = 0.25 * f64::from(SPACING);
+        let shift = if accelerations[i].w == 0.0 { shifts[i].xyz().as_dvec3() } else { DVec3::ZERO };
+        let mut motion = v + shift.clamp_length_max(0.1 * f64::from(SPACING) / dt);
         for axis in 0..3 {
-            if closed(axis, 0) {
-                v[axis] = v[axis].max(-(x[axis] - min[axis] - near).max(0.0) / dt);
-            }
-            if closed(axis, 1) {
-                v[axis] = v[axis].min((max[axis] - x[axis] - near).max(0.0) / dt);
+            for v in [&mut v[axis], &mut motion[axis]] {
+                if closed(axis, 0) {
+                    *v = v.max(-(x[axis] - min[axis] - near).max(0.0) / dt);
+                }
+                if closed(axis, 1) {
+                    *v = v.min((max[axis] - x[axis] - near).max(0.0) / dt);
+                }
             }
         }
-        let mut next = x + dt * v;
+        let mut next = x + dt * motion;
         for axis in 0..3 {
             if (closed(axis, 0) && next[axis] < min[axis]) || (closed(axis, 1) && next[axis] > max[axis]) {
                 next[axis] = next[axis].clamp(min[axis], max[axis]);

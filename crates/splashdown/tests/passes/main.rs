@@ -6,6 +6,7 @@
 
 mod carried_cases;
 mod cases;
+mod corrected_oracle;
 mod flow_cases;
 mod foam_cases;
 mod harness;

@@ -6,6 +6,7 @@ use splashdown::state::{Params, StepCounters};
 use splashdown_gpu::{CpuExecutor, DispatchSize};
 
 use super::cases::cell_counts_of;
+use super::corrected_oracle;
 use super::harness::{Case, Data, close, exact, wide};
 use super::oracle::{self, Kernel, Parts, Sum};
 use super::sort_cases::{pass, zero_cell_counts};
@@ -37,8 +38,11 @@ pub fn cases() -> Vec<Case> {
         cases.push(density("wider support, clamped, open above", kernels, rich));
     }
     for kernels in [C2, CUBIC] {
-        cases.push(continuity("closed", kernels, params(2.0)));
-        cases.push(continuity("wider support, open above", kernels, Params { clamp_pressure: 0, ..rich }));
+        let open = Params { clamp_pressure: 0, ..rich };
+        for bodies in [false, true] {
+            cases.push(continuity("closed", kernels, params(2.0), bodies));
+            cases.push(continuity("wider support, open above", kernels, open, bodies));
+        }
         cases.push(normals("closed", kernels, params(2.0)));
         let tension = Params { surface_tension: 0.4, ..params(2.0) };
         for (name, params) in [
@@ -48,6 +52,7 @@ pub fn cases() -> Vec<Case> {
             ("no friction", Params { wall_friction: 0.0, viscosity: 0.0, ..params(2.0) }),
         ] {
             cases.push(acceleration(name, kernels, params));
+            cases.push(corrected_acceleration(name, kernels, params));
         }
         for (suffix, parts) in [
             (".pressure", Parts { pressure: true, other: false }),
@@ -170,11 +175,22 @@ fn density(name: &str, kernels: Kernels, params: Params) -> Case {
     expected.case(format!("density.{label}"), name, &world, input, output, heavier)
 }
 
-fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
+fn continuity(name: &str, kernels: Kernels, params: Params, bodies: bool) -> Case {
     let world = world(params);
-    let mut expected = Expected::new();
-    for sum in oracle::continuity(&world, kernels.gradient) {
-        push_density(&mut expected, &world, sum.value.x, sum.size);
+    let boundary = if bodies { boundary_matrices(&world) } else { vec![Vec4::NAN] };
+    let (mut densities, mut corrections) = (Expected::new(), Expected::new());
+    let steps = corrected_oracle::continuity(&world, kernels.gradient, bodies.then_some(&boundary));
+    for step in &steps {
+        let (density, size) = step.density;
+        push_density(&mut densities, &world, density, size);
+        let m = step.matrix;
+        for (value, last) in [
+            ([m.x_axis.x, m.y_axis.y, m.z_axis.z], step.shifting),
+            ([m.x_axis.y, m.x_axis.z, m.y_axis.z], (0.0, 0.0)),
+        ] {
+            value.iter().for_each(|&value| corrections.push(value, step.matrix_size));
+            corrections.push(last.0, last.1);
+        }
     }
     let mut input = base(&world);
     input.extend([
@@ -182,11 +198,95 @@ fn continuity(name: &str, kernels: Kernels, params: Params) -> Case {
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
         Data::Vec4(world.velocities.clone()),
+        Data::Vec4(boundary),
     ]);
-    let output = Data::Vec2(vec![Vec2::ZERO; world.len()]);
-    // A step changes the density only slightly, so a larger error of the mass is needed than elsewhere.
-    let control = |input: &mut [Data]| input[0].params().summed_mass *= 1.2;
-    expected.case(format!("continuity.{}", word(kernels)), name, &world, input, output, control)
+    let outputs = [
+        (densities, Data::Vec2(vec![Vec2::ZERO; world.len()])),
+        (corrections, Data::Vec4(vec![Vec4::ZERO; 2 * world.len()])),
+    ];
+    let suffix = if bodies { ".bodies" } else { "" };
+    let label = format!("continuity.{}{suffix}", word(kernels));
+    two_outputs(label, name, &world, input, outputs, heavier)
+}
+
+/// Contributions of bodies to the matrices of half of the particles.
+fn boundary_matrices(world: &World) -> Vec<Vec4> {
+    let vectors = |i: usize| {
+        let n = world.normals[i].truncate().normalize();
+        let part = if i % 2 == 0 { 0.3 } else { 0.0 };
+        let others = glam::Vec3::new(n.x * n.y, n.x * n.z, n.y * n.z);
+        [(part * n * n).extend(0.1 * part), (part * others).extend(0.0)]
+    };
+    (0..world.len()).flat_map(vectors).collect()
+}
+
+/// Symmetric matrices near the unit matrix, with coefficients of the shifting.
+fn corrections(world: &World) -> Vec<Vec4> {
+    let vectors = |i: usize| {
+        let (a, b) = (world.normals[i], world.normals[(i + 7) % world.len()]);
+        [(1.0 + 0.2 * a).truncate().extend(0.01 * (1.0 + a.x)), (0.2 * b).truncate().extend(1000.0)]
+    };
+    (0..world.len()).flat_map(vectors).collect()
+}
+
+fn corrected_acceleration(name: &str, kernels: Kernels, params: Params) -> Case {
+    let at_spacing = kernels.gradient.w(f64::from(params.particle_spacing / params.support_radius));
+    let world = world(Params { inverse_kernel_at_spacing: (1.0 / at_spacing) as f32, ..params });
+    let corrections = corrections(&world);
+    let (mut accelerations, mut shifts) = (Expected::new(), Expected::new());
+    let sums = corrected_oracle::acceleration(&world, &corrections, kernels.gradient);
+    for (i, (acceleration, shift)) in sums.iter().enumerate() {
+        accelerations.vector(acceleration);
+        (0..3).for_each(|k| shifts.push(shift.value[k], shift.size));
+        shifts.push(world.densities[i].x.into(), 0.0);
+    }
+    let mut input = base(&world);
+    input.extend(pair_input(&world));
+    input.push(Data::Vec4(corrections));
+    input.push(if params.surface_tension > 0.0 {
+        Data::Vec4(world.normals.clone())
+    } else {
+        // As in a simulation without surface tension.
+        Data::Vec4(vec![Vec4::NAN])
+    });
+    let vectors = || Data::Vec4(vec![Vec4::ZERO; world.len()]);
+    let outputs = [(accelerations, vectors()), (shifts, vectors())];
+    two_outputs(format!("corrected_acceleration.{}", word(kernels)), name, &world, input, outputs, heavier)
+}
+
+/// A case whose pass writes two buffers.
+fn two_outputs(
+    label: String,
+    name: &str,
+    world: &World,
+    mut input: Vec<Data>,
+    outputs: [(Expected, Data); 2],
+    control: fn(&mut [Data]),
+) -> Case {
+    let expected = outputs.map(|(mut expected, output)| {
+        for list in [&mut expected.values, &mut expected.rounding] {
+            list.resize(output.words().len(), f64::NAN);
+        }
+        input.push(output.poison());
+        expected
+    });
+    let rounding = expected.each_ref().map(|expected| expected.rounding.clone());
+    let check = |out: &[Data], values: [Vec<f64>; 2], rounding: &[Vec<f64>; 2]| {
+        close("first output", out[0].floats(), &values[0], &rounding[0])?;
+        close("second output", out[1].floats(), &values[1], &rounding[1])
+    };
+    Case {
+        pass: pass(&label),
+        name: name.into(),
+        size: DispatchSize::Items(world.len() as u32),
+        input,
+        compare: Box::new(move |a, b| check(a, [wide(b[0].floats()), wide(b[1].floats())], &rounding)),
+        oracle: Box::new(move |out| {
+            let rounding = expected.each_ref().map(|expected| expected.rounding.clone());
+            check(out, expected.each_ref().map(|expected| expected.values.clone()), &rounding)
+        }),
+        control,
+    }
 }
 
 fn normals(name: &str, kernels: Kernels, params: Params) -> Case {

@@ -47,7 +47,7 @@ impl Kernel {
     }
 
     /// The gradient with respect to x_i for d = x_i - x_j; zero at the centre, where it has no direction.
-    fn gradient(self, d: DVec3, support: f64) -> DVec3 {
+    pub(super) fn gradient(self, d: DVec3, support: f64) -> DVec3 {
         let r = d.length();
         if r == 0.0 { DVec3::ZERO } else { d / r * self.dw(r / support) / support.powi(4) }
     }
@@ -61,28 +61,28 @@ pub struct Sum {
 }
 
 impl Sum {
-    fn add(&mut self, term: DVec3) {
+    pub(super) fn add(&mut self, term: DVec3) {
         self.value += term;
         self.size += term.length();
     }
 
-    fn add_parts(&mut self, parts: &[DVec3]) {
+    pub(super) fn add_parts(&mut self, parts: &[DVec3]) {
         parts.iter().for_each(|&part| self.add(part));
     }
 }
 
 /// The constants in f64.
-struct C {
-    support: f64,
-    mass: f64,
-    rest: f64,
-    sound: f64,
+pub(super) struct C {
+    pub support: f64,
+    pub mass: f64,
+    pub rest: f64,
+    pub sound: f64,
     spacing: f64,
-    body: DVec3,
-    dt: f64,
+    pub body: DVec3,
+    pub dt: f64,
 }
 
-fn constants(world: &World) -> C {
+pub(super) fn constants(world: &World) -> C {
     let p = &world.params;
     let phase = f64::from(p.oscillation_rate) * f64::from(world.state.time);
     C {
@@ -96,17 +96,17 @@ fn constants(world: &World) -> C {
     }
 }
 
-fn place(world: &World, i: usize) -> DVec3 {
+pub(super) fn place(world: &World, i: usize) -> DVec3 {
     world.positions[i].xyz().as_dvec3()
 }
 
-fn speed(world: &World, i: usize) -> DVec3 {
+pub(super) fn speed(world: &World, i: usize) -> DVec3 {
     world.velocities[i].xyz().as_dvec3()
 }
 
 /// Calls `visit(j, x_i - x, by, x - x_j)` for the images x within the support of all active particles, by all
 /// reflections and by none.
-fn neighbours(world: &World, i: usize, mut visit: impl FnMut(usize, DVec3, &Reflection, DVec3)) {
+pub(super) fn neighbours(world: &World, i: usize, mut visit: impl FnMut(usize, DVec3, &Reflection, DVec3)) {
     let (x, reach) = (place(world, i), f64::from(world.params.support_radius));
     for by in walls::reflections(&world.params) {
         for j in 0..world.active() {
@@ -152,31 +152,8 @@ pub fn normals(world: &World, kernel: Kernel) -> Vec<Sum> {
     (0..world.active()).map(sum).collect()
 }
 
-/// The density after a step of the continuity equation; `value.x` of the sum.
-pub fn continuity(world: &World, kernel: Kernel) -> Vec<Sum> {
-    let (c, delta) = (constants(world), f64::from(world.params.density_diffusion));
-    let rho = |i: usize| f64::from(world.velocities[i].w);
-    let step = |i: usize| {
-        let mut sum = Sum::default();
-        let mut add = |term: f64| sum.add(DVec3::X * term);
-        add(rho(i));
-        neighbours(world, i, |j, d, by, away| {
-            let (g, volume) = (kernel.gradient(d, c.support), c.mass / rho(j));
-            add(c.dt * rho(i) * volume * (speed(world, i) - by.sign * speed(world, j)).dot(g));
-            // The hydrostatic density difference: rho0 / c0^2 body.(x_j - x_i).
-            let per_length = c.rest / c.sound.powi(2) * c.body;
-            // That of an image continues the particle's.
-            let psi = rho(j) + per_length.dot(away) - rho(i) - per_length.dot(-d);
-            let softened = d.length_squared() + 0.01 * c.support.powi(2);
-            add(c.dt * 2.0 * delta * (0.5 * c.support) * c.sound * volume * psi * (-d).dot(g) / softened);
-        });
-        sum
-    };
-    (0..world.active()).map(step).collect()
-}
-
 /// The acceleration by the friction of the walls.
-fn friction(world: &World, c: &C, i: usize, kernel: Kernel) -> Sum {
+pub(super) fn friction(world: &World, c: &C, i: usize, kernel: Kernel) -> Sum {
     let p = &world.params;
     let wall = walls::at(p, kernel, place(world, i));
     let v = speed(world, i);
@@ -192,12 +169,12 @@ fn friction(world: &World, c: &C, i: usize, kernel: Kernel) -> Sum {
 
 /// The pressure of an image: that of the particle and the hydrostatic difference, but not below the smaller of the
 /// particle's pressure and zero.
-fn continued(pressure: f64, more: f64) -> f64 {
+pub(super) fn continued(pressure: f64, more: f64) -> f64 {
     (pressure + more).max(pressure.min(0.0))
 }
 
 /// Akinci's cohesion kernel.
-fn cohesion(r: f64, h: f64) -> f64 {
+pub(super) fn cohesion(r: f64, h: f64) -> f64 {
     let spline = (h - r).powi(3) * r.powi(3);
     32.0 / (PI * h.powi(9)) * if 2.0 * r > h { spline } else { 2.0 * spline - h.powi(6) / 64.0 }
 }

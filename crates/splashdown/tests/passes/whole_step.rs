@@ -44,7 +44,7 @@ impl Rig {
         let particles = sample::particles(scene).unwrap();
         let n = particles.positions.len() as u32;
         let (params, way) = (schemes::params(scene, n), Scheme::new(scene));
-        let mut fields = Fields::new(&mut executor, &params, way.needs_normals()).unwrap();
+        let mut fields = Fields::new(&mut executor, &params, way.extras(false)).unwrap();
         if !way.is_fused() {
             fields.make_accelerations(&mut executor).unwrap();
         }
@@ -109,6 +109,8 @@ impl Rig {
             (a.sorted_velocities, b.sorted_velocities),
             (a.accelerations, b.accelerations),
             (a.normals, b.normals),
+            (a.corrections, b.corrections),
+            (a.shifts, b.shifts),
         ] {
             carry(from, to, source, target);
         }

@@ -12,6 +12,7 @@ mod hydrostatics;
 mod plot;
 mod shapes;
 mod spheric2;
+mod stretching;
 mod submerged;
 mod tilted;
 mod torricelli;

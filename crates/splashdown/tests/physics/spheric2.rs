@@ -37,7 +37,6 @@ impl Case {
         let mut scene = Scene::parse(text, "spheric2.toml").unwrap();
         scene.fluid.particle_spacing = self.spacing as f32;
         scene.gravity.y = -self.gravity;
-        scene.solver.artificial_viscosity = 0.1;
         let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
         let mut all: Vec<(String, ProbeRows)> =
             scene.probes.iter().map(|probe| (probe.name.clone(), Vec::new())).collect();

@@ -1,6 +1,7 @@
 #import gpu/index
 #import sph/params
 #import sph/body
+#import sph/symmetric
 
 override CONTINUITY: u32 = 0u;
 
@@ -16,12 +17,14 @@ fn boundary_density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_
     if (CONTINUITY == 1u) {
         let x = sorted_positions[i].xyz;
         let v = sorted_velocities[i];
+        let matrix = Symmetric(corrections[2u * i].xyz, corrections[2u * i + 1u].xyz);
         var flow = 0.0;
         for (var k = 0u; k < 2u; k++) {
             let b = contacts[2u * i + k].body;
             if (b != NO_BODY) {
                 let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
-                flow += dot(contacts[2u * i + k].slope, v.xyz - wall);
+                let n = direction(contacts[2u * i + k], 1.0 / params.support_radius);
+                flow += along(matrix, n) * dot(contacts[2u * i + k].slope, v.xyz - wall);
             }
         }
         rho -= state.dt * 2.0 * v.w * flow;

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 
 use super::BoundaryDensityBindings;
 use crate::bodies::types::Contact;
+use crate::state::Symmetric;
 
 const CHUNK: usize = 4096;
 
@@ -15,10 +16,13 @@ pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityB
         contacts,
         sorted_positions: positions,
         sorted_velocities: velocities,
+        corrections,
         densities,
     } = buffers;
     let n = cell_start[cell_start.len() - 2] as usize;
     let contacts = contacts.as_chunks::<2>().0;
+    let corrections = corrections.as_chunks::<2>().0;
+    let scale = 1.0 / params.support_radius;
     densities[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, densities)| {
         for (k, density) in densities.iter_mut().enumerate() {
             let i = chunk * CHUNK + k;
@@ -29,10 +33,14 @@ pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityB
             let mut rho = density.x;
             if CONTINUITY {
                 let (x, v) = (positions[i].xyz(), velocities[i]);
+                let matrix = Symmetric::from_vectors(corrections[i]);
                 let flow: f32 = pair
                     .iter()
                     .filter(|contact| contact.body != Contact::NONE)
-                    .map(|contact| contact.slope.dot(v.xyz() - bodies[contact.body as usize].velocity_at(x)))
+                    .map(|contact| {
+                        let approach = v.xyz() - bodies[contact.body as usize].velocity_at(x);
+                        matrix.along(contact.direction(scale)) * contact.slope.dot(approach)
+                    })
                     .sum();
                 rho -= state.dt * 2.0 * v.w * flow;
             } else {

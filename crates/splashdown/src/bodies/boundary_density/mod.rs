@@ -1,8 +1,9 @@
 //! The contribution of bodies to the density, and the resulting pressure.
 //!
 //! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), with the contributions delta of the two nearest bodies;
-//! the product counts their overlap once. Continuity: d rho_i / dt += -2 rho_i (v_i - v_body).slope, with the factor 2
-//! because the image of the fluid in the body mirrors its motion.
+//! the product counts their overlap once. Continuity: d rho_i / dt += -2 rho_i (n.B_i n) (v_i - v_body).slope, with the
+//! factor 2 because the image of the fluid in the body mirrors its motion, the direction n of the slope, and the matrix
+//! B_i that corrects the gradients.
 
 mod cpu;
 
@@ -10,18 +11,19 @@ use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::types::{self, Body, Contact};
-use crate::state::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
 bindings! {
     /// The buffers of `boundary_density.wgsl`.
     pub(super) struct BoundaryDensityBindings {
         params: uniform Params,
-        state: read StepState,
+        state: uniform StepState,
         cell_start: read [u32],
         bodies: read [Body],
         contacts: read [Contact],
         sorted_positions: read [Vec4],
         sorted_velocities: read [Vec4],
+        corrections: read [Vec4],
         densities: write [Vec2],
     }
 }
@@ -30,7 +32,7 @@ bindings! {
 pub static SUMMATION: PassDesc = PassDesc {
     label: "bodies.boundary_density.summation",
     wgsl: include_str!("boundary_density.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, types::WGSL],
+    imports: &[wgsl::INDEX, STATE, PARAMS, SYMMETRIC, types::WGSL],
     entry: "boundary_density",
     workgroup_size: [64, 1, 1],
     constants: &[("CONTINUITY", 0.0)],

@@ -2,8 +2,11 @@
 #import sph/params
 #import sph/boundary_law
 #import sph/body
+#import sph/symmetric
 
 #bindings
+
+override CORRECTED: u32 = 0u; // 1: with corrected gradients
 
 // Adds to a 64-bit fixed-point number; see boundary_force/mod.rs.
 fn add(word: u32, value: f32) {
@@ -37,7 +40,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
     let x = sorted_positions[i].xyz;
     let scale = 1.0 / params.support_radius;
     let steep = length(contact.slope);
-    let n = select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
+    let n = direction(contact, scale);
     let across = dot(n, other_normal);
     let open = 1.0 - other_fraction * (1.0 - across * across);
 
@@ -51,7 +54,11 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
         if (pressure_factor > 0.0) {
             a -= (contact.kernel_fraction + steep * effective) * dot(n, body) * n;
         }
-        a = a / max(open, 0.1);
+        if (CORRECTED == 1u) {
+            a *= along(Symmetric(corrections[2u * i].xyz, corrections[2u * i + 1u].xyz), n);
+        } else {
+            a = a / max(open, 0.1);
+        }
     }
     if ((FORCES & OTHER_FORCES) == 0u) {
         return Effect(a, n);
@@ -64,8 +71,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
     if (vn < 0.0) {
         a -= implicit_rate(approach_damping(q), state.dt) * vn * n;
     }
-    let viscosity = params.viscosity
-        + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
+    let viscosity = params.viscosity + params.boundary_viscosity;
     let friction = boundary_friction(bodies[b].friction, viscosity, steep, effective);
     a -= implicit_rate(friction, state.dt) * (v - vn * n);
     if (q > 0.5) {
@@ -108,11 +114,15 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
         reaction[k] = one.direct;
         normals[k] = one.normal;
     }
+    var whole = a;
     for (var k = 0u; k < 2u; k++) {
         if (k == 0u || both) {
-            // The tangential acceleration continues unchanged into the solid.
+            // The tangential acceleration continues unchanged into the solid, which exerts the missing part.
             let kernel_fraction = clamp(contacts[2u * i + k].kernel_fraction, 0.0, 0.6);
-            a += kernel_fraction / (1.0 - kernel_fraction) * (a - dot(a, normals[k]) * normals[k]);
+            let tangential = whole - dot(whole, normals[k]) * normals[k];
+            let missing = kernel_fraction / (1.0 - kernel_fraction) * tangential;
+            whole += missing;
+            reaction[k] += missing;
         }
     }
     a += reaction[0] + reaction[1] + unchanged;

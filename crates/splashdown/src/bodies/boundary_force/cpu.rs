@@ -4,11 +4,11 @@ use rayon::prelude::*;
 use super::{BoundaryForceBindings, quantum};
 use crate::bodies::types::{Body, Contact, SUM_WORDS};
 use crate::boundary::{law, part};
-use crate::state::Params;
+use crate::state::{Params, Symmetric};
 
 const CHUNK: usize = 4096;
 
-pub(super) fn boundary_force<const FORCES: u32>(buffers: BoundaryForceBindings<'_>) {
+pub(super) fn boundary_force<const FORCES: u32, const CORRECTED: bool>(buffers: BoundaryForceBindings<'_>) {
     let BoundaryForceBindings {
         params,
         state,
@@ -17,11 +17,12 @@ pub(super) fn boundary_force<const FORCES: u32>(buffers: BoundaryForceBindings<'
         sorted_positions: positions,
         sorted_velocities: velocities,
         densities,
+        corrections,
         accelerations,
         sums,
     } = buffers;
     let n = state.run_count as usize;
-    let (bodies, contacts) = (bodies, contacts.as_chunks::<2>().0);
+    let (contacts, corrections) = (contacts.as_chunks::<2>().0, corrections.as_chunks::<2>().0);
     let wall_body = params.body_acceleration(state.time);
     let totals: Vec<Vec<[i64; 6]>> = accelerations[..n]
         .par_chunks_mut(CHUNK)
@@ -41,6 +42,7 @@ pub(super) fn boundary_force<const FORCES: u32>(buffers: BoundaryForceBindings<'
                     x: positions[i].xyz(),
                     v: velocities[i].xyz(),
                     density: densities[i],
+                    correction: CORRECTED.then(|| Symmetric::from_vectors(corrections[i])),
                     contacts: &contacts[i],
                     bodies,
                 };
@@ -67,6 +69,8 @@ struct ParticleForces<'a> {
     x: Vec3,
     v: Vec3,
     density: Vec2,
+    /// The matrix that corrects the gradients, if they are corrected.
+    correction: Option<Symmetric>,
     contacts: &'a [Contact; 2],
     bodies: &'a [Body],
 }
@@ -84,10 +88,14 @@ impl ParticleForces<'_> {
             let first = self.effect::<FORCES>(0, both);
             ([first.0, second.0], [first.1, second.1])
         };
-        for (contact, normal) in self.contacts.iter().zip(normals).take(used) {
-            // The tangential acceleration continues unchanged into the solid.
+        let mut whole = a;
+        for (k, contact) in self.contacts.iter().enumerate().take(used) {
+            // The tangential acceleration continues unchanged into the solid, which exerts the missing part.
             let kernel_fraction = contact.kernel_fraction.clamp(0.0, 0.6);
-            a += kernel_fraction / (1.0 - kernel_fraction) * (a - a.dot(normal) * normal);
+            let tangential = whole - whole.dot(normals[k]) * normals[k];
+            let missing = kernel_fraction / (1.0 - kernel_fraction) * tangential;
+            whole += missing;
+            reaction[k] += missing;
         }
         a += reaction[0] + reaction[1] + unchanged;
         for (k, reaction) in reaction.iter_mut().enumerate().take(used) {
@@ -123,8 +131,7 @@ impl ParticleForces<'_> {
         let other = &self.contacts[1 - k];
         let body = &self.bodies[contact.body as usize];
         let scale = 1.0 / params.support_radius;
-        let steep = contact.slope.length();
-        let n = if steep > 1e-3 * scale { contact.slope / steep.max(1e-20) } else { contact.normal };
+        let (n, steep) = (contact.direction(scale), contact.slope.length());
         let across = n.dot(other.normal);
         let other_fraction = if both { other.kernel_fraction } else { 0.0 };
         let open = 1.0 - other_fraction * (1.0 - across * across);
@@ -138,7 +145,7 @@ impl ParticleForces<'_> {
             if pressure_factor > 0.0 {
                 a -= (contact.kernel_fraction + steep * effective) * n.dot(self.wall_body) * n;
             }
-            a /= open.max(0.1);
+            a *= self.correction.map_or(1.0 / open.max(0.1), |matrix| matrix.along(n));
         }
         if FORCES & part::OTHER == 0 {
             return (a, n);
@@ -150,8 +157,7 @@ impl ParticleForces<'_> {
         if vn < 0.0 {
             a -= law::implicit_rate(law::approach_damping(params, q), self.dt) * vn * n;
         }
-        let viscosity = params.viscosity
-            + 0.05 * params.artificial_viscosity * params.sound_speed * params.support_radius;
+        let viscosity = params.viscosity + params.boundary_viscosity;
         let friction = law::friction(params, body.friction, viscosity, steep, effective);
         a -= law::implicit_rate(friction, self.dt) * (v - vn * n);
         if q > 0.5 {

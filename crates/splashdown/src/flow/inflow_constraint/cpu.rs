@@ -36,7 +36,7 @@ pub(super) fn inflow_constraint(buffers: InflowConstraintBindings<'_>) {
         let x = positions[i].xyz();
         if let Some(nozzle) = on.iter().find(|nozzle| nozzle.holds(x, params.particle_spacing)) {
             let change = nozzle.speed * nozzle.direction - velocities[i].xyz();
-            *a = (change / state.dt).extend(0.0);
+            *a = (change / state.dt).extend(1.0);
         }
     });
 }

@@ -30,7 +30,7 @@ fn inflow_constraint(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num
             && schedules[k * SCHEDULE_WORDS + SCHEDULE_EMITTED] + nozzle.points <= nozzle.most;
         if (is_on && holds(nozzle, x)) {
             let change = nozzle.speed * nozzle.direction - sorted_velocities[i].xyz;
-            accelerations[i] = vec4(change / state.dt, 0.0);
+            accelerations[i] = vec4(change / state.dt, 1.0);
             return;
         }
     }

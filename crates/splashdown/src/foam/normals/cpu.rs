@@ -52,8 +52,8 @@ impl PairSum<3, 3> for Normals<'_> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
-        *out = on_surface(self.params, self.positions[i].xyz(), self.factor * Vec3::from(sums));
+    fn finish(&self, i: usize, sums: [f32; 3]) -> Vec4 {
+        on_surface(self.params, self.positions[i].xyz(), self.factor * Vec3::from(sums))
     }
 }
 

@@ -83,11 +83,11 @@ impl PairSum<10, 2> for Potentials<'_> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, [trapped, curvature]: [f32; 2], out: &mut Vec4) {
+    fn finish(&self, i: usize, [trapped, curvature]: [f32; 2]) -> Vec4 {
         let (v, n) = (self.velocities[i].xyz(), self.normals[i]);
         let is_crest = v.dot(n.xyz()) >= FORWARDS * v.length() && n.w > 0.0;
         let curvature = if is_crest { self.volume * curvature } else { 0.0 };
-        *out = Vec4::new(self.volume * trapped, curvature, self.energy(i), 0.0);
+        Vec4::new(self.volume * trapped, curvature, self.energy(i), 0.0)
     }
 
     /// Particles that are too slow to generate foam are skipped.

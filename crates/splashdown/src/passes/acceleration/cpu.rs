@@ -1,15 +1,15 @@
-use std::f32::consts::PI;
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::AccelerationBindings;
 use crate::boundary::{Images, Reflection, WallKernel, part, wall_friction};
-use crate::kernel::{Kernel, SMALLEST_Q};
+use crate::kernel::Kernel;
 use crate::pairs::{
     self, PairSum, Sorted, difference, dot, extrapolated, reflected, reflected_point, scaled, splat,
 };
-use crate::simd::{Lanes, Register};
+use crate::passes::tension::Tension;
+use crate::simd::Register;
 use crate::state::{Params, StepState};
 
 pub(super) fn acceleration<K: Kernel + WallKernel, const FORCES: u32>(buffers: AccelerationBindings<'_>) {
@@ -144,8 +144,8 @@ impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<7, 3> for Acceleration<'
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
-        *out = self.acceleration(i, sums).extend(0.0);
+    fn finish(&self, i: usize, sums: [f32; 3]) -> Vec4 {
+        self.acceleration(i, sums).extend(0.0)
     }
 }
 
@@ -167,22 +167,19 @@ impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<11, 3> for WithTension<'
 
     #[inline(always)]
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 11]) -> [V; 3] {
-        let Acceleration { params, positions, densities, scale, factor, .. } = self.forces;
+        let Acceleration { params, positions, densities, factor, .. } = self.forces;
         let (x, n, rho) = (splat::<V>(positions[i]), splat::<V>(self.normals[i]), V::splat(densities[i].x));
-        // Divided by the factor, because `finish` multiplies the sums by it.
-        let tension = V::splat(-2.0 * params.surface_tension * params.rest_density / factor);
-        let pull = params.summed_mass * (scale * scale) * (scale * scale);
-        let (zero, one, smallest) = (V::splat(0.0), V::splat(1.0), V::splat(SMALLEST_Q));
+        let tension = Tension::new(params);
+        // `finish` multiplies the sums by the factor.
+        let inverse = V::splat(1.0 / factor);
         let forces = self.forces.pair::<V>(i);
         #[inline(always)]
         move |[x_j, y_j, z_j, u_j, v_j, w_j, pressure_j, rho_j, n_x, n_y, n_z]| {
             let a = forces([x_j, y_j, z_j, u_j, v_j, w_j, pressure_j]);
             let d = difference(x, [x_j, y_j, z_j]);
-            let q = dot(d, d).sqrt() * scale;
-            let weight = q.if_less(one, tension, zero) / (rho + rho_j);
-            let pull = cohesion(q) * pull / q.max(smallest);
-            let normal_change = difference(n, [n_x, n_y, n_z]);
-            std::array::from_fn(|axis| a[axis] + weight * (pull * d[axis] + normal_change[axis]))
+            let n = difference(n, [n_x, n_y, n_z]);
+            let t = scaled(inverse, tension.acceleration(d, dot(d, d).sqrt(), n, rho + rho_j));
+            std::array::from_fn(|axis| a[axis] + t[axis])
         }
     }
 
@@ -195,15 +192,7 @@ impl<K: Kernel + WallKernel, const FORCES: u32> PairSum<11, 3> for WithTension<'
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3], out: &mut Vec4) {
-        self.forces.finish(i, sums, out);
+    fn finish(&self, i: usize, sums: [f32; 3]) -> Vec4 {
+        self.forces.finish(i, sums)
     }
-}
-
-/// Akinci's cohesion kernel times H^3 for q in [0, 1]; both branches agree at q = 1/2.
-#[inline(always)]
-fn cohesion<V: Lanes>(q: V) -> V {
-    let t = (V::splat(1.0) - q).max(V::splat(0.0)) * q;
-    let t3 = t * t * t;
-    q.if_less(V::splat(0.5), t3 * 2.0 - 1.0 / 64.0, t3) * (32.0 / PI)
 }

@@ -16,7 +16,7 @@ pub(crate) mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use super::FORCES;
+use super::{FORCES, TENSION};
 use crate::boundary::{self, KernelPair, part};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
@@ -52,6 +52,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         boundary::PLANES,
         boundary::LAW,
         boundary::WALL_FRICTION,
+        TENSION,
         FORCES,
     ],
     entry: "acceleration",

@@ -4,8 +4,11 @@
 #import sph/rows
 #import sph/kernel
 #import sph/images
+#import sph/correction
 
 #bindings
+
+override BODIES: u32 = 0u; // 1: bodies contribute to the matrices
 
 @compute @workgroup_size(64)
 fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -22,10 +25,11 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     let factor = params.summed_mass * scale * scale * scale * scale * scale;
     let reach = support * support;
     let soft = 0.01 * reach;
-    let diffusion = params.density_diffusion * support * params.sound_speed;
     let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * body_acceleration(state.time);
 
-    var rate = 0.0;
+    var moment: Symmetric; // -M
+    var strain: Symmetric;
+    var diffusion = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
         for (var row = 0u; row < 9u; row++) {
@@ -36,14 +40,44 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
                 let r2 = dot(d, d);
                 if (r2 < reach) {
                     let other = sorted_velocities[j];
+                    let u = v - by.sign * other.xyz;
                     // The density of an image continues hydrostatically.
                     let psi = other.w - rho + dot(hydrostatic, x - p);
-                    let flow = rho * dot(v - by.sign * other.xyz, d) - diffusion * psi * r2 / (r2 + soft);
-                    rate += kernel_g(sqrt(r2) * scale) * factor / other.w * flow;
+                    let g = kernel_g(sqrt(r2) * scale) * factor / other.w;
+                    let gd = g * d;
+                    moment.diagonal += gd * d;
+                    moment.others += gd.xxy * d.yzz;
+                    strain.diagonal += u * gd;
+                    strain.others += 0.5 * (u.xxy * gd.yzz + u.yzz * gd.xxy);
+                    diffusion += g * psi * r2 / (r2 + soft);
                 }
             }
         }
     }
-    let next = rho + state.dt * rate;
+    var whole = Symmetric(-moment.diagonal, -moment.others);
+    var open = 1.0;
+    var alone = whole;
+    var fraction = 0.0;
+    if (BODIES == 1u) {
+        fraction = boundary_matrices[2u * i].w;
+    }
+    if (fraction > 0.0) {
+        // Across the surface of a body the solid is a part of the kernel. Along the surface the fluid alone determines the
+        // derivatives, and the correction divides by what the body leaves open.
+        let across = Symmetric(boundary_matrices[2u * i].xyz, boundary_matrices[2u * i + 1u].xyz);
+        let part = fraction / max(dot(across.diagonal, vec3(1.0)), 1e-20);
+        alone = Symmetric(whole.diagonal + across.diagonal, whole.others + across.others);
+        whole = Symmetric(alone.diagonal + fraction - part * across.diagonal, alone.others - part * across.others);
+        open = max(1.0 - 20.0 * fraction, 0.0);
+    }
+    let corrected = correction_of(whole);
+    var divergence = contract(corrected.matrix, strain);
+    if (fraction > 0.0) {
+        divergence = contract(correction_of(alone).matrix, strain);
+    }
+    let rate = rho * divergence - params.density_diffusion * support * params.sound_speed * diffusion;
+    let next = without_tension(rho + state.dt * rate, corrected.determinant);
     densities[i] = vec2(next, pressure_at(next));
+    corrections[2u * i] = vec4(corrected.matrix.diagonal, open * shifting(strain, corrected.determinant));
+    corrections[2u * i + 1u] = vec4(corrected.matrix.others, 0.0);
 }

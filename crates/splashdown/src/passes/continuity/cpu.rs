@@ -1,15 +1,16 @@
 use std::marker::PhantomData;
 
-use glam::{Vec2, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::ContinuityBindings;
 use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
-use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
+use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
+use crate::passes::correction::{correction, shifting, without_tension};
 use crate::simd::Register;
-use crate::state::Params;
+use crate::state::{Params, Symmetric};
 
-pub(super) fn continuity<K: Kernel>(buffers: ContinuityBindings<'_>) {
+pub(super) fn continuity<K: Kernel, const BODIES: bool>(buffers: ContinuityBindings<'_>) {
     let ContinuityBindings {
         params,
         grid,
@@ -17,15 +18,18 @@ pub(super) fn continuity<K: Kernel>(buffers: ContinuityBindings<'_>) {
         cell_start,
         sorted_positions: positions,
         sorted_velocities: velocities,
+        boundary_matrices,
         densities,
+        corrections,
     } = buffers;
     let scale = 1.0 / params.support_radius;
     let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed);
-    let pass = Continuity::<K> {
+    let pass = Continuity::<K, BODIES> {
         params,
         dt: state.dt,
         positions,
         velocities,
+        boundary: boundary_matrices.as_chunks::<2>().0,
         scale,
         soft: 0.01 * params.support_radius * params.support_radius,
         diffusion: params.density_diffusion * params.support_radius * params.sound_speed,
@@ -34,15 +38,18 @@ pub(super) fn continuity<K: Kernel>(buffers: ContinuityBindings<'_>) {
     };
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
-    pairs::for_each(sorted, densities, &pass);
+    pairs::for_each(sorted, (densities, corrections.as_chunks_mut::<2>().0), &pass);
 }
 
-struct Continuity<'a, K> {
+struct Continuity<'a, K, const BODIES: bool> {
     params: &'a Params,
     dt: f32,
     positions: &'a [Vec4],
     /// The density is the fourth component.
     velocities: &'a [Vec4],
+    /// Contributions of bodies to M across their surfaces, and as the fourth component of the first vector the part of the
+    /// kernel inside them.
+    boundary: &'a [[Vec4; 2]],
     scale: f32,
     soft: f32,
     diffusion: f32,
@@ -51,8 +58,10 @@ struct Continuity<'a, K> {
     kernel: PhantomData<K>,
 }
 
-impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
-    type Output = Vec2;
+/// The sums: -M (xx, yy, zz, xy, xz, yz), the velocity gradient (xx, yy, zz, and the sums of xy and yx, xz and zx, yz
+/// and zy), and the diffusion.
+impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES> {
+    type Output = (Vec2, [Vec4; 2]);
 
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 8] {
@@ -62,18 +71,32 @@ impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
     }
 
     #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 8]) -> [V; 1] {
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 8]) -> [V; 13] {
         let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
         let (rho, hydrostatic) = (V::splat(self.velocities[i].w), splat::<V>(self.hydrostatic));
-        let diffusion = V::splat(self.diffusion);
         #[inline(always)]
         move |[x_j, y_j, z_j, u_j, v_j, w_j, rho_j, weight]| {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
-            let vx = dot(difference(v, [u_j, v_j, w_j]), d);
+            let v = difference(v, [u_j, v_j, w_j]);
             let psi = rho_j - rho + dot(hydrostatic, d);
-            let flow = rho * vx - diffusion * psi * (r2 / (r2 + self.soft));
-            [K::g(r2.sqrt() * self.scale) * weight * flow]
+            let g = K::g(r2.sqrt() * self.scale) * weight;
+            let [a, b, c] = scaled(g, d);
+            [
+                a * d[0],
+                b * d[1],
+                c * d[2],
+                a * d[1],
+                a * d[2],
+                b * d[2],
+                v[0] * a,
+                v[1] * b,
+                v[2] * c,
+                v[0] * b + v[1] * a,
+                v[0] * c + v[2] * a,
+                v[1] * c + v[2] * b,
+                g * psi * (r2 / (r2 + self.soft)),
+            ]
         }
     }
 
@@ -88,8 +111,28 @@ impl<K: Kernel> PairSum<8, 1> for Continuity<'_, K> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, [sum]: [f32; 1], out: &mut Vec2) {
-        let next = self.velocities[i].w + self.dt * sum;
-        *out = Vec2::new(next, self.params.pressure_at(next));
+    fn finish(&self, i: usize, sums: [f32; 13]) -> (Vec2, [Vec4; 2]) {
+        let [xx, yy, zz, xy, xz, yz, uxx, uyy, uzz, uxy, uxz, uyz, diffusion] = sums;
+        let fluid = Symmetric { diagonal: -Vec3::new(xx, yy, zz), others: -Vec3::new(xy, xz, yz) };
+        let strain = Symmetric { diagonal: Vec3::new(uxx, uyy, uzz), others: 0.5 * Vec3::new(uxy, uxz, uyz) };
+        let (mut whole, mut open) = (fluid, 1.0);
+        let mut divergence = None;
+        if BODIES && self.boundary[i][0].w > 0.0 {
+            // Across the surface of a body the solid is a part of the kernel. Along the surface the fluid alone determines
+            // the derivatives, and the correction divides by what the body leaves open.
+            let (across, fraction) = (Symmetric::from_vectors(self.boundary[i]), self.boundary[i][0].w);
+            let without = fluid.plus(across);
+            divergence = Some(correction(without).0.contract(strain));
+            whole = without.plus(across.rest_of_unit().times(fraction));
+            open = (1.0 - 20.0 * fraction).max(0.0);
+        }
+        let (b, determinant) = correction(whole);
+        let divergence = divergence.unwrap_or(b.contract(strain));
+        let rho = self.velocities[i].w;
+        let next = rho + self.dt * (rho * divergence - self.diffusion * diffusion);
+        let next = without_tension(self.params, next, determinant);
+        let shifting = open * shifting(self.params, strain, determinant);
+        let density = Vec2::new(next, self.params.pressure_at(next));
+        (density, [b.diagonal.extend(shifting), b.others.extend(0.0)])
     }
 }

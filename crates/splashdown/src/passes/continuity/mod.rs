@@ -1,13 +1,21 @@
-//! Density by the continuity equation, and the resulting pressure.
+//! Density by the continuity equation with corrected gradients, and the resulting pressure.
 //!
 //! ```text
-//! d rho_i / dt = rho_i sum (m/rho_j) v.grad W
+//! d rho_i / dt = rho_i sum (m/rho_j) v.(B_i grad W)
 //!              + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
 //! ```
 //!
-//! with v = v_i - v_j and h = H / 2. The second term is the diffusion of Molteni & Colagrossi (2009), where psi_ij is
-//! rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the
-//! images behind walls.
+//! with v = v_i - v_j and h = H / 2, and the matrix B_i of [`correction`](super::correction), for which the
+//! divergence of a linear velocity field is exact. The second term is the diffusion of Molteni & Colagrossi (2009),
+//! where psi_ij is rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the images
+//! behind walls. A fragment then loses its tension (`without_tension`).
+//!
+//! Near a body, the body is a part of the sum M across its surface. Along the surface the divergence uses the fluid
+//! alone, while the matrix for the pressure counts the body there too. Bodies contribute to the density afterwards.
+//!
+//! The pass writes two vectors per particle for the forces: xx, yy, zz of B and the coefficient of the shifting; then
+//! xy, xz, yz of B. The shifting fades out near bodies, whose part in its sum is not known: it is zero where a body
+//! fills a twentieth of the kernel.
 //!
 //! The density is advanced first with the old velocities, and the velocities then with the pressure of the new density,
 //! which is symplectic for sound waves. Advancing both from the old state, as explicit Euler does, would amplify every
@@ -18,10 +26,11 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
+use super::correction;
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
-use crate::state::{PARAMS, Params, STATE, StepState};
+use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
 bindings! {
     /// The buffers of `continuity.wgsl`.
@@ -32,7 +41,9 @@ bindings! {
         cell_start: read [u32],
         sorted_positions: read [Vec4],
         sorted_velocities: read [Vec4],
+        boundary_matrices: read [Vec4],
         densities: write [Vec2],
+        corrections: write [Vec4],
     }
 }
 
@@ -40,18 +51,44 @@ bindings! {
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "continuity.wendland_c2",
     wgsl: include_str!("continuity.wgsl"),
-    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES],
+    imports: &[
+        wgsl::INDEX,
+        STATE,
+        PARAMS,
+        GRID,
+        ROWS,
+        kernel::WGSL,
+        boundary::IMAGES,
+        SYMMETRIC,
+        correction::WGSL,
+    ],
     entry: "continuity",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0)],
     bindings: ContinuityBindings::LIST,
-    cpu: |_, slots| cpu::continuity::<kernel::WendlandC2>(slots.into()),
+    cpu: |_, slots| cpu::continuity::<kernel::WendlandC2, false>(slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "continuity.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    cpu: |_, slots| cpu::continuity::<CubicSpline>(slots.into()),
+    cpu: |_, slots| cpu::continuity::<CubicSpline, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the Wendland C2 kernel and bodies.
+pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
+    label: "continuity.wendland_c2.bodies",
+    constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::continuity::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the cubic spline and bodies.
+pub static CUBIC_SPLINE_BODIES: PassDesc = PassDesc {
+    label: "continuity.cubic_spline.bodies",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::continuity::<CubicSpline, true>(slots.into()),
     ..WENDLAND_C2
 };

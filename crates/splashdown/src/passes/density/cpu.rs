@@ -51,8 +51,8 @@ impl<K: Kernel> PairSum<3, 1> for Density<'_, K> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: usize, [sum]: [f32; 1], out: &mut Vec2) {
-        out.x = self.factor * sum;
-        out.y = self.params.pressure_at(out.x);
+    fn finish(&self, _: usize, [sum]: [f32; 1]) -> Vec2 {
+        let density = self.factor * sum;
+        Vec2::new(density, self.params.pressure_at(density))
     }
 }

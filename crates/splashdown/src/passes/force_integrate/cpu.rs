@@ -5,7 +5,7 @@ use crate::boundary::{Images, WallKernel, part};
 use crate::kernel::Kernel;
 use crate::pairs;
 use crate::passes::acceleration::cpu::Acceleration;
-use crate::passes::advance::{Before, Persistent, advance_all};
+use crate::passes::advance::{Before, Change, Persistent, advance_all};
 
 /// Uses two sweeps: integrating a particle directly after its sums slows down the loop over the neighbours, and made
 /// steps 3 to 10 % slower. The persistent velocities, which the second sweep writes, store the accelerations in between.
@@ -26,12 +26,14 @@ pub(super) fn force_integrate<K: Kernel + WallKernel>(buffers: ForceIntegrateBin
     if state.done != 0 {
         return;
     }
-    let before = Before { positions: sorted_positions, velocities: sorted_velocities, densities };
+    let before = Before { positions: sorted_positions, velocities: sorted_velocities };
     let persistent = Persistent { positions, velocities, counters, cell_counts };
-    let Before { positions, velocities, densities } = before;
+    let Before { positions, velocities } = before;
     let forces = Acceleration::<K, { part::ALL }>::new(params, state, positions, velocities, densities);
     let places = pairs::Sorted::new(params.support_radius, grid, cell_start, positions)
         .with_images(Images::new(params));
-    pairs::for_each(places, persistent.velocities, &forces);
-    advance_all((params, grid, state), before, persistent, true, |_, a| a.xyz());
+    pairs::for_each(places, &mut *persistent.velocities, &forces);
+    advance_all((params, grid, state), before, persistent, true, |i, a| {
+        Change::unshifted(a.xyz(), densities[i].x)
+    });
 }

@@ -41,7 +41,7 @@ fn force_integrate(
         if (i < active_count()) {
             a = acceleration_of(i, p.xyz, v.xyz, own);
         }
-        let cell = advance(i, p, v, own.x, a);
+        let cell = advance(i, p, v, Change(a, vec3(0.0), own.x));
         if (!is_last_step(state.dt, state.remaining)) {
             count_particle(i, cell);
         }

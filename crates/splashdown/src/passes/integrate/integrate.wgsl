@@ -16,7 +16,8 @@ fn integrate(
     begin_advance(local);
     let i = linear_index(gid, groups, 256u);
     if (i < state.run_count) {
-        let cell = advance(i, sorted_positions[i], sorted_velocities[i], densities[i].x, accelerations[i].xyz);
+        let change = Change(accelerations[i].xyz, vec3(0.0), densities[i].x);
+        let cell = advance(i, sorted_positions[i], sorted_velocities[i], change);
         if (COUNTS == 1u && !is_last_step(state.dt, state.remaining)) {
             count_particle(i, cell);
         }

@@ -1,5 +1,7 @@
 //! Symplectic Euler: v += dt a, x += dt v, from the sorted arrays back into the persistent ones.
 //!
+//! [`shifted_integrate`](super::shifted_integrate) adds a shifting velocity: x += dt (v + s).
+//!
 //! It is equivalent to the leap-frog of the thesis: v here is the velocity at t + dt/2 there.
 //!
 //! Closed walls limit the velocity. A particle that would come nearer than a quarter of a spacing within this step loses

@@ -88,7 +88,7 @@ impl PairSum<8, 7> for Mueller<'_> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 7], out: &mut Vec4) {
+    fn finish(&self, i: usize, sums: [f32; 7]) -> Vec4 {
         let (params, scale) = (self.params, self.scale);
         let (x, v, rho) = (self.positions[i].xyz(), self.velocities[i].xyz(), self.densities[i].x);
         let scale5 = (scale * scale) * (scale * scale) * scale;
@@ -99,6 +99,6 @@ impl PairSum<8, 7> for Mueller<'_> {
             force -= params.surface_tension * laplacian / steepness * normal;
         }
         let friction = wall_friction(params, KernelPair::Mueller, x, v, self.dt);
-        *out = (force / rho + friction + self.body).extend(0.0);
+        (force / rho + friction + self.body).extend(0.0)
     }
 }

@@ -52,7 +52,7 @@ impl<K: Kernel> PairSum<4, 3> for Normals<'_, K> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: usize, sums: [f32; 3], out: &mut Vec4) {
-        *out = self.factor * Vec3::from(sums).extend(0.0);
+    fn finish(&self, _: usize, sums: [f32; 3]) -> Vec4 {
+        self.factor * Vec3::from(sums).extend(0.0)
     }
 }

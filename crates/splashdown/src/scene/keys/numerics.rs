@@ -1,7 +1,9 @@
 //! Keys of `[solver]`, `[surface]` and `[foam]`.
 
 use crate::scene::spec::{Kind, Table, a_number, key, range, words};
-use crate::scene::types::{DensityMode, KernelKind, Method, NegativePressure, Sort, SurfaceTension};
+use crate::scene::types::{
+    Accuracy, DensityMode, KernelKind, Method, NegativePressure, Sort, SurfaceTension,
+};
 
 pub(super) static SOLVER: Table = Table {
     about: "Solver and its parameters.",
@@ -9,20 +11,20 @@ pub(super) static SOLVER: Table = Table {
         key("method", Kind::Word(words::<Method>), "SPH method.")
             .default("\"wcsph\"")
             .also(&["type", "name"]),
+        key("accuracy", Kind::Word(words::<Accuracy>), "Purpose; determines defaults of other keys of this section.")
+            .default("\"standard\""),
         key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph.").default("\"wendland_c2\""),
         key(
             "support_ratio",
             a_number(1.5, 4.0, ""),
-            "Support radius of the kernel divided by the particle spacing.",
+            "Support radius of the kernel divided by the particle spacing. Default: 2; 3 with accuracy = \"engineering\".",
         )
-        .default("2.0")
         .also(&["support_radius", "smoothing_length", "h"]),
         key(
             "density",
             Kind::Word(words::<DensityMode>),
-            "Computation of the density; continuity requires wcsph.",
-        )
-        .default("\"summation\""),
+            "Computation of the density; continuity requires wcsph. Default: summation; continuity with accuracy = \"engineering\".",
+        ),
         key(
             "negative_pressure",
             Kind::Word(words::<NegativePressure>),
@@ -49,9 +51,8 @@ pub(super) static SOLVER: Table = Table {
         key(
             "artificial_viscosity",
             a_number(0.0, 2.0, ""),
-            "Factor alpha of Monaghan's artificial viscosity; wcsph.",
+            "Factor alpha of Monaghan's artificial viscosity; wcsph. Default: 0.05 with summation, 0 with continuity, which damps impacts by other means.",
         )
-        .default("0.05")
         .also(&["alpha"]),
         key("density_diffusion", a_number(0.0, 1.0, ""), "Factor delta of delta-SPH; requires continuity.")
             .default("0.1")

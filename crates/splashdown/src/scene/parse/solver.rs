@@ -2,11 +2,12 @@
 
 use super::Part;
 use crate::scene::reader::Section;
-use crate::scene::types::{DensityMode, Method, NegativePressure, Solver, SurfaceTension};
+use crate::scene::types::{Accuracy, DensityMode, Method, NegativePressure, Solver, SurfaceTension};
 
 pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let standard = Solver::default();
     let method = section.choice("method");
+    let accuracy = section.choice("accuracy");
     let kernel = section.choice("kernel");
     let support_ratio = section.number("support_ratio");
     let density = section.choice("density");
@@ -23,11 +24,16 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let min_dt = section.number("min_dt");
     let sort = section.choice("sort");
     let method = method?.unwrap_or(standard.method);
-    let density = density?.unwrap_or(standard.density);
+    let accuracy = accuracy?.unwrap_or(Accuracy::Standard);
+    let (usual_density, usual_ratio) = match accuracy {
+        Accuracy::Standard => (standard.density, standard.support_ratio),
+        Accuracy::Engineering => (DensityMode::Continuity, 3.0),
+    };
+    let density = density?.unwrap_or(usual_density);
     let solver = Solver {
         method,
         kernel: kernel?.unwrap_or(standard.kernel),
-        support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
+        support_ratio: support_ratio?.unwrap_or(usual_ratio),
         density,
         negative_pressure: negative_pressure?.unwrap_or(match density {
             DensityMode::Summation => NegativePressure::Clamp,
@@ -39,7 +45,10 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
             Method::Wcsph => 7.0,
             Method::Mueller2003 => 1.0,
         }),
-        artificial_viscosity: artificial_viscosity?.unwrap_or(standard.artificial_viscosity),
+        artificial_viscosity: artificial_viscosity?.unwrap_or(match density {
+            DensityMode::Summation => standard.artificial_viscosity,
+            DensityMode::Continuity => 0.0,
+        }),
         density_diffusion: density_diffusion?.unwrap_or(standard.density_diffusion),
         surface_tension: surface_tension?.unwrap_or(standard.surface_tension),
         wall_friction: wall_friction?.unwrap_or(standard.wall_friction),
@@ -48,7 +57,30 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         min_dt: min_dt?.unwrap_or(standard.min_dt),
         sort: sort?.unwrap_or(standard.sort),
     };
-    check_solver(section, &solver).map(|()| solver)
+    let accurate = check_accuracy(section, accuracy, method, density);
+    check_solver(section, &solver).and(accurate).map(|()| solver)
+}
+
+/// Reports choices that are not accurate although accuracy is asked for.
+fn check_accuracy(
+    section: &Section<'_>,
+    accuracy: Accuracy,
+    method: Method,
+    density: DensityMode,
+) -> Part<()> {
+    if accuracy == Accuracy::Standard {
+        return Ok(());
+    }
+    let advice = "leave one of the two keys out";
+    if method != Method::Wcsph {
+        let message = format!("solver.method = \"{method}\" does not work with accuracy = \"{accuracy}\"");
+        return Err(section.complain("method", message, "\"wcsph\"", advice));
+    }
+    if density != DensityMode::Continuity {
+        let message = format!("solver.density = \"{density}\" does not work with accuracy = \"{accuracy}\"");
+        return Err(section.complain("density", message, "\"continuity\"", advice));
+    }
+    Ok(())
 }
 
 /// Reports values that contradict each other or have no effect.

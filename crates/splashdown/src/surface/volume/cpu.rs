@@ -49,9 +49,9 @@ impl PairSum<3, 2> for Volume<'_> {
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, [sum, neighbours]: [f32; 2], out: &mut Vec4) {
-        *out = self.positions[i].xyz().extend(1.0 / sum);
+    fn finish(&self, i: usize, [sum, neighbours]: [f32; 2]) -> Vec4 {
         // Without the particle itself.
         self.local_density[i].store((neighbours - 1.0).to_bits(), Relaxed);
+        self.positions[i].xyz().extend(1.0 / sum)
     }
 }

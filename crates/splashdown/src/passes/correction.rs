@@ -1,0 +1,88 @@
+//! The correction of kernel gradients (Bonet & Lok 1999).
+//!
+//! The sum M = -sum V_j (x_i - x_j) (x) grad W is the unit matrix where particles are ordered and the kernel is
+//! complete. A sum with B grad W instead of grad W, B = M^-1, is exact for linear fields, for any order of the particles.
+//! Near a free surface the neighbours do not determine all of M. For det M < 1 the inverse therefore fades to the unit
+//! matrix: B = adj M + (1 - det M) I, which needs no division.
+//!
+//! det M also measures how complete a particle's neighbourhood is: about 0.95 to 1 inside the fluid, 0.3 at a flat
+//! surface, 0 for a fragment of one or two particles.
+
+use splashdown_gpu::WgslModule;
+
+use crate::state::{Params, Symmetric};
+
+/// The WGSL side, which imports [`SYMMETRIC`](crate::state::SYMMETRIC).
+pub const WGSL: WgslModule = WgslModule { name: "sph/correction", source: include_str!("correction.wgsl") };
+
+/// B and det M for M.
+#[inline(always)]
+pub(crate) fn correction(matrix: Symmetric) -> (Symmetric, f32) {
+    let (Symmetric { diagonal, others }, determinant) = matrix.adjugate();
+    let scale = 1.0 / determinant.max(1.0);
+    let missing = 1.0 - determinant.clamp(0.0, 1.0);
+    (Symmetric { diagonal: scale * diagonal + missing, others: scale * others }, determinant)
+}
+
+/// Coefficient of the particle shifting.
+const SHIFTING: f32 = 4.0;
+
+/// The coefficient in m^2/s of the shifting velocity -a sum V_j (1 + 0.2 (W / W(dx))^4) grad W, after Lind et al. (2012)
+/// and Sun et al. (2017), who use the largest speed. This one is Galilean invariant and vanishes at second order:
+/// a = 4 H^2 |S| with the rate of strain S. It fades out towards a free surface.
+#[inline(always)]
+pub(crate) fn shifting(params: &Params, strain: Symmetric, determinant: f32) -> f32 {
+    let complete = ((determinant - 0.45) / 0.45).clamp(0.0, 1.0);
+    complete * SHIFTING * params.support_radius * params.support_radius * strain.contract(strain).sqrt()
+}
+
+/// The density of a particle after its fragment has lost its tension. The continuity equation would let two particles
+/// that separate pull one another together without bound. Below det M = 1/4 a deficit of density is reduced.
+#[inline(always)]
+pub(crate) fn without_tension(params: &Params, density: f32, determinant: f32) -> f32 {
+    let deficit = (density - params.rest_density).min(0.0);
+    density - (1.0 - (4.0 * determinant).clamp(0.0, 1.0)) * deficit
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat3, Vec3};
+
+    use super::*;
+
+    fn matrix(m: Symmetric) -> Mat3 {
+        let ([xx, yy, zz], [xy, xz, yz]) = (m.diagonal.to_array(), m.others.to_array());
+        Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz])
+    }
+
+    #[test]
+    fn the_correction_is_the_inverse_of_a_complete_matrix() {
+        let m = Symmetric { diagonal: Vec3::new(1.2, 1.1, 1.3), others: Vec3::new(0.1, -0.2, 0.05) };
+        let (b, determinant) = correction(m);
+        assert!((determinant - matrix(m).determinant()).abs() < 1e-5);
+        assert!(determinant > 1.0);
+        assert!(matrix(b).abs_diff_eq(matrix(m).inverse(), 1e-5));
+        // Control: another matrix.
+        let other = Symmetric { diagonal: Vec3::new(1.2, 1.1, 1.31), ..m };
+        assert!(!matrix(b).abs_diff_eq(matrix(other).inverse(), 1e-3));
+    }
+
+    #[test]
+    fn the_correction_of_a_lone_particle_is_the_unit_matrix() {
+        let (b, determinant) = correction(Symmetric::default());
+        assert_eq!((matrix(b), determinant), (Mat3::IDENTITY, 0.0));
+        // A layer has neighbours in its plane only.
+        let layer = Symmetric { diagonal: Vec3::new(0.8, 0.0, 0.8), others: Vec3::ZERO };
+        let (b, _) = correction(layer);
+        assert!(matrix(b).abs_diff_eq(Mat3::from_diagonal(Vec3::new(1.0, 1.64, 1.0)), 1e-6), "{b:?}");
+    }
+
+    #[test]
+    fn fragments_lose_tension_but_no_pressure() {
+        let params = Params { rest_density: 1000.0, ..bytemuck::Zeroable::zeroed() };
+        assert_eq!(without_tension(&params, 900.0, 0.0), 1000.0);
+        assert_eq!(without_tension(&params, 900.0, 0.125), 950.0);
+        assert_eq!(without_tension(&params, 900.0, 0.3), 900.0);
+        assert_eq!(without_tension(&params, 1100.0, 0.0), 1100.0);
+    }
+}
