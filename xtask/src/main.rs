@@ -24,6 +24,7 @@ mod test_output;
 mod validate;
 mod watch;
 mod web;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -45,6 +46,8 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   pictures [SCENE]  render the pictures of the README and the gallery
   web [--build] [--port N]
                     build the web page and serve it on localhost (--build: build only)
+  wheel [--quick]   build the Python package and test it in an empty environment (--quick: without optimization, window
+                    and plots)
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
   api               check the public API of the library crates and compare it with that of an earlier commit
   package           pack every published crate and build it from its package
@@ -74,6 +77,7 @@ fn main() -> ExitCode {
         "build-times" => build_times::run(rest),
         "pictures" => pictures::run(rest),
         "web" => web::run(rest),
+        "wheel" => wheel::run(rest),
         "validate" => validate::run(rest),
         "api" => api::run(rest),
         "package" => package::run(rest),

@@ -5,8 +5,8 @@ use splashdown::BodyState;
 
 /// The position and velocity of a body, and the force of the fluid on it. Vectors are tuples in SI units.
 ///
-/// >>> boat = splashdown.Simulation(splashdown.Scene.preset("floating").replace({"fluid.particle_spacing": 0.05}), device="cpu")
-/// >>> body = boat.bodies[0]
+/// >>> crate = {"name": "crate", "mesh": "cube", "scale": 0.1, "position": [1, 0.2, 0.25], "motion": "dynamic"}
+/// >>> body = splashdown.Simulation(scene.replace(body=[crate]), device="cpu").bodies[0]
 /// >>> len(body.position), len(body.orientation)
 /// (3, 4)
 #[pyclass(frozen, get_all, module = "splashdown")]

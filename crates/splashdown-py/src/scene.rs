@@ -94,7 +94,7 @@ impl Scene {
     /// >>> splashdown.Scene.parse(scene.text).name
     /// 'column'
     #[staticmethod]
-    #[pyo3(signature = (text, *, name = UNNAMED, folder = None))]
+    #[pyo3(signature = (text, *, name = "scene in Python", folder = None))]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: Option<PathBuf>) -> Result<Self> {
         py.detach(|| Self::check(text, name, folder.map(|folder| folder.join(name)).as_deref()))
     }

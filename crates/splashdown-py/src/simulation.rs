@@ -35,7 +35,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// ...     for _ in range(3):
 /// ...         stats = simulation.advance(0.01)  # s
 /// ...     highest = simulation.positions[:, 1].max()  # m
-/// >>> 0 < highest < 1
+/// >>> bool(0 < highest < 1)
 /// True
 #[pyclass(frozen, module = "splashdown")]
 pub struct Simulation(Guarded<State>);
@@ -70,7 +70,6 @@ impl State {
         }
     }
 
-    /// The particles now, in the order of their ids.
     fn particles(&mut self, py: Python<'_>) -> Result<Py<Particles>> {
         if self.particles.is_none() {
             let particles = py.detach(|| self.simulation.particles())?;
@@ -188,6 +187,7 @@ impl Simulation {
         Ok(stats.into())
     }
 
+    /// The particles now, in the order of their ids.
     #[getter]
     fn particles(&self, py: Python<'_>) -> Result<Py<Particles>> {
         self.0.take()?.get().particles(py)
@@ -295,7 +295,7 @@ impl Simulation {
 
     /// The repaired mesh of a body in its own frame, in m: rotate it by `Body.orientation`, then move it by `Body.position`.
     ///
-    /// >>> post = {"name": "post", "mesh": "cube", "size": 0.2, "position": [1.0, 0.2, 0.25]}
+    /// >>> post = {"name": "post", "mesh": "cube", "scale": 0.1, "position": [1.0, 0.2, 0.25]}
     /// >>> splashdown.Simulation(scene.replace(body=[post]), device="cpu").body_mesh("post").is_watertight
     /// True
     fn body_mesh(&self, name: &str) -> Result<Mesh> {

@@ -23,7 +23,7 @@ class SceneError(Error, ValueError):
     ...     splashdown.Scene.preset("dam-break").replace({"fluid.particle_spacing": -1})
     ... except splashdown.SceneError as error:
     ...     print(error.problems[0])
-    fluid.particle_spacing is -1
+    fluid.particle_spacing is -1, which is out of range
     """
 
     def __init__(self, message: str, problems: list[str] | None = None) -> None:

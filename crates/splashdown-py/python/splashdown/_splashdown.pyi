@@ -3,11 +3,13 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import Any, Final, Literal, TypedDict, final
+from typing import Any, Final, Literal, final
 
 import numpy
 from numpy.typing import NDArray
 from typing_extensions import Self
+
+from splashdown._types import RunFiles
 
 _Path = str | os.PathLike[str]
 _Floats = NDArray[numpy.float32]
@@ -55,7 +57,7 @@ class Scene:
     @property
     def probe_columns(self) -> dict[str, list[str]]: ...
     def __hash__(self) -> int: ...
-    def __eq__(self, other: object) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class Particles:
@@ -326,15 +328,6 @@ class Run:
         trace: TracebackType | None = None,
         /,
     ) -> None: ...
-
-@final
-class RunFiles(TypedDict, total=False):
-    folder: os.PathLike[str]
-    frames: int
-    files: list[os.PathLike[str]]
-    steps: int
-    wall: float
-    density_error: float
 
 def run(
     scene: Scene | _Path,

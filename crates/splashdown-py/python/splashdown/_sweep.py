@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import glob
 import hashlib
+import importlib
 import itertools
 import json
 import os
-import pickle
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -73,6 +73,7 @@ def sweep(
     With `engine="processes"` there are `workers` processes with `threads` each. With `engine="ray"` each run takes
     `threads` cores (1 by default) and `ray_options`, for example `{"num_gpus": 1}`; call `ray.init` before to use a
     cluster. `progress` is called with the number of runs that have ended and the number of all.
+    A script that is not a notebook must call `sweep` below `if __name__ == "__main__":`, because new processes read it.
 
     >>> import splashdown, tempfile
     >>> scene = splashdown.Scene.preset("dam-break-small")
@@ -85,13 +86,12 @@ def sweep(
     """
     settings = Engine(engine, workers, threads, retries, dict(ray_options or {}))
     settings.check()
-    _import_pandas()
+    _optional("pandas")
     if checkpoint_every < 0:
         raise ParameterError(f"checkpoint_every is {checkpoint_every}; it must be 0 or more")
     variants = grid(changes) if isinstance(changes, Mapping) else [dict(change) for change in changes]
     function = _worker.frames_of if keep is None else keep
-    if engine == "processes":
-        _check_pickle(function, "keep")
+    portable = _portable(function, "keep", engine)
     root = Path(os.path.abspath(folder))
     options = {"device": device, "frames": frames, "surface": surface, "foam": foam}
     tasks: list[Task] = []
@@ -104,14 +104,14 @@ def sweep(
             outcomes[index] = {"status": "failed", "reason": str(error)}
             continue
         source = None if changed.path is None else os.path.abspath(changed.path)
-        task = {"index": index, "text": changed.text, "name": changed.name, "source": source, **options}
+        task: Task = {"index": index, "text": changed.text, "name": changed.name, "source": source, **options}
         task["key"] = _key(task, function)
         known = _known(where, task["key"])
         if known is not None:
             outcomes[index] = known
             continue
         task.update(
-            version=__version__, folder=str(where), keep=function, checkpoint_every=checkpoint_every
+            version=__version__, folder=str(where), keep=portable, checkpoint_every=checkpoint_every
         )
         tasks.append(task)
     if progress is not None:
@@ -158,9 +158,8 @@ def map_frames(
     """
     settings = Engine(engine, workers, threads, retries, dict(ray_options or {}))
     settings.check()
-    _import_pandas()
-    if engine == "processes":
-        _check_pickle(function, "function")
+    _optional("pandas")
+    portable = _portable(function, "function", engine)
     if isinstance(files, (str, os.PathLike)):
         paths = sorted(glob.glob(os.fspath(files)))
         if not paths:
@@ -168,7 +167,7 @@ def map_frames(
     else:
         paths = [os.fspath(path) for path in files]
     tasks: list[Task] = [
-        {"version": __version__, "file": os.path.abspath(path), "function": function} for path in paths
+        {"version": __version__, "file": os.path.abspath(path), "function": portable} for path in paths
     ]
     outcomes: dict[int, dict[str, Any]] = {}
     for place, outcome in settings.run(_worker.apply_to_file, tasks):
@@ -248,23 +247,28 @@ def _columns(outcome: dict[str, Any]) -> dict[str, Any]:
 
 
 def _table(rows: list[dict[str, Any]]) -> pandas.DataFrame:
-    return _import_pandas().DataFrame(rows)
+    return _optional("pandas").DataFrame(rows)
 
 
-def _import_pandas() -> Any:
+def _optional(name: str) -> Any:
+    """A package of the extra `sweep`."""
     try:
-        import pandas
+        return importlib.import_module(name)
     except ImportError:
-        message = "the table of results needs the package pandas: pip install 'splashdown[sweep]'"
+        message = f"parameter studies need the package {name}: pip install 'splashdown[sweep]'"
         raise MissingPackageError(message) from None
-    return pandas
 
 
-def _check_pickle(function: object, name: str) -> None:
+def _portable(function: object, name: str, engine: str) -> object:
+    """The function in a form that another process can read. Ray converts functions itself."""
+    cloudpickle = _optional("cloudpickle")
+    if engine == "ray":
+        return function
     try:
-        pickle.dumps(function)
+        # Functions of notebooks and lambdas are sent with their code, others by name.
+        return cloudpickle.dumps(function)
     except Exception as error:
         raise ParameterError(
-            f"{name} cannot be sent to another process ({error}): define it with `def` at the top of a module, or use "
-            'engine="ray"'
+            f"{name} cannot be sent to another process ({error}): let it use numbers, texts and modules, and no open files, "
+            "devices or simulations"
         ) from None

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import pickle
 import platform
 import time
 from collections.abc import Mapping
@@ -42,7 +43,7 @@ def apply_to_file(task: dict[str, Any]) -> dict[str, Any]:
     outcome: dict[str, Any] = {"worker": f"{platform.node()}:{os.getpid()}"}
     try:
         _prepare(task)
-        outcome["kept"] = plain(task["function"](Path(task["file"])))
+        outcome["kept"] = plain(_function(task["function"])(Path(task["file"])))
         outcome.update(status="finished", reason="")
     except Exception as error:
         outcome.update(status="failed", reason=_reason(task, error))
@@ -62,11 +63,17 @@ def _prepare(task: dict[str, Any]) -> None:
         os.environ.setdefault("RAYON_NUM_THREADS", str(threads))
 
 
+def _function(given: Any) -> Any:
+    """A function of the user, which processes receive as bytes."""
+    return pickle.loads(given) if isinstance(given, bytes) else given
+
+
 def _compute(task: dict[str, Any]) -> dict[str, Any]:
     folder = Path(task["folder"])
     folder.mkdir(parents=True, exist_ok=True)
     options = {"device": task["device"], "frames": task["frames"], "surface": task["surface"], "foam": task["foam"]}
     saved = folder / "checkpoint.splashdown"
+    keep = _function(task["keep"])
     rows: list[Row] = []
     run: Run | None = None
     if saved.exists():
@@ -78,7 +85,7 @@ def _compute(task: dict[str, Any]) -> dict[str, Any]:
     resumed = run.first_frame if rows else 0
     every = task["checkpoint_every"]
     for frame in run:
-        rows.append({"frame": frame.index, "time": frame.time, **plain(task["keep"](frame))})
+        rows.append({"frame": frame.index, "time": frame.time, **plain(keep(frame))})
         if every and frame.index % every == 0 and 0 < frame.index < run.frames:
             checkpoint = run.checkpoint()
             checkpoint.notes = json.dumps({"key": task["key"], "rows": rows})
