@@ -48,6 +48,8 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     build the web page and serve it on localhost (--build: build only)
   wheel [--quick]   build the Python package and test it in an empty environment (--quick: without optimization, window
                     and plots)
+  wheel --compare [PARTICLES.npy SPACING]
+                    compare the surface reconstruction with pysplashsurf and write docs/python-surface.md
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
   api               check the public API of the library crates and compare it with that of an earlier commit
   package           pack every published crate and build it from its package

@@ -8,8 +8,11 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::layers::{self, Outcome, succeeds};
 use crate::process::{self, cargo, command, root, say, target};
-use crate::python;
 use crate::test_output::Filter;
+use crate::{python, report};
+
+/// Particles for the comparison beside the repository, and their spacing in m.
+const SHARED: (&str, &str) = ("../shared/data/particles/mid64k.npy", "0.05");
 
 /// How the wheel is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,10 +34,17 @@ struct Wheel {
 /// # Errors
 /// If the wheel cannot be built, or a test fails.
 pub fn run(arguments: &[String]) -> Result<()> {
-    let build = match arguments {
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let build = match words[..] {
         [] => Build::Release,
-        [flag] if flag == "--quick" => Build::Quick,
-        other => bail!("wheel takes --quick or nothing, got {}", other.join(" ")),
+        ["--quick"] => Build::Quick,
+        ["--compare"] => return compare(&root().join(SHARED.0), SHARED.1),
+        // Relative to the user's working directory; other programs start in the root of the repository.
+        ["--compare", file, spacing] => return compare(&std::path::absolute(file)?, spacing),
+        _ => bail!(
+            "wheel takes --quick, --compare [PARTICLES.npy SPACING] or nothing, got {}",
+            words.join(" ")
+        ),
     };
     match test(build, &mut Filter::default())? {
         Outcome::Passed => Ok(()),
@@ -72,6 +82,22 @@ fn test(build: Build, filter: &mut Filter) -> Result<Outcome> {
     tests.args(["-m", "pytest", "--capture=sys", "-q", "-p", "no:cacheprovider"]);
     tests.current_dir(root().join("crates/splashdown-py"));
     layers::tests(&mut tests, filter, None)
+}
+
+/// Compares the surface reconstruction with pysplashsurf and writes `docs/python-surface.md`.
+fn compare(particles: &Path, spacing: &str) -> Result<()> {
+    ensure!(
+        particles.exists(),
+        "{} does not exist; give particles (.npy, float32, N x 3) and their spacing in m",
+        particles.display()
+    );
+    let wheel = make(Build::Release)?;
+    let python = python::environment(&folder().join("tests"), &list("tests.txt"))?;
+    install(&python, &wheel.path, &["--no-deps", "--force-reinstall"])?;
+    let mut script = command(&python);
+    script.arg("crates/splashdown-py/wheel/compare.py").arg(particles).arg(spacing);
+    script.arg("docs/python-surface.md").env("RAYON_NUM_THREADS", report::threads().to_string());
+    process::run(&mut script)
 }
 
 /// Builds the wheel into an empty folder.

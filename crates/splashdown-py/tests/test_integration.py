@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy
@@ -71,6 +73,20 @@ def test_tqdm(scene: splashdown.Scene, capfd: pytest.CaptureFixture[str]) -> Non
     with splashdown.Simulation(fine, device="cpu") as simulation:
         simulation.advance(0.03, progress=True)
     assert "0.030/0.030 s" in capfd.readouterr().err
+
+
+def test_side_by_side() -> None:
+    """The script in the guide runs, and needs no more lines than that of pySPlisHSPlasH beside it."""
+    scripts = Path(__file__).parent / "side_by_side"
+    ours = scripts / "splashdown_front.py"
+    done = subprocess.run([sys.executable, ours], capture_output=True, text=True, check=True)
+    rows = [[float(word) for word in line.split()] for line in done.stdout.splitlines()]
+    assert len(rows) == 11 and rows[-1][0] == pytest.approx(0.2) and rows[-1][1] > rows[0][1] + 0.1
+
+    def lines(path: Path) -> int:
+        return sum(bool(line.strip()) for line in path.read_text().splitlines())
+
+    assert lines(ours) <= lines(scripts / "splishsplash_front.py")
 
 
 def test_pysplashsurf(simulation: splashdown.Simulation) -> None:

@@ -1,10 +1,9 @@
 """Checks the wheel in an environment with NumPy only, and prints the time of `import splashdown` in ms as the last line.
 
-The time is the median of seven new interpreters that import NumPy and Splashdown, minus that of NumPy alone, whose import
-Splashdown needs in any case; in brackets the time of NumPy.
+The time is the shortest of ten new interpreters that import NumPy and Splashdown, minus that of NumPy alone, whose import
+Splashdown needs in any case; in brackets the time of NumPy. The shortest time depends least on other programs.
 """
 
-import statistics
 import subprocess
 import sys
 import sysconfig
@@ -29,15 +28,13 @@ assert version.split() == ["splashdown", splashdown.__version__], version
 
 
 def seconds(code: str) -> float:
-    """The median wall time of a new interpreter."""
-    times = []
-    for _ in range(7):
-        begun = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True)
-        times.append(time.perf_counter() - begun)
-    return statistics.median(times)
+    """The wall time of a new interpreter."""
+    begun = time.perf_counter()
+    subprocess.run([sys.executable, "-c", code], check=True)
+    return time.perf_counter() - begun
 
 
-nothing, numpy = seconds("pass"), seconds("import numpy")
-both = seconds("import numpy, splashdown")
+codes = ["pass", "import numpy", "import numpy, splashdown"]
+rounds = [[seconds(code) for code in codes] for _ in range(10)]
+nothing, numpy, both = (min(times) for times in zip(*rounds))
 print(f"{1e3 * (both - numpy):.0f} ms ({1e3 * (numpy - nothing):.0f} ms for NumPy)")

@@ -13,6 +13,10 @@ happens to the simulation; copy one to change it.
 True
 """
 
+import os as _os
+import sys as _sys
+import tempfile as _tempfile
+
 from splashdown._errors import (
     ArrayError,
     CheckpointError,
@@ -50,6 +54,10 @@ from splashdown._splashdown import (
     write_particles,
 )
 from splashdown._sweep import ReconstructSurface, grid, map_frames, sweep
+
+if _sys.platform == "linux":
+    # Mesa prints a message that looks like an error of this program where the variable is missing. Any folder prevents it.
+    _os.environ.setdefault("XDG_RUNTIME_DIR", _tempfile.gettempdir())
 
 __all__ = [
     "ArrayError",

@@ -6,14 +6,14 @@ if its worker is lost. Scheduling, placement and back-pressure are left to `conc
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from splashdown._errors import MissingPackageError, ParameterError
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 Task = dict[str, Any]
 Function = Callable[[Task], dict[str, Any]]
@@ -64,6 +64,11 @@ class Engine(NamedTuple):
 
 
 def _with_processes(function: Function, tasks: Sequence[Task], engine: Engine) -> Iterator[Outcome]:
+    # Imported here, because these modules take a third of the time of `import splashdown`.
+    import multiprocessing
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+    from concurrent.futures.process import BrokenProcessPool
+
     cores = os.cpu_count() or 1
     workers = min(engine.workers or max(1, cores // (engine.threads or 1)), max(1, len(tasks)))
     threads = engine.threads or max(1, cores // workers)

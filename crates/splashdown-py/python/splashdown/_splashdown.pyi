@@ -19,6 +19,30 @@ _IntegerInput = NDArray[numpy.uint32] | NDArray[numpy.int32] | NDArray[numpy.int
 _Vector = tuple[float, float, float]
 _Progress = Callable[["Progress"], object] | bool | None
 
+__all__ = [
+    "Body",
+    "Checkpoint",
+    "Foam",
+    "Frame",
+    "Mesh",
+    "Particles",
+    "Progress",
+    "Run",
+    "Scene",
+    "Simulation",
+    "Stats",
+    "__version__",
+    "mesh_formats",
+    "particle_formats",
+    "read_mesh",
+    "read_particles",
+    "run",
+    "run_command",
+    "surface",
+    "write_mesh",
+    "write_particles",
+]
+
 __version__: Final[str]
 
 @final

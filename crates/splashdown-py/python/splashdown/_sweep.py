@@ -9,9 +9,8 @@ import itertools
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from splashdown import _worker
 from splashdown._engines import Engine, Lost, Task
@@ -177,8 +176,7 @@ def map_frames(
     return _table([{"file": task["file"], **_columns(outcomes[place])} for place, task in enumerate(tasks)])
 
 
-@dataclass(frozen=True)
-class ReconstructSurface:
+class ReconstructSurface(NamedTuple):
     """Reconstructs the surface of a file of particles and writes the mesh into a folder: a function for `map_frames`.
 
     `particle_spacing` and `cell_size` are in m. `format` is the ending of the meshes.
