@@ -100,7 +100,9 @@ impl From<RunError> for Failure {
             RunError::Simulation(error) => return error.into(),
             RunError::Checkpoint(error) => return error.into(),
             RunError::Gpu(_) | RunError::Render(_) => classes::DeviceError::new_err(text),
-            RunError::SurfaceRequired | RunError::AlreadyFinished { .. } => ParameterError::new_err(text),
+            RunError::SurfaceRequired | RunError::AlreadyFinished { .. } | RunError::Input(_) => {
+                ParameterError::new_err(text)
+            }
             RunError::NothingToResume { .. }
             | RunError::NoCheckpoint { .. }
             | RunError::NoUsableCheckpoint { .. } => classes::CheckpointError::new_err(text),

@@ -13,6 +13,7 @@ mod errors;
 mod files;
 mod foam;
 mod mesh;
+mod painter;
 mod particles;
 mod progress;
 mod recording;
@@ -39,6 +40,8 @@ mod _splashdown {
     use crate::foam::Foam;
     #[pymodule_export]
     use crate::mesh::Mesh;
+    #[pymodule_export]
+    use crate::painter::Painter;
     #[pymodule_export]
     use crate::particles::Particles;
     #[pymodule_export]

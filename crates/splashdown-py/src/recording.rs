@@ -96,13 +96,18 @@ pub fn run<'py>(
 
 /// Words of a scene file.
 fn words_of<C: Choice>(name: &str, words: &[String]) -> Result<Vec<C>> {
-    let parse = |word: &String| {
-        C::from_name(word).ok_or_else(|| {
-            let known: Vec<_> = C::ALL.iter().map(|&(_, known, _)| known).collect();
-            ParameterError::new_err(format!("{name} has {word:?}; allowed are {}", known.join(", "))).into()
-        })
-    };
-    words.iter().map(parse).collect()
+    words.iter().map(|word| word_of(name, word)).collect()
+}
+
+/// A word of a scene file.
+///
+/// # Errors
+/// `ParameterError` that lists the allowed words.
+pub fn word_of<C: Choice>(name: &str, word: &str) -> Result<C> {
+    C::from_name(word).ok_or_else(|| {
+        let known: Vec<_> = C::ALL.iter().map(|&(_, known, _)| known).collect();
+        ParameterError::new_err(format!("{name} has {word:?}; allowed are {}", known.join(", "))).into()
+    })
 }
 
 /// Passes progress to Python, and remembers Ctrl-C.

@@ -162,6 +162,37 @@ def test_the_frames_of_a_run(tmp_path: Path) -> None:
         splashdown.map_frames(tmp_path / "*.none", job)
 
 
+def test_the_pictures_of_a_run(tmp_path: Path) -> None:
+    """They are those that the run draws."""
+    pyplot = pytest.importorskip("matplotlib.pyplot", reason="reads PNG files")
+    scene = column(**{"output.picture_size": [320, 180]})
+    try:
+        splashdown.Painter(scene)
+    except splashdown.DeviceError as error:
+        assert os.environ.get("CI") != "true", error
+        print(f"SKIPPED: pictures cannot be drawn: {error}", file=sys.__stderr__)
+        pytest.skip("pictures cannot be drawn")
+    kinds = {"surface": "mesh", "particles": "particles"}
+    splashdown.run(scene, tmp_path / "out", frames=2, formats=["ply"], pictures=list(kinds), film=False, device="cpu")
+    for kind, folder in kinds.items():
+        job = splashdown.DrawPicture(tmp_path / "drawn", scene, kind)
+        table = splashdown.map_frames(tmp_path / "out" / folder / "*.ply", job, workers=1)
+        assert list(table["status"]) == ["finished"] * 3, list(table["reason"])
+        drawn = [pyplot.imread(path) for path in table["picture"]]
+        of_run = [pyplot.imread(tmp_path / "out/pictures" / Path(path).name) for path in table["picture"]]
+        # Surfaces are shaded with other normals, which changes colours but no edges.
+        allowed = 0.0 if kind == "particles" else 0.02
+        for one, other in zip(drawn, of_run):
+            assert abs(one - other).mean() <= allowed, (kind, abs(one - other).mean())
+        control = abs(drawn[0] - drawn[2]).mean()
+        assert control > max(allowed, 1e-3), f"control: the pictures of two frames differ: {control}"
+    painter = splashdown.Painter(scene, "surface")
+    with pytest.raises(ParameterError, match="this painter draws surfaces"):
+        painter.draw(splashdown.Simulation(scene, device="cpu").particles)
+    with pytest.raises(ParameterError, match='kind has "film"; allowed are'):
+        splashdown.Painter(scene, "film")  # type: ignore[arg-type]
+
+
 def test_a_ray_cluster_that_loses_a_node(tmp_path: Path) -> None:
     """Two nodes compute four runs; one of them is killed in the middle. Its run continues on the other."""
     optional("ray")

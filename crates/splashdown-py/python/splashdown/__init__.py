@@ -37,6 +37,7 @@ from splashdown._splashdown import (
     Foam,
     Frame,
     Mesh,
+    Painter,
     Particles,
     Progress,
     Run,
@@ -53,7 +54,7 @@ from splashdown._splashdown import (
     write_mesh,
     write_particles,
 )
-from splashdown._sweep import ReconstructSurface, grid, map_frames, sweep
+from splashdown._sweep import DrawPicture, ReconstructSurface, grid, map_frames, sweep
 
 if _sys.platform == "linux":
     # Mesa prints a message that looks like an error of this program where the variable is missing. Any folder prevents it.
@@ -66,12 +67,14 @@ __all__ = [
     "CheckpointError",
     "ClosedError",
     "DeviceError",
+    "DrawPicture",
     "Error",
     "FileError",
     "Foam",
     "Frame",
     "Mesh",
     "MissingPackageError",
+    "Painter",
     "ParameterError",
     "Particles",
     "Progress",

@@ -25,6 +25,7 @@ __all__ = [
     "Foam",
     "Frame",
     "Mesh",
+    "Painter",
     "Particles",
     "Progress",
     "Run",
@@ -165,6 +166,12 @@ class Body:
     def force(self) -> _Vector: ...
     @property
     def torque(self) -> _Vector: ...
+
+@final
+class Painter:
+    def __new__(cls, scene: Scene, kind: Literal["particles", "surface"] = "surface") -> Self: ...
+    def draw(self, what: Mesh | Particles, *, time: float = 0.0) -> NDArray[numpy.uint8]: ...
+    def write(self, path: _Path, what: Mesh | Particles, *, time: float = 0.0) -> int: ...
 
 @final
 class Stats:

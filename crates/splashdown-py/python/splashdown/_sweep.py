@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
+import functools
 import glob
 import hashlib
 import importlib
 import itertools
 import json
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
 
 from splashdown import _worker
 from splashdown._engines import Engine, Lost, Task
 from splashdown._errors import MissingPackageError, ParameterError
-from splashdown._splashdown import Frame, Scene, __version__, read_particles, surface, write_mesh
+from splashdown._splashdown import (
+    Frame,
+    Painter,
+    Scene,
+    __version__,
+    read_mesh,
+    read_particles,
+    surface,
+    write_mesh,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -142,7 +153,7 @@ def map_frames(
 ) -> pandas.DataFrame:
     """Calls a function for the files of a finished run, distributed as in `sweep`, and returns a table with one row per
     file. `files` is a pattern such as `"out/dam-break/particles/*.npz"` or a list; `function` receives a path and
-    returns numbers and texts, which are columns of the table. `ReconstructSurface` is such a function.
+    returns numbers and texts, which are columns of the table. `ReconstructSurface` and `DrawPicture` are such functions.
 
     >>> import numpy, splashdown, tempfile
     >>> from pathlib import Path
@@ -207,6 +218,39 @@ class ReconstructSurface(NamedTuple):
         target = Path(self.folder) / f"{path.stem}.{self.format}"
         write_mesh(target, mesh)
         return {"mesh": str(target), "vertices": len(mesh.vertices), "triangles": len(mesh.triangles)}
+
+
+class DrawPicture(NamedTuple):
+    """Draws a file of a finished run as PNG into a folder: a function for `map_frames`.
+
+    `kind` is "surface" for files of meshes and "particles" for those of particles. The number at the end of the file name
+    is the frame, which gives the time in the caption. Bodies and foam are not drawn, and surfaces are
+    shaded with the normals of their triangles, because readers drop normals.
+
+    >>> import splashdown
+    >>> splashdown.DrawPicture("pictures", splashdown.Scene.preset("dam-break-small")).kind
+    'surface'
+    """
+
+    folder: PathLike
+    scene: Scene
+    kind: Literal["particles", "surface"] = "surface"
+
+    def __call__(self, path: Path) -> dict[str, Any]:
+        """Draws one file; returns the file of the picture."""
+        what = read_mesh(path) if self.kind == "surface" else read_particles(path)
+        number = re.search(r"(\d+)$", path.stem)
+        time = int(number[1]) / self.scene.frame_rate if number else 0.0
+        Path(self.folder).mkdir(parents=True, exist_ok=True)
+        target = Path(self.folder) / f"{path.stem}.png"
+        _painter(self.scene, self.kind).write(target, what, time=time)
+        return {"picture": str(target)}
+
+
+@functools.lru_cache(maxsize=1)
+def _painter(scene: Scene, kind: Literal["particles", "surface"]) -> Painter:
+    """Opening a device takes longer than drawing a picture."""
+    return Painter(scene, kind)
 
 
 def _key(task: Task, function: Callable[..., Any]) -> str:
