@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from pathlib import Path
 
 import numpy
@@ -83,6 +85,27 @@ def test_a_run_with_files_and_its_continuation(scene: splashdown.Scene, tmp_path
     resumed, uninterrupted = ((tmp_path / folder / name).read_bytes() for folder in ("out", "whole"))
     assert resumed == uninterrupted
     assert resumed != (tmp_path / "whole/particles/particles_0003.npz").read_bytes()
+
+
+def test_an_interrupted_run_with_files_can_be_resumed(scene: splashdown.Scene, tmp_path: Path) -> None:
+    fine = scene.replace({"fluid.particle_spacing": 0.05, "scene.frame_rate": 100})
+    options = {"frames": 40, "formats": ["npz"], "pictures": [], "surface": False, "device": "cpu"}
+    calls = 0
+
+    def interrupt(now: splashdown.Progress) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        splashdown.run(fine, tmp_path / "out", progress=interrupt, **options)
+    done = len(list((tmp_path / "out/particles").glob("*.npz")))
+    assert 0 < done < 41 and calls >= 1
+    assert splashdown.run(tmp_path / "out")["frames"] == 41
+    splashdown.run(fine, tmp_path / "whole", **options)
+    resumed, whole = ((tmp_path / name / "particles/particles_0040.npz").read_bytes() for name in ("out", "whole"))
+    assert resumed == whole
 
 
 def test_wrong_runs_with_files(scene: splashdown.Scene, tmp_path: Path) -> None:

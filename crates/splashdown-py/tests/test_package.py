@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.metadata
 import json
 import os
+import re
 import subprocess
 import sys
 import sysconfig
 from pathlib import Path
 
 import pytest
-from conftest import optional
+from conftest import REPOSITORY, optional
 
 import splashdown
 
@@ -52,6 +54,23 @@ def test_every_exception_is_an_error() -> None:
     classes = [getattr(splashdown, name) for name in splashdown.__all__ if name.endswith("Error")]
     assert len(classes) > 8
     assert all(issubclass(kind, splashdown.Error) for kind in classes)
+
+
+@pytest.mark.parametrize("page", ["docs/guide/src/python.md", "docs/guide/src/parameter-studies.md", "README.md"])
+def test_the_code_in_the_guide_uses_names_that_exist(page: str) -> None:
+    text = (REPOSITORY / page).read_text()
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: set[str] = set()
+    for block in blocks:
+        if block.startswith("{{#include"):
+            continue
+        for node in ast.walk(ast.parse(block)):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "splashdown":
+                names.add(node.attr)
+            if isinstance(node, ast.ImportFrom) and node.module == "splashdown":
+                names.update(alias.name for alias in node.names)
+    assert names, "control: the page uses the package"
+    assert names <= set(splashdown.__all__), names - set(splashdown.__all__)
 
 
 USE = '''
