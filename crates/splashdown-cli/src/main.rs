@@ -37,6 +37,7 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(exit::Exit::Usage as u8));
         }
     };
+    splashdown_io::set_input_limit(arguments.input_limit);
     match dispatch(&arguments.command).and_then(check_output) {
         Ok(code) => code,
         Err(failure) => {

@@ -31,6 +31,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 
 fn execute(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let settings = settings(arguments)?;
+    splashdown_io::atomic::set_sync(!arguments.no_sync);
     let mut request = match (&arguments.scene, &arguments.resume) {
         (_, Some(path)) => RunRequest::resume(path, settings)?,
         (Some(scene), None) => RunRequest::new(scene_file::load(scene)?, settings),

@@ -4,6 +4,8 @@ mod bad_input;
 #[cfg(target_os = "linux")]
 mod checkpoints;
 mod guide;
+mod hostile;
+mod interrupted;
 mod place;
 mod plot;
 mod resume;

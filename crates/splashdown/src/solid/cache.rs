@@ -76,7 +76,8 @@ struct Header {
 
 /// Reads a solid; `None` if the file is missing or damaged.
 pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
-    let bytes = fs::read(path).ok()?;
+    // Anything else in the folder of the cache could be endless.
+    let bytes = path.metadata().is_ok_and(|data| data.is_file()).then(|| fs::read(path).ok())??;
     let (content, sum) = bytes.split_last_chunk::<16>()?;
     if *sum != hash_of(content).to_le_bytes() {
         return None;
