@@ -6,6 +6,7 @@ mod checkpoints;
 mod guide;
 mod hostile;
 mod interrupted;
+mod meshes;
 mod place;
 mod plot;
 mod resume;

@@ -62,7 +62,11 @@ impl Series {
                 frames.clone_from(&all);
             }
         }
-        Ok(range(&frames, last).map(|frames| State { spools, frames: Some(frames) }))
+        let state = range(&frames, last).map(|frames| State { spools, frames: Some(frames) });
+        if state.is_none() {
+            spool::remove(&self.place.parts(self.attributes).unwrap_or_default());
+        }
+        Ok(state)
     }
 }
 
