@@ -31,7 +31,7 @@ fn an_archive_that_becomes_large_is_refused() -> Outcome {
     assert!(bytes.len() < 2 << 20, "{}", bytes.len());
     place.write("large.npz", bytes)?;
     let surface = |file: &str, more: &[&str]| {
-        let arguments = ["surface", file, "-o", "a.ply", "--spacing", "0.1", "--device", "cpu"];
+        let arguments = ["surface", file, "-o", "a.ply", "--particle-spacing", "0.1", "--device", "cpu"];
         place.splashdown(&[&arguments[..], more].concat()).output()
     };
     let output = surface("large.npz", &[])?;
@@ -52,9 +52,9 @@ fn pipes_and_devices_are_refused() -> Outcome {
     let checkpoint = ["run", "--resume", "pipe.splashdown"];
     let cases: [(&str, &[&str], i32); 7] = [
         ("pipe.toml", &["check", "pipe.toml"], 3),
-        ("pipe.npz", &["surface", "pipe.npz", "-o", "a.ply", "--spacing", "0.1"], 3),
-        ("pipe.ply", &["surface", "pipe.ply", "-o", "a.ply", "--spacing", "0.1"], 3),
-        ("pipe.npy", &["surface", "pipe.npy", "-o", "a.ply", "--spacing", "0.1"], 3),
+        ("pipe.npz", &["surface", "pipe.npz", "-o", "a.ply", "--particle-spacing", "0.1"], 3),
+        ("pipe.ply", &["surface", "pipe.ply", "-o", "a.ply", "--particle-spacing", "0.1"], 3),
+        ("pipe.npy", &["surface", "pipe.npy", "-o", "a.ply", "--particle-spacing", "0.1"], 3),
         ("pipe.csv", &["plot", "pipe.csv", "-o", "a.svg"], 3),
         ("pipe.splashdown", &checkpoint, 5),
         ("pipe", &["run", "pipe"], 3),

@@ -119,25 +119,25 @@ fn a_run_without_its_usd_file_is_finished() -> Outcome {
 fn a_run_on_a_full_disk_is_finished_when_there_is_space() -> Outcome {
     let place = Place::new()?;
     usd_scene(&place)?;
-    let Some(disk) = crate::place::TinyDisk::mount(place.path("disk"), 2048)? else {
+    let Some(disk) = crate::place::TinyDisk::mount(place.path("disk"), 8192)? else {
         eprintln!("SKIPPED: no small file system can be mounted");
         return Ok(());
     };
     let run = ["run", "small.toml", "--out", "disk/out", "--device", "cpu", "--no-pictures"];
-    let run = [&run[..], &["--frames", "6", "--checkpoint-every", "6"]].concat();
+    let run = [&run[..], &["--frames", "24", "--checkpoint-every", "24"]].concat();
     // How much data the run writes before the USD files, and in total.
     let output = place.splashdown(&run).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let size = |name: &str| fs::metadata(disk.0.join(name)).map(|data| data.len());
     let usd = size("out/particles.usda")? + size("out/surface.usda")?;
-    let checkpoint = size("out/checkpoints/checkpoint_0006.splashdown")?;
+    let checkpoint = size("out/checkpoints/checkpoint_0024.splashdown")?;
     fs::remove_dir_all(disk.0.join("out"))?;
     // Room for everything but the joined USD files.
-    let room = usd + usd / 8 + checkpoint + 64 * 1024;
-    fs::write(disk.0.join("filler"), vec![0; 2048 * 1024 - room as usize])?;
+    let room = usd + checkpoint + 160 * 1024;
+    fs::write(disk.0.join("filler"), vec![0; 8192 * 1024 - room as usize])?;
     let output = place.splashdown(&run).output()?;
     assert_refused(&output, 5, &["full"]);
-    let checkpoint = disk.0.join("out/checkpoints/checkpoint_0006.splashdown");
+    let checkpoint = disk.0.join("out/checkpoints/checkpoint_0024.splashdown");
     assert!(checkpoint.exists(), "{} bytes of USD: {}", usd, stderr(&output));
     fs::remove_file(disk.0.join("filler"))?;
     let output = place.splashdown(&["run", "--resume", "disk/out"]).output()?;

@@ -40,7 +40,7 @@ fn the_interpretation_of_every_mesh_is_printed() -> Outcome {
     assert!(output.status.success(), "{}", stderr(&output));
     let text = stdout(&output);
     let line = |word: &str| text.lines().find(|line| line.contains(word)).unwrap_or_default().to_owned();
-    assert!(line("body \"beaker\":").contains("open edges; treated as a shell"), "{text}");
+    assert!(line("body \"beaker\":").contains("open edges, about"), "{text}");
     assert!(line("body \"piston\":").contains("12 triangles in 1 pieces; treated as a solid"), "{text}");
     assert!(line("fluid.mesh[0]").contains("treated as a solid"), "{text}");
     assert!(line("closes the volume at x_min").contains("shrinks"), "{text}");

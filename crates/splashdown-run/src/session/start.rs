@@ -61,9 +61,8 @@ impl Session {
             None => Run::new(&scene, options)?,
         };
         if let Some(found) = &found {
-            if run.first_frame() >= frames
-                && !(in_place && is_unfinished(&folder, &scene, &kinds, settings.film))
-            {
+            let lacks_files = || in_place && is_unfinished(&folder, &scene, &kinds, settings.film);
+            if run.first_frame() > frames || (run.first_frame() == frames && !lacks_files()) {
                 return Err(RunError::AlreadyFinished { done: run.first_frame(), frames });
             }
             note_device(found, &run, reporter)?;

@@ -30,6 +30,8 @@ pub struct RepairReport {
     pub pieces: u32,
     /// True if the mesh is treated as a sheet with a thickness rather than a solid.
     pub shell: bool,
+    /// The estimated missing part of the surface in thousandths, if the mesh is open and `shell` was not given.
+    pub missing: u32,
     /// Triangles of open fins of a solid, which are treated as sheets. They are the last ones of the repaired mesh.
     pub sheet_triangles: u32,
 }
@@ -48,6 +50,9 @@ impl fmt::Display for RepairReport {
             if count > 0 {
                 write!(f, ", {count} {what}")?;
             }
+        }
+        if self.missing > 0 {
+            write!(f, ", about {:.1} % missing", f64::from(self.missing) / 10.0)?;
         }
         f.write_str(if self.shell { "; treated as a shell" } else { "; treated as a solid" })?;
         match self.sheet_triangles {
@@ -93,6 +98,7 @@ pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
         report.shell = open.is_shell;
         triangles = open.fins_last(triangles);
         report.sheet_triangles = open.fins;
+        report.missing = open.missing;
     }
     let (vertices, triangles) = compact(&vertices, &triangles);
     (Mesh::new(vertices, triangles), report)
