@@ -164,7 +164,7 @@ fn pictures_of_the_surface_require_a_surface() -> Outcome {
     let folder = tempfile::tempdir()?;
     let mut settings = settings();
     settings.surface = false;
-    settings.pictures = Some(vec![splashdown::scene::PictureKind::Surface]);
+    settings.pictures = Some(vec![PictureKind::Surface]);
     let mut request = RunRequest::new(Scene::parse(SCENE, "small.toml")?, settings);
     request.out = Some(folder.path().join("out"));
     assert!(matches!(Session::start(request, &mut ()), Err(RunError::SurfaceRequired)));

@@ -119,7 +119,7 @@ fn a_run_without_its_usd_file_is_finished() -> Outcome {
 fn a_run_on_a_full_disk_is_finished_when_there_is_space() -> Outcome {
     let place = Place::new()?;
     usd_scene(&place)?;
-    let Some(disk) = crate::place::TinyDisk::mount(place.path("disk"), 8192)? else {
+    let Some(disk) = crate::place::TinyDisk::mount(place.path("disk"), 24_576)? else {
         eprintln!("SKIPPED: no small file system can be mounted");
         return Ok(());
     };
@@ -134,7 +134,7 @@ fn a_run_on_a_full_disk_is_finished_when_there_is_space() -> Outcome {
     fs::remove_dir_all(disk.0.join("out"))?;
     // Room for everything but the joined USD files.
     let room = usd + checkpoint + 160 * 1024;
-    fs::write(disk.0.join("filler"), vec![0; 8192 * 1024 - room as usize])?;
+    fs::write(disk.0.join("filler"), vec![0; 24_576 * 1024 - room as usize])?;
     let output = place.splashdown(&run).output()?;
     assert_refused(&output, 5, &["full"]);
     let checkpoint = disk.0.join("out/checkpoints/checkpoint_0024.splashdown");
