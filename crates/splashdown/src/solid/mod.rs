@@ -4,7 +4,7 @@
 //! nearest triangle is then computed on the nodes of a grid with a bounding volume hierarchy. The sign comes
 //! from the generalised winding number (Jacobson et al. 2013), which tolerates holes, duplicate faces and
 //! open seams. A mesh whose holes are too large becomes a shell: a sheet with a thickness; open fins of a solid
-//! become sheets, too ([`openness`]). Finally each node
+//! become sheets, too (`openness`). Finally each node
 //! gets the effective wall distance, which describes the fraction of the kernel that the solid fills
 //! ([`DistanceField`]). The result is cached on disk under a hash of its inputs.
 //!
