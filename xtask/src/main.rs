@@ -5,6 +5,7 @@ mod api;
 mod bench;
 mod build_times;
 mod demo;
+mod fuzz;
 mod guide;
 mod kill;
 mod layers;
@@ -20,6 +21,7 @@ mod report;
 mod serve;
 mod setup;
 mod suite;
+mod supply;
 mod test_output;
 mod validate;
 mod watch;
@@ -52,6 +54,10 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     compare the surface reconstruction with pysplashsurf and write docs/python-surface.md
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
   api               check the public API of the library crates and compare it with that of an earlier commit
+  deny              check licences, duplicates, sources and known vulnerabilities of the dependencies
+  sbom [--out FILE] list the packages in the program as CycloneDX JSON [default: target/splashdown.cdx.json]
+  fuzz [TARGET ...] [--minutes N] [--seed N]
+                    read random files, an hour per target by default; findings are written to target/fuzz
   package           pack every published crate and build it from its package
   dist [--target TRIPLE] [--no-check]
                     build release archives, a Debian package and checksums in target/dist
@@ -87,6 +93,9 @@ fn main() -> ExitCode {
         "release" => package::release(rest),
         "setup" => setup::run(rest),
         "guide" => guide::run(rest),
+        "deny" => supply::run(rest),
+        "sbom" => supply::sbom(rest),
+        "fuzz" => fuzz::run(rest),
         "help" | "--help" | "-h" => {
             process::say(HELP.trim_end());
             Ok(())

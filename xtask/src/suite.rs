@@ -8,7 +8,7 @@ use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
 use crate::test_output::Filter;
 use crate::watch::Watch;
-use crate::{api, guide, page, python, setup, wheel};
+use crate::{api, guide, page, python, setup, supply, wheel};
 
 /// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -83,6 +83,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
             }
         });
         report.layer("public API", |_| api::layer(extent == Extent::All));
+        report.layer("dependencies", |_| supply::layer(true));
         report.layer("guide", |_| guide::test(extent == Extent::All));
         report.layer("web page", |_| page::test(extent == Extent::All));
         for (name, target) in OTHER_SYSTEMS {

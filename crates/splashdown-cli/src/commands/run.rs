@@ -29,6 +29,7 @@ pub fn run(arguments: &RunArguments) -> Result<Exit, Failure> {
 
 fn execute(arguments: &RunArguments) -> Result<Exit, Failure> {
     let settings = settings(arguments)?;
+    splashdown_io::atomic::set_sync(!arguments.no_sync);
     let mut request = match (&arguments.scene, &arguments.resume) {
         (_, Some(path)) => RunRequest::resume(path, settings)?,
         (Some(scene), None) => RunRequest::new(scene_file::load(scene)?, settings),
