@@ -1,5 +1,5 @@
-//! Builds release archives and the Debian package, and sets the version number. `cargo xtask dist` and
-//! `cargo xtask release` start this program; it is a separate crate so that `xtask` has few dependencies.
+//! Builds release archives and the Debian package, sets the version number, and lists the packages in the program.
+//! `cargo xtask dist`, `cargo xtask release` and `cargo xtask sbom` start this program; it is a separate crate so that `xtask` has few dependencies.
 
 mod command;
 mod dist;
@@ -7,6 +7,7 @@ mod metadata;
 #[cfg(test)]
 mod packages;
 mod release;
+mod sbom;
 
 use std::process::ExitCode;
 
@@ -27,6 +28,9 @@ fn run(arguments: &[String]) -> Result<()> {
     match arguments.split_first() {
         Some((word, rest)) if word == "dist" => dist::run(rest),
         Some((word, rest)) if word == "release" => release::run(rest),
-        _ => bail!("this program is started by `cargo xtask dist` and `cargo xtask release`"),
+        Some((word, rest)) if word == "sbom" => sbom::run(rest),
+        _ => bail!(
+            "this program is started by `cargo xtask dist`, `cargo xtask release` and `cargo xtask sbom`"
+        ),
     }
 }

@@ -78,6 +78,14 @@ impl Metadata {
         serde_json::from_str(&text).context("cannot read the output of `cargo metadata`")
     }
 
+    /// The dependencies of a package that are linked into it, by id.
+    pub fn dependencies(&self, id: &str) -> Vec<&str> {
+        let nodes = self.resolve.iter().flat_map(|resolve| &resolve.nodes);
+        let own = nodes.filter(|node| node.id == id).flat_map(|node| &node.deps);
+        let linked = own.filter(|dependency| dependency.dep_kinds.iter().any(|kind| kind.kind.is_none()));
+        linked.map(|dependency| dependency.pkg.as_str()).collect()
+    }
+
     /// The packages that are linked into a package, itself included, by name and version.
     ///
     /// # Errors

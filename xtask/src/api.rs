@@ -189,6 +189,7 @@ fn describe_commit(commit: &str, source: &Path, output: &Path) -> Result<()> {
 fn describe(workspace: &Path, output: &Path, flags: &str) -> Result<()> {
     fs::create_dir_all(output)?;
     let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
+    doc.args(["--exclude", "splashdown-py"]);
     doc.current_dir(workspace).env("CARGO_TARGET_DIR", process::target());
     doc.env("RUSTDOC", std::env::current_exe()?).env(OUTPUT, output).env("RUSTDOCFLAGS", flags);
     process::run(&mut doc)

@@ -5,6 +5,7 @@ mod api;
 mod bench;
 mod build_times;
 mod demo;
+mod fuzz;
 mod guide;
 mod kill;
 mod layers;
@@ -20,10 +21,12 @@ mod report;
 mod serve;
 mod setup;
 mod suite;
+mod supply;
 mod test_output;
 mod validate;
 mod watch;
 mod web;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -45,8 +48,16 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   pictures [SCENE]  render the pictures of the README and the gallery
   web [--build] [--port N]
                     build the web page and serve it on localhost (--build: build only)
+  wheel [--quick]   build the Python package and test it in an empty environment (--quick: without optimization, window
+                    and plots)
+  wheel --compare [PARTICLES.npy SPACING]
+                    compare the surface reconstruction with pysplashsurf and write docs/python-surface.md
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
   api               check the public API of the library crates and compare it with that of an earlier commit
+  deny              check licences, duplicates, sources and known vulnerabilities of the dependencies
+  sbom [--out FILE] list the packages in the program as CycloneDX JSON [default: target/splashdown.cdx.json]
+  fuzz [TARGET ...] [--minutes N] [--seed N]
+                    read random files, an hour per target by default; findings are written to target/fuzz
   package           pack every published crate and build it from its package
   dist [--target TRIPLE] [--no-check]
                     build release archives, a Debian package and checksums in target/dist
@@ -74,6 +85,7 @@ fn main() -> ExitCode {
         "build-times" => build_times::run(rest),
         "pictures" => pictures::run(rest),
         "web" => web::run(rest),
+        "wheel" => wheel::run(rest),
         "validate" => validate::run(rest),
         "api" => api::run(rest),
         "package" => package::run(rest),
@@ -81,6 +93,9 @@ fn main() -> ExitCode {
         "release" => package::release(rest),
         "setup" => setup::run(rest),
         "guide" => guide::run(rest),
+        "deny" => supply::run(rest),
+        "sbom" => supply::sbom(rest),
+        "fuzz" => fuzz::run(rest),
         "help" | "--help" | "-h" => {
             process::say(HELP.trim_end());
             Ok(())

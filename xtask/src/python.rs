@@ -37,6 +37,19 @@ pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
     Ok(interpreter(folder))
 }
 
+/// Creates an environment in a folder unless it exists, and returns its interpreter.
+///
+/// # Errors
+/// If Python is missing.
+pub fn create(folder: &Path) -> Result<PathBuf> {
+    let python = interpreter(folder);
+    if !python.exists() {
+        let system = if process::exists("python3", "--version") { "python3" } else { "python" };
+        process::run(command(system).args(["-m", "venv"]).arg(folder))?;
+    }
+    Ok(python)
+}
+
 fn install(folder: &Path, list: &Path) -> Result<()> {
     let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
     // A copy of the installed list is stored in the environment, so that a second call costs nothing.
@@ -44,11 +57,7 @@ fn install(folder: &Path, list: &Path) -> Result<()> {
     if fs::read_to_string(&note).is_ok_and(|installed| installed == wanted) {
         return Ok(());
     }
-    let python = interpreter(folder);
-    if !python.exists() {
-        let system = if process::exists("python3", "--version") { "python3" } else { "python" };
-        process::run(command(system).args(["-m", "venv"]).arg(folder))?;
-    }
+    let python = create(folder)?;
     say(format!("Installing Python packages of {} into {} ...", list.display(), folder.display()));
     let mut pip = command(&python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"]);

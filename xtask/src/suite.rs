@@ -8,11 +8,14 @@ use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
 use crate::test_output::Filter;
 use crate::watch::Watch;
-use crate::{api, guide, page, python, setup};
+use crate::{api, guide, page, python, setup, supply, wheel};
 
 /// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
     [("Windows", "x86_64-pc-windows-msvc"), ("macOS", "aarch64-apple-darwin")];
+
+/// Its build needs Python, so it has a layer of its own.
+const PYTHON_PACKAGE: &str = "splashdown-py";
 
 /// The extent of a test run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +25,7 @@ enum Extent {
     /// Also documentation, the web page and other systems, with quick builds.
     Usual,
     /// Also Blender, the optimized page, all code for other systems, the tests of the command line without features,
-    /// and the public API even if its tool has to be installed.
+    /// the Python package, and the public API even if its tool has to be installed.
     All,
 }
 
@@ -47,6 +50,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
         succeeds(&mut cargo([
             "clippy",
             "--workspace",
+            "--exclude",
+            PYTHON_PACKAGE,
             "--all-targets",
             "--quiet",
             "--",
@@ -55,7 +60,15 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ]))
     });
     report.layer("tests", |filter| {
-        let mut tests = cargo(["test", "--workspace", "--no-fail-fast", "--", "--show-output"]);
+        let mut tests = cargo([
+            "test",
+            "--workspace",
+            "--exclude",
+            PYTHON_PACKAGE,
+            "--no-fail-fast",
+            "--",
+            "--show-output",
+        ]);
         layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
     });
     if extent == Extent::Fast {
@@ -63,12 +76,14 @@ pub fn run(arguments: &[String]) -> Result<()> {
     } else {
         report.layer("documentation", |_| {
             let mut doc = cargo(["doc", "--workspace", "--exclude", "xtask", "--no-deps", "--quiet"]);
+            doc.args(["--exclude", PYTHON_PACKAGE]);
             match succeeds(doc.env("RUSTDOCFLAGS", "--deny warnings"))? {
                 Outcome::Passed => api::check_names(),
                 failed => Ok(failed),
             }
         });
         report.layer("public API", |_| api::layer(extent == Extent::All));
+        report.layer("dependencies", |_| supply::layer(true));
         report.layer("guide", |_| guide::test(extent == Extent::All));
         report.layer("web page", |_| page::test(extent == Extent::All));
         for (name, target) in OTHER_SYSTEMS {
@@ -78,6 +93,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         // cores.
         if extent == Extent::All {
             report.layer("command line without features", without_features);
+            report.layer("Python package", wheel::layer);
         }
     }
     report.close()
@@ -107,7 +123,7 @@ fn check_for(target: &str, all: bool) -> Result<Outcome> {
     if smallest != Outcome::Passed || !all {
         return Ok(smallest);
     }
-    cargo_check(target, &["--workspace"])
+    cargo_check(target, &["--workspace", "--exclude", PYTHON_PACKAGE])
 }
 
 fn cargo_check(target: &str, extent: &[&str]) -> Result<Outcome> {

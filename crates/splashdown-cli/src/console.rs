@@ -27,7 +27,13 @@ pub fn output_failure() -> Option<&'static io::Error> {
 
 /// Prints a line to stdout.
 pub fn print(text: impl Display) {
-    print_raw(format!("{text}\n").as_bytes());
+    print_raw(format!("{}\n", harmless(&text.to_string())).as_bytes());
+}
+
+/// A text without the characters by which a name in a file could control the terminal.
+fn harmless(text: &str) -> String {
+    let is_control = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    text.chars().map(|c| if is_control(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// Prints bytes to stdout. Every call flushes, so that a reading program receives the text at once and a failure is
@@ -61,7 +67,7 @@ pub fn print_json_pretty(value: &impl Serialize) {
 
 /// Prints to stderr.
 pub fn note(text: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", harmless(&text.to_string()));
 }
 
 /// A table of names and values, the values in one column.
@@ -69,4 +75,14 @@ pub fn table(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, value): &(&str, String)| format!("  {name:width$}  {value}");
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::harmless;
+
+    #[test]
+    fn names_cannot_control_the_terminal() {
+        assert_eq!(harmless("a\u{1b}[2Jb\r\u{7}\u{9b}é\n\tc"), "a\u{fffd}[2Jb\u{fffd}\u{fffd}\u{fffd}é\n\tc");
+    }
 }

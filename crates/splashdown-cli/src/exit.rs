@@ -1,7 +1,6 @@
 //! Exit codes and error messages. `splashdown --help` lists the codes defined here.
 
 use std::fmt;
-use std::process::ExitCode;
 
 use splashdown::SimulationError;
 use splashdown::error::CheckpointError;
@@ -17,6 +16,8 @@ use splashdown_viewer::ViewerError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Exit {
+    /// The command succeeded.
+    Success = 0,
     /// The simulation failed.
     Failed = 1,
     /// The command line is invalid.
@@ -59,11 +60,6 @@ impl Failure {
     /// A failure with this message.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self { exit, message: message.into(), scene: None }
-    }
-
-    /// The process's exit code.
-    pub fn code(&self) -> ExitCode {
-        ExitCode::from(self.exit as u8)
     }
 }
 
@@ -155,7 +151,15 @@ mod tests {
 
     #[test]
     fn the_help_lists_every_code() {
-        for exit in [Exit::Failed, Exit::Usage, Exit::Scene, Exit::Device, Exit::Files, Exit::Interrupted] {
+        for exit in [
+            Exit::Success,
+            Exit::Failed,
+            Exit::Usage,
+            Exit::Scene,
+            Exit::Device,
+            Exit::Files,
+            Exit::Interrupted,
+        ] {
             let code = (exit as u8).to_string();
             assert!(HELP.lines().any(|line| line.split_whitespace().next() == Some(&code)), "{exit:?}");
         }

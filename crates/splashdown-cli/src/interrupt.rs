@@ -10,7 +10,8 @@ use splashdown_run::Stop;
 pub struct Interrupt(Arc<AtomicU8>);
 
 impl Interrupt {
-    /// Listens for Ctrl-C and, on Unix, for SIGTERM and SIGHUP.
+    /// Listens for Ctrl-C and, on Unix, for SIGTERM and SIGHUP. A signal that the parent process has chosen to ignore,
+    /// as `nohup` does with SIGHUP, remains ignored.
     pub fn listen() -> Self {
         let count = Arc::new(AtomicU8::new(0));
         let counter = Arc::clone(&count);
@@ -22,10 +23,12 @@ impl Interrupt {
                 );
             }
         };
+        let ignored = ignored::find();
         // Without a handler Ctrl-C ends the program at once. Every file on the disk is complete in that case as well.
         if let Err(error) = ctrlc::set_handler(handler) {
             crate::console::note(format!("warning: Ctrl-C will stop without a summary: {error}"));
         }
+        ignored::restore(&ignored);
         Self(count)
     }
 
@@ -37,4 +40,46 @@ impl Interrupt {
             _ => Stop::Now,
         }
     }
+}
+
+/// Signals that are ignored since the program was started.
+#[cfg(unix)]
+mod ignored {
+    use nix::sys::signal::{SigHandler, Signal, signal};
+
+    /// The ignored ones among the signals that stop a run.
+    pub fn find() -> Vec<Signal> {
+        let stopping = [Signal::SIGHUP, Signal::SIGINT, Signal::SIGTERM].into_iter();
+        stopping.filter(|&number| is_ignored(number)).collect()
+    }
+
+    /// Ignores these signals again.
+    pub fn restore(signals: &[Signal]) {
+        for &number in signals {
+            // SAFETY: ignoring a signal installs no code. It fails for invalid signals only, and these are valid.
+            let _ = unsafe { signal(number, SigHandler::SigIgn) };
+        }
+    }
+
+    fn is_ignored(number: Signal) -> bool {
+        // SAFETY: as in `restore`.
+        let before = unsafe { signal(number, SigHandler::SigIgn) };
+        match before {
+            Ok(SigHandler::SigIgn) => true,
+            Ok(handler) => {
+                // SAFETY: this handler was installed until now.
+                let _ = unsafe { signal(number, handler) };
+                false
+            }
+            Err(_) => false,
+        }
+    }
+}
+
+/// Other systems have no such signals.
+#[cfg(not(unix))]
+mod ignored {
+    pub fn find() {}
+
+    pub fn restore((): &()) {}
 }

@@ -1,6 +1,5 @@
 //! The console output of a run: text and a progress bar for people, JSON lines for programs.
 
-use std::process::ExitCode;
 use std::time::Duration;
 
 use splashdown::run::{Progress, ProgressFn, Started};
@@ -31,7 +30,7 @@ impl ConsoleReporter {
     ///
     /// # Errors
     /// The failure of the run.
-    pub fn close(&self, outcome: RunOutcome, timing: bool) -> Result<ExitCode, Failure> {
+    pub fn close(&self, outcome: RunOutcome, timing: bool) -> Result<Exit, Failure> {
         self.bar.clear();
         let results = partial_results(&outcome);
         let RunOutcome { end, folder, last_frame, files, films, .. } = outcome;
@@ -46,7 +45,7 @@ impl ConsoleReporter {
                 }
                 self.print(&format!("\nFinished.\n{}", summary::numbers(&numbers)));
                 self.print(&format!("\n{}", summary::files(folder.root(), &files, &films)));
-                Ok(ExitCode::SUCCESS)
+                Ok(Exit::Success)
             }
             RunEnd::Failed(error) => {
                 self.print_note(&results);
@@ -56,7 +55,7 @@ impl ConsoleReporter {
                 self.line(&Line::interrupted(last_frame.as_ref(), closing));
                 self.print(&format!("\nStopped. {results}"));
                 self.print(&summary::files(folder.root(), &files, &films));
-                Ok(ExitCode::from(Exit::Interrupted as u8))
+                Ok(Exit::Interrupted)
             }
         }
     }

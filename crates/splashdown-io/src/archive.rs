@@ -4,7 +4,6 @@
 //! tools open it. Entries are not compressed, because positions compress badly and compression takes longer than writing.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{self, Cursor, Read, Write};
 use std::path::Path;
 
@@ -13,6 +12,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
 use crate::error::IoError;
+use crate::input::content;
 use crate::npy::{self, Layout};
 
 /// The number types of arrays in an [`Archive`].
@@ -128,7 +128,7 @@ impl Archive {
     /// # Errors
     /// [`IoError::Read`]; [`IoError::Malformed`] if it is of another format, damaged or cut short.
     pub fn read(path: &Path) -> Result<Self, IoError> {
-        let bytes = fs::read(path).map_err(|error| IoError::read(path, &error))?;
+        let bytes = content(path)?;
         Self::from_bytes(&bytes).map_err(|reason| IoError::malformed(path, "ZIP", reason))
     }
 

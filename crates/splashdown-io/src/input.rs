@@ -25,7 +25,11 @@ pub(crate) fn regular(path: &Path) -> Result<(), IoError> {
     if metadata.is_file() {
         return Ok(());
     }
-    let what = if metadata.is_dir() { "it is a folder, not a file" } else { "it is not a regular file" };
+    let what = if metadata.is_dir() {
+        "it is a folder, not a file"
+    } else {
+        "it is not a regular file but a pipe or device; save its data to a file first"
+    };
     Err(IoError::Read { path: path.to_owned(), detail: what.to_owned() })
 }
 

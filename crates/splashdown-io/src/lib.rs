@@ -64,7 +64,8 @@
 //! * A file is complete or absent ([`atomic`]): it is renamed to its name after its last byte is written. A later failure
 //!   leaves earlier files intact. ([`CsvLog`] is the exception: its rows are complete or absent.)
 //! * An error contains the file, the cause and the remedy ([`IoError`]). No file content causes a panic.
-//! * Readers refuse a file that declares more data than it contains before they allocate memory for it.
+//! * Readers refuse a file that declares more data than it contains before they allocate memory for it. Decompressed data
+//!   has a limit ([`set_input_limit`]). Pipes and devices are refused.
 
 #[cfg(target_endian = "big")]
 compile_error!("the binary writers copy memory to the file, which requires a little-endian machine");
@@ -78,6 +79,7 @@ mod film;
 mod format;
 pub mod gltf;
 mod input;
+mod limit;
 mod mesh;
 pub mod npy;
 mod npz;
@@ -103,6 +105,7 @@ pub use data::{Attribute, Mesh, Particles};
 pub use error::{FilmError, IoError, WriteCause};
 pub use film::{Film, FilmOptions};
 pub use format::Format;
+pub use limit::set_input_limit;
 pub use mesh::write_mesh;
 pub use particles::write_particles;
 pub use picture::Picture;

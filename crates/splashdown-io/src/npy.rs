@@ -3,12 +3,12 @@
 //! *Why own code:* the crates read every type and shape through traits and `ndarray`, but rows of numbers need only a
 //! header and a cast. Format: numpy.lib.format, versions 1 to 3.
 
-use std::fs;
 use std::path::Path;
 
 use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
+use crate::input::content;
 use crate::number::Number;
 
 /// Reads positions from a little-endian float32 or float64 array of shape (N, 3) in C order.
@@ -16,7 +16,7 @@ use crate::number::Number;
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`] if the array has another type or shape, or the file is cut short.
 pub fn read_positions(path: &Path) -> Result<Vec<[f32; 3]>, IoError> {
-    let bytes = fs::read(path).map_err(|error| IoError::read(path, &error))?;
+    let bytes = content(path)?;
     parse(&bytes).map_err(|reason| IoError::malformed(path, "NPY", reason))
 }
 

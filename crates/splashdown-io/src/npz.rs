@@ -19,6 +19,7 @@ use crate::data::columns::{Wanted, triples};
 use crate::data::{Attribute, Particles};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, regular};
+use crate::limit::Budget;
 use crate::npy::{self, Layout};
 
 /// Names of the array of positions, in order of preference; the last is numpy's name for an unnamed array.
@@ -63,6 +64,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     regular(path)?;
     let file = File::open(path).map_err(|error| IoError::read(path, &error))?;
     let malformed = |reason: String| IoError::malformed(path, "NPZ", reason);
+    let mut budget = Budget::of_file(file.metadata().map_or(0, |data| data.len()));
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|error| malformed(error.to_string()))?;
     let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
     let stem = |name: &str| name.strip_suffix(".npy").unwrap_or(name).to_ascii_lowercase();
@@ -76,7 +78,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     };
 
     let mut particles = Particles::default();
-    let positions = array(&mut archive, first).map_err(malformed)?;
+    let positions = array(&mut archive, first, &mut budget).map_err(malformed)?;
     if positions.columns != 3 {
         let columns = positions.columns;
         return Err(malformed(format!(
@@ -93,7 +95,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
         if ![1, 3].iter().any(|&components| wanted.has(own, components)) {
             continue;
         }
-        let Array { columns, values } = match array(&mut archive, name) {
+        let Array { columns, values } = match array(&mut archive, name, &mut budget) {
             Ok(array) => array,
             // An array without a field of its own is optional.
             Err(_) if ![1, 3].iter().any(|&n| Wanted::Known.has(own, n)) => continue,
@@ -115,13 +117,21 @@ struct Array {
     values: Vec<f64>,
 }
 
-fn array<R: Read + io::Seek>(archive: &mut ZipArchive<R>, name: &str) -> Result<Array, String> {
+fn array<R: Read + io::Seek>(
+    archive: &mut ZipArchive<R>,
+    name: &str,
+    budget: &mut Budget,
+) -> Result<Array, String> {
     let mut read = || -> Result<Array, String> {
         let entry = archive.by_name(name).map_err(|error| error.to_string())?;
+        let declared = entry.size();
+        budget.take(declared, "it")?;
         // The size in the archive's directory is not reliable, so the data is limited while it is read.
-        let most = 24 * MAX_COUNT as u64 + (1 << 16);
         let mut bytes = Vec::new();
-        entry.take(most).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        entry.take(declared.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        if bytes.len() as u64 > declared {
+            return Err(format!("it has more than its {declared} bytes"));
+        }
         let (header, data) = npy::split(&bytes)?;
         let layout = Layout::of(&header)?;
         let columns = match layout.shape[..] {

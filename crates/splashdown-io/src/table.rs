@@ -6,9 +6,10 @@
 //! where there is no water, is an empty field, which spreadsheets and `pandas` read as a missing value.
 
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write as _};
+use std::io::{self, Read as _, Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
+use crate::atomic::sync_file;
 use crate::error::IoError;
 
 /// A CSV file that rows are appended to.
@@ -33,24 +34,23 @@ impl CsvLog {
         Ok(log)
     }
 
-    /// Continues a file that had `bytes` bytes at the time from which a run is resumed. Rows written later are removed.
-    /// A file that is missing or shorter is created anew.
+    /// Continues a file that had `bytes` bytes at the time from which a run is resumed. Rows written later are removed. A
+    /// shorter file keeps its complete rows; a missing one, or one without a complete header, is created anew.
     ///
     /// # Errors
     /// [`IoError::Write`].
     pub fn resume(path: &Path, columns: &[&str], bytes: u64) -> Result<Self, IoError> {
-        let usable = std::fs::metadata(path).is_ok_and(|data| data.len() >= bytes && bytes > 0);
-        if !usable {
+        let Some(length) = complete_rows(path, bytes).filter(|&length| length > 0) else {
             return Self::create(path, columns);
-        }
+        };
         let open = || {
             let mut file = File::options().write(true).open(path)?;
-            file.set_len(bytes)?;
+            file.set_len(length)?;
             file.seek(SeekFrom::End(0))?;
             Ok(file)
         };
         let file = open().map_err(|error| IoError::write(path, &error))?;
-        Ok(Self { path: path.to_owned(), file, columns: columns.len(), length: bytes })
+        Ok(Self { path: path.to_owned(), file, columns: columns.len(), length })
     }
 
     /// Bytes of the header and all complete rows.
@@ -71,6 +71,14 @@ impl CsvLog {
             return Err(IoError::Columns { path: self.path.clone(), given, expected });
         }
         self.append(values.iter().map(|&value| field(value)))
+    }
+
+    /// Flushes the rows to the disk, unless [`set_sync`](crate::atomic::set_sync) has turned this off.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn sync(&self) -> Result<(), IoError> {
+        sync_file(&self.file).map_err(|error| IoError::write(&self.path, &error))
     }
 
     /// The file's path as it was given.
@@ -94,6 +102,24 @@ impl CsvLog {
         }
         Ok(())
     }
+}
+
+/// The bytes up to the end of the last complete row within the first `limit` bytes of a file; `None` if it cannot be read.
+fn complete_rows(path: &Path, limit: u64) -> Option<u64> {
+    let mut file = File::open(path).ok()?;
+    let mut end = file.metadata().ok()?.len().min(limit);
+    let mut chunk = [0; 4096];
+    while end > 0 {
+        let length = end.min(chunk.len() as u64);
+        file.seek(SeekFrom::Start(end - length)).ok()?;
+        let part = &mut chunk[..length as usize];
+        file.read_exact(part).ok()?;
+        if let Some(at) = part.iter().rposition(|&byte| byte == b'\n') {
+            return Some(end - length + at as u64 + 1);
+        }
+        end -= length;
+    }
+    Some(0)
 }
 
 fn line(fields: impl IntoIterator<Item: AsRef<[u8]>>) -> io::Result<Vec<u8>> {

@@ -39,12 +39,20 @@ pub enum Job {
     UsdMesh(Arc<MeshSeries>, u32, Arc<Mesh>),
     /// Number and particles of a frame of animated particles; [`PointSeries::finish`] writes the file.
     UsdPoints(Arc<PointSeries>, u32, Arc<Particles>),
+    /// Flushes the frames of an animated surface to the disk.
+    SyncMesh(Arc<MeshSeries>),
+    /// Flushes the frames of animated particles to the disk.
+    SyncPoints(Arc<PointSeries>),
 }
 
 impl Job {
     /// Whether the job writes a file, not a frame of a film or series.
     fn is_file(&self) -> bool {
-        !matches!(self, Self::Film(..) | Self::UsdMesh(..) | Self::UsdPoints(..))
+        let series = matches!(
+            self,
+            Self::UsdMesh(..) | Self::UsdPoints(..) | Self::SyncMesh(..) | Self::SyncPoints(..)
+        );
+        !series && !matches!(self, Self::Film(..))
     }
 }
 
@@ -200,6 +208,14 @@ fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
         }
         Job::UsdPoints(series, frame, particles) => {
             series.push(*frame, particles)?;
+            None
+        }
+        Job::SyncMesh(series) => {
+            series.sync()?;
+            None
+        }
+        Job::SyncPoints(series) => {
+            series.sync()?;
             None
         }
     })

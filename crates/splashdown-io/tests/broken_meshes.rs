@@ -303,3 +303,59 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_buffer_outside_of_the_folder_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("scene");
+    fs::create_dir_all(inside.join("parts")).unwrap();
+    let cube = Cube::new(CUBE_AT_ORIGIN);
+    for place in ["secret.bin", "scene/parts/own.bin", "scene/own file.bin"] {
+        fs::write(folder.path().join(place), &cube.buffer).unwrap();
+    }
+    let read = |uri: &str| {
+        let path = inside.join("a.gltf");
+        fs::write(&path, cube.json(&format!("\"uri\": \"{uri}\","))).unwrap();
+        read_mesh(&path).map(|mesh| mesh.len()).map_err(|error| error.to_string())
+    };
+    // Control: files in the folder and below it are read.
+    for uri in ["parts/own.bin", "./own%20file.bin"] {
+        assert_eq!(read(uri), Ok(12), "{uri}");
+    }
+    let absolute = folder.path().join("secret.bin").display().to_string().replace('\\', "/");
+    let mut outside = vec![
+        "../secret.bin".to_owned(),
+        "parts/../../secret.bin".to_owned(),
+        "%2e%2e/secret.bin".to_owned(),
+        "%2E%2E%2Fsecret.bin".to_owned(),
+        r"..\\secret.bin".to_owned(),
+        "file:secret.bin".to_owned(),
+        "a%00.bin".to_owned(),
+        absolute.replace('/', "%2F"),
+        absolute,
+    ];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(folder.path().join("secret.bin"), inside.join("link.bin")).unwrap();
+        outside.push("link.bin".to_owned());
+    }
+    for uri in outside {
+        let message = read(&uri).unwrap_err();
+        assert!(message.contains("outside of the folder"), "{uri}: {message}");
+    }
+    assert!(read("absent.bin").unwrap_err().contains("cannot read"));
+}
+
+/// A small file that refers to the same bytes many times.
+#[test]
+fn data_that_grows_beyond_the_limit_is_refused() {
+    // Five million nodes would be needed with the default limit, so the mesh is large and used often.
+    let corners: Vec<u16> = (0..60_000).map(|n| n % 3).collect();
+    let nodes: Vec<String> = (0..600).map(|_| "{\"mesh\": 0}".to_owned()).collect();
+    let roots: Vec<String> = (0..600).map(|n| n.to_string()).collect();
+    let cube =
+        Cube::of(&format!("[{}]", nodes.join(",")), &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &corners);
+    let bytes = glb(&cube.scene(&format!("[{}]", roots.join(","))));
+    assert!(bytes.len() < 1 << 18, "{}", bytes.len());
+    refused("many.glb", &bytes, "may take 256.0 MiB");
+}

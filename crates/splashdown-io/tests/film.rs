@@ -137,16 +137,23 @@ fn a_film_that_cannot_be_written_reports_the_programs_message() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let nowhere =
-        FilmOptions { path: folder.path().join("gone/film.mp4"), ..options(folder.path(), 640, 480) };
+    let gone = folder.path().join("gone");
+    let nowhere = FilmOptions { path: gone.join("film.mp4"), ..options(folder.path(), 640, 480) };
+    let expected =
+        |message: &str| message.contains("No such file or directory") && message.contains("frame_%04d.png");
+    let message = Film::start(nowhere.clone()).unwrap_err().to_string();
+    assert!(expected(&message), "{message}");
+    // The folder disappears while the film is made.
+    std::fs::create_dir(&gone).unwrap();
     let film = Film::start(nowhere).unwrap();
+    std::fs::remove_dir_all(&gone).unwrap();
     // The pictures exceed the capacity of a pipe. A child that has ended must not block this process, nor end it by a
     // signal.
     for _ in 0..20 {
         film.push(&picture(640, 480, [0; 4]));
     }
     let message = film.finish().unwrap_err().to_string();
-    assert!(message.contains("No such file or directory") && message.contains("frame_%04d.png"), "{message}");
+    assert!(expected(&message), "{message}");
 }
 
 /// Child processes that fail in several ways, as shell scripts.

@@ -496,3 +496,34 @@ proptest! {
         }
     }
 }
+
+/// Compressed files whose content is far larger than they are, refused before it is decompressed.
+#[test]
+fn small_files_of_large_content_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let begun = std::time::Instant::now();
+        let message = read_particles(&path).unwrap_err().to_string();
+        assert!(message.contains("may take 256.0 MiB"), "{name}: {message}");
+        assert!(begun.elapsed() < std::time::Duration::from_secs(5), "{name}: {:?}", begun.elapsed());
+    };
+    // A gzip file that declares a hundred million points of 16 bytes. No content is needed to refuse it.
+    let mut header = b"BgeoV\0\0\0\x05".to_vec();
+    for count in [100_000_000_i32, 0, 0, 0, 0, 0, 0, 0] {
+        header.extend(count.to_be_bytes());
+    }
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::fast());
+    gzip.write_all(&header).unwrap();
+    refused("a.bgeo.gz", &gzip.finish().unwrap());
+    // A VTU file with an array of one block of zlib.
+    let text = |points: usize, data: &str| {
+        format!(
+            "<VTKFile type=\"PolyData\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"{points}\">\
+             <Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">{data}</DataArray></Points>\
+             </Piece></PolyData></VTKFile>"
+        )
+    };
+    refused("a.vtu", text(100_000_000, "").as_bytes());
+}

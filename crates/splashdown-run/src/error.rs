@@ -73,6 +73,13 @@ pub enum RunError {
         path: PathBuf,
     },
 
+    /// The path to resume from is a pipe or a device.
+    #[error("`{}` is a pipe or a device; name the output folder of a run, or a file that ends in .{}", path.display(), Checkpoint::ENDING)]
+    NotAFile {
+        /// The path given.
+        path: PathBuf,
+    },
+
     /// The folder to resume from contains no checkpoints.
     #[error("no checkpoint in `{}` can be used: the folder contains none", path.display())]
     NoCheckpoint {

@@ -17,6 +17,11 @@ pub fn frame_rate(scene_frame_rate: f32) -> f32 {
     if scene_frame_rate > MAX_FRAME_RATE { SLOW_MOTION_RATE } else { scene_frame_rate }
 }
 
+/// Whether the encoder is installed.
+pub(crate) fn can_encode() -> bool {
+    Film::can_encode(std::path::Path::new("ffmpeg"))
+}
+
 /// Starts a film per kind of picture. Failures are returned as messages with the command that makes the film later.
 pub(crate) fn start(
     scene: &Scene,

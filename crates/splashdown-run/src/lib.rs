@@ -63,6 +63,8 @@ pub use error::RunError;
 pub use folder::RunFolder;
 pub use frames::{CompleteFrame, FrameSummary};
 pub use outcome::{RunEnd, RunOutcome};
+#[cfg(not(target_arch = "wasm32"))]
+pub use pictures::Painter;
 pub use recorder::Recorder;
 pub use report::{PassNumbers, pass_numbers};
 pub use reporter::{Reporter, Stop};

@@ -6,10 +6,14 @@ use std::path::{Path, PathBuf};
 use crate::RunError;
 
 /// Excludes other runs from an output folder until it is dropped. The operating system releases the lock when the
-/// process ends for any reason. An empty file may remain, which does not lock the folder.
+/// process ends for any reason.
+///
+/// On Unix the folder itself is locked. Where that is not possible (Windows, NFS), the lock is that of an empty file,
+/// which remains if the process is killed and then does not lock the folder.
 #[derive(Debug)]
 pub(crate) struct FolderLock {
-    path: PathBuf,
+    /// The lock file, if there is one.
+    path: Option<PathBuf>,
     /// Holds the lock.
     _file: File,
 }
@@ -21,6 +25,22 @@ impl FolderLock {
     /// [`RunError::FolderInUse`] while another run writes into it; [`RunError::Lock`] if the lock file cannot be
     /// created.
     pub fn take(folder: &Path) -> Result<Self, RunError> {
+        if cfg!(unix)
+            && let Ok(file) = File::open(folder)
+        {
+            match file.try_lock() {
+                Ok(()) => return Ok(Self { path: None, _file: file }),
+                Err(TryLockError::WouldBlock) => {
+                    return Err(RunError::FolderInUse { folder: folder.to_owned() });
+                }
+                Err(TryLockError::Error(_)) => {}
+            }
+        }
+        Self::take_file(folder)
+    }
+
+    /// Locks by a file.
+    fn take_file(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(".lock");
         loop {
             let file = File::options()
@@ -34,7 +54,7 @@ impl FolderLock {
                     return Err(RunError::FolderInUse { folder: folder.to_owned() });
                 }
                 Ok(()) if !is_at(&file, &path) => {}
-                Ok(()) | Err(TryLockError::Error(_)) => return Ok(Self { path, _file: file }),
+                Ok(()) | Err(TryLockError::Error(_)) => return Ok(Self { path: Some(path), _file: file }),
             }
         }
     }
@@ -59,8 +79,10 @@ fn is_at(_: &File, _: &Path) -> bool {
 
 impl Drop for FolderLock {
     fn drop(&mut self) {
-        // A file that cannot be removed does not lock the folder.
-        let _ = fs::remove_file(&self.path);
+        if let Some(path) = &self.path {
+            // A file that cannot be removed does not lock the folder.
+            let _ = fs::remove_file(path);
+        }
     }
 }
 
@@ -72,14 +94,17 @@ mod tests {
     #[test]
     fn a_folder_is_locked_once_and_released() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
-        let first = FolderLock::take(folder.path())?;
-        let refused = FolderLock::take(folder.path());
-        assert!(matches!(refused, Err(RunError::FolderInUse { .. })));
-        drop(first);
-        assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
-        // The file of a killed process does not lock.
-        std::fs::write(folder.path().join(".lock"), "")?;
-        assert!(FolderLock::take(folder.path()).is_ok());
+        for take in [FolderLock::take, FolderLock::take_file] {
+            let first = take(folder.path())?;
+            let refused = take(folder.path());
+            assert!(matches!(refused, Err(RunError::FolderInUse { .. })));
+            drop(first);
+            assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
+            // The file of a killed process does not lock.
+            std::fs::write(folder.path().join(".lock"), "")?;
+            assert!(take(folder.path()).is_ok());
+            let _ = std::fs::remove_file(folder.path().join(".lock"));
+        }
         Ok(())
     }
 

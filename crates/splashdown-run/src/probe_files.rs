@@ -7,7 +7,7 @@ use splashdown::run::Frame;
 use splashdown::scene::{Probe, Scene};
 use splashdown_io::{CsvLog, IoError, WrittenFile};
 
-use crate::RunFolder;
+use crate::{Reporter, RunFolder};
 
 /// One file per probe, in the order of the scene.
 #[derive(Debug, Default)]
@@ -25,19 +25,44 @@ impl ProbeFiles {
         Ok(Self { logs: scene.probes.iter().map(create).collect::<Result<_, _>>()? })
     }
 
-    /// Continues existing files. Each is first truncated to its number of bytes at the checkpoint.
+    /// Continues existing files. Each is first truncated to its number of bytes at the checkpoint. Tables that are
+    /// missing or shorter are reported; a shorter one keeps its complete rows.
     ///
     /// # Errors
     /// [`IoError::Write`].
-    pub fn resume(scene: &Scene, folder: &RunFolder, bytes: &[u64]) -> Result<Self, IoError> {
+    pub fn resume(
+        scene: &Scene,
+        folder: &RunFolder,
+        bytes: &[u64],
+        reporter: &mut dyn Reporter,
+    ) -> Result<Self, IoError> {
         let resume = |(index, probe): (usize, &Probe)| {
             let path = folder.probe(&probe.name);
             match bytes.get(index) {
-                Some(&bytes) => CsvLog::resume(&path, probes::columns(probe), bytes),
+                Some(&bytes) => {
+                    let given = fs::metadata(&path).map(|data| data.len());
+                    let (file, rest) = (path.display(), "the rows up to the checkpoint are incomplete");
+                    match given {
+                        Ok(given) if given < bytes => reporter.warning(&format!(
+                            "the probe table `{file}` has {given} of the {bytes} bytes that it had at the checkpoint; {rest}"
+                        )),
+                        Err(error) => reporter.warning(&format!("cannot read the probe table `{file}` ({error}); {rest}")),
+                        Ok(_) => {}
+                    }
+                    CsvLog::resume(&path, probes::columns(probe), bytes)
+                }
                 None => CsvLog::create(&path, probes::columns(probe)),
             }
         };
         Ok(Self { logs: scene.probes.iter().enumerate().map(resume).collect::<Result<_, _>>()? })
+    }
+
+    /// Flushes the files to the disk.
+    ///
+    /// # Errors
+    /// [`IoError::Write`].
+    pub fn sync(&self) -> Result<(), IoError> {
+        self.logs.iter().try_for_each(CsvLog::sync)
     }
 
     /// Bytes in each file.
@@ -61,6 +86,8 @@ impl ProbeFiles {
     /// The files with their sizes.
     pub fn finish(self) -> Vec<WrittenFile> {
         let file = |log: &CsvLog| {
+            // The run ends in any case, and its rows are in the file.
+            let _ = log.sync();
             let bytes = fs::metadata(log.path()).map_or(0, |data| data.len());
             WrittenFile { path: log.path().to_owned(), bytes }
         };

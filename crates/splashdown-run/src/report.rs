@@ -139,6 +139,13 @@ impl Report {
     }
 }
 
+/// Whether the folder contains the report of a finished run.
+pub(crate) fn is_finished(folder: &RunFolder) -> bool {
+    let report = folder.report().is_file().then(|| std::fs::read(folder.report()).ok()).flatten();
+    let report = report.and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok());
+    report.is_some_and(|report| report["status"] == "finished")
+}
+
 /// The times of the passes as plain numbers.
 pub fn pass_numbers(timings: &Timings) -> BTreeMap<&'static str, PassNumbers> {
     let numbers = |time: &splashdown_gpu::PassTime| PassNumbers {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use splashdown::Device;
 use splashdown::run::{Progress, Started};
-use splashdown::scene::Scene;
+use splashdown::scene::{PictureKind, Scene};
 use splashdown_run::{
     CompleteFrame, Reporter, RunEnd, RunError, RunOutcome, RunRequest, RunSettings, Session, Stop, run,
 };
@@ -119,7 +119,7 @@ fn the_report_of_a_resumed_run_says_that_it_is_running() -> Outcome {
     assert!(report()?.contains("\"interrupted\""), "{}", report()?);
     // A refused start keeps the report.
     let mut settings = RunSettings::default();
-    settings.frames = Some(stopped.complete_frames as u32 - 1);
+    (settings.surface, settings.pictures) = (false, Some(vec![PictureKind::Surface]));
     let refused = RunRequest::resume(&out, settings).and_then(|short| Session::start(short, &mut ()));
     assert!(refused.is_err());
     assert!(report()?.contains("\"interrupted\""), "{}", report()?);
@@ -164,7 +164,7 @@ fn pictures_of_the_surface_require_a_surface() -> Outcome {
     let folder = tempfile::tempdir()?;
     let mut settings = settings();
     settings.surface = false;
-    settings.pictures = Some(vec![splashdown::scene::PictureKind::Surface]);
+    settings.pictures = Some(vec![PictureKind::Surface]);
     let mut request = RunRequest::new(Scene::parse(SCENE, "small.toml")?, settings);
     request.out = Some(folder.path().join("out"));
     assert!(matches!(Session::start(request, &mut ()), Err(RunError::SurfaceRequired)));

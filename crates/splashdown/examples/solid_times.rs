@@ -56,6 +56,7 @@ fn main() {
         kernels: KernelPair::WendlandC2,
         half_thickness: 0.02,
         shell: None,
+        region: None,
         cache: Some(folder.clone()),
     };
     for fragments in [0, 2000] {

@@ -65,6 +65,44 @@ pub enum SimulationError {
         /// The largest acceleration in m/s^2.
         max_acceleration: f32,
     },
+    /// There is not one value per particle.
+    #[error(
+        "{given} {what} are given, but there are {expected} particles: give one for each, in the order in which particles are \
+         read"
+    )]
+    Count {
+        /// `positions` or `velocities`.
+        what: &'static str,
+        /// The number given.
+        given: usize,
+        /// The number of particles.
+        expected: usize,
+    },
+    /// A position or velocity is NaN or infinite.
+    #[error("{what}[{index}] is ({}, {}, {}): give finite numbers", value[0], value[1], value[2])]
+    NotFinite {
+        /// `positions` or `velocities`.
+        what: &'static str,
+        /// The index of the particle.
+        index: usize,
+        /// The value.
+        value: [f32; 3],
+    },
+    /// A position is outside the domain.
+    #[error(
+        "position {index} is ({}, {}, {}) m, outside the domain from ({}, {}, {}) to ({}, {}, {}) m: move it inside",
+        position[0], position[1], position[2], min[0], min[1], min[2], max[0], max[1], max[2]
+    )]
+    OutsideDomain {
+        /// The index of the particle.
+        index: usize,
+        /// The position in m.
+        position: [f32; 3],
+        /// The lower corner of the domain in m.
+        min: [f32; 3],
+        /// The upper corner of the domain in m.
+        max: [f32; 3],
+    },
     /// The duration of a frame is negative, infinite or NaN.
     #[error("a simulation cannot advance by {seconds} s: give a finite number of seconds, zero or more")]
     BadDuration {

@@ -75,7 +75,7 @@ mod tests {
     use crate::process::root;
 
     /// The crates of the workspace from bottom to top. A crate may depend only on those before it.
-    const CRATES: [&str; 12] = [
+    const CRATES: [&str; 14] = [
         "splashdown-gpu",
         "splashdown-io",
         "splashdown",
@@ -83,10 +83,12 @@ mod tests {
         "splashdown-run",
         "splashdown-viewer",
         "splashdown-cli",
+        "splashdown-py",
         "splashdown-web",
         "splashdown-docs",
         "splashdown-bindgen",
         "splashdown-packaging",
+        "fuzz",
         "xtask",
     ];
 

@@ -33,6 +33,18 @@ pub struct Arguments {
     /// The command.
     #[command(subcommand)]
     pub command: Command,
+    /// Largest size in GiB of the data of one input file after decompression
+    /// [default: 64 times the size of the file, and at least 0.25]
+    #[arg(long, global = true, value_name = "GIB", value_parser = gibibytes)]
+    pub input_limit: Option<u64>,
+}
+
+/// A size in GiB, as bytes.
+fn gibibytes(text: &str) -> Result<u64, String> {
+    match text.parse::<f64>() {
+        Ok(size) if size > 0.0 && size <= 65_536.0 => Ok((size * f64::from(1 << 30)) as u64),
+        _ => Err("a limit is a number of GiB above 0 and at most 65536, such as 8".to_owned()),
+    }
 }
 
 /// The commands.

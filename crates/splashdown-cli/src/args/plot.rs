@@ -7,6 +7,7 @@ use clap::Args;
 const PLOT_EXAMPLES: &str = "\
 Examples:
   splashdown plot out/dam-break/probes/*.csv -o probes.svg
+  splashdown plot out/dam-break/probes/gate.csv -o gate.png --columns 'force x,force y'
   splashdown plot left.csv right.csv -o heights.png --title 'Height of the water' --size 1200x500
 
 The first line of a table names its columns, the first of which is the time. Columns with the same
@@ -22,6 +23,9 @@ pub struct PlotArguments {
     /// Output picture: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub out: PathBuf,
+    /// Columns to draw, by name without unit, separated by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub columns: Vec<String>,
     /// Title above the plot
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,

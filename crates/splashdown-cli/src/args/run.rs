@@ -27,14 +27,16 @@ Files in the output folder:
                                          ParaView
   mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
                                          velocities in {with_velocities}
-  particles.usda, surface.usda           all frames in one file, with --formats usd
+  particles.usda, surface.usda           all frames in one file, with --formats usd; written at
+                                         the end, until then its data is in checkpoints/*.usdpart
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
   checkpoints/checkpoint_0010.splashdown to resume from; written after Ctrl-C and with
                                          --checkpoint-every; numpy.load opens them
   run.json                               the summary
 Every file is complete or absent. Frames of an earlier run in the same folder are removed.
-A resumed run keeps the settings of the original run, except those given again.
+A resumed run keeps the settings of the original run, except those given again. If all frames
+are complete, --resume completes the film, the USD files and run.json.
 
 With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt,
 particles, density_error, max_speed, volume, triangles and files; unknown values are null.
@@ -81,6 +83,9 @@ pub struct RunArguments {
     /// Make no films of the pictures
     #[arg(long)]
     pub no_film: bool,
+    /// Do not flush each file to the disk: quicker on slow disks, but a power failure can destroy the newest files
+    #[arg(long)]
+    pub no_sync: bool,
     /// Measure the time of every pass and print it at the end
     #[arg(long)]
     pub timing: bool,

@@ -3,12 +3,13 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use splashdown::check::{Interpretation, interpretations};
 use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Scene, SceneWarning};
 use splashdown::{Device, Simulation, check_particles, memory_forecast_of};
 
 use crate::args::CheckArguments;
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::lines::Line;
 use crate::speed::{bench_scene, seconds_per_step};
 use crate::{console, human, scene_file};
@@ -34,6 +35,8 @@ struct Report<'a> {
     removed: u64,
     memory_forecast: u64,
     speed: &'a Speed,
+    /// How the meshes of bodies and fluid are interpreted.
+    meshes: &'a [Interpretation],
     warnings: &'a [SceneWarning],
 }
 
@@ -59,6 +62,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     // Without the particles inside bodies, as in the simulation.
     let inventory = splashdown::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
+    let meshes = interpretations(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let largest = arguments.device.device.executor()?.largest_buffer();
@@ -75,6 +79,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             removed: inventory.removed,
             memory_forecast: memory,
             speed: &speed,
+            meshes: &meshes,
             warnings: &scene.warnings,
         });
         return Ok(fits?);
@@ -84,6 +89,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     }
     let file = arguments.scene.display();
     console::print(format!("{file}: valid\n{}", describe(&scene, &derived, &inventory, memory, &speed)));
+    print_meshes(&meshes);
     Ok(fits?)
 }
 
@@ -131,6 +137,21 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
             ),
         ),
     ])
+}
+
+/// One line per mesh, and one per volume that it closes.
+fn print_meshes(meshes: &[Interpretation]) {
+    for mesh in meshes {
+        console::print(format!("  {}: {}", mesh.owner, mesh.report));
+        for closing in &mesh.closed_volumes {
+            console::print(format!(
+                "    closes the volume at {}, which shrinks from {} to {}",
+                closing.side,
+                human::volume(closing.volume.into()),
+                human::volume(closing.least.into())
+            ));
+        }
+    }
 }
 
 fn particles(inventory: &Inventory, spacing: f32) -> String {

@@ -1,7 +1,5 @@
 //! `splashdown run`.
 
-use std::process::ExitCode;
-
 use splashdown_run::{RunRequest, RunSettings, Session};
 
 use crate::args::RunArguments;
@@ -13,7 +11,7 @@ use crate::reporter::ConsoleReporter;
 use crate::{memory, scene_file};
 
 /// Runs a scene, or resumes a run.
-pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &RunArguments) -> Result<Exit, Failure> {
     if arguments.verbosity.level() == Verbosity::Verbose {
         // Fails only if a subscriber is already set.
         let _ = tracing_subscriber::fmt()
@@ -29,8 +27,9 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     outcome
 }
 
-fn execute(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+fn execute(arguments: &RunArguments) -> Result<Exit, Failure> {
     let settings = settings(arguments)?;
+    splashdown_io::atomic::set_sync(!arguments.no_sync);
     let mut request = match (&arguments.scene, &arguments.resume) {
         (_, Some(path)) => RunRequest::resume(path, settings)?,
         (Some(scene), None) => RunRequest::new(scene_file::load(scene)?, settings),

@@ -30,6 +30,13 @@ pub struct Panel {
     curves: Vec<Curve>,
 }
 
+impl Panel {
+    /// Number of curves.
+    pub fn len(&self) -> usize {
+        self.curves.len()
+    }
+}
+
 /// Groups curves into panels by unit, in order of appearance.
 pub fn panels(curves: Vec<Curve>) -> Vec<Panel> {
     let mut panels: Vec<Panel> = Vec::new();

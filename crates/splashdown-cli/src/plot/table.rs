@@ -27,9 +27,12 @@ pub fn read(path: &Path) -> Result<Vec<Curve>, Failure> {
         let files = path.join("*.csv");
         return Err(wrong(format!("it is a folder; name the tables in it, as in {}", files.display())));
     }
+    if path.metadata().is_ok_and(|data| !data.is_file()) {
+        return Err(wrong("it is a pipe or a device; save the table to a file first".to_owned()));
+    }
     let bytes = std::fs::read(path).map_err(|error| wrong(error.to_string()))?;
     let text = String::from_utf8_lossy(&bytes);
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = path.file_stem().map(|stem| printable(&stem.to_string_lossy())).unwrap_or_default();
     parse(&text, &stem).map_err(wrong)
 }
 
@@ -37,6 +40,7 @@ fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
     let mut records = reader.records();
     let names = records.next().ok_or("it is empty")?.map_err(|error| error.to_string())?;
+    let names: Vec<String> = names.iter().map(printable).collect();
     if names.len() < 2 || names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err(
             "its first line does not name two columns or more, such as `time (s),height (m)`".to_owned()
@@ -63,13 +67,19 @@ fn parse(text: &str, stem: &str) -> Result<Vec<Curve>, String> {
         return Err("it has no rows yet".to_owned());
     }
     let columns = names.len() - 1;
-    let curve = |(column, quantity): (usize, &str)| Curve {
+    let curve = |(column, quantity): (usize, &String)| Curve {
         name: if columns == 1 { stem.to_owned() } else { format!("{stem}: {}", without_unit(quantity)) },
-        quantity: quantity.to_owned(),
-        against: names[0].to_owned(),
+        quantity: quantity.clone(),
+        against: names[0].clone(),
         points: rows.iter().map(|row| (row[0], row[column])).collect(),
     };
     Ok(names.iter().enumerate().skip(1).map(curve).collect())
+}
+
+/// A name without characters that cannot be drawn and that XML does not allow.
+pub fn printable(name: &str) -> String {
+    let is_drawn = |c: &char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    name.chars().map(|c| if is_drawn(&c) { c } else { '\u{fffd}' }).collect()
 }
 
 /// The line, from 1, of the record at this byte. The reader reports the position before the blank lines that it skips.

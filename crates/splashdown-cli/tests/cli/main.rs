@@ -4,6 +4,9 @@ mod bad_input;
 #[cfg(target_os = "linux")]
 mod checkpoints;
 mod guide;
+mod hostile;
+mod interrupted;
+mod meshes;
 mod place;
 mod plot;
 mod resume;

@@ -10,6 +10,7 @@ use crate::data::Particles;
 use crate::data::columns::{Column, Wanted, triples};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, regular};
+use crate::limit::Budget;
 use crate::number::{Cells, Number};
 
 /// The largest size of a row in bytes, far above that of real files. It prevents that a malformed header causes a large
@@ -26,10 +27,11 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     let mut magic = [0; 2];
     let packed = file.read(&mut magic).map_err(failed)? == 2 && magic == [0x1f, 0x8b];
     io::Seek::rewind(&mut file).map_err(failed)?;
+    let mut budget = Budget::of_file(file.metadata().map_err(failed)?.len());
     let file = BufReader::new(file);
     let result = match packed {
-        true => parse(&mut BufReader::new(GzDecoder::new(file)), wanted),
-        false => parse(&mut { file }, wanted),
+        true => parse(&mut BufReader::new(GzDecoder::new(file)), wanted, &mut budget),
+        false => parse(&mut { file }, wanted, &mut budget),
     };
     result.map_err(|reason| match reason {
         Reason::Text(reason) => IoError::malformed(path, "BGEO", reason),
@@ -56,7 +58,7 @@ struct Place {
     number: Number,
 }
 
-fn parse(file: &mut impl Read, wanted: Wanted) -> Result<Particles, Reason> {
+fn parse(file: &mut impl Read, wanted: Wanted, budget: &mut Budget) -> Result<Particles, Reason> {
     let magic: [u8; 4] = take(file, "its header")?;
     if magic != *b"Bgeo" {
         return Err(Reason::Text("it does not begin with `Bgeo`".to_owned()));
@@ -83,6 +85,7 @@ fn parse(file: &mut impl Read, wanted: Wanted) -> Result<Particles, Reason> {
             return Err(Reason::Text(format!("its rows are more than {MAX_ROW} bytes long")));
         }
     }
+    budget.take(points as u64 * row as u64, format_args!("its list of {points} points"))?;
     rows(file, points, row, wanted, &places)
 }
 

@@ -2,7 +2,7 @@
 //!
 //! **How it works.** One thread writes pictures to the pipe. Another reads the messages of `ffmpeg`, so that no full
 //! pipe can block both processes. If the child ends early the pipe breaks, which is reported as an error. A child that
-//! does not respond within a time limit is killed. The film has a temporary name until it is complete.
+//! does not respond within a time limit is killed. The film has no name, or a hidden one, until it is complete.
 //!
 //! **Why not a library.** Bindings to libav need its headers on every build machine; there is no encoder in Rust of this
 //! quality. Without `ffmpeg` the pictures are still written, and a message gives the command that makes the film.
@@ -87,7 +87,8 @@ impl FilmOptions {
         FilmError::System { path: path.to_owned(), detail: error.to_string(), later: self.later() }
     }
 
-    fn command(&self, output: &Path) -> Command {
+    fn command(&self, temporary: &Temporary) -> io::Result<Command> {
+        let (output, stdout) = temporary.for_child()?;
         let mut command = Command::new(&self.program);
         command.args(["-hide_banner", "-loglevel", "error", "-y"]);
         command.args(["-f", "rawvideo", "-pixel_format", "rgba"]);
@@ -102,8 +103,8 @@ impl FilmOptions {
         let mut file = OsString::from("file:");
         file.push(output);
         command.arg(file);
-        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-        command
+        command.stdin(Stdio::piped()).stdout(stdout).stderr(Stdio::piped());
+        Ok(command)
     }
 }
 
@@ -125,6 +126,12 @@ enum State {
 }
 
 impl Film {
+    /// Whether this program exists and can encode H.264.
+    #[must_use]
+    pub fn can_encode(program: &Path) -> bool {
+        encoders(program).is_ok_and(|list| has_h264(&list))
+    }
+
     /// Starts the program, after checking that it exists and can encode H.264.
     ///
     /// # Errors
@@ -135,15 +142,13 @@ impl Film {
             return Err(FilmError::Options { width, height, frame_rate });
         }
         let program = options.program.clone();
-        let encoders =
-            Command::new(&program).args(["-hide_banner", "-encoders"]).stdin(Stdio::null()).output();
-        let encoders = encoders.map_err(|error| match error.kind() {
+        let encoders = encoders(&program).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
                 FilmError::NotInstalled { program: program.clone(), later: options.later() }
             }
             _ => options.system(&program, &error),
         })?;
-        if !String::from_utf8_lossy(&encoders.stdout).split_whitespace().any(|word| word == "libx264") {
+        if !has_h264(&encoders) {
             return Err(FilmError::NoH264 { program, later: options.later() });
         }
         let encoder = Encoder::start(&options).map_err(|error| options.system(&program, &error))?;
@@ -183,12 +188,23 @@ impl Film {
     }
 }
 
+/// The program's list of encoders.
+fn encoders(program: &Path) -> io::Result<Vec<u8>> {
+    let output = Command::new(program).args(["-hide_banner", "-encoders"]).stdin(Stdio::null()).output();
+    output.map(|output| output.stdout)
+}
+
+fn has_h264(encoders: &[u8]) -> bool {
+    String::from_utf8_lossy(encoders).split_whitespace().any(|word| word == "libx264")
+}
+
 /// The child and the two threads of its pipes. The threads are not joined: they end when the pipes are closed, which
 /// remain open if a killed child (a wrapper script) has a child process of its own.
 #[derive(Debug)]
 struct Encoder {
     child: Child,
-    temporary: Temporary,
+    /// The film until it is complete.
+    temporary: Option<Temporary>,
     pictures: Option<SyncSender<Arc<Picture>>>,
     pushed: u64,
     delivered: Arc<AtomicU64>,
@@ -198,8 +214,9 @@ struct Encoder {
 
 impl Encoder {
     fn start(options: &FilmOptions) -> io::Result<Self> {
-        let temporary = Temporary::beside(&options.path);
-        let mut child = options.command(temporary.path()).spawn()?;
+        let temporary = Temporary::create(&options.path)?;
+        let mut child = options.command(&temporary)?.spawn()?;
+        let temporary = Some(temporary);
         let (pictures, queue) = sync_channel(1);
         let (delivered, log) = (Arc::new(AtomicU64::new(0)), Arc::new(Mutex::new(Vec::new())));
         let threads = || {
@@ -254,7 +271,8 @@ impl Encoder {
         if !status.success() || self.delivered.load(Ordering::Acquire) != self.pushed {
             return Err(self.died(options));
         }
-        let named = self.temporary.rename_to(&options.path).and_then(|()| options.path.metadata());
+        let Some(temporary) = self.temporary.take() else { return Err(FilmError::Empty) };
+        let named = temporary.persist(&options.path).and_then(|()| options.path.metadata());
         named.map(|data| data.len()).map_err(|error| options.system(&options.path, &error))
     }
 

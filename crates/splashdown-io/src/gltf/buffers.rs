@@ -1,7 +1,7 @@
 //! Reads the arrays of a glTF file, with every offset and count checked.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -143,7 +143,29 @@ impl<'a> Buffers<'a> {
                 "buffer {index} is at `{uri:.80}`; save it to the same folder and refer to it by its file name"
             )));
         }
-        content(&self.path.with_file_name(unescaped(uri)))
+        content(&self.beside(&unescaped(uri)).ok_or_else(|| {
+            self.malformed(format!(
+                "buffer {index} is at `{uri:.80}`, outside of the folder of this file; save it to the same folder and refer \
+                 to it by its file name"
+            ))
+        })?)
+    }
+
+    /// The path of a file in the folder of this file, or in a folder below it. `None` if the name leads elsewhere,
+    /// directly or by a link.
+    fn beside(&self, name: &str) -> Option<PathBuf> {
+        let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+        // A backslash separates folders on Windows, and a colon follows the name of a drive or stream.
+        if !Path::new(name).components().all(is_inside) || name.contains(['\\', ':', '\0']) {
+            return None;
+        }
+        let path = self.path.with_file_name("").join(name);
+        let folder = self.path.canonicalize().ok()?.parent()?.to_owned();
+        match path.canonicalize() {
+            Ok(target) => target.starts_with(folder).then_some(path),
+            // The error of a missing file names it.
+            Err(_) => Some(path),
+        }
     }
 
     /// An error of the file.

@@ -114,6 +114,16 @@ impl Document {
         }
         Ok((document, blob))
     }
+
+    /// The declared size of the buffers in other files. Their content is compared with it when they are read.
+    pub(super) fn external_bytes(&self) -> u64 {
+        let external = |buffer: &&Buffer| buffer.uri.as_ref().is_some_and(|uri| !uri.starts_with("data:"));
+        self.buffers
+            .iter()
+            .filter(external)
+            .map(|buffer| buffer.byte_length as u64)
+            .fold(0, u64::saturating_add)
+    }
 }
 
 /// The JSON and the buffer of a binary file: a header of 12 bytes, then chunks of length, kind and data.

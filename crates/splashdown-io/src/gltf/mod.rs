@@ -25,6 +25,7 @@ use self::transform::{Affine, apply, mirrors, nodes_with_transforms};
 use crate::data::Mesh;
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, Welder, content};
+use crate::limit::Budget;
 
 /// Primitive modes of the format that are surfaces.
 const TRIANGLES: u32 = 4;
@@ -35,7 +36,8 @@ pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let bytes = content(path)?;
     let malformed = |reason: String| IoError::malformed(path, "glTF", reason);
     let (document, blob) = Document::parse(&bytes).map_err(malformed)?;
-    let mut scene = Scene { buffers: Buffers::new(path, &document, blob), welder: Welder::default() };
+    let budget = Budget::of_file(bytes.len() as u64 + document.external_bytes());
+    let mut scene = Scene { buffers: Buffers::new(path, &document, blob), welder: Welder::default(), budget };
     for (node, transform) in nodes_with_transforms(&document).map_err(malformed)? {
         let Some(number) = node.mesh else { continue };
         let mesh = document.meshes.get(number).ok_or_else(|| {
@@ -52,6 +54,7 @@ pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
 struct Scene<'a> {
     buffers: Buffers<'a>,
     welder: Welder,
+    budget: Budget,
 }
 
 impl Scene<'_> {
@@ -82,6 +85,10 @@ impl Scene<'_> {
             ("vertices", self.welder.vertices() + positions.len()),
             ("triangles", self.welder.triangles() + corners.len()),
         ];
+        let bytes = 12 * (positions.len() as u64 + corners.len() as u64);
+        self.budget
+            .take(bytes, format_args!("mesh {number}"))
+            .map_err(|reason| self.buffers.malformed(reason))?;
         for (what, given) in bounds {
             if given > MAX_COUNT {
                 return Err(IoError::TooMany { what, given, limit: MAX_COUNT });

@@ -8,13 +8,15 @@ use png::{BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, Fil
 use super::Picture;
 use crate::atomic;
 use crate::error::IoError;
+use crate::input::content;
+use crate::limit::Budget;
 
 /// Reads a PNG file of any colour type and depth.
 ///
 /// # Errors
 /// [`IoError::Read`]; [`IoError::Malformed`] if it is not a PNG file or damaged.
 pub fn read_png(path: &Path) -> Result<Picture, IoError> {
-    let bytes = std::fs::read(path).map_err(|error| IoError::read(path, &error))?;
+    let bytes = content(path)?;
     decode_png(&bytes).map_err(|error| IoError::malformed(path, "PNG", error.to_string()))
 }
 
@@ -28,6 +30,10 @@ pub fn decode_png(bytes: &[u8]) -> io::Result<Picture> {
     decoder.set_transformations(Transformations::normalize_to_color8() | Transformations::ALPHA);
     let mut reader = decoder.read_info().map_err(wrong)?;
     let size = reader.output_buffer_size().ok_or(io::ErrorKind::OutOfMemory)?;
+    let mut budget = Budget::of_file(bytes.len() as u64);
+    budget
+        .take(size as u64, "the picture")
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
     let mut pixels = vec![0; size];
     let info = reader.next_frame(&mut pixels).map_err(wrong)?;
     let rgba = match info.color_type {

@@ -1,5 +1,6 @@
 //! The reader: arrays as text, base64 or raw bytes, in the XML or after it, with or without zlib compression.
 
+use std::cell::RefCell;
 use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
@@ -9,6 +10,7 @@ use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, content, not_particles};
+use crate::limit::Budget;
 use crate::number::Number;
 
 pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
@@ -58,8 +60,10 @@ fn parse(bytes: &[u8], wanted: Wanted) -> Result<Particles, String> {
         (None, None) => None,
     };
     let mut particles = Particles::default();
+    let budget = RefCell::new(Budget::of_file(bytes.len() as u64));
     for piece in root.descendants().filter(|node| node.has_tag_name("Piece")) {
-        Piece { piece, layout, appended: appended.as_ref(), wanted }.add_to(&mut particles)?;
+        Piece { piece, layout, appended: appended.as_ref(), wanted, budget: &budget }
+            .add_to(&mut particles)?;
     }
     Ok(particles)
 }
@@ -89,6 +93,7 @@ struct Piece<'a, 'x> {
     layout: Layout,
     appended: Option<&'a Appended<'a>>,
     wanted: Wanted,
+    budget: &'a RefCell<Budget>,
 }
 
 impl Piece<'_, '_> {
@@ -124,9 +129,11 @@ impl Piece<'_, '_> {
 
     fn values(&self, array: Node<'_, '_>, rows: usize, components: usize) -> Result<Vec<f64>, String> {
         let name = array.attribute("Name").unwrap_or("Points");
-        let total = rows * components;
+        let total = rows.checked_mul(components).ok_or_else(|| format!("array `{name}` is too large"))?;
         let read = || -> Result<Vec<f64>, String> {
             let number = number(array.attribute("type").unwrap_or_default())?;
+            // Many arrays may refer to the same appended bytes, so the size of the file does not limit their sum.
+            self.budget.borrow_mut().take(total.saturating_mul(number.size()) as u64, "it")?;
             let text = array.text().unwrap_or_default();
             let bytes = match array.attribute("format") {
                 Some("ascii") | None => {

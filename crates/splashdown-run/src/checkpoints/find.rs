@@ -36,6 +36,9 @@ pub fn find_checkpoint(path: &Path) -> Result<FoundCheckpoint, RunError> {
         let root = RunFolder::root_of_checkpoints(folder.unwrap_or(Path::new(".")));
         return Ok(FoundCheckpoint { checkpoint, notes, root, skipped: Vec::new() });
     }
+    if path.exists() && !path.is_dir() {
+        return Err(RunError::NotAFile { path: path.to_owned() });
+    }
     if !path.is_dir() {
         return Err(RunError::NothingToResume { path: path.to_owned() });
     }

@@ -7,12 +7,14 @@ pub use find::{FoundCheckpoint, find_checkpoint, recent_checkpoints};
 use std::collections::VecDeque;
 
 use splashdown::{Checkpoint, Run};
-use splashdown_io::{FrameWriter, Job, WrittenFile, prepare_folder};
+use splashdown_io::{WrittenFile, prepare_folder};
 
+use crate::frames::FrameFiles;
 use crate::settings::Notes;
 use crate::{RunError, RunFolder};
 
-/// Number of checkpoints on the disk. The second is used if the newest is damaged.
+/// Number of checkpoints that remain on the disk. The second is used if the newest is damaged. An older one is removed
+/// when a newer one is complete, so that this many are complete at any time.
 const COUNT: usize = 2;
 
 /// Takes and writes the checkpoints of a run. Each is written when the files of all frames up to it are complete, so
@@ -57,12 +59,12 @@ impl CheckpointWriter {
     ///
     /// # Errors
     /// The writer's first failure.
-    pub fn write(&mut self, complete: u32, writer: &FrameWriter) -> Result<(), RunError> {
+    pub fn write(&mut self, complete: u32, files: &FrameFiles) -> Result<(), RunError> {
         while let Some((frame, checkpoint)) = self.taken.pop_front_if(|(frame, _)| *frame <= complete) {
-            // Old checkpoints are removed before writing, so that there are never more than `COUNT`. The remaining one
-            // is complete.
-            self.folder.remove_old_checkpoints(COUNT - 1);
-            writer.submit(vec![Job::Bytes(self.folder.checkpoint(frame), checkpoint.to_bytes()?)])?;
+            files.submit_checkpoint(self.folder.checkpoint(frame), checkpoint.to_bytes()?)?;
+        }
+        if self.last.is_some() {
+            self.folder.remove_old_checkpoints(COUNT);
         }
         Ok(())
     }
@@ -76,7 +78,6 @@ impl CheckpointWriter {
         while let Some((frame, checkpoint)) = self.taken.pop_front() {
             if complete.is_some_and(|complete| frame <= complete) {
                 prepare_folder(&self.folder.checkpoint_folder())?;
-                self.folder.remove_old_checkpoints(COUNT - 1);
                 let path = self.folder.checkpoint(frame);
                 let bytes = checkpoint.write(&path)?;
                 written.push(WrittenFile { path, bytes });

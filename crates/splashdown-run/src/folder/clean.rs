@@ -62,6 +62,10 @@ impl RunFolder {
             // Succeeds only if the folder is empty.
             let _ = fs::remove_dir(self.root.join(series.folder));
         }
+        for part in self.usd_parts() {
+            remove(&part);
+        }
+        let _ = fs::remove_dir(self.checkpoint_folder());
         let probes = self.root.join(PROBES);
         for entry in fs::read_dir(&probes).into_iter().flatten().flatten() {
             if is_probe_table(&entry.path()) {

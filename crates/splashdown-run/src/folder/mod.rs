@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use splashdown::Checkpoint;
 use splashdown::scene::{Choice, Format, PictureKind};
+use splashdown_io::usd;
 
 use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
 
@@ -85,6 +86,31 @@ impl RunFolder {
         }
     }
 
+    /// The USD file that a run resumed after a frame continues: the last one that begins before.
+    pub(crate) fn animated_at(&self, kind: PictureKind, last: u32) -> PathBuf {
+        let files = numbered::ANIMATED.files(&self.root).map(|(number, path)| (number, file_name(&path)));
+        let parts = self.usd_parts().into_iter().map(|path| file_name(&path)).filter_map(|name| {
+            // `surface_0006_points.usdpart` belongs to `surface_0006.usda`.
+            let (stem, _) = name.rsplit_once('_')?;
+            Some((stem.rsplit_once('_')?.1.parse().ok()?, name))
+        });
+        let first =
+            files.chain(parts).filter(|(first, name)| *first <= last && name.starts_with(kind.name()));
+        self.animated(kind, first.map(|(first, _)| first).max())
+    }
+
+    /// The data of USD files that are not complete yet.
+    pub(crate) fn usd_parts(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.checkpoint_folder()).into_iter().flatten().flatten();
+        let files = entries.map(|entry| entry.path());
+        files.filter(|path| path.extension().is_some_and(|ending| ending == usd::PART_ENDING)).collect()
+    }
+
+    /// Whether there is such data of this file.
+    pub(crate) fn has_usd_parts(&self, kind: PictureKind) -> bool {
+        self.usd_parts().iter().any(|path| file_name(path).starts_with(kind.name()))
+    }
+
     /// The ParaView index of the VTU particles.
     pub fn index(&self) -> PathBuf {
         self.root.join("particles").join("particles.pvd")
@@ -142,6 +168,10 @@ impl RunFolder {
     fn numbered(&self, folder: &str, stem: &str, frame: u32, ending: &str) -> PathBuf {
         self.root.join(folder).join(format!("{stem}_{frame:0digits$}.{ending}", digits = self.digits))
     }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Writing frames. The writer runs concurrently with the simulation. A frame is reported when all of its files are
 //! complete.
 
+mod animated;
 mod tracker;
 
 use std::path::PathBuf;
@@ -9,11 +10,11 @@ use std::sync::Arc;
 use splashdown::Stats;
 use splashdown::foam::DiffuseKind;
 use splashdown::run::Frame;
-use splashdown::scene::{Format, PictureKind, Scene};
-use splashdown_io::usd::{MeshSeries, PointSeries};
+use splashdown::scene::{Format, Scene};
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
 
 use crate::RunFolder;
+use animated::Animated;
 use tracker::Tracker;
 
 /// A frame whose files are all complete.
@@ -58,34 +59,28 @@ pub(crate) struct FrameFiles {
     tracker: Tracker,
     folder: RunFolder,
     formats: Vec<Format>,
-    /// The USD files, if requested.
-    points: Option<Arc<PointSeries>>,
-    surface: Option<Arc<MeshSeries>>,
+    animated: Animated,
 }
 
 impl FrameFiles {
-    /// Starts the writer. USD files of a resumed run contain only its own frames and are named by the first of them.
+    /// Starts the writer. `keep`: whether an interrupted run is to continue its USD files.
     ///
     /// # Errors
     /// [`IoError::WriterStopped`]; [`IoError::Write`] if a USD file cannot be created.
-    pub fn start(folder: RunFolder, scene: &Scene, resumed_after: Option<u32>) -> Result<Self, IoError> {
+    pub fn start(
+        folder: RunFolder,
+        scene: &Scene,
+        resumed_after: Option<u32>,
+        keep: bool,
+    ) -> Result<Self, IoError> {
         let formats = scene.output.formats.clone();
-        let animated = formats.contains(&Format::Usd);
-        let rate = f64::from(scene.frame_rate);
-        let first = resumed_after.map(|frame| frame + 1);
-        let start_points = || {
-            let path = folder.animated(PictureKind::Particles, first);
-            PointSeries::start(&path, rate, scene.fluid.particle_spacing)
-        };
-        let start_surface = || MeshSeries::start(&folder.animated(PictureKind::Surface, first), rate);
-        let points = animated.then(start_points).transpose()?.map(Arc::new);
-        let surface = (animated && scene.surface.enabled).then(start_surface).transpose()?.map(Arc::new);
+        let animated = Animated::start(&folder, scene, resumed_after, keep)?;
         let indexed = formats.contains(&Format::Vtu);
         let mut tracker = Tracker::new(folder.clone(), indexed);
         if let Some(last) = resumed_after {
             tracker.add_existing(last, scene.frame_rate);
         }
-        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, folder, formats, points, surface })
+        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, folder, formats, animated })
     }
 
     /// The writer, shared with the thread that draws pictures.
@@ -120,18 +115,23 @@ impl FrameFiles {
                 jobs.push(Job::Mesh(path, Arc::clone(mesh)));
             }
         }
-        if let Some(points) = &self.points {
-            jobs.push(Job::UsdPoints(Arc::clone(points), frame.index, Arc::clone(&frame.particles)));
-        }
-        if let (Some(surface), Some(mesh)) = (&self.surface, &frame.mesh) {
-            jobs.push(Job::UsdMesh(Arc::clone(surface), frame.index, Arc::clone(mesh)));
-        }
+        jobs.extend(self.animated.jobs(frame));
         if !jobs.is_empty() {
             self.writer.submit(jobs)?;
         }
         files.extend(pictures);
         self.tracker.expect(CompleteFrame { summary: FrameSummary::of(frame), files });
         Ok(())
+    }
+
+    /// Queues a checkpoint, after the frames of USD files that it relies on.
+    ///
+    /// # Errors
+    /// The first failure of an earlier frame.
+    pub fn submit_checkpoint(&self, path: PathBuf, bytes: Vec<u8>) -> Result<(), IoError> {
+        let mut jobs = self.animated.sync_jobs();
+        jobs.push(Job::Bytes(path, bytes));
+        self.writer.submit(jobs)
     }
 
     /// Frames whose files have become complete since the last call, in order. With `no_pictures`, expected pictures that
@@ -143,10 +143,10 @@ impl FrameFiles {
         self.tracker.take(&self.writer.written(), no_pictures)
     }
 
-    /// Waits until everything is written. No other owner of the writer may exist any more.
+    /// Waits until all but the USD files is written. No other owner of the writer may exist any more.
     pub fn finish(self, no_pictures: bool) -> FinishedFiles {
-        let Self { writer, mut tracker, points, surface, .. } = self;
-        let (mut files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
+        let Self { writer, mut tracker, animated, .. } = self;
+        let (files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
             Some(Ok(files)) => (files, None),
             Some(Err(failure)) => (failure.written, Some(failure.error)),
             None => (Vec::new(), Some(IoError::WriterStopped { reason: "it is still in use".to_owned() })),
@@ -155,17 +155,7 @@ impl FrameFiles {
             failure.get_or_insert(error);
             Vec::new()
         });
-        // However the run ended, the frames written so far form a complete USD file.
-        for animated in [points.map(|points| points.finish()), surface.map(|surface| surface.finish())] {
-            match animated {
-                Some(Ok(Some((path, bytes)))) => files.push(WrittenFile { path, bytes }),
-                Some(Err(error)) => {
-                    failure.get_or_insert(error);
-                }
-                Some(Ok(None)) | None => {}
-            }
-        }
-        FinishedFiles { frames, files, failure }
+        FinishedFiles { frames, files, failure, animated }
     }
 }
 
@@ -178,4 +168,6 @@ pub(crate) struct FinishedFiles {
     pub files: Vec<WrittenFile>,
     /// The first failure.
     pub failure: Option<IoError>,
+    /// The USD files, which are still to be completed.
+    pub animated: Animated,
 }

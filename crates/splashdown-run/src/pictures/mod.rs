@@ -1,6 +1,7 @@
 //! Pictures of the frames, drawn by a separate thread while the simulation continues.
 
 mod draw;
+mod painter;
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -15,6 +16,8 @@ use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
 
 use crate::{RunError, RunFolder};
 use draw::FrameRenderer;
+
+pub use painter::Painter;
 
 /// Number of frames that can wait while one is drawn.
 const QUEUE: usize = 1;

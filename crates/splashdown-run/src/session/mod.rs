@@ -3,9 +3,11 @@
 mod earlier;
 mod start;
 
+use std::sync::Arc;
+
 use splashdown::run::Summary;
 use splashdown::{Event, Run};
-use splashdown_io::WrittenFile;
+use splashdown_io::{Film, WrittenFile};
 
 use crate::checkpoints::CheckpointWriter;
 use crate::frames::FrameFiles;
@@ -35,6 +37,8 @@ pub struct Session {
     probes: ProbeFiles,
     checkpoints: CheckpointWriter,
     pictures: Option<Pictures>,
+    /// The films of a run that draws no more pictures.
+    films: Vec<Arc<Film>>,
     /// Whether drawing has failed and the failure is reported.
     pictures_failed: bool,
     /// Whether a failure to draw fails the run.
@@ -90,6 +94,7 @@ impl Session {
                 self.frame = Some(frame.index);
                 self.probes.write(&frame)?;
                 if self.checkpoints.due(frame.index) {
+                    self.probes.sync()?;
                     self.checkpoints.take(&mut self.run, frame.index, self.probes.bytes())?;
                 }
                 self.files.submit(&frame, names)?;
@@ -120,7 +125,7 @@ impl Session {
         let frames = self.files.completed(self.pictures_failed)?;
         complete(frames, &mut self.report, &mut self.last_complete, reporter);
         if let Some(frame) = &self.last_complete {
-            self.checkpoints.write(frame.summary.index, &self.files.writer())?;
+            self.checkpoints.write(frame.summary.index, &self.files)?;
         }
         Ok(())
     }
@@ -134,6 +139,7 @@ impl Session {
             probes,
             checkpoints,
             pictures,
+            mut films,
             mut pictures_failed,
             pictures_required,
             mut report,
@@ -145,7 +151,8 @@ impl Session {
         } = self;
         drop(run);
         reporter.waiting("finishing pictures and files");
-        let (films, drawing) = pictures.map(Pictures::finish).unwrap_or_default();
+        let (drawn, drawing) = pictures.map(Pictures::finish).unwrap_or_default();
+        films.extend(drawn);
         if let Some(error) = drawing {
             if !pictures_failed {
                 reporter.warning(&format!("no more pictures: {error}"));
@@ -162,10 +169,27 @@ impl Session {
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());
         }
+        if let Err(error) = ended.animated.sync() {
+            failure.get_or_insert(error.into());
+        }
         match checkpoints.finish(last_complete.as_ref().map(|frame| frame.summary.index)) {
             Ok(files) => written.extend(files),
             Err(error) => {
                 failure.get_or_insert(error);
+            }
+        }
+        // However the run ended, the frames written so far form complete USD files. They come after the checkpoint, because
+        // they need as much space again as their data.
+        for file in ended.animated.finish() {
+            match file {
+                Ok(file) => {
+                    // A continued file replaces that of the earlier run.
+                    written.retain(|other| other.path != file.path);
+                    written.push(file);
+                }
+                Err(error) => {
+                    failure.get_or_insert(error.into());
+                }
             }
         }
         let films = films::finish(&films, reporter);

@@ -13,7 +13,7 @@ use crate::frames::FrameFiles;
 use crate::lock::FolderLock;
 use crate::pictures::{self, Pictures};
 use crate::probe_files::ProbeFiles;
-use crate::report::Report;
+use crate::report::{Report, is_finished};
 use crate::sequence::is_same;
 use crate::{FoundCheckpoint, Reporter, RunError, RunFolder, RunRequest, films};
 
@@ -61,7 +61,8 @@ impl Session {
             None => Run::new(&scene, options)?,
         };
         if let Some(found) = &found {
-            if run.first_frame() >= frames {
+            let lacks_files = || in_place && is_unfinished(&folder, &scene, &kinds, settings.film);
+            if run.first_frame() > frames || (run.first_frame() == frames && !lacks_files()) {
                 return Err(RunError::AlreadyFinished { done: run.first_frame(), frames });
             }
             note_device(found, &run, reporter)?;
@@ -77,7 +78,8 @@ impl Session {
         if in_place || folder.report().exists() {
             remove_partial(folder.root());
         }
-        let files = FrameFiles::start(folder.clone(), &scene, resumed_after)?;
+        let keep = settings.checkpoint_every.is_some();
+        let files = FrameFiles::start(folder.clone(), &scene, resumed_after, keep)?;
         let probe_bytes = std::mem::take(&mut notes.probe_bytes);
         let mut session = Self {
             run,
@@ -85,6 +87,7 @@ impl Session {
             probes: ProbeFiles::default(),
             checkpoints: CheckpointWriter::new(folder.clone(), settings.checkpoint_every, notes),
             pictures: None,
+            films: Vec::new(),
             pictures_failed: false,
             pictures_required,
             report,
@@ -95,7 +98,8 @@ impl Session {
             folder,
             _lock: lock,
         };
-        match session.start_pictures(&scene, kinds, settings.film, resumed_after, reporter) {
+        let draws = session.run.first_frame() < frames;
+        match session.start_pictures(&scene, kinds, settings.film, resumed_after, draws, reporter) {
             Err(error) if pictures_required => return Err(error),
             Err(error) => reporter.warning(&format!("no pictures: {error}. The run continues without them")),
             Ok(()) => {}
@@ -113,7 +117,7 @@ impl Session {
         // A killed run must not leave the report of an earlier run.
         session.report.write(&session.folder)?;
         session.probes = match resumed_after {
-            Some(_) => ProbeFiles::resume(&scene, &session.folder, &probe_bytes)?,
+            Some(_) => ProbeFiles::resume(&scene, &session.folder, &probe_bytes, reporter)?,
             None => ProbeFiles::create(&scene, &session.folder)?,
         };
         Ok(session)
@@ -154,12 +158,14 @@ impl Session {
         kinds: Vec<PictureKind>,
         film: bool,
         resumed_after: Option<u32>,
+        draws: bool,
         reporter: &mut dyn Reporter,
     ) -> Result<(), RunError> {
         if kinds.is_empty() {
             return Ok(());
         }
-        let gpu = pictures::drawing_device(self.run.gpu())?;
+        // No device is needed if only the film is missing.
+        let gpu = if draws { Some(pictures::drawing_device(self.run.gpu())?) } else { None };
         let mut films = Vec::new();
         if scene.output.film && film {
             let (started, failures) = films::start(scene, &kinds, &self.folder);
@@ -176,16 +182,30 @@ impl Session {
                 reporter.warning(&format!("{missing} cannot be found and will be missing in the film"));
             }
         }
+        let Some(gpu) = gpu else {
+            self.films = films;
+            return Ok(());
+        };
         let (bodies, writer) = (self.run.bodies(), self.files.writer());
         self.pictures = Some(Pictures::start(gpu, scene, bodies, kinds, films, &self.folder, writer)?);
         Ok(())
     }
 }
 
+/// Whether a run whose frames are all complete lacks other files: it was killed or failed, or a film is missing.
+fn is_unfinished(folder: &RunFolder, scene: &Scene, kinds: &[PictureKind], film: bool) -> bool {
+    let can_film = film && scene.output.film;
+    let lacks_film = |&kind: &PictureKind| folder.picture(kind, 0).exists() && !folder.film(kind).exists();
+    !is_finished(folder)
+        || !folder.usd_parts().is_empty()
+        || (can_film && films::can_encode() && kinds.iter().any(lacks_film))
+}
+
 /// A resumed run uses the scene in its checkpoint, even if the file has changed.
 fn warn_of_changes(scene: &Scene, reporter: &mut dyn Reporter) {
     let Some(path) = &scene.source else { return };
-    if let Ok(text) = std::fs::read_to_string(path)
+    if path.is_file()
+        && let Ok(text) = std::fs::read_to_string(path)
         && *text != *scene.text
     {
         let file = path.display();

@@ -18,10 +18,10 @@ pub(crate) fn closed_solid(
     domain: &Domain,
     spacing: f32,
 ) -> Result<Solid, BodyError> {
-    solid_of(owner, source, &mesh_of(owner, source)?, domain, spacing)
+    solid_of(owner, source, &mesh_of(owner, source)?, domain, spacing, None)
 }
 
-/// As [`closed_solid`], for a mesh read by [`mesh_of`].
+/// As [`closed_solid`], for a mesh read by [`mesh_of`]. `shell` is false for a mesh that is a solid in spite of its holes.
 ///
 /// # Errors
 /// As [`closed_solid`].
@@ -31,6 +31,7 @@ pub(crate) fn solid_of(
     mesh: &Mesh,
     domain: &Domain,
     spacing: f32,
+    shell: Option<bool>,
 ) -> Result<Solid, BodyError> {
     check_scale(owner, source, mesh, domain)?;
     let settings = SolidSettings {
@@ -39,7 +40,8 @@ pub(crate) fn solid_of(
         support_radius: 0.0,
         kernels: KernelPair::WendlandC2,
         half_thickness: 0.5 * spacing,
-        shell: None,
+        shell,
+        region: None,
         cache: solid::default_cache_folder(),
     };
     let solid_error = |source| BodyError::Solid { owner: owner.into(), source };

@@ -54,7 +54,8 @@ pub enum BodyError {
     },
     /// The mesh is open where a closed one is required.
     #[error(
-        "{owner}: its mesh is open ({open_edges} open edges) and encloses no volume; close it, or export the object as a solid"
+        "{owner}: its mesh is open ({open_edges} open edges) and encloses no volume; close it, or export the object as a solid; for \
+         fluid.mesh, shell = false fills it in spite of its holes"
     )]
     Open {
         /// What the mesh is for.
@@ -187,12 +188,19 @@ fn load_one(
     check_scale(&owner, &body.mesh, &mesh, &scene.domain)?;
     let spacing = params.particle_spacing;
     let half_thickness = half_thickness(body, spacing);
+    let region = reachable(body, &scene.domain, params.support_radius + half_thickness);
     let settings = SolidSettings {
-        cell_size: cell_size(solid::bounds(&mesh), spacing, params.support_radius, half_thickness),
+        cell_size: cell_size(
+            solid::within(solid::bounds(&mesh), region),
+            spacing,
+            params.support_radius,
+            half_thickness,
+        ),
         support_radius: params.support_radius,
         kernels,
         half_thickness,
         shell: body.shell,
+        region,
         cache,
     };
     let solid_error = |source| BodyError::Solid { owner: owner.clone(), source };
@@ -279,7 +287,10 @@ pub(crate) fn forecast(scene: &scene::Scene, extents: &[Option<(Vec3, Vec3)>], p
         .bodies
         .iter()
         .zip(extents)
-        .filter_map(|(body, extent)| Some(((*extent)?, half_thickness(body, spacing))))
+        .filter_map(|(body, extent)| {
+            let half = half_thickness(body, spacing);
+            Some((solid::within((*extent)?, reachable(body, &scene.domain, support + half)), half))
+        })
         .map(|((low, high), half)| {
             let cell = cell_size((low, high), spacing, support, half);
             let nodes = ((high - low + 2.0 * (support + half + 2.0 * cell)) / cell).ceil() + 1.0;
@@ -287,6 +298,19 @@ pub(crate) fn forecast(scene: &scene::Scene, extents: &[Option<(Vec3, Vec3)>], p
         })
         .sum();
     maps + particles * 2 * size_of::<Contact>() as u64
+}
+
+/// The box in the frame of a static body that fluid can reach, with a margin; `None` for a body that moves.
+fn reachable(body: &scene::Body, domain: &scene::Domain, margin: f32) -> Option<(Vec3, Vec3)> {
+    if body.motion != Motion::Static {
+        return None;
+    }
+    let (low, high) = (0..8).fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), k| {
+        let pick = |axis: usize| if k >> axis & 1 == 0 { domain.min[axis] } else { domain.max[axis] };
+        let x = body.mesh.rotation.conjugate() * (Vec3::new(pick(0), pick(1), pick(2)) - body.mesh.position);
+        (low.min(x), high.max(x))
+    });
+    Some((low - margin, high + margin))
 }
 
 /// Half the thickness in m of an open mesh.

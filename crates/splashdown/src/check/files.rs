@@ -3,7 +3,7 @@
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
 
-use super::Built;
+use super::{Built, motion};
 use crate::bodies::{check_scale, mesh_of, owner};
 use crate::flow::{LoadedFlow, outlet};
 use crate::sample::{self, Added, Filler, SampleError, Sources, file_title, mesh_title, typical_spacing};
@@ -99,6 +99,8 @@ fn check_bodies<'a>(
                 }
                 let body = Placed::new(body, &mesh);
                 warn_outside(scene, &body, &mesh, section);
+                let reach = mesh.vertices.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
+                motion::check(scene, body.body, (body.low, body.high), reach, section);
                 placed.push(body);
                 meshes.push(mesh);
             }

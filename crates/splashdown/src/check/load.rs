@@ -32,6 +32,12 @@ impl Scene {
                 "name a file that ends in .toml",
             ));
         }
+        if path.metadata().is_ok_and(|data| !data.is_file()) {
+            return Err(refuse(
+                "this is a pipe or a device, not a scene file".into(),
+                "save its text to a file that ends in .toml",
+            ));
+        }
         let opened = File::open(path).map_err(|error| {
             let hint = match error.kind() {
                 std::io::ErrorKind::NotFound => not_found_hint(path),

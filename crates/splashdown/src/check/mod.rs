@@ -8,7 +8,9 @@ mod built;
 mod derived;
 mod files;
 mod load;
+mod motion;
 mod reference;
+mod shapes;
 #[cfg(test)]
 mod tests;
 mod warnings;
@@ -16,3 +18,4 @@ mod warnings;
 pub(crate) use built::Built;
 pub use built::count;
 pub use reference::reference;
+pub use shapes::{Closing, Interpretation, interpretations};

@@ -90,7 +90,7 @@ impl<'a> Filler<'a> {
     /// many.
     pub fn mesh(&mut self, what: &str, filled: &FluidMesh, mesh: &Mesh) -> Result<Added, SampleError> {
         let source = &filled.mesh;
-        let solid = solid_of(what, source, mesh, self.domain, self.spacing)?;
+        let solid = solid_of(what, source, mesh, self.domain, self.spacing, filled.shell)?;
         let place = |v: &[f32; 3]| source.position + source.rotation * Vec3::from(*v);
         let (low, high) = bounds(solid.mesh.vertices.iter().map(place));
         let slack = SLACK * self.spacing;

@@ -179,6 +179,8 @@ pub struct FluidMesh {
     pub mesh: MeshSource,
     /// Initial velocity in m/s.
     pub velocity: Vec3,
+    /// `Some(false)`: the mesh is filled although it has large holes.
+    pub shell: Option<bool>,
 }
 
 /// A file of particles at t = 0.

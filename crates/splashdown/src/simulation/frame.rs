@@ -133,7 +133,7 @@ impl Simulation {
         Ok(None)
     }
 
-    async fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
+    pub(super) async fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
         let last = self.stats;
         let passed =
             if state.done != 0 { state.frame_duration } else { state.frame_duration - state.remaining };

@@ -7,6 +7,7 @@ mod foam;
 mod frame;
 mod inventory;
 mod live;
+mod motion;
 #[cfg(test)]
 mod part_tests;
 mod phases;

@@ -88,6 +88,12 @@ impl Bvh {
 
     /// The generalised winding number (Jacobson et al. 2013; far clusters as dipoles: Barill et al. 2018).
     pub fn winding(&self, x: Vec3) -> f32 {
+        self.winding_to(x, FAR)
+    }
+
+    /// As [`winding`](Self::winding), with clusters as dipoles from this multiple of their radius. The error falls with
+    /// its square.
+    pub fn winding_to(&self, x: Vec3, far: f32) -> f32 {
         let mut sum = 0.0;
         let mut stack = [0u32; 64];
         let mut depth = 1;
@@ -96,7 +102,7 @@ impl Bvh {
             let node = &self.nodes[stack[depth] as usize];
             let away = node.center - x;
             let r = away.length();
-            if r > FAR * node.radius {
+            if r > far * node.radius {
                 sum += node.dipole.dot(away) / (r * r * r);
             } else if node.count > 0 {
                 for t in &self.triangles[node.first as usize..(node.first + node.count) as usize] {

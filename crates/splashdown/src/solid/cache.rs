@@ -10,8 +10,8 @@ use super::field::DistanceField;
 use super::{RepairReport, SolidSettings};
 
 /// Version of the file contents. Increase it when the same inputs give a different solid.
-const VERSION: u32 = 2;
-const MAGIC: &[u8; 8] = b"SDSOLID2";
+const VERSION: u32 = 3;
+const MAGIC: &[u8; 8] = b"SDSOLID3";
 
 /// The default cache folder of solids: `splashdown/solids` in the user's cache folder, if there is one.
 pub fn default_cache_folder() -> Option<PathBuf> {
@@ -30,6 +30,9 @@ pub(super) fn file(folder: &Path, mesh: &Mesh, settings: &SolidSettings) -> Path
     hash.add(bytemuck::cast_slice(&mesh.triangles));
     for number in [settings.cell_size, settings.support_radius, settings.half_thickness] {
         hash.add(&number.to_le_bytes());
+    }
+    if let Some((low, high)) = settings.region {
+        hash.add(bytemuck::cast_slice(&[low, high]));
     }
     hash.add(&settings.kernels.id().to_le_bytes());
     hash.add(&[match settings.shell {
@@ -76,7 +79,8 @@ struct Header {
 
 /// Reads a solid; `None` if the file is missing or damaged.
 pub(super) fn load(path: &Path) -> Option<(Mesh, RepairReport, DistanceField)> {
-    let bytes = fs::read(path).ok()?;
+    // Anything else in the folder of the cache could be endless.
+    let bytes = path.metadata().is_ok_and(|data| data.is_file()).then(|| fs::read(path).ok())??;
     let (content, sum) = bytes.split_last_chunk::<16>()?;
     if *sum != hash_of(content).to_le_bytes() {
         return None;

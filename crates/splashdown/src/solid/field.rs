@@ -54,6 +54,30 @@ impl DistanceField {
         field
     }
 
+    /// Adds sheets with a thickness.
+    pub(super) fn add_sheets(&mut self, sheets: &Bvh, half_thickness: f32) {
+        let [nx, ny, _] = self.nodes;
+        let nodes: Vec<f32> = self
+            .values
+            .par_iter()
+            .enumerate()
+            .map(|(k, value)| {
+                let k = k as u32;
+                let x = self.node(UVec3::new(k % nx, k / nx % ny, k / (nx * ny)));
+                // Only a sheet that is nearer than the solid changes the value.
+                let most = (value.x + half_thickness).max(0.0);
+                value.x.min(sheets.distance(x, most) - half_thickness)
+            })
+            .collect();
+        self.values = nodes.into_iter().map(Vec2::splat).collect();
+    }
+
+    /// Whether a point is within the grid.
+    pub(super) fn covers(&self, x: Vec3) -> bool {
+        let last = UVec3::from_array(self.nodes) - UVec3::ONE;
+        x.cmpge(self.min).all() && x.cmple(self.node(last)).all()
+    }
+
     /// The distances of up to `BLOCK` planes of nodes, starting at `first_z`.
     fn slab(&self, bvh: &Bvh, first_z: u32, band: f32, half_thickness: Option<f32>) -> Vec<f32> {
         let [nx, ny, nz] = self.nodes;

@@ -3,7 +3,8 @@
 //! *How it works.* The mesh is repaired first; [`RepairReport`] lists the changes. The distance to the
 //! nearest triangle is then computed on the nodes of a grid with a bounding volume hierarchy. The sign comes
 //! from the generalised winding number (Jacobson et al. 2013), which tolerates holes, duplicate faces and
-//! open seams. A mesh whose holes are too large becomes a shell: a sheet with a thickness. Finally each node
+//! open seams. A mesh whose holes are too large becomes a shell: a sheet with a thickness; open fins of a solid
+//! become sheets, too (`openness`). Finally each node
 //! gets the effective wall distance, which describes the fraction of the kernel that the solid fills
 //! ([`DistanceField`]). The result is cached on disk under a hash of its inputs.
 //!
@@ -14,6 +15,7 @@ mod bvh;
 mod cache;
 mod field;
 mod mass;
+mod openness;
 mod repair;
 mod sample;
 
@@ -43,6 +45,8 @@ pub struct SolidSettings {
     pub half_thickness: f32,
     /// Whether the mesh is a shell; `None` decides by the size of its holes.
     pub shell: Option<bool>,
+    /// The corners of the box, in the mesh's frame, in which distances are needed; `None`: around the whole mesh.
+    pub region: Option<(Vec3, Vec3)>,
     /// The folder in which solids are cached; `None` disables the cache.
     pub cache: Option<PathBuf>,
 }
@@ -199,17 +203,26 @@ fn make(
     if mesh.triangles.is_empty() {
         return Err(SolidError::Empty { given });
     }
-    let bounds = bounds(&mesh);
+    let mut bounds = within(bounds(&mesh), settings.region);
     let cells = (bounds.1 - bounds.0 + 2.0 * settings.support_radius) / settings.cell_size + 5.0;
     let nodes = cells.as_dvec3().element_product() as u64;
     if nodes > MAX_NODES {
         return Err(SolidError::TooLarge { nodes, cell_size: settings.cell_size });
     }
-    let triangles = mesh.triangles.iter().map(|t| t.map(|v| Vec3::from(mesh.vertices[v as usize]))).collect();
-    let bvh = Bvh::new(triangles);
+    let corners = |triangles: &[[u32; 3]]| -> Vec<[Vec3; 3]> {
+        triangles.iter().map(|t| t.map(|v| Vec3::from(mesh.vertices[v as usize]))).collect()
+    };
+    let (walls, fins) = mesh.triangles.split_at(mesh.triangles.len() - report.sheet_triangles as usize);
+    if !fins.is_empty() {
+        bounds = (bounds.0 - settings.half_thickness, bounds.1 + settings.half_thickness);
+    }
+    let bvh = Bvh::new(corners(walls));
     let half = report.shell.then_some(settings.half_thickness);
     let mut field =
         DistanceField::new(&bvh, bounds, settings.cell_size, settings.support_radius, half, progress);
+    if !fins.is_empty() {
+        field.add_sheets(&Bvh::new(corners(fins)), settings.half_thickness);
+    }
     field.fill_effective(settings.support_radius, settings.kernels, progress);
     Ok((mesh, report, field))
 }
@@ -240,4 +253,12 @@ pub(crate) fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     mesh.vertices.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &v| {
         (low.min(Vec3::from(v)), high.max(Vec3::from(v)))
     })
+}
+
+/// The part of a box in a region; a box outside of the region becomes its nearest side.
+pub(crate) fn within((low, high): (Vec3, Vec3), region: Option<(Vec3, Vec3)>) -> (Vec3, Vec3) {
+    match region {
+        Some((min, max)) => (low.clamp(min, max), high.clamp(min, max)),
+        None => (low, high),
+    }
 }

@@ -3,10 +3,11 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{IVec3, Vec3};
 use splashdown_io::Mesh;
 
 use super::bvh::{Bvh, solid_angle};
+use super::openness::Openness;
 
 /// The problems found in a mesh and the repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -29,6 +30,10 @@ pub struct RepairReport {
     pub pieces: u32,
     /// True if the mesh is treated as a sheet with a thickness rather than a solid.
     pub shell: bool,
+    /// The estimated missing part of the surface in thousandths, if the mesh is open and `shell` was not given.
+    pub missing: u32,
+    /// Triangles of open fins of a solid, which are treated as sheets. They are the last ones of the repaired mesh.
+    pub sheet_triangles: u32,
 }
 
 impl fmt::Display for RepairReport {
@@ -46,14 +51,19 @@ impl fmt::Display for RepairReport {
                 write!(f, ", {count} {what}")?;
             }
         }
-        f.write_str(if self.shell { "; treated as a shell" } else { "; treated as a solid" })
+        if self.missing > 0 {
+            write!(f, ", about {:.1} % missing", f64::from(self.missing) / 10.0)?;
+        }
+        f.write_str(if self.shell { "; treated as a shell" } else { "; treated as a solid" })?;
+        match self.sheet_triangles {
+            0 => Ok(()),
+            count => write!(f, " with open fins ({count} triangles) as sheets"),
+        }
     }
 }
 
 /// Vertices nearer to each other than this fraction of the mesh's diagonal are merged.
 const WELD: f32 = 1e-6;
-/// A mesh is a shell if its holes have more than this fraction of its area.
-const OPEN: f64 = 0.08;
 
 /// Repairs a mesh. `shell` overrides the decision between solid and shell.
 pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
@@ -81,8 +91,15 @@ pub fn repair(mesh: &Mesh, shell: Option<bool>) -> (Mesh, RepairReport) {
     report.boundary_edges = edges.values().filter(|list| list.len() == 1).count() as u32;
     report.non_manifold_edges = edges.values().filter(|list| list.len() > 2).count() as u32;
     let pieces = orient(&vertices, &mut triangles, &edges, &mut report.flipped);
-    report.pieces = pieces;
-    report.shell = shell.unwrap_or_else(|| hole_fraction(&vertices, &triangles) > OPEN);
+    report.pieces = pieces.len() as u32;
+    report.shell = shell.unwrap_or(false);
+    if shell.is_none() && report.boundary_edges > 0 {
+        let open = Openness::of(&vertices, &triangles, &pieces, &edges);
+        report.shell = open.is_shell;
+        triangles = open.fins_last(triangles);
+        report.sheet_triangles = open.fins;
+        report.missing = open.missing;
+    }
     let (vertices, triangles) = compact(&vertices, &triangles);
     (Mesh::new(vertices, triangles), report)
 }
@@ -119,7 +136,7 @@ fn weld(given: &[[f32; 3]]) -> (Vec<Vec3>, Vec<u32>) {
     (positions, indices)
 }
 
-type Edges = HashMap<[u32; 2], Vec<u32>>;
+pub(super) type Edges = HashMap<[u32; 2], Vec<u32>>;
 
 fn edges_of(triangles: &[[u32; 3]]) -> Edges {
     let mut edges: Edges = HashMap::new();
@@ -132,8 +149,8 @@ fn edges_of(triangles: &[[u32; 3]]) -> Edges {
     edges
 }
 
-/// Orients neighbouring triangles consistently and pieces outwards. Returns the number of pieces.
-fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped: &mut u32) -> u32 {
+/// Orients neighbouring triangles consistently and pieces outwards. Returns the triangles of each piece.
+fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped: &mut u32) -> Vec<Vec<u32>> {
     let mut piece_of = vec![u32::MAX; triangles.len()];
     let mut pieces: Vec<Vec<u32>> = Vec::new();
     let mut turned = vec![false; triangles.len()];
@@ -172,7 +189,7 @@ fn orient(vertices: &[Vec3], triangles: &mut [[u32; 3]], edges: &Edges, flipped:
     }
     face_outwards(vertices, triangles, &pieces, &mut turned);
     *flipped = turned.iter().filter(|&&t| t).count() as u32;
-    pieces.len() as u32
+    pieces
 }
 
 /// Reverses pieces that face inwards, in order of decreasing area. A piece that encloses a volume is oriented
@@ -258,46 +275,6 @@ fn face_outwards(vertices: &[Vec3], triangles: &mut [[u32; 3]], pieces: &[Vec<u3
             placed.extend(piece.iter().map(|&t| triangles[t as usize].map(corner)));
         }
     }
-}
-
-/// The area of the holes as a fraction of the mesh's area. The area of a hole is the vector area of its loop
-/// of open edges.
-fn hole_fraction(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
-    let place = |v: u32| vertices[v as usize].as_dvec3();
-    let mut area = 0.0;
-    let mut open: HashMap<u32, Vec<u32>> = HashMap::new();
-    let edges = edges_of(triangles);
-    for t in triangles {
-        let [a, b, c] = t.map(place);
-        area += 0.5 * (b - a).cross(c - a).length();
-        for k in 0..3 {
-            let [a, b] = [t[k], t[(k + 1) % 3]];
-            if edges[&[a.min(b), a.max(b)]].len() == 1 {
-                open.entry(a).or_default().push(b);
-                open.entry(b).or_default();
-            }
-        }
-    }
-    let mut done = HashSet::new();
-    let mut holes = 0.0;
-    let mut starts: Vec<u32> = open.keys().copied().collect();
-    starts.sort_unstable();
-    for start in starts {
-        // Connected open edges form one hole.
-        let mut stack = vec![start];
-        let (mut hole, origin) = (DVec3::ZERO, place(start));
-        while let Some(a) = stack.pop() {
-            if !done.insert(a) {
-                continue;
-            }
-            for &b in &open[&a] {
-                hole += 0.5 * (place(a) - origin).cross(place(b) - origin);
-                stack.push(b);
-            }
-        }
-        holes += hole.length();
-    }
-    if area > 0.0 { holes / area } else { 0.0 }
 }
 
 /// Removes vertices that no triangle uses.

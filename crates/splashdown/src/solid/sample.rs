@@ -42,7 +42,7 @@ pub(super) fn surface(mesh: &Mesh, field: &DistanceField, spacing: f32, depth: f
                 (u, v) = (1.0 - u, 1.0 - v);
             }
             let x = a + u * (b - a) + v * (c - a) + inwards;
-            if depth <= 0.0 || field.distance(x) < -0.9 * depth {
+            if field.covers(x) && (depth <= 0.0 || field.distance(x) < -0.9 * depth) {
                 candidates.push(x);
             }
             k += 1;

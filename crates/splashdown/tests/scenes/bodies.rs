@@ -192,3 +192,93 @@ fn paths_are_relative_to_the_folder_of_the_scene_file() {
     let scene = Scene::load(&path).expect("valid");
     assert_eq!(scene.bodies[0].mesh.shape, MeshShape::File(folder.path().join("models/a.obj")));
 }
+
+/// The warnings of a scene in a file with this body, whose mesh may be a model.
+fn warnings(domain: &str, body: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.toml");
+    let text = format!(
+        "[scene]\nname = \"a\"\nduration = 2\nframe_rate = 10\n[domain]\nmin = [0, 0, 0]\nmax = [2, 1, 1]\n{domain}\n\
+         [fluid]\nparticle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n\
+         [[body]]\nname = \"b\"\nmesh = \"cube\"\n{body}\n"
+    );
+    std::fs::write(&path, text).unwrap();
+    Scene::load(&path).unwrap().warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn motion_that_jumps_or_is_too_fast_is_reported() {
+    let scripted = |formula: &str| {
+        let body = format!(
+            "motion = \"scripted\"\nscale = 0.2\nposition = [1.5, 0.5, 0.5]\nmove = [{formula}, \"0\", \"0\"]"
+        );
+        warnings("", &body)
+    };
+    let jumps = scripted("\"0.2*floor(t)\"");
+    assert!(
+        jumps.iter().any(|text| text.contains("body \"b\" jumps by 0.2") && text.contains("at 1.0000 s")),
+        "{jumps:?}"
+    );
+    // Control: a smooth motion.
+    assert!(!scripted("\"0.2*sin(t)\"").iter().any(|text| text.contains("jumps")));
+}
+
+#[test]
+fn dynamic_bodies_that_do_not_fit_between_the_walls_are_reported() {
+    let dynamic = |domain: &str, scale: f32, x: f32| {
+        let body =
+            format!("motion = \"dynamic\"\ndensity = 500\nscale = {scale}\nposition = [{x}, 0.6, 0.5]");
+        warnings(domain, &body).into_iter().filter(|text| text.contains("wall")).collect::<Vec<_>>()
+    };
+    let large = dynamic("", 1.2, 1.0);
+    assert!(large.iter().any(|text| text.contains("does not fit") && text.contains("along z")), "{large:?}");
+    let beyond = dynamic("", 0.4, 1.9);
+    assert!(beyond.iter().any(|text| text.contains("0.100 m into the wall x_max")), "{beyond:?}");
+    assert_eq!(dynamic("", 0.4, 1.5), Vec::<String>::new());
+    // There is no wall at an open side.
+    assert_eq!(dynamic("open = [\"x_max\"]", 0.4, 1.9), Vec::<String>::new());
+}
+
+#[test]
+fn a_piston_that_compresses_fluid_is_reported() {
+    // The cube closes the cross-section of 1 m x 1 m and moves from x = 1 to x = `end`.
+    let piston = |domain: &str, end: f32| {
+        let stroke = 1.0 - end;
+        let body = format!(
+            "motion = \"scripted\"\nposition = [1.5, 0.5, 0.5]\nmove = [\"-{stroke}*min(t, 1)\", \"0\", \"0\"]"
+        );
+        warnings(domain, &body).into_iter().filter(|text| text.contains("closes")).collect::<Vec<_>>()
+    };
+    // Half of the volume is fluid.
+    let closed = piston("", 0.4);
+    assert!(
+        closed.iter().any(|text| text.contains("at x_min") && text.contains("cannot escape")),
+        "{closed:?}"
+    );
+    assert_eq!(piston("", 0.6), Vec::<String>::new());
+    assert_eq!(piston("open = [\"y_max\"]", 0.4), Vec::<String>::new());
+}
+
+/// An open box that is filled in spite of its hole.
+#[test]
+fn an_open_fluid_mesh_can_be_filled() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut cube = splashdown::models::build("cube").unwrap();
+    // Without its top.
+    cube.triangles.retain(|t| !t.iter().all(|&v| cube.vertices[v as usize][1] > 0.49));
+    splashdown_io::write_mesh(&folder.path().join("open.obj"), &cube).unwrap();
+    let load = |key: &str| {
+        let text = format!(
+            "[scene]\nname = \"a\"\nduration = 1\n[domain]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.1\n\
+             [[fluid.mesh]]\nmesh = \"open.obj\"\n{key}\n"
+        );
+        let path = folder.path().join("a.toml");
+        std::fs::write(&path, text).unwrap();
+        Scene::load(&path)
+    };
+    let refused = load("").unwrap_err().to_string();
+    assert!(refused.contains("open edges") && refused.contains("shell = false"), "{refused}");
+    assert_eq!(splashdown::check::count(&load("shell = false").unwrap()), 1000);
+    let refused = load("shell = true").unwrap_err().to_string();
+    assert!(refused.contains("encloses no volume"), "{refused}");
+}

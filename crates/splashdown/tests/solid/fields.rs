@@ -11,6 +11,7 @@ fn settings(cell_size: f32, support_radius: f32) -> SolidSettings {
         kernels: KernelPair::WendlandC2,
         half_thickness: cell_size,
         shell: None,
+        region: None,
         cache: None,
     }
 }

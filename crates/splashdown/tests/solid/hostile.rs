@@ -22,6 +22,7 @@ fn settings() -> SolidSettings {
         kernels: KERNELS,
         half_thickness: CELL,
         shell: None,
+        region: None,
         cache: None,
     }
 }
@@ -147,4 +148,88 @@ proptest! {
             Err(error) => prop_assert!(matches!(error, SolidError::Empty { .. }), "{error}"),
         }
     }
+}
+
+/// A ball of many triangles.
+fn ball() -> Mesh {
+    models::build("sphere").or_else(|| models::build("ball")).unwrap()
+}
+
+/// Whether a mesh without some of its triangles is a shell.
+fn is_shell(mesh: &Mesh, keep: impl Fn(usize, Vec3) -> bool) -> bool {
+    let middle = |t: &[u32; 3]| t.iter().map(|&v| Vec3::from(mesh.vertices[v as usize])).sum::<Vec3>() / 3.0;
+    let kept = mesh.triangles.iter().enumerate().filter(|(n, t)| keep(*n, middle(t))).map(|(_, t)| *t);
+    splashdown::solid::repair(&Mesh::new(mesh.vertices.clone(), kept.collect()), None).1.shell
+}
+
+/// More damage never turns a shell into a solid.
+#[test]
+fn the_rule_for_shells_is_monotonic_in_damage() {
+    // A number from 0 to 99 for each triangle, in no order.
+    let number = |n: usize, seed: usize| ((n * 2_654_435_761 + seed * 40_503) >> 7) % 100;
+    for (name, mesh) in [("ball", ball()), ("figure", models::build("figure").unwrap())] {
+        for seed in 0..2 {
+            let missing = [0, 1, 2, 3, 5, 8, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90];
+            let shells = missing.map(|part| is_shell(&mesh, |n, _| number(n, seed) >= part));
+            assert!(shells.is_sorted(), "{name}, seed {seed}: {shells:?}");
+            assert!(
+                !shells[2] && shells[6],
+                "{name}, seed {seed}: 2 % is a solid and 10 % a shell: {shells:?}"
+            );
+        }
+        // A growing hole from above.
+        let top = mesh.vertices.iter().map(|v| v[1]).fold(f32::MIN, f32::max);
+        let low = mesh.vertices.iter().map(|v| v[1]).fold(f32::MAX, f32::min);
+        let shells: Vec<bool> =
+            (0..20).map(|k| is_shell(&mesh, |_, x| x.y < top - (top - low) * 0.05 * k as f32)).collect();
+        assert!(shells.is_sorted(), "{name}: {shells:?}");
+        assert!(!shells[0] && shells[18], "{name}: {shells:?}");
+    }
+}
+
+/// A cube with a sheet that stands on it, without a thickness and open on three sides.
+#[test]
+fn an_open_fin_of_a_solid_is_a_sheet() {
+    let cube = block(Vec3::splat(-0.5), Vec3::splat(0.5));
+    let fin = Mesh::new(
+        vec![[-0.4, 0.5, 0.0], [0.4, 0.5, 0.0], [0.4, 1.2, 0.0], [-0.4, 1.2, 0.0]],
+        vec![[0, 1, 2], [0, 2, 3]],
+    );
+    let build =
+        |mesh: &Mesh, shell| Solid::build(mesh, &SolidSettings { shell, ..settings() }, &|_| {}).unwrap();
+    let solid = build(&joined(&cube, &fin), None);
+    assert!(!solid.report.shell && solid.report.sheet_triangles == 2, "{}", solid.report);
+    assert!(solid.report.to_string().contains("open fins (2 triangles) as sheets"));
+    let at = |x: f32, y: f32, z: f32| solid.field.distance(Vec3::new(x, y, z));
+    // Inside the cube, inside the sheet (half as thick as a cell on each side), and beside it.
+    assert!(at(0.0, 0.0, 0.0) < -0.4);
+    assert!((at(0.1, 0.9, 0.0) + CELL).abs() < 1e-3, "{}", at(0.1, 0.9, 0.0));
+    assert!((at(0.1, 0.9, 0.2) - (0.2 - CELL)).abs() < 1e-2, "{}", at(0.1, 0.9, 0.2));
+    // Control: as a solid the sheet has no thickness.
+    let without = build(&joined(&cube, &fin), Some(false));
+    assert!(without.report.sheet_triangles == 0 && without.field.distance(Vec3::new(0.1, 0.9, 0.0)) > -1e-3);
+    // The cube alone has no fins; the sheet alone is a shell.
+    assert_eq!(build(&cube, None).report.sheet_triangles, 0);
+    assert!(build(&fin, None).report.shell);
+}
+
+/// Distances are computed only in the region, where they are those of the whole field.
+#[test]
+fn a_region_limits_the_field() {
+    let slab = block(Vec3::new(-8.0, -0.25, -2.0), Vec3::new(8.0, 0.25, 2.0));
+    let build = |region| Solid::build(&slab, &SolidSettings { region, ..settings() }, &|_| {}).unwrap();
+    let whole = build(None);
+    let region = (Vec3::splat(-0.5), Vec3::splat(0.5));
+    let part = build(Some(region));
+    let nodes = |solid: &Solid| solid.field.nodes.iter().map(|&n| u64::from(n)).product::<u64>();
+    assert!(20 * nodes(&part) < nodes(&whole), "{} {}", nodes(&part), nodes(&whole));
+    for k in 0..1000 {
+        let x = Vec3::new((k % 10) as f32, (k / 10 % 10) as f32, (k / 100) as f32) / 9.0 - 0.5;
+        let (a, b) = (whole.field.distance(x), part.field.distance(x));
+        assert!((a - b).abs() < 1e-5, "{x}: {a} {b}");
+    }
+    // A region elsewhere gives a field without the solid.
+    let far = build(Some((Vec3::splat(20.0), Vec3::splat(21.0))));
+    assert!(far.field.values.iter().all(|value| value.x > 0.0));
+    assert!(part.sample_surface(0.1, 0.0).len() * 5 < whole.sample_surface(0.1, 0.0).len());
 }

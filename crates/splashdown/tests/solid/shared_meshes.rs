@@ -29,6 +29,7 @@ fn build(mesh: &Mesh, cells: f32) -> Solid {
         kernels: KernelPair::WendlandC2,
         half_thickness: cell_size,
         shell: None,
+        region: None,
         cache: None,
     };
     let begun = std::time::Instant::now();

@@ -76,6 +76,11 @@ static FLUID_MESH: Table = Table {
         POSITION,
         ROTATION,
         key("velocity", a_vector(1000.0, "m/s"), "Initial velocity.").default("[0.0, 0.0, 0.0]"),
+        key(
+            "shell",
+            Kind::Boolean,
+            "false fills a mesh in spite of large holes. Default: such a mesh is an error, because it has no inside.",
+        ),
     ],
 };
 

@@ -56,7 +56,18 @@ pub(super) fn read_block(section: &Section<'_>) -> Part<Block> {
 pub(super) fn read_fluid_mesh(section: &Section<'_>) -> Part<FluidMesh> {
     let mesh = read_mesh(section);
     let velocity = section.numbers("velocity");
-    Ok(FluidMesh { mesh: mesh?, velocity: velocity?.map_or(Vec3::ZERO, Vec3::from) })
+    let shell = section.boolean("shell");
+    if shell.as_ref().is_ok_and(|shell| *shell == Some(true)) {
+        let message =
+            format!("{} = true: a shell encloses no volume that could be filled", section.key_path("shell"));
+        return Err(section.complain(
+            "shell",
+            message,
+            "false",
+            "leave it out, or make the shell a [[body]]",
+        ));
+    }
+    Ok(FluidMesh { mesh: mesh?, velocity: velocity?.map_or(Vec3::ZERO, Vec3::from), shell: shell? })
 }
 
 pub(super) fn read_fluid_file(section: &Section<'_>) -> Part<FluidFile> {

@@ -1,0 +1,23 @@
+"""Types of results."""
+
+from __future__ import annotations
+
+import os
+from typing import TypedDict
+
+
+class RunFiles(TypedDict, total=False):
+    """What `splashdown.run` returns. The last three are absent if the run was stopped."""
+
+    #: The output folder.
+    folder: os.PathLike[str]
+    #: The number of complete frames, including the initial one.
+    frames: int
+    #: All files of the run.
+    files: list[os.PathLike[str]]
+    #: Steps of this run.
+    steps: int
+    #: Wall time in s.
+    wall: float
+    #: The largest density error of all frames.
+    density_error: float

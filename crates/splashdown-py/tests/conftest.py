@@ -1,0 +1,48 @@
+"""What the tests share: a small scene, and names for the examples of the documentation."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy
+import pytest
+
+import splashdown
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+
+def column(**changes: object) -> splashdown.Scene:
+    """120 particles that collapse."""
+    scene = splashdown.Scene(
+        scene={"name": "column", "duration": 0.5},
+        domain={"min": [0, 0, 0], "max": [1.6, 1.0, 0.5]},
+        fluid={"particle_spacing": 0.1, "block": [{"position": [0, 0, 0], "size": [0.4, 0.6, 0.5]}]},
+    )
+    return scene.replace(changes) if changes else scene
+
+
+@pytest.fixture(name="scene")
+def scene_fixture() -> splashdown.Scene:
+    return column()
+
+
+@pytest.fixture
+def simulation(scene: splashdown.Scene) -> splashdown.Simulation:
+    return splashdown.Simulation(scene, device="cpu")
+
+
+@pytest.fixture
+def cloud() -> numpy.ndarray:
+    """1,000 points in a unit cube."""
+    return numpy.random.default_rng(1).random((1000, 3), dtype=numpy.float32)
+
+
+def optional(name: str) -> object:
+    """An optional package. A test without it is skipped loudly."""
+    try:
+        return __import__(name)
+    except ImportError as error:
+        print(f"SKIPPED: {name} is not installed ({error})", file=sys.__stderr__)
+        pytest.skip(f"{name} is not installed")

@@ -1,0 +1,235 @@
+"""Parameter studies on one machine."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from conftest import column, optional
+
+import splashdown
+from splashdown import ParameterError, SceneError, _worker
+
+pandas = pytest.importorskip("pandas", reason="the table of results needs pandas")
+
+
+def digest(frame: splashdown.Frame) -> dict[str, object]:
+    """Two numbers, and the bits of all positions."""
+    positions = frame.particles.positions
+    bits = hashlib.sha256(positions.tobytes()).hexdigest()
+    return {"front": positions[:, 0].max(), "height": float(positions[:, 1].max()), "bits": bits}
+
+
+def digest_slowly(frame: splashdown.Frame) -> dict[str, object]:
+    time.sleep(0.05)
+    return digest(frame)
+
+
+def killed_once(frame: splashdown.Frame) -> dict[str, object]:
+    """The process is killed in frame 7 of its first attempt."""
+    flag = Path(os.environ["SPLASHDOWN_TEST_FLAG"])
+    if frame.index == 7 and not flag.exists():
+        flag.write_text("")
+        os.kill(os.getpid(), signal.SIGKILL if os.name != "nt" else signal.SIGTERM)
+    return digest(frame)
+
+
+def always_killed(frame: splashdown.Frame) -> dict[str, object]:
+    os.kill(os.getpid(), signal.SIGTERM)
+    raise AssertionError("unreachable")
+
+
+def broken(frame: splashdown.Frame) -> dict[str, object]:
+    return {"mesh": [1, 2, 3]}
+
+
+OPTIONS = {"device": "cpu", "frames": 10, "workers": 2}
+
+
+def test_a_grid_with_failures(tmp_path: Path) -> None:
+    changes = {"fluid.viscosity": [0.001, 0.1], "fluid.particle_spacing": [0.1, -1]}
+    seen: list[tuple[int, int]] = []
+    table = splashdown.sweep(
+        column(), changes, digest, folder=tmp_path, progress=lambda *now: seen.append(now), **OPTIONS
+    )
+    assert isinstance(table, pandas.DataFrame) and len(table) == 4
+    assert list(table["status"]) == ["finished", "failed", "finished", "failed"]
+    assert "fluid.particle_spacing is -1" in table["reason"][1] and table["reason"][0] == ""
+    assert list(table["fluid.viscosity"]) == [0.001, 0.001, 0.1, 0.1]
+    assert table["front"][0] > 0.4 and table["frame"][0] == 10 and table["time"][0] == pytest.approx(0.2)
+    assert seen[-1] == (4, 4)
+    frames = pandas.read_csv(Path(table["folder"][0]) / "frames.csv")
+    assert list(frames["frame"]) == list(range(11)) and frames["front"].is_monotonic_increasing
+    assert frames["front"].iloc[-1] == table["front"][0]
+    # A second call computes nothing again.
+    before = [path.stat().st_mtime_ns for path in sorted(tmp_path.rglob("frames.csv"))]
+    again = splashdown.sweep(column(), changes, digest, folder=tmp_path, **OPTIONS)
+    assert [path.stat().st_mtime_ns for path in sorted(tmp_path.rglob("frames.csv"))] == before
+    assert list(again["bits"][[0, 2]]) == list(table["bits"][[0, 2]])
+    # Another function, or another scene, is another study.
+    other = splashdown.sweep(column(), [{"fluid.viscosity": 0.001}], folder=tmp_path, **OPTIONS)
+    assert "front" not in other and other["particles"][0] == 120
+
+
+def test_a_lost_process_continues_from_its_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPLASHDOWN_TEST_FLAG", str(tmp_path / "killed"))
+    options = {**OPTIONS, "checkpoint_every": 5}
+    table = splashdown.sweep(column(), [{}], killed_once, folder=tmp_path / "lost", **options)
+    whole = splashdown.sweep(column(), [{}], digest, folder=tmp_path / "whole", **options)
+    assert (tmp_path / "killed").exists(), "control: the process was killed"
+    assert table["status"][0] == "finished", table["reason"][0]
+    assert table["resumed_from"][0] == 5 and whole["resumed_from"][0] == 0
+    assert table["bits"][0] == whole["bits"][0]
+    rows = [(tmp_path / name / "run_0000/frames.csv").read_text() for name in ("lost", "whole")]
+    assert rows[0] == rows[1]
+    assert not list(tmp_path.rglob("*.splashdown")), "the checkpoint is deleted at the end"
+
+
+def test_a_run_that_kills_every_process_fails_alone(tmp_path: Path) -> None:
+    table = splashdown.sweep(column(), [{}], always_killed, folder=tmp_path, retries=1, **OPTIONS)
+    assert table["status"][0] == "failed" and "its process was lost 2 times" in table["reason"][0]
+
+
+def test_wrong_results_of_the_function(tmp_path: Path) -> None:
+    table = splashdown.sweep(column(), [{}], broken, folder=tmp_path, **OPTIONS)
+    assert "returned a list as 'mesh'; it must be a number or a text" in table["reason"][0]
+
+
+def test_wrong_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def sweep(**options: object) -> None:
+        splashdown.sweep(column(), [{}], digest, folder=tmp_path, **options)  # type: ignore[arg-type]
+
+    for options, message in (
+        ({"engine": "threads"}, 'it must be "processes" or "ray"'),
+        ({"workers": 0}, "workers is 0; it must be at least 1"),
+        ({"retries": -1}, "retries is -1"),
+        ({"checkpoint_every": -1}, "checkpoint_every is -1"),
+        ({"ray_options": {"num_gpus": 1}}, 'ray_options is an option of engine="ray"'),
+    ):
+        with pytest.raises(ParameterError, match=message):
+            sweep(**options)
+    simulation = splashdown.Simulation(column(), device="cpu")
+    with pytest.raises(ParameterError, match="keep cannot be sent to another process.*and no open files"):
+        splashdown.sweep(column(), [{}], lambda frame: {"n": len(simulation)}, folder=tmp_path)
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(splashdown.MissingPackageError, match=r"pip install 'splashdown\[ray\]'"):
+        sweep(engine="ray")
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(splashdown.MissingPackageError, match=r"pip install 'splashdown\[sweep\]'"):
+        sweep()
+
+
+def test_workers_with_another_version_or_without_the_files(tmp_path: Path) -> None:
+    task = {"version": "0.0.1", "text": "", "keep": digest, "source": None}
+    outcome = _worker.compute_run(task)
+    assert outcome["status"] == "failed"
+    assert "this worker has Splashdown" in outcome["reason"] and "0.0.1" in outcome["reason"]
+    assert "install the same version" in outcome["reason"]
+
+    (tmp_path / "points.npy").write_bytes(b"")
+    sections = column().to_dict()
+    sections["fluid"]["file"] = [{"file": "points.npy"}]
+    text = splashdown.Scene(sections).text
+    path = tmp_path / "scene.toml"
+    task = {
+        "version": splashdown.__version__, "text": text, "name": "scene", "source": str(path), "keep": digest,
+        "folder": str(tmp_path / "run"), "key": "", "device": "cpu", "frames": 1, "surface": False, "foam": False,
+        "checkpoint_every": 0,
+    }
+    (tmp_path / "points.npy").unlink()
+    with pytest.raises(SceneError):
+        splashdown.Scene._restore(text, "scene", path)
+    outcome = _worker.compute_run(task)
+    assert "points.npy" in outcome["reason"] and "under the same paths" in outcome["reason"]
+
+
+def test_the_frames_of_a_run(tmp_path: Path) -> None:
+    splashdown.run(column(), tmp_path / "out", frames=3, formats=["npz"], pictures=[], surface=False, device="cpu")
+    job = splashdown.ReconstructSurface(tmp_path / "mesh", 0.1, smoothing=5, device="cpu")
+    table = splashdown.map_frames(tmp_path / "out/particles/*.npz", job, workers=2)
+    assert list(table["status"]) == ["finished"] * 4
+    assert all(splashdown.read_mesh(path).is_watertight for path in table["mesh"])
+    (tmp_path / "broken.npz").write_bytes(b"nothing")
+    table = splashdown.map_frames([tmp_path / "broken.npz"], job, workers=1)
+    assert table["status"][0] == "failed" and "broken.npz" in table["reason"][0]
+    with pytest.raises(ParameterError, match="no file matches"):
+        splashdown.map_frames(tmp_path / "*.none", job)
+
+
+def test_the_pictures_of_a_run(tmp_path: Path) -> None:
+    """They are those that the run draws."""
+    pyplot = pytest.importorskip("matplotlib.pyplot", reason="reads PNG files")
+    scene = column(**{"output.picture_size": [320, 180]})
+    try:
+        splashdown.Painter(scene)
+    except splashdown.DeviceError as error:
+        assert os.environ.get("CI") != "true", error
+        print(f"SKIPPED: pictures cannot be drawn: {error}", file=sys.__stderr__)
+        pytest.skip("pictures cannot be drawn")
+    kinds = {"surface": "mesh", "particles": "particles"}
+    splashdown.run(scene, tmp_path / "out", frames=10, formats=["ply"], pictures=list(kinds), film=False, device="cpu")
+    for kind, folder in kinds.items():
+        job = splashdown.DrawPicture(tmp_path / "drawn", scene, kind)
+        table = splashdown.map_frames(tmp_path / "out" / folder / "*.ply", job, workers=1)
+        assert list(table["status"]) == ["finished"] * 11, list(table["reason"])
+        drawn = [pyplot.imread(path) for path in table["picture"]]
+        of_run = [pyplot.imread(tmp_path / "out/pictures" / Path(path).name) for path in table["picture"]]
+        deviation = max(abs(one - other).mean() for one, other in zip(drawn, of_run))
+        control = abs(drawn[0] - drawn[10]).mean()
+        assert control > 1e-3, "control: the pictures of two frames differ"
+        # Surfaces are shaded with other normals, which changes colours but no edges.
+        assert deviation <= (0 if kind == "particles" else control / 4), (kind, deviation, control)
+    painter = splashdown.Painter(scene, "surface")
+    with pytest.raises(ParameterError, match="this painter draws surfaces"):
+        painter.draw(splashdown.Simulation(scene, device="cpu").particles)
+    with pytest.raises(ParameterError, match='kind has "film"; allowed are'):
+        splashdown.Painter(scene, "film")  # type: ignore[arg-type]
+
+
+def test_a_ray_cluster_that_loses_a_node(tmp_path: Path) -> None:
+    """Two nodes compute four runs; one of them is killed in the middle. Its run continues on the other."""
+    optional("ray")
+    import ray
+    from ray.cluster_utils import Cluster
+
+    whole = splashdown.sweep(column(), {"fluid.viscosity": [0.001, 0.1]}, digest, folder=tmp_path / "whole", **OPTIONS)
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
+    nodes = [cluster.add_node(num_cpus=1) for _ in range(2)]
+    ray.init(address=cluster.address, log_to_driver=False, runtime_env={"env_vars": {"PYTHONPATH": str(Path(__file__).parent)}})
+    killed: list[str] = []
+
+    def kill() -> None:
+        """Kills a node as soon as both runs have a checkpoint."""
+        deadline = time.monotonic() + 120
+        while time.monotonic() < deadline:
+            if len(list((tmp_path / "ray").rglob("*.splashdown"))) == 2:
+                cluster.remove_node(nodes[0], allow_graceful=False)
+                killed.append(nodes[0].node_id)
+                return
+            time.sleep(0.01)
+
+    try:
+        killer = threading.Thread(target=kill)
+        killer.start()
+        table = splashdown.sweep(
+            column(), {"fluid.viscosity": [0.001, 0.1]}, digest_slowly, folder=tmp_path / "ray", engine="ray",
+            device="cpu", frames=40, checkpoint_every=2, retries=3,
+        )
+        killer.join()
+    finally:
+        ray.shutdown()
+        cluster.shutdown()
+    assert killed, "control: a node was killed"
+    assert list(table["status"]) == ["finished"] * 2, list(table["reason"])
+    assert (table["resumed_from"] > 0).sum() == 1, list(table["resumed_from"])
+    uninterrupted = splashdown.sweep(
+        column(), {"fluid.viscosity": [0.001, 0.1]}, digest, folder=tmp_path / "long", device="cpu", frames=40, workers=2
+    )
+    assert list(table["bits"]) == list(uninterrupted["bits"])
+    assert list(table["bits"]) != list(whole["bits"]), "control: the bits differ at another time"
