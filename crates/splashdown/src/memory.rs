@@ -236,7 +236,7 @@ mod tests {
         assert!(each <= 160.0, "{each} bytes");
     }
 
-    fn scene(particle_spacing: f64, density: &str) -> Scene {
+    fn dense(particle_spacing: f64, density: &str) -> Scene {
         let text = format!(
             "[scene]\nname = \"box\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
              particle_spacing = {particle_spacing}\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n\
@@ -259,16 +259,16 @@ mod tests {
         // Control: sixty million do not fit.
         assert!(memory_forecast(&scene(0.0032)) > budget);
         // Their largest buffer exceeds the size that every device supports.
-        assert!(check_particles(10_000_000, 128 << 20, &scene(0.00584, "summation")).is_err());
-        assert!(check_particles(10_000_000, 160_000_000, &scene(0.00584, "summation")).is_ok());
+        assert!(check_particles(10_000_000, 128 << 20, &dense(0.00584, "summation")).is_err());
+        assert!(check_particles(10_000_000, 160_000_000, &dense(0.00584, "summation")).is_ok());
         // A correction takes twice as much as a position.
-        assert!(check_particles(10_000_000, 160_000_000, &scene(0.00584, "continuity")).is_err());
-        assert!(check_particles(10_000_000, 320_000_000, &scene(0.00584, "continuity")).is_ok());
+        assert!(check_particles(10_000_000, 160_000_000, &dense(0.00584, "continuity")).is_err());
+        assert!(check_particles(10_000_000, 320_000_000, &dense(0.00584, "continuity")).is_ok());
     }
 
     #[test]
     fn the_reported_count_and_spacing_fit() {
-        let error = check_particles(20_000_000, 128 << 20, &scene(0.01, "summation")).unwrap_err();
+        let error = check_particles(20_000_000, 128 << 20, &dense(0.01, "summation")).unwrap_err();
         assert!(matches!(error, SimulationError::TooMany { allowed: 8_388_608, .. }), "{error}");
         let text = error.to_string();
         assert!(text.contains("at most 8388608 fit") && text.contains("134 MB"), "{text}");

@@ -212,8 +212,8 @@ fn continuity(name: &str, kernels: Kernels, params: Params, bodies: bool) -> Cas
 /// Contributions of bodies to the matrices of half of the particles.
 fn boundary_matrices(world: &World) -> Vec<Vec4> {
     let vectors = |i: usize| {
-        let n = world.normals[i].truncate().normalize();
-        let part = if i % 2 == 0 { 0.3 } else { 0.0 };
+        let n = world.normals[i].truncate().normalize_or_zero();
+        let part = if i.is_multiple_of(2) { 0.3 } else { 0.0 };
         let others = glam::Vec3::new(n.x * n.y, n.x * n.z, n.y * n.z);
         [(part * n * n).extend(0.1 * part), (part * others).extend(0.0)]
     };
