@@ -133,7 +133,8 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         &mut solver.artificial_viscosity,
         0.0..=0.5,
         "damping",
-        "Factor alpha of Monaghan's artificial viscosity: 0 does not damp noise, 0.1 damps strongly",
+        "Factor alpha of Monaghan's artificial viscosity: 0.1 damps strongly. Noise needs some with summed densities, and \
+         none with the continuity equation",
     );
     slider(&mut solver.wall_friction, 0.0..=1.0, "wall friction", "0: free slip, 1: no slip");
     if changed {

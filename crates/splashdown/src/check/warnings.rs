@@ -73,7 +73,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             "probe {:?} measures pressure, but with density = \"summation\" the pressure near bodies is too low",
             gauge.name
         );
-        solver.warn("density", message, "set density = \"continuity\" under [solver] to measure pressure");
+        solver.warn("density", message, "set accuracy = \"engineering\" under [solver] to measure pressure");
     }
     let spacing = f64::from(scene.fluid.particle_spacing);
     for (index, block) in scene.fluid.blocks.iter().enumerate() {

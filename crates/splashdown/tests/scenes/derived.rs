@@ -1,7 +1,7 @@
 //! Derived values of a scene, compared with values calculated by hand.
 
 use glam::Vec3;
-use splashdown::scene::{Derived, Scene};
+use splashdown::scene::{DensityMode, Derived, NegativePressure, Scene};
 
 use crate::{CUBE, changed, parse};
 
@@ -99,4 +99,22 @@ fn an_oscillating_domain_adds_the_opposite_acceleration() {
     let tank = (place(t + step) - 2.0 * place(t) + place(t - step)) / (step * step);
     assert!((f64::from(oscillation.acceleration(t).x) + tank).abs() < 1e-3 * tank.abs());
     assert_eq!(oscillation.acceleration(t) * Vec3::new(0.0, 1.0, 1.0), Vec3::ZERO);
+}
+
+#[test]
+fn engineering_accuracy_selects_the_settings_for_pressures() {
+    let with = |keys: &str| {
+        parse(&CUBE.replace("[solver]", &format!("[solver]\naccuracy = \"engineering\"\n{keys}")))
+    };
+    let solver = with("").unwrap().solver;
+    assert_eq!(solver.density, DensityMode::Continuity);
+    assert_eq!((solver.support_ratio, solver.artificial_viscosity), (3.0, 0.0));
+    assert_eq!(solver.negative_pressure, NegativePressure::Keep);
+    // Explicit keys take precedence, unless they contradict the purpose.
+    assert_eq!(with("support_ratio = 2.5").unwrap().solver.support_ratio, 2.5);
+    let error = with("density = \"summation\"").unwrap_err().to_string();
+    assert!(error.contains("does not work with accuracy = \"engineering\""), "{error}");
+    // Control: the defaults are others.
+    let usual = parse(CUBE).unwrap().solver;
+    assert_eq!((usual.density, usual.support_ratio), (DensityMode::Summation, 2.0));
 }
