@@ -235,7 +235,8 @@ fn drive() -> Case {
         };
         if let Some(nozzle) = nozzles[..2].iter().find(|nozzle| holds(nozzle)) {
             let change = nozzle.speed * nozzle.direction - world.velocities[i].xyz();
-            *a = (change / world.state.dt).extend(0.0);
+            // The fourth component keeps the particle from being shifted.
+            *a = (change / world.state.dt).extend(1.0);
             driven += 1;
         }
     }

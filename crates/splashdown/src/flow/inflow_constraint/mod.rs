@@ -3,7 +3,8 @@
 //!
 //! Particles are created at rest density behind others of the same lattice, more than a support radius before the
 //! outlet. Until they reach the outlet no other force acts on them: their kernel support is incomplete at the back face,
-//! and pressure forces would scatter them.
+//! and pressure forces would scatter them. The fourth component of the acceleration is 1, which exempts them from the
+//! shifting.
 
 mod cpu;
 
