@@ -5,7 +5,7 @@
 //!              + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
 //! ```
 //!
-//! with v = v_i - v_j and h = H / 2, and the matrix B_i of [`correction`](super::correction), for which the
+//! with v = v_i - v_j and h = H / 2, and the matrix B_i of `passes::correction`, for which the
 //! divergence of a linear velocity field is exact. The second term is the diffusion of Molteni & Colagrossi (2009),
 //! where psi_ij is rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the images
 //! behind walls. A fragment then loses its tension (`without_tension`).

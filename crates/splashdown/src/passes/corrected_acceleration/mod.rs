@@ -3,7 +3,7 @@
 //! Per neighbour, with V = m / rho0, x = x_i - x_j, v = v_i - v_j and h = H / 2:
 //!
 //! * pressure: -m (p_i/rho_i^2 B_i + p_j/rho_j^2 B_j) grad W, with the matrices of
-//!   [`correction`](super::correction). It conserves momentum. Up to the relative differences of density, and away from
+//!   `passes::correction`. It conserves momentum. Up to the relative differences of density, and away from
 //!   bodies, it is the adjoint of the divergence in [`continuity`](super::continuity) and conserves angular momentum.
 //!   Without B the stress of a strained arrangement of particles is not isotropic: water would have the elasticity of a
 //!   lattice;
@@ -12,7 +12,7 @@
 //!   c = alpha c0 + min(3 |v.x| r / (r^2 + 0.01 H^2), c0). The second part is the dissipation of Zhang, Hu & Adams (2017)
 //!   with its limit: impacts are damped, waves are not;
 //! * shifting velocity: -a V (1 + 0.2 (W / W(dx))^4) grad W, with the coefficient a of
-//!   [`correction`](super::correction). It keeps the particles evenly distributed, and moves them without changing
+//!   `passes::correction`. It keeps the particles evenly distributed, and moves them without changing
 //!   their velocity.
 //!
 //! The sums include the images behind walls. The pressure of an image is extrapolated.
