@@ -19,8 +19,8 @@ impl<T> Guarded<T> {
         Self { what, value: Mutex::new(Some(value)) }
     }
 
-    /// Takes the value for the duration of a call, so that the interpreter lock can be released and callbacks can run
-    /// meanwhile. A second call at the same time is an error and does not wait.
+    /// Takes the value for the duration of a call, which may release the interpreter lock and run callbacks. A second call
+    /// at the same time is an error; it does not wait.
     ///
     /// # Errors
     /// `ClosedError` after `close`; `RuntimeError` during another call.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
+import typing
 from pathlib import Path
 
 import numpy
@@ -39,10 +41,15 @@ def cloud() -> numpy.ndarray:
     return numpy.random.default_rng(1).random((1000, 3), dtype=numpy.float32)
 
 
-def optional(name: str) -> object:
-    """An optional package. A test without it is skipped loudly."""
+def skip(reason: str) -> typing.NoReturn:
+    """Skips a test; `cargo xtask test` shows and counts the line."""
+    print(f"SKIPPED: {reason}", file=sys.__stderr__)
+    pytest.skip(reason, allow_module_level=True)
+
+
+def optional(name: str) -> typing.Any:
+    """An optional package. A test without it is skipped."""
     try:
-        return __import__(name)
+        return importlib.import_module(name)
     except ImportError as error:
-        print(f"SKIPPED: {name} is not installed ({error})", file=sys.__stderr__)
-        pytest.skip(f"{name} is not installed")
+        skip(f"{name} is not installed ({error}); `cargo xtask wheel` installs it")

@@ -13,7 +13,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY, optional
+from conftest import REPOSITORY, optional, skip
 
 import splashdown
 
@@ -114,8 +114,7 @@ def test_types(checker: str, tmp_path: Path) -> None:
         check = [part for part in check if part not in ("--project", str(tmp_path))]
     right = run(tmp_path / "use.py")
     if checker == "pyright" and "node" in right.stderr.lower() and right.returncode not in (0, 1):
-        print(f"SKIPPED: pyright cannot start: {right.stderr.strip().splitlines()[-1]}", file=sys.__stderr__)
-        pytest.skip("pyright cannot start")
+        skip(f"pyright cannot start, it needs Node.js: {right.stderr.strip().splitlines()[-1]}")
     assert right.returncode == 0, right.stdout + right.stderr
     wrong = run(tmp_path / "wrong.py")
     assert wrong.returncode == 1 and "wrong.py" in wrong.stdout, wrong.stdout + wrong.stderr

@@ -11,12 +11,12 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import column, optional
+from conftest import column, optional, skip
 
 import splashdown
 from splashdown import ParameterError, SceneError, _worker
 
-pandas = pytest.importorskip("pandas", reason="the table of results needs pandas")
+pandas = optional("pandas")
 
 
 def digest(frame: splashdown.Frame) -> dict[str, object]:
@@ -164,14 +164,13 @@ def test_the_frames_of_a_run(tmp_path: Path) -> None:
 
 def test_the_pictures_of_a_run(tmp_path: Path) -> None:
     """They are those that the run draws."""
-    pyplot = pytest.importorskip("matplotlib.pyplot", reason="reads PNG files")
+    pyplot = optional("matplotlib.pyplot")
     scene = column(**{"output.picture_size": [320, 180]})
     try:
         splashdown.Painter(scene)
     except splashdown.DeviceError as error:
         assert os.environ.get("CI") != "true", error
-        print(f"SKIPPED: pictures cannot be drawn: {error}", file=sys.__stderr__)
-        pytest.skip("pictures cannot be drawn")
+        skip(f"pictures cannot be drawn, they need a Vulkan driver: {error}")
     kinds = {"surface": "mesh", "particles": "particles"}
     splashdown.run(scene, tmp_path / "out", frames=10, formats=["ply"], pictures=list(kinds), film=False, device="cpu")
     for kind, folder in kinds.items():

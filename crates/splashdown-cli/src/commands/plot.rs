@@ -40,8 +40,8 @@ pub fn run(arguments: &PlotArguments) -> Result<(), Failure> {
     let curves: usize = panels.iter().map(draw::Panel::len).sum();
     if curves > MAX_CURVES || panels.len() > MAX_PANELS {
         let message = format!(
-            "there are {curves} columns with {} unit{}, but at most {MAX_CURVES} columns with {MAX_PANELS} units can be \
-             told apart in a plot; select some with --columns",
+            "there are {curves} columns with {} unit{}, but a plot shows at most {MAX_CURVES} columns with {MAX_PANELS} \
+             units; select some with --columns",
             panels.len(),
             if panels.len() == 1 { "" } else { "s" }
         );
