@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 
 use crate::kill;
 use crate::process::{self, say};
@@ -29,11 +29,21 @@ pub enum Outcome {
 pub struct Report {
     layers: Vec<(String, Outcome, Duration)>,
     filter: Filter,
+    /// Layers without this text in their name are left out.
+    only: Option<String>,
 }
 
 impl Report {
+    /// A report of the layers whose name contains this text.
+    pub fn only(text: Option<&str>) -> Self {
+        Self { only: text.map(str::to_owned), ..Self::default() }
+    }
+
     /// Runs one layer, independent of earlier outcomes, and records its wall time.
     pub fn layer(&mut self, name: &str, body: impl FnOnce(&mut Filter) -> Result<Outcome>) {
+        if self.only.as_ref().is_some_and(|text| !name.contains(text.as_str())) {
+            return;
+        }
         say(format!("\n=== {name}"));
         let start = Instant::now();
         let outcome = body(&mut self.filter).unwrap_or_else(|error| Outcome::Failed(format!("{error:#}")));
@@ -50,6 +60,9 @@ impl Report {
     /// # Errors
     /// If any layer failed.
     pub fn close(self) -> Result<()> {
+        if let (true, Some(text)) = (self.layers.is_empty(), &self.only) {
+            bail!("no layer has \"{text}\" in its name");
+        }
         say("\n=== Summary");
         for (name, outcome, time) in &self.layers {
             let word = match outcome {

@@ -20,6 +20,7 @@ mod python;
 mod report;
 mod serve;
 mod setup;
+mod storms;
 mod suite;
 mod supply;
 mod test_output;
@@ -35,10 +36,11 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
 
   demo [ARGUMENTS]  install missing requirements, build, and run the dam break into out/dam-break;
                     ARGUMENTS are passed to `splashdown run` (for example --frames 20)
-  test [--fast|--all]
+  test [--fast|--all] [--only LAYER]
                     check format, lints, tests, documentation, the web page and other systems (--fast: the first
                     three only; --all or CI=true: also Blender, the optimized page, all code for other systems,
-                    and the public API even if its tool has to be installed)
+                    and the public API even if its tool has to be installed; --only: the layers with this text in
+                    their name, for example `--only page`)
   bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)
   bench --peers [--quick] [--particles FILE SPACING]
                     compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
@@ -53,6 +55,10 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   wheel --compare [PARTICLES.npy SPACING]
                     compare the surface reconstruction with pysplashsurf and write docs/python-surface.md
   validate [CASE]   compare with measurements at full resolution in release mode; write figures and a report
+  storms [--scenes N] [--seed N] [--first N] [--continuity] [--workers N] [--binary FILE] [--ignore] [--shipped FACTOR]
+                    run random scenes, 1,000 by default, and judge their particles by an independent check; a full search
+                    writes docs/storms.md (--continuity: only that form of the density; --ignore: with --on-burst ignore; --shipped:
+                    the scenes that come with the program, with their spacing multiplied by a factor)
   api               check the public API of the library crates and compare it with that of an earlier commit
   deny              check licences, duplicates, sources and known vulnerabilities of the dependencies
   sbom [--out FILE] list the packages in the program as CycloneDX JSON [default: target/splashdown.cdx.json]
@@ -87,6 +93,7 @@ fn main() -> ExitCode {
         "web" => web::run(rest),
         "wheel" => wheel::run(rest),
         "validate" => validate::run(rest),
+        "storms" => storms::run(rest),
         "api" => api::run(rest),
         "package" => package::run(rest),
         "dist" => package::dist(rest),

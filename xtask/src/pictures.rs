@@ -1,7 +1,7 @@
 //! Renders the pictures of the README and of the window's gallery.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
@@ -36,7 +36,8 @@ const PICTURES: [(&str, &[Shown]); 11] = [
 ];
 
 /// Scenes that appear only in the window's gallery, with the frame of the surface that is shown.
-const THUMBNAILS: [(&str, u32); 3] = [("dam-break-small", 18), ("double-dam-break", 16), ("drum", 36)];
+const THUMBNAILS: [(&str, u32); 4] =
+    [("dam-break-small", 18), ("double-dam-break", 16), ("drum", 36), ("honey-coil", 20)];
 
 /// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {
@@ -54,13 +55,20 @@ pub fn run(arguments: &[String]) -> Result<()> {
     for (scene, pictures) in PICTURES.iter().filter(|(scene, _)| wanted(scene)) {
         let out = format!("out/pictures/{scene}");
         let last = pictures.iter().map(|shown| shown.frame).max().unwrap_or(0).to_string();
-        let mut kinds: Vec<&str> = pictures.iter().map(|shown| shown.kind).collect();
-        kinds.dedup();
         let mut command = process::command(&binary);
-        command.args(["run", scene, "--out", &out, "--frames", &last, "--formats", "none", "--no-film"]);
-        process::run(command.args(["--pictures", &kinds.join(",")]))?;
+        command.args(["run", scene, "--out", &out, "--frames", &last, "--formats", "ply", "--no-film"]);
+        let has_particles = pictures.iter().any(|shown| shown.kind == "particles");
+        process::run(if has_particles {
+            command.args(["--pictures", "particles"])
+        } else {
+            command.arg("--no-pictures")
+        })?;
         for Shown { kind, frame, name } in *pictures {
-            let from = process::root().join(&out).join(format!("pictures/{kind}_{frame:04}.png"));
+            let from = if *kind == "surface" {
+                still(&binary, &out, *frame)?
+            } else {
+                process::root().join(&out).join(format!("pictures/{kind}_{frame:04}.png"))
+            };
             let to = process::root().join(format!("docs/pictures/{name}.png"));
             fs::create_dir_all(to.with_file_name(""))?;
             fs::copy(&from, &to).with_context(|| format!("cannot copy {}", from.display()))?;
@@ -73,12 +81,23 @@ pub fn run(arguments: &[String]) -> Result<()> {
     for (scene, frame) in THUMBNAILS.iter().filter(|(scene, _)| wanted(scene)) {
         let out = format!("out/pictures/{scene}");
         let mut command = process::command(&binary);
-        command.args(["run", scene, "--out", &out, "--frames", &frame.to_string(), "--formats", "none"]);
-        process::run(command.args(["--no-film", "--pictures", "surface"]))?;
-        let picture = process::root().join(&out).join(format!("pictures/surface_{frame:04}.png"));
-        thumbnail(&picture, scene)?;
+        command.args(["run", scene, "--out", &out, "--frames", &frame.to_string(), "--formats", "ply"]);
+        process::run(command.args(["--no-film", "--no-pictures"]))?;
+        thumbnail(&still(&binary, &out, *frame)?, scene)?;
     }
     Ok(())
+}
+
+/// Draws one frame of a finished run with traced rays; returns the picture.
+fn still(binary: &Path, out: &str, frame: u32) -> Result<PathBuf> {
+    let folder = process::root().join(out).join("still");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).with_context(|| format!("cannot empty {}", folder.display()))?;
+    }
+    let mut command = process::command(binary);
+    command.args(["render", out, "--frames", &frame.to_string(), "--out"]).arg(&folder);
+    process::run(&mut command)?;
+    Ok(folder.join("picture_0000.png"))
 }
 
 /// A small picture for the gallery of the window. It has few colours, because all thumbnails are embedded in the program.

@@ -19,7 +19,7 @@ pub fn ensure(all: bool) {
     let folder = target().join("python");
     for list in [Some(USUAL), all.then_some(BLENDER)].into_iter().flatten() {
         let path = root().join("crates/splashdown-io/tests/foreign").join(list);
-        if let Err(error) = install(&folder, &path) {
+        if let Err(error) = install(None, &folder, &path) {
             say(format!(
                 "WARNING: Python packages of {list} are missing: {error:#}. Tests that open files with them will be skipped."
             ));
@@ -28,12 +28,12 @@ pub fn ensure(all: bool) {
 }
 
 /// Creates an environment in a folder, installs a list of packages into it unless they are installed, and returns its
-/// interpreter.
+/// interpreter. `system` is the interpreter that creates it; `None`: that of the system.
 ///
 /// # Errors
 /// If Python is missing or a package cannot be installed.
-pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
-    install(folder, list)?;
+pub fn environment(system: Option<&str>, folder: &Path, list: &Path) -> Result<PathBuf> {
+    install(system, folder, list)?;
     Ok(interpreter(folder))
 }
 
@@ -41,23 +41,23 @@ pub fn environment(folder: &Path, list: &Path) -> Result<PathBuf> {
 ///
 /// # Errors
 /// If Python is missing.
-pub fn create(folder: &Path) -> Result<PathBuf> {
+pub fn create(system: Option<&str>, folder: &Path) -> Result<PathBuf> {
     let python = interpreter(folder);
     if !python.exists() {
-        let system = if process::exists("python3", "--version") { "python3" } else { "python" };
-        process::run(command(system).args(["-m", "venv"]).arg(folder))?;
+        let found = if process::exists("python3", "--version") { "python3" } else { "python" };
+        process::run(command(system.unwrap_or(found)).args(["-m", "venv"]).arg(folder))?;
     }
     Ok(python)
 }
 
-fn install(folder: &Path, list: &Path) -> Result<()> {
+fn install(system: Option<&str>, folder: &Path, list: &Path) -> Result<()> {
     let wanted = fs::read_to_string(list).with_context(|| format!("cannot read {}", list.display()))?;
     // A copy of the installed list is stored in the environment, so that a second call costs nothing.
     let note = folder.join(list.file_name().unwrap_or_default());
     if fs::read_to_string(&note).is_ok_and(|installed| installed == wanted) {
         return Ok(());
     }
-    let python = create(folder)?;
+    let python = create(system, folder)?;
     say(format!("Installing Python packages of {} into {} ...", list.display(), folder.display()));
     let mut pip = command(&python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"]);

@@ -8,7 +8,7 @@ use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
 use crate::test_output::Filter;
 use crate::watch::Watch;
-use crate::{api, guide, page, python, setup, supply, wheel};
+use crate::{api, guide, page, python, setup, storms, supply, wheel};
 
 /// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -31,20 +31,21 @@ enum Extent {
 
 /// The command `test`.
 pub fn run(arguments: &[String]) -> Result<()> {
+    let (arguments, only) = match arguments {
+        [rest @ .., flag, layer] if flag == "--only" => (rest, Some(layer.as_str())),
+        all => (all, None),
+    };
     let extent = match arguments {
-        [] if process::is_ci() => Extent::All,
+        [] if process::is_ci() || only.is_some() => Extent::All,
         [] => Extent::Usual,
         [flag] if flag == "--fast" => Extent::Fast,
         [flag] if flag == "--all" => Extent::All,
-        other => bail!("test takes --fast, --all or nothing, got {}", other.join(" ")),
+        other => bail!("test takes --fast, --all, --only LAYER or nothing, got {}", other.join(" ")),
     };
-    let mut report = Report::default();
-    report.layer("requirements", |_| {
-        setup::ensure_requirements()?;
-        setup::ensure_screen();
-        python::ensure(extent == Extent::All);
-        Ok(Outcome::Passed)
-    });
+    setup::ensure_requirements()?;
+    setup::ensure_screen();
+    python::ensure(extent == Extent::All);
+    let mut report = Report::only(only);
     report.layer("format", |_| succeeds(&mut cargo(["fmt", "--all", "--", "--check"])));
     report.layer("lints", |_| {
         succeeds(&mut cargo([
@@ -71,6 +72,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ]);
         layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
     });
+    report.layer("random scenes", |_| storms::layer());
     if extent == Extent::Fast {
         say("\n--fast: documentation, the web page and other systems were not checked.");
     } else {

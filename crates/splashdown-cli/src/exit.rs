@@ -36,7 +36,8 @@ pub enum Exit {
 pub const HELP: &str = "\
 Exit codes:
     0  success
-    1  the simulation failed (frames already written are complete)
+    1  the simulation failed, or the fluid burst (frames already written are complete, and a
+       checkpoint of the last sound state)
     2  the command line is invalid, or another run writes into the same folder
     3  the scene file, or another input file, is missing or invalid
     4  the device is missing, too small, or was lost; or pictures were requested and no

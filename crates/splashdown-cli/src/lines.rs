@@ -24,7 +24,7 @@ pub struct Line {
     pub dt: Option<f32>,
     /// Particles inside the domain.
     pub particles: Option<u32>,
-    /// The largest relative excess of density since the last frame, or of the whole run at its end.
+    /// The larger one of relative excess and deficit of density, or the largest of the whole run at its end.
     pub density_error: Option<f32>,
     /// The largest speed in m/s.
     pub max_speed: Option<f32>,
@@ -46,6 +46,31 @@ pub struct Line {
     /// Particles times steps per second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub particle_steps_per_second: Option<f64>,
+    /// Pressure iterations since the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub iterations: Option<u64>,
+    /// The largest mean error of the density at which the iterations of a step since the last frame stopped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual: Option<f32>,
+    /// Mean compression since the last frame, or of the whole run at its end, from the positions of the particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compression: Option<f64>,
+    /// Steps whose pressure did not converge, since the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unconverged: Option<u32>,
+    /// Viscosity iterations since the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscous_iterations: Option<u64>,
+    /// The largest residual of the velocity at which the viscosity iterations of a step since the last frame stopped, as a
+    /// part of the change of the velocity by all other forces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscous_residual: Option<f32>,
+    /// Steps whose viscosity did not converge, since the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscous_unconverged: Option<u32>,
+    /// The relative deficit of density.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density_deficit: Option<f32>,
     /// Total number of particles that left through an open side.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub escaped: Option<u32>,
@@ -130,6 +155,7 @@ impl Line {
             wall: Some(summary.wall),
             simulated_per_wall: Some(summary.simulated_per_wall),
             particle_steps_per_second: Some(summary.particle_steps_per_second),
+            compression: (summary.stats.iterations > 0).then_some(summary.stats.mean_compression),
             ..Self::of_stats(&summary.stats)
         }
     }
@@ -156,15 +182,26 @@ impl Line {
     }
 
     fn of_stats(stats: &Stats) -> Self {
+        // An explicit pressure has no iterations.
+        let implicit = (stats.iterations > 0).then_some(stats);
+        let viscous = (stats.viscous_iterations > 0).then_some(stats);
         Self {
             time: Some(stats.time),
             steps: Some(stats.steps),
             dt: Some(stats.dt),
             particles: Some(stats.particles),
             density_error: Some(stats.density_error),
+            density_deficit: Some(stats.density_deficit),
             max_speed: Some(stats.max_speed),
             escaped: Some(stats.escaped),
             non_finite: Some(stats.non_finite),
+            iterations: implicit.map(|stats| stats.iterations),
+            residual: implicit.map(|stats| stats.residual),
+            compression: implicit.map(|stats| stats.compression.into()),
+            unconverged: implicit.map(|stats| stats.unconverged),
+            viscous_iterations: viscous.map(|stats| stats.viscous_iterations),
+            viscous_residual: viscous.map(|stats| stats.viscous_residual),
+            viscous_unconverged: viscous.map(|stats| stats.viscous_unconverged),
             ..Self::default()
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use splashdown::Stats;
 use splashdown::run::Summary;
 use splashdown_gpu::Timings;
 use splashdown_io::WrittenFile;
@@ -43,6 +44,12 @@ pub fn numbers(summary: &Summary) -> String {
         ("volume", volume(summary)),
         ("particles", particles),
     ];
+    if stats.iterations > 0 {
+        rows.insert(6, ("pressure", pressure(stats)));
+    }
+    if stats.viscous_iterations > 0 {
+        rows.insert(7, ("viscosity", viscosity(stats)));
+    }
     if stats.emitted > 0 || stats.drained > 0 {
         let text = format!(
             "{} emitted, {} drained",
@@ -71,6 +78,27 @@ pub fn numbers(summary: &Summary) -> String {
         rows.push(("leaks", text));
     }
     console::table(&rows)
+}
+
+fn pressure(stats: &Stats) -> String {
+    format!(
+        "{:.1} iterations per step; mean compression {} %{}",
+        stats.iterations as f64 / stats.steps.max(1) as f64,
+        human::three_digits(100.0 * stats.mean_compression),
+        unconverged(stats.unconverged)
+    )
+}
+
+fn viscosity(stats: &Stats) -> String {
+    let each = stats.viscous_iterations as f64 / stats.steps.max(1) as f64;
+    format!("{each:.1} iterations per step{}", unconverged(stats.viscous_unconverged))
+}
+
+fn unconverged(steps: u32) -> String {
+    match steps {
+        0 => String::new(),
+        count => format!("; {} did not converge", human::counted(count.into(), "step")),
+    }
 }
 
 fn volume(summary: &Summary) -> String {

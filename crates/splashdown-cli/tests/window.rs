@@ -117,12 +117,14 @@ fn the_window_shows_water_and_reacts() {
     let mut program = screen.command(env!("CARGO_BIN_EXE_splashdown"));
     program.args(["view", "dam-break-small", "--size", &format!("{}x{}", SIZE[0], SIZE[1])]);
     let _program = Running(program.current_dir(&folder).stdout(Stdio::null()).spawn().unwrap());
+    screen.until("the window", |picture| differing(picture, &empty) > 0.5);
+    let window = screen.tool(&["search", "--name", "Splashdown"]);
+    screen.tool(&["windowfocus", window.lines().last().unwrap()]);
+    // Slow particles are blue; clear water is not.
+    screen.tool(&["key", "1"]);
     let first = screen.until("water", |picture| blue(picture) > 0.03);
     let opened = begun.elapsed();
     assert!(opened < Duration::from_secs(30), "the first picture came after {opened:?}");
-
-    let window = screen.tool(&["search", "--name", "Splashdown"]);
-    screen.tool(&["windowfocus", window.lines().last().unwrap()]);
     // The water moves.
     screen.until("motion", |picture| differing(picture, &first) > 0.01);
     // Paused, the picture stays the same: the control for all differences here.
@@ -132,14 +134,14 @@ fn the_window_shows_water_and_reacts() {
     std::thread::sleep(Duration::from_secs(1));
     assert!(differing(&paused, &screen.picture()) < 0.001, "the paused picture changes");
     // Another display mode.
-    screen.tool(&["key", "1"]);
-    let particles = screen.until("the particles", |picture| differing(picture, &paused) > 0.02);
+    screen.tool(&["key", "2"]);
+    let liquid = screen.until("the liquid", |picture| differing(picture, &paused) > 0.02);
     // Orbiting, slowly: a drag within one frame would be a click.
     for step in ["mousemove 120 200", "mousedown 1", "mousemove 150 210", "mousemove 180 220", "mouseup 1"] {
         screen.tool(&step.split(' ').collect::<Vec<_>>());
         std::thread::sleep(Duration::from_millis(400));
     }
-    screen.until("a different view", |picture| differing(picture, &particles) > 0.05);
+    screen.until("a different view", |picture| differing(picture, &liquid) > 0.05);
     // The scene is exported, and the command line accepts it.
     screen.tool(&["key", "ctrl+s"]);
     let exported = folder.path().join("dam-break-small.toml");

@@ -45,6 +45,15 @@ pub enum IoError {
         reason: String,
     },
 
+    /// A file of particles is complete and contains none, as that of foam before the first splash.
+    #[error("`{}` is not a usable {format} file: it contains no particles", path.display())]
+    NoParticles {
+        /// The file that was given.
+        path: PathBuf,
+        /// Its format, e.g. `PLY`.
+        format: &'static str,
+    },
+
     /// The ending of a file's name is not that of a format for this data.
     #[error(
         "cannot tell the format of `{}`: its name must end in one of {}",

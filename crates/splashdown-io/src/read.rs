@@ -44,7 +44,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
 ///
 /// # Errors
 /// [`IoError::UnknownFormat`] lists the endings; [`IoError::Read`] if the file cannot be read; [`IoError::Malformed`] if
-/// it is damaged, cut short, empty, or contains numbers that are not finite; [`IoError::TooMany`].
+/// it is damaged, cut short, or contains numbers that are not finite; [`IoError::NoParticles`]; [`IoError::TooMany`].
 pub fn read_particles(path: &Path) -> Result<Particles, IoError> {
     read(path, Wanted::Known)
 }
@@ -68,7 +68,7 @@ fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
     particles.attributes.retain(|attribute| attribute.check(count, "particles").is_ok());
     let malformed = |reason: String| IoError::malformed(path, format, reason);
     if particles.is_empty() {
-        return Err(malformed("it contains no particles".to_owned()));
+        return Err(IoError::NoParticles { path: path.to_owned(), format });
     }
     particles.check().map_err(|error| malformed(error.to_string()))?;
     finite("positions", &particles.positions).map_err(malformed)?;

@@ -87,24 +87,39 @@ impl Checkpoint {
     }
 
     /// Simulated time in s.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> simulation.checkpoint().time == stats.time  # s
+    /// True
     #[getter]
     fn time(&self) -> Result<f64> {
         Ok(self.to_owned().time()?)
     }
 
     /// The device that made it: "CPU" or the name of an adapter.
+    ///
+    /// >>> simulation.checkpoint().device
+    /// 'CPU'
     #[getter]
     fn device(&self) -> Result<Option<String>> {
         Ok(self.to_owned().device()?)
     }
 
     /// The scene that is simulated.
+    ///
+    /// >>> simulation.checkpoint().scene == scene
+    /// True
     #[getter]
     fn scene(&self) -> Result<Scene> {
         Ok(Scene(self.to_owned().scene()?))
     }
 
     /// A text of your own, stored in the file; `None` if there is none.
+    ///
+    /// >>> checkpoint = simulation.checkpoint()
+    /// >>> checkpoint.notes = "before the gate opens"
+    /// >>> splashdown.Checkpoint.from_bytes(checkpoint.to_bytes()).notes
+    /// 'before the gate opens'
     #[getter]
     fn notes(&self) -> Option<String> {
         self.to_owned().notes().map(str::to_owned)

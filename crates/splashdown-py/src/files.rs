@@ -4,21 +4,24 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use splashdown_io::Format;
+use splashdown_io::{Format, IoError};
 
 use crate::errors::Result;
 use crate::mesh::Mesh;
 use crate::particles::Particles;
 
-/// Reads particles with all attributes of the file. `particle_formats()[0]` lists the endings.
+/// Reads particles with all attributes of the file; there may be none. `particle_formats()[0]` lists the endings.
 ///
 /// >>> size = splashdown.write_particles(folder / "points.ply", splashdown.Particles(numpy.ones((4, 3), numpy.float32)))
 /// >>> len(splashdown.read_particles(folder / "points.ply"))
 /// 4
 #[pyfunction]
 pub fn read_particles(py: Python<'_>, path: PathBuf) -> Result<Particles> {
-    let particles = py.detach(|| splashdown_io::read_particles_with_attributes(&path))?;
-    Ok(Particles(Arc::new(particles)))
+    match py.detach(|| splashdown_io::read_particles_with_attributes(&path)) {
+        // A file of foam before the first splash has none.
+        Err(IoError::NoParticles { .. }) => Ok(Particles(Arc::default())),
+        read => Ok(Particles(Arc::new(read?))),
+    }
 }
 
 /// Writes particles in the format of the ending, and returns the size of the file in bytes. The file is complete or absent.

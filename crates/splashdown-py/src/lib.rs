@@ -4,6 +4,7 @@
 //! Python (`python/splashdown`). Long computations release the interpreter lock. Arrays that Python receives are views
 //! of the memory of immutable Rust objects, so nothing is copied; arrays that Python gives are checked and copied.
 
+mod argument;
 mod arrays;
 mod bodies;
 mod busy;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, scalars_of, vectors_of};
+use crate::arrays::{Inputs, Owner, attributes_of, vectors_of};
 use crate::errors::{ArrayError, Result};
 
 /// A triangle mesh in host memory; immutable. Seen from outside, triangles are counter-clockwise.
@@ -22,6 +22,9 @@ use crate::errors::{ArrayError, Result};
 #[pyclass(frozen, module = "splashdown")]
 pub struct Mesh(pub Arc<splashdown::Mesh>);
 
+// SAFETY: the mesh is immutable.
+unsafe impl Owner for Mesh {}
+
 #[pymethods]
 impl Mesh {
     #[new]
@@ -32,86 +35,84 @@ impl Mesh {
         normals: Option<&Bound<'_, PyAny>>,
         velocities: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
-        let vertices = arrays::vectors("vertices", vertices)?;
-        let triangles = arrays::integers("triangles", triangles, Some(3))?;
-        let vectors = |name, value: Option<&Bound<'_, PyAny>>| {
-            value.map(|value| arrays::vectors(name, value)).transpose()
-        };
-        let (normals, velocities) = (vectors("normals", normals)?, vectors("velocities", velocities)?);
-        for other in [&normals, &velocities].into_iter().flatten() {
-            other.is_apart_from(&vertices)?;
-        }
-        if let (Some(normals), Some(velocities)) = (&normals, &velocities) {
-            velocities.is_apart_from(normals)?;
-        }
-        let mesh = splashdown::Mesh::new(vertices.values, bytemuck::pod_collect_to_vec(&triangles.values))
-            .with_normals(normals.map_or(Vec::new(), |input| input.values))
-            .with_velocities(velocities.map_or(Vec::new(), |input| input.values));
+        let mut inputs = Inputs::default();
+        let vertices = inputs.vectors("vertices", Some(vertices))?;
+        let triangles = inputs.integers("triangles", Some(triangles), Some(3))?;
+        let mesh = splashdown::Mesh::new(vertices, bytemuck::pod_collect_to_vec(&triangles))
+            .with_normals(inputs.vectors("normals", normals)?)
+            .with_velocities(inputs.vectors("velocities", velocities)?);
         mesh.check().map_err(|error| ArrayError::new_err(error.to_string()))?;
         Ok(Self(Arc::new(mesh)))
     }
 
     /// Positions of the vertices, (V, 3) float32, m.
+    ///
+    /// >>> bool((frame.mesh.vertices.max(axis=0) < [0.5, 0.7, 0.6]).all())  # m
+    /// True
     #[getter]
-    fn vertices(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<f32>>> {
-        // SAFETY: the mesh is immutable and owned by `this`; so in the getters below.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.vertices) }
+    fn vertices<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<f32>>> {
+        vectors_of(this, |mesh| &mesh.0.vertices)
     }
 
     /// Three numbers of vertices per triangle, (T, 3) uint32.
+    ///
+    /// >>> bool(frame.mesh.triangles.max() + 1 == len(frame.mesh.vertices))
+    /// True
     #[getter]
-    fn triangles(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<u32>>> {
-        // SAFETY: see `vertices`.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.triangles) }
+    fn triangles<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<u32>>> {
+        vectors_of(this, |mesh| &mesh.0.triangles)
     }
 
     /// Unit normals of the vertices, (V, 3) float32; (0, 3) if absent.
+    ///
+    /// >>> numpy.allclose(numpy.linalg.norm(frame.mesh.normals, axis=1), 1, atol=1e-4)
+    /// True
     #[getter]
-    fn normals(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<f32>>> {
-        // SAFETY: see `vertices`.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.normals) }
+    fn normals<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<f32>>> {
+        vectors_of(this, |mesh| &mesh.0.normals)
     }
 
     /// Velocities of the vertices, (V, 3) float32, m/s; (0, 3) if absent.
+    ///
+    /// >>> corners, faces = numpy.eye(3, dtype=numpy.float32), numpy.array([[0, 1, 2]])
+    /// >>> splashdown.Mesh(corners, faces, velocities=2 * corners).velocities[1].tolist()  # m/s
+    /// [0.0, 2.0, 0.0]
     #[getter]
-    fn velocities(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<f32>>> {
-        // SAFETY: see `vertices`.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.velocities) }
+    fn velocities<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<f32>>> {
+        vectors_of(this, |mesh| &mesh.0.velocities)
     }
 
-    /// Other attributes of the vertices by name: (V,) or (V, 3) float32.
+    /// Other attributes of the vertices by name: (V,) or (V, 3) float32. `read_mesh` does not read any.
+    ///
+    /// >>> frame.mesh.attributes
+    /// {}
     #[getter]
-    fn attributes(this: Bound<'_, Self>) -> Result<Bound<'_, PyDict>> {
-        let found = PyDict::new(this.py());
-        for attribute in &this.get().0.attributes {
-            let owner = this.clone().into_any();
-            if attribute.components == 3 {
-                // SAFETY: see `vertices`.
-                let values =
-                    unsafe { vectors_of(owner, bytemuck::cast_slice::<f32, [f32; 3]>(&attribute.values)) }?;
-                found.set_item(&attribute.name, values)?;
-            } else {
-                // SAFETY: see `vertices`.
-                let values: Bound<'_, PyArray1<f32>> = unsafe { scalars_of(owner, &attribute.values) }?;
-                found.set_item(&attribute.name, values)?;
-            }
-        }
-        Ok(found)
+    fn attributes<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyDict>> {
+        attributes_of(this, |mesh| &mesh.0.attributes)
     }
 
     /// The enclosed volume in m^3, if the mesh is closed.
+    ///
+    /// >>> bool(0.06 < frame.mesh.volume < 0.18)  # m^3; the column has 0.12 m^3
+    /// True
     #[getter]
     fn volume(&self) -> f64 {
         self.0.volume()
     }
 
     /// The area of all triangles in m^2.
+    ///
+    /// >>> bool(0.8 < frame.mesh.area < 2)  # m^2
+    /// True
     #[getter]
     fn area(&self) -> f64 {
         self.0.area()
     }
 
     /// Whether every edge has exactly two triangles of consistent orientation.
+    ///
+    /// >>> frame.mesh.is_watertight
+    /// True
     #[getter]
     fn is_watertight(&self) -> Result<bool> {
         Ok(self.0.topology()?.is_watertight())

@@ -7,8 +7,8 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, Input, memory_of, scalars_of, vectors_of};
-use crate::errors::Result;
+use crate::arrays::{Inputs, Owner, attributes_of, memory_of, scalars_of, vectors_of};
+use crate::errors::{ArrayError, Result};
 
 /// Particles in host memory; immutable. Attributes that are absent are arrays of length 0.
 ///
@@ -20,6 +20,9 @@ use crate::errors::Result;
 /// (10, (10, 3), 0)
 #[pyclass(frozen, module = "splashdown")]
 pub struct Particles(pub Arc<splashdown::Particles>);
+
+// SAFETY: the particles are immutable.
+unsafe impl Owner for Particles {}
 
 impl Particles {
     /// The names and addresses of the vectors.
@@ -42,79 +45,71 @@ impl Particles {
         pressures: Option<&Bound<'_, PyAny>>,
         ids: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
-        let positions = arrays::vectors("positions", positions)?;
-        let velocities = velocities.map(|value| arrays::vectors("velocities", value)).transpose()?;
-        let scalars = |name, value: Option<_>| value.map(|value| arrays::scalars(name, value)).transpose();
-        let (densities, pressures) = (scalars("densities", densities)?, scalars("pressures", pressures)?);
-        let ids = ids.map(|value| arrays::integers("ids", value, None)).transpose()?;
-        if let Some(velocities) = &velocities {
-            velocities.is_apart_from(&positions)?;
-        }
-        if let (Some(densities), Some(pressures)) = (&densities, &pressures) {
-            pressures.is_apart_from(densities)?;
-        }
-        let particles = splashdown::Particles::from_positions(positions.values)
-            .with_velocities(velocities.map_or(Vec::new(), |input| input.values))
-            .with_densities(densities.map_or(Vec::new(), |input: Input<f32>| input.values))
-            .with_pressures(pressures.map_or(Vec::new(), |input| input.values))
-            .with_ids(ids.map_or(Vec::new(), |input| input.values));
-        particles.check().map_err(|error| crate::errors::ArrayError::new_err(error.to_string()))?;
+        let mut inputs = Inputs::default();
+        let particles = splashdown::Particles::from_positions(inputs.vectors("positions", Some(positions))?)
+            .with_velocities(inputs.vectors("velocities", velocities)?)
+            .with_densities(inputs.scalars("densities", densities)?)
+            .with_pressures(inputs.scalars("pressures", pressures)?)
+            .with_ids(inputs.integers("ids", ids, None)?);
+        particles.check().map_err(|error| ArrayError::new_err(error.to_string()))?;
         Ok(Self(Arc::new(particles)))
     }
 
     /// Positions, (N, 3) float32, m.
+    ///
+    /// >>> frame.particles.positions.shape == (len(frame.particles), 3)
+    /// True
     #[getter]
-    fn positions(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<f32>>> {
-        // SAFETY: the particles are immutable and owned by `this`; so in the getters below.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.positions) }
+    fn positions<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<f32>>> {
+        vectors_of(this, |particles| &particles.0.positions)
     }
 
     /// Velocities, (N, 3) float32, m/s.
+    ///
+    /// >>> bool((frame.particles.velocities == 0).all())  # at rest in frame 0
+    /// True
     #[getter]
-    fn velocities(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray2<f32>>> {
-        // SAFETY: see `positions`.
-        unsafe { vectors_of(this.clone().into_any(), &this.get().0.velocities) }
+    fn velocities<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray2<f32>>> {
+        vectors_of(this, |particles| &particles.0.velocities)
     }
 
     /// Densities, (N,) float32, kg/m^3.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> bool(abs(simulation.particles.densities.mean() - 1000) < 100)  # kg/m^3
+    /// True
     #[getter]
-    fn densities(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray1<f32>>> {
-        // SAFETY: see `positions`.
-        unsafe { scalars_of(this.clone().into_any(), &this.get().0.densities) }
+    fn densities<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray1<f32>>> {
+        scalars_of(this, |particles| &particles.0.densities)
     }
 
     /// Pressures, (N,) float32, Pa.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> bool(simulation.particles.pressures.max() > 0)  # Pa
+    /// True
     #[getter]
-    fn pressures(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray1<f32>>> {
-        // SAFETY: see `positions`.
-        unsafe { scalars_of(this.clone().into_any(), &this.get().0.pressures) }
+    fn pressures<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray1<f32>>> {
+        scalars_of(this, |particles| &particles.0.pressures)
     }
 
     /// Numbers that identify a particle in all frames, (N,) uint32.
+    ///
+    /// >>> frame.particles.ids[:3].tolist()
+    /// [0, 1, 2]
     #[getter]
-    fn ids(this: Bound<'_, Self>) -> Result<Bound<'_, PyArray1<u32>>> {
-        // SAFETY: see `positions`.
-        unsafe { scalars_of(this.clone().into_any(), &this.get().0.ids) }
+    fn ids<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray1<u32>>> {
+        scalars_of(this, |particles| &particles.0.ids)
     }
 
     /// All attributes of the file that the particles were read from, by name: (N,) or (N, 3) float32.
+    ///
+    /// >>> size = splashdown.write_particles(folder / "state.vtu", frame.particles)
+    /// >>> sorted(splashdown.read_particles(folder / "state.vtu").attributes)
+    /// ['density', 'id', 'pressure', 'velocity']
     #[getter]
-    fn attributes(this: Bound<'_, Self>) -> Result<Bound<'_, PyDict>> {
-        let found = PyDict::new(this.py());
-        for attribute in &this.get().0.attributes {
-            let owner = this.clone().into_any();
-            if attribute.components == 3 {
-                // SAFETY: see `positions`.
-                let values =
-                    unsafe { vectors_of(owner, bytemuck::cast_slice::<f32, [f32; 3]>(&attribute.values)) }?;
-                found.set_item(&attribute.name, values)?;
-            } else {
-                // SAFETY: see `positions`.
-                let values = unsafe { scalars_of(owner, &attribute.values) }?;
-                found.set_item(&attribute.name, values)?;
-            }
-        }
-        Ok(found)
+    fn attributes<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyDict>> {
+        attributes_of(this, |particles| &particles.0.attributes)
     }
 
     fn __len__(&self) -> usize {

@@ -14,16 +14,46 @@ use crate::errors::Result;
 #[derive(Clone, Copy)]
 pub struct Progress {
     /// Simulated time in s.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(now.time <= stats.time for now in seen)  # s
+    /// True
     pub time: f64,
     /// Simulated time at the end in s.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(round(now.duration, 4) == 0.1 for now in seen)  # s
+    /// True
     pub duration: f64,
     /// Steps since the start.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(0 < now.steps <= stats.steps for now in seen)
+    /// True
     pub steps: u64,
     /// The last time step in s.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(now.dt > 0 for now in seen)  # s
+    /// True
     pub dt: f32,
     /// The frame being computed, from 1; 0 outside of a run.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(now.frame == 0 for now in seen)
+    /// True
     pub frame: u32,
     /// The number of frames; 0 outside of a run.
+    ///
+    /// >>> seen = []
+    /// >>> stats = simulation.advance(0.1, progress=seen.append)
+    /// >>> all(now.frames == 0 for now in seen)
+    /// True
     pub frames: u32,
 }
 

@@ -1,13 +1,14 @@
 //! Runs with files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use splashdown::run::{Progress, Started};
-use splashdown::scene::{Choice, Format, PictureKind};
+use splashdown::scene::{Format, OnBurst, PictureKind, presets};
 use splashdown_run::{Reporter, RunEnd, RunRequest, RunSettings, Session, Stop};
 
+use crate::argument::{Words, whole, word};
 use crate::checkpoint::Checkpoint;
 use crate::errors::{ParameterError, Result};
 use crate::progress;
@@ -18,7 +19,9 @@ use crate::surface::parse_device;
 /// Runs a scene and writes its frames into the folder `out` ("out/" and the name of the scene by default), as the command
 /// `splashdown run`. Given a folder of a run, or a checkpoint file, it resumes that run.
 ///
-/// `formats` are those of `splashdown run --formats`, for example ["ply", "usd"]; `pictures` are "particles" and "surface".
+/// `formats` are those of `splashdown run --formats`, for example ["ply", "usd"]; `pictures` are "particles" and "surface",
+/// or an empty list. `on_burst` is "stop" (the default: `SimulationError`, and a checkpoint of the last sound frame), "warn"
+/// or "ignore".
 /// `None` selects the values of the scene. Returns a dictionary with `folder`, `frames` (complete ones, with the initial
 /// one), `files`, and, unless the run was stopped, `steps`, `wall` (s) and `density_error`. Ctrl-C completes the current
 /// frame, writes a checkpoint and raises `KeyboardInterrupt`.
@@ -27,36 +30,38 @@ use crate::surface::parse_device;
 /// >>> result["frames"], (folder / "out/mesh/surface_0001.ply").exists()
 /// (2, True)
 #[pyfunction]
-#[pyo3(signature = (scene, out = None, *, device = None, frames = None, formats = None, pictures = None, surface = true, film = true, checkpoint_every = None, progress = None))]
+#[pyo3(signature = (scene, out = None, *, device = None, frames = None, formats = None, pictures = None, surface = true, film = true, checkpoint_every = None, on_burst = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
 pub fn run<'py>(
     py: Python<'py>,
     scene: &Bound<'py, PyAny>,
     out: Option<PathBuf>,
     device: Option<&str>,
-    frames: Option<u32>,
-    formats: Option<Vec<String>>,
-    pictures: Option<Vec<String>>,
+    frames: Option<i64>,
+    formats: Option<Words>,
+    pictures: Option<Words>,
     surface: bool,
     film: bool,
-    checkpoint_every: Option<u32>,
+    checkpoint_every: Option<i64>,
+    on_burst: Option<&str>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyDict>> {
     let mut settings = RunSettings::default();
     settings.device = device.map(parse_device).transpose()?;
-    settings.frames = frames;
-    settings.formats = formats.map(|words| words_of::<Format>("formats", &words)).transpose()?;
-    settings.pictures = pictures.map(|words| words_of::<PictureKind>("pictures", &words)).transpose()?;
+    settings.frames = whole("frames", frames, 1)?;
+    settings.formats = formats.map(|words| words.choices::<Format>("formats")).transpose()?;
+    settings.pictures = pictures.map(|words| words.choices::<PictureKind>("pictures")).transpose()?;
     settings.surface = surface;
     settings.film = film;
-    settings.checkpoint_every = checkpoint_every;
+    settings.checkpoint_every = whole("checkpoint_every", checkpoint_every, 1)?;
+    settings.on_burst = on_burst.map(|given| word::<OnBurst>("on_burst", given)).transpose()?;
     let mut request = match scene.cast::<Scene>() {
         Ok(scene) => RunRequest::new(scene.get().0.clone(), settings),
         Err(_) if scene.cast::<Checkpoint>().is_ok() => {
             let message = "to continue a run with files, give the path of its folder or of a checkpoint file";
             return Err(ParameterError::new_err(message).into());
         }
-        Err(_) => RunRequest::resume(&scene.extract::<PathBuf>()?, settings)?,
+        Err(_) => resumed(&scene.extract::<PathBuf>()?, settings)?,
     };
     request.out = out;
     let mut reporter = PythonReporter {
@@ -94,20 +99,18 @@ pub fn run<'py>(
     Ok(result)
 }
 
-/// Words of a scene file.
-fn words_of<C: Choice>(name: &str, words: &[String]) -> Result<Vec<C>> {
-    words.iter().map(|word| word_of(name, word)).collect()
-}
-
-/// A word of a scene file.
-///
-/// # Errors
-/// `ParameterError` that lists the allowed words.
-pub fn word_of<C: Choice>(name: &str, word: &str) -> Result<C> {
-    C::from_name(word).ok_or_else(|| {
-        let known: Vec<_> = C::ALL.iter().map(|&(_, known, _)| known).collect();
-        ParameterError::new_err(format!("{name} has {word:?}; allowed are {}", known.join(", "))).into()
-    })
+/// The run in a folder or a checkpoint file. A user who names a scene gets the call for that.
+fn resumed(path: &Path, settings: RunSettings) -> Result<RunRequest> {
+    let name = path.display();
+    let call = if path.extension().is_some_and(|ending| ending == "toml") {
+        format!("splashdown.Scene.load({:?})", name.to_string())
+    } else if !path.exists() && presets().iter().any(|(known, _)| path.as_os_str() == *known) {
+        format!("splashdown.Scene.preset({:?})", name.to_string())
+    } else {
+        return Ok(RunRequest::resume(path, settings)?);
+    };
+    let message = format!("`{name}` is a scene and not the folder of a run: give {call}");
+    Err(ParameterError::new_err(message).into())
 }
 
 /// Passes progress to Python, and remembers Ctrl-C.

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use splashdown::monitor::Level;
+use splashdown::scene::OnBurst;
 use splashdown::{Event, RunOptions};
 
+use crate::argument::{whole, word};
 use crate::bodies::Body;
 use crate::busy::Guarded;
 use crate::checkpoint::Checkpoint;
@@ -22,7 +25,8 @@ use crate::surface::parse_device;
 /// Computes the frames of a scene: an iterator over `Frame`. Frame 0 is the initial state. `surface` and `foam` override the
 /// scene, and `frames` its number of frames.
 ///
-/// Ctrl-C raises `KeyboardInterrupt`; `checkpoint` still works then, and the iteration can be continued.
+/// The iteration raises `SimulationError` after a frame in which the fluid has burst; `on_burst` is "stop", "warn" or
+/// "ignore". Ctrl-C raises `KeyboardInterrupt`; `checkpoint` still works then, and the iteration can be continued.
 ///
 /// >>> for frame in splashdown.Run(scene, device="cpu", frames=2):
 /// ...     print(frame.index, round(frame.time, 3), frame.mesh.is_watertight)  # time in s
@@ -36,6 +40,7 @@ pub struct Run {
     reporter: Reporter,
     first_frame: u32,
     frames: u32,
+    warns_of_alarms: bool,
 }
 
 struct State {
@@ -49,6 +54,7 @@ struct Options<'a> {
     frames: Option<u32>,
     surface: Option<bool>,
     foam: Option<bool>,
+    on_burst: &'a str,
 }
 
 impl Options<'_> {
@@ -57,12 +63,19 @@ impl Options<'_> {
         options.frames = self.frames;
         options.surface = self.surface.unwrap_or(options.surface);
         options.foam = self.foam.unwrap_or(options.foam);
+        options.on_burst = word::<OnBurst>("on_burst", self.on_burst)?;
         Ok(options)
     }
 }
 
 impl Run {
-    fn of(run: splashdown::Run, scene: &splashdown::Scene, frames: Option<u32>, reporter: Reporter) -> Self {
+    fn of(
+        run: splashdown::Run,
+        scene: &splashdown::Scene,
+        frames: Option<u32>,
+        reporter: Reporter,
+        warns_of_alarms: bool,
+    ) -> Self {
         let bodies = run.bodies().iter().map(|body| body.name.clone()).collect();
         Self {
             first_frame: run.first_frame(),
@@ -70,6 +83,7 @@ impl Run {
             state: Guarded::new("run", State { run, bodies }),
             scene: scene.clone(),
             reporter,
+            warns_of_alarms,
         }
     }
 }
@@ -77,21 +91,25 @@ impl Run {
 #[pymethods]
 impl Run {
     #[new]
-    #[pyo3(signature = (scene, *, device = "auto", frames = None, surface = None, foam = None, progress = None))]
+    #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
+    #[pyo3(signature = (scene, *, device = "auto", frames = None, surface = None, foam = None, on_burst = "stop", progress = None))]
     fn new(
         py: Python<'_>,
         scene: &Bound<'_, Scene>,
         device: &str,
-        frames: Option<u32>,
+        frames: Option<i64>,
         surface: Option<bool>,
         foam: Option<bool>,
+        on_burst: &str,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
         let (scene, reporter) = (&scene.get().0, Reporter::new(progress)?);
         warn(py, &scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-        let options = Options { device, frames, surface, foam }.of(scene)?;
+        let frames = whole("frames", frames, 0)?;
+        let options = Options { device, frames, surface, foam, on_burst }.of(scene)?;
+        let warns_of_alarms = options.on_burst != OnBurst::Ignore;
         let run = py.detach(|| splashdown::Run::new(scene, options))?;
-        Ok(Self::of(run, scene, frames, reporter))
+        Ok(Self::of(run, scene, frames, reporter, warns_of_alarms))
     }
 
     /// Continues from a checkpoint, or from the path of one. Earlier frames are not returned again.
@@ -101,21 +119,24 @@ impl Run {
     /// >>> [frame.index for frame in splashdown.Run.resume(run.checkpoint(), device="cpu", frames=2)]
     /// [2]
     #[staticmethod]
-    #[pyo3(signature = (checkpoint, *, device = "auto", frames = None, surface = None, foam = None, progress = None))]
+    #[pyo3(signature = (checkpoint, *, device = "auto", frames = None, surface = None, foam = None, on_burst = "stop", progress = None))]
     fn resume(
         checkpoint: &Bound<'_, PyAny>,
         device: &str,
-        frames: Option<u32>,
+        frames: Option<i64>,
         surface: Option<bool>,
         foam: Option<bool>,
+        on_burst: &str,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
         let (py, reporter) = (checkpoint.py(), Reporter::new(progress)?);
         let checkpoint = Checkpoint::extract(checkpoint)?;
         let scene = checkpoint.scene()?;
-        let options = Options { device, frames, surface, foam }.of(&scene)?;
+        let frames = whole("frames", frames, 0)?;
+        let options = Options { device, frames, surface, foam, on_burst }.of(&scene)?;
+        let warns_of_alarms = options.on_burst != OnBurst::Ignore;
         let run = py.detach(|| splashdown::Run::resume(&checkpoint, &scene, options))?;
-        Ok(Self::of(run, &scene, frames, reporter))
+        Ok(Self::of(run, &scene, frames, reporter, warns_of_alarms))
     }
 
     fn __iter__(this: Py<Self>) -> Py<Self> {
@@ -137,6 +158,9 @@ impl Run {
                 }
                 Some(Event::Progress(progress)) => self.reporter.report(py, (&progress).into())?,
                 Some(Event::Warning(text)) => warn(py, &[text])?,
+                Some(Event::Alarm(alarm)) if self.warns_of_alarms && alarm.level >= Level::Warning => {
+                    warn(py, &[alarm.message])?
+                }
                 Some(_) => {}
             }
         }
@@ -155,24 +179,38 @@ impl Run {
     }
 
     /// The scene.
+    ///
+    /// >>> splashdown.Run(scene, device="cpu").scene == scene
+    /// True
     #[getter]
     fn scene(&self) -> Scene {
         Scene(self.scene.clone())
     }
 
     /// The frame at the start: 0, or that of the checkpoint.
+    ///
+    /// >>> splashdown.Run(scene, device="cpu").first_frame
+    /// 0
     #[getter]
     fn first_frame(&self) -> u32 {
         self.first_frame
     }
 
     /// The number of the last frame.
+    ///
+    /// >>> splashdown.Run(scene, device="cpu", frames=7).frames
+    /// 7
     #[getter]
     fn frames(&self) -> u32 {
         self.frames
     }
 
     /// Whether `close` was called.
+    ///
+    /// >>> with splashdown.Run(scene, device="cpu") as run:
+    /// ...     first = next(run)
+    /// >>> run.closed
+    /// True
     #[getter]
     fn closed(&self) -> bool {
         self.state.is_closed()
@@ -211,22 +249,50 @@ impl Run {
 #[pyclass(frozen, get_all, module = "splashdown")]
 pub struct Frame {
     /// Its number, from 0.
+    ///
+    /// >>> frame.index
+    /// 0
     index: u32,
     /// Simulated time in s.
-    time: f64,
+    ///
+    /// >>> frame.time  # s
+    /// 0.0
+    pub time: f64,
     /// The particles in the order of their ids.
-    particles: Py<Particles>,
+    ///
+    /// >>> len(frame.particles)
+    /// 120
+    pub particles: Py<Particles>,
     /// The surface, if enabled.
-    mesh: Option<Py<Mesh>>,
+    ///
+    /// >>> frame.mesh.is_watertight
+    /// True
+    pub mesh: Option<Py<Mesh>>,
     /// The volume that the surface encloses in m^3.
+    ///
+    /// >>> frame.volume == frame.mesh.volume  # m^3
+    /// True
     volume: Option<f64>,
     /// Foam, spray and bubbles, if enabled.
-    foam: Option<Py<Foam>>,
+    ///
+    /// >>> frame.foam
+    /// Foam(0 particles)
+    pub foam: Option<Py<Foam>>,
     /// The bodies in the order of the scene.
-    bodies: Vec<Py<Body>>,
+    ///
+    /// >>> [body.name for body in frame.bodies]
+    /// ['crate']
+    pub bodies: Vec<Py<Body>>,
     /// The rows of each probe since the previous frame.
+    ///
+    /// >>> first, second = splashdown.Run(scene, device="cpu", frames=1)
+    /// >>> scene.probe_columns["gauge"], second.probes["gauge"].shape  # 10 rows per frame
+    /// (['time (s)', 'height (m)'], (10, 2))
     probes: Py<PyDict>,
     /// Statistics.
+    ///
+    /// >>> frame.stats.particles == len(frame.particles)
+    /// True
     stats: Py<Stats>,
 }
 

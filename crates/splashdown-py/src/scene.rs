@@ -175,54 +175,101 @@ impl Scene {
     }
 
     /// The text of the scene file (TOML).
+    ///
+    /// >>> size = (folder / "column.toml").write_text(scene.text)
+    /// >>> splashdown.Scene.load(folder / "column.toml").duration  # s
+    /// 0.5
     #[getter]
     fn text(&self) -> &str {
         &self.0.text
     }
 
     /// Its name.
+    ///
+    /// >>> scene.name
+    /// 'column'
     #[getter]
     fn name(&self) -> &str {
         &self.0.name
     }
 
     /// The file that it was read from, or `None`.
+    ///
+    /// >>> scene.path is None
+    /// True
     #[getter]
     fn path(&self) -> Option<&Path> {
         self.source()
     }
 
     /// The simulated time in s.
+    ///
+    /// >>> scene.duration  # s
+    /// 0.5
     #[getter]
     fn duration(&self) -> f32 {
         self.0.duration
     }
 
     /// Frames per simulated second, in 1/s.
+    ///
+    /// >>> scene.frame_rate  # 1/s
+    /// 50.0
     #[getter]
     fn frame_rate(&self) -> f32 {
         self.0.frame_rate
     }
 
     /// The number of frames after the initial one.
+    ///
+    /// >>> scene.frame_count
+    /// 25
     #[getter]
     fn frame_count(&self) -> u32 {
         self.0.frame_count()
     }
 
     /// The initial distance of particles in m, which is the resolution.
+    ///
+    /// >>> round(scene.particle_spacing, 4)  # m
+    /// 0.1
     #[getter]
     fn particle_spacing(&self) -> f32 {
         self.0.fluid.particle_spacing
     }
 
+    /// The mass of a particle in kg.
+    ///
+    /// >>> round(scene.particle_mass, 6)  # kg: water of 998.2 kg/m^3 in a cube of 0.1 m
+    /// 0.9982
+    /// >>> kinetic_energy = 0.5 * scene.particle_mass * (simulation.velocities**2).sum()  # J
+    #[getter]
+    fn particle_mass(&self) -> f64 {
+        self.0.fluid.particle_mass()
+    }
+
+    /// The density of the fluid at rest in kg/m^3.
+    ///
+    /// >>> round(scene.rest_density, 1)  # kg/m^3; the default is water at 20 °C
+    /// 998.2
+    #[getter]
+    fn rest_density(&self) -> f32 {
+        self.0.fluid.material.rest_density
+    }
+
     /// Values that are valid but probably unintended, one text each.
+    ///
+    /// >>> scene.warnings
+    /// []
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.iter().map(ToString::to_string).collect()
     }
 
     /// The columns of each probe, with units, by the name of the probe; the first is the time.
+    ///
+    /// >>> scene.probe_columns
+    /// {'gauge': ['time (s)', 'height (m)']}
     #[getter]
     fn probe_columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);

@@ -12,7 +12,7 @@ use crate::arrays;
 use crate::bodies::Body;
 use crate::busy::Guarded;
 use crate::checkpoint::Checkpoint;
-use crate::errors::{ParameterError, Result};
+use crate::errors::{ArrayError, ParameterError, Result};
 use crate::foam::Foam;
 use crate::mesh::Mesh;
 use crate::particles::Particles;
@@ -25,7 +25,7 @@ use crate::surface::parse_device;
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A running simulation of a scene on one device: "auto" (the best GPU, else the CPU), "gpu", "cpu", or part of the name of
-/// an adapter. `particles` replaces the fluid of the scene.
+/// an adapter. `particles` replaces the fluid of the scene; all must lie inside the domain.
 ///
 /// One thread at a time may use it. Long calls release the interpreter lock. Ctrl-C during `advance` ends the frame at its
 /// last step, so that the simulation can be read and continued. `close`, or the end of `with`, frees the device's memory;
@@ -121,6 +121,9 @@ impl Simulation {
     ) -> Result<Self> {
         let (scene, device) = (&scene.get().0, parse_device(device)?);
         let given = particles.map(|particles| Arc::clone(&particles.get().0));
+        if let Some(given) = &given {
+            check_inside(scene, given)?;
+        }
         warn(py, &scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
         let simulation = py.detach(|| match given {
             Some(given) => {
@@ -188,6 +191,9 @@ impl Simulation {
     }
 
     /// The particles now, in the order of their ids.
+    ///
+    /// >>> len(simulation.particles) == len(simulation)
+    /// True
     #[getter]
     fn particles(&self, py: Python<'_>) -> Result<Py<Particles>> {
         self.0.take()?.get().particles(py)
@@ -195,6 +201,10 @@ impl Simulation {
 
     /// Positions, (N, 3) float32, m, read-only. Assign an array of the same shape to move the particles; all must lie inside
     /// the domain.
+    ///
+    /// >>> simulation.positions = simulation.positions + numpy.float32([0.1, 0, 0])  # m
+    /// >>> round(float(simulation.positions[:, 0].min()), 2)  # m
+    /// 0.15
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(self.particles(py)?.bind(py).getattr("positions")?)
@@ -206,6 +216,13 @@ impl Simulation {
     }
 
     /// Velocities, (N, 3) float32, m/s, read-only. Assign an array of the same shape to change them.
+    ///
+    /// >>> velocities = simulation.velocities.copy()
+    /// >>> velocities[:, 0] = 0.5  # m/s
+    /// >>> simulation.velocities = velocities
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> bool(simulation.velocities[:, 0].mean() > 0.3)  # m/s
+    /// True
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(self.particles(py)?.bind(py).getattr("velocities")?)
@@ -217,24 +234,40 @@ impl Simulation {
     }
 
     /// Densities at the beginning of the last step, (N,) float32, kg/m^3.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> bool(abs(simulation.densities.mean() - 1000) < 100)  # kg/m^3
+    /// True
     #[getter]
     fn densities<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(self.particles(py)?.bind(py).getattr("densities")?)
     }
 
     /// Pressures at the beginning of the last step, (N,) float32, Pa.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> bool(simulation.pressures.max() > 0)  # Pa
+    /// True
     #[getter]
     fn pressures<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(self.particles(py)?.bind(py).getattr("pressures")?)
     }
 
     /// Numbers that identify a particle at all times, (N,) uint32, ascending.
+    ///
+    /// >>> simulation.ids[:3].tolist()
+    /// [0, 1, 2]
     #[getter]
     fn ids<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(self.particles(py)?.bind(py).getattr("ids")?)
     }
 
     /// Foam, spray and bubbles now, if the scene enables them, else `None`.
+    ///
+    /// >>> simulation.foam
+    /// Foam(0 particles)
+    /// >>> splashdown.Simulation(scene.replace({"foam.enabled": False}), device="cpu").foam is None
+    /// True
     #[getter]
     fn foam(&self, py: Python<'_>) -> Result<Option<Foam>> {
         let mut taken = self.0.take()?;
@@ -267,11 +300,9 @@ impl Simulation {
     /// The rows that the probes have measured since the last call, by the name of the probe: (rows, columns) float64, the first
     /// column is the time in s. `Scene.probe_columns` has the names and units of the columns.
     ///
-    /// >>> gauge = {"name": "gauge", "quantity": "pressure", "position": [0.0, 0.05, 0.25]}
-    /// >>> measured = splashdown.Simulation(scene.replace(probe=[gauge]), device="cpu")
-    /// >>> stats = measured.advance(0.02)
-    /// >>> measured.scene.probe_columns["gauge"], measured.take_probes()["gauge"].shape[1]
-    /// (['time (s)', 'pressure (Pa)'], 2)
+    /// >>> stats = simulation.advance(0.02)
+    /// >>> scene.probe_columns["gauge"], simulation.take_probes()["gauge"].shape[1]
+    /// (['time (s)', 'height (m)'], 2)
     fn take_probes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
         let mut taken = self.0.take()?;
         let simulation = &mut taken.get().simulation;
@@ -280,6 +311,9 @@ impl Simulation {
     }
 
     /// The bodies of the scene now.
+    ///
+    /// >>> [body.name for body in simulation.bodies]
+    /// ['crate']
     #[getter]
     fn bodies(&self, py: Python<'_>) -> Result<Vec<Body>> {
         let mut taken = self.0.take()?;
@@ -295,8 +329,8 @@ impl Simulation {
 
     /// The repaired mesh of a body in its own frame, in m: rotate it by `Body.orientation`, then move it by `Body.position`.
     ///
-    /// >>> post = {"name": "post", "mesh": "cube", "scale": 0.1, "position": [1.0, 0.2, 0.25]}
-    /// >>> splashdown.Simulation(scene.replace(body=[post]), device="cpu").body_mesh("post").is_watertight
+    /// >>> mesh = simulation.body_mesh("crate")
+    /// >>> bool((mesh.vertices + numpy.float32(simulation.bodies[0].position)).max() < 1.2)  # m
     /// True
     fn body_mesh(&self, name: &str) -> Result<Mesh> {
         let mut taken = self.0.take()?;
@@ -330,42 +364,66 @@ impl Simulation {
     }
 
     /// The statistics at the end of the last `advance`.
+    ///
+    /// >>> simulation.stats.particles, simulation.stats.steps
+    /// (120, 0)
     #[getter]
     fn stats(&self) -> Result<Stats> {
         Ok(self.0.take()?.get().simulation.stats().into())
     }
 
     /// The scene.
+    ///
+    /// >>> simulation.scene == scene
+    /// True
     #[getter]
     fn scene(&self) -> Result<Scene> {
         Ok(Scene(self.0.take()?.get().simulation.scene().clone()))
     }
 
     /// Simulated time in s.
+    ///
+    /// >>> stats = simulation.advance(0.01)
+    /// >>> round(simulation.time, 4)  # s
+    /// 0.01
     #[getter]
     fn time(&self) -> Result<f64> {
         Ok(self.0.take()?.get().simulation.stats().time)
     }
 
     /// The last stable time step in s.
+    ///
+    /// >>> bool(0 < simulation.dt < 0.01)  # s
+    /// True
     #[getter]
     fn dt(&self) -> Result<f32> {
         Ok(self.0.take()?.get().simulation.dt())
     }
 
     /// The name of the device.
+    ///
+    /// >>> simulation.device.split(" ")[0]
+    /// 'CPU'
     #[getter]
     fn device(&self) -> Result<String> {
         Ok(self.0.take()?.get().simulation.device_name())
     }
 
     /// The size of all buffers of the device in bytes.
+    ///
+    /// >>> simulation.memory > 92 * len(simulation)  # bytes
+    /// True
     #[getter]
     fn memory(&self) -> Result<u64> {
         Ok(self.0.take()?.get().simulation.memory())
     }
 
     /// Whether `close` was called.
+    ///
+    /// >>> with simulation:
+    /// ...     stats = simulation.advance(0.01)
+    /// >>> simulation.closed
+    /// True
     #[getter]
     fn closed(&self) -> bool {
         self.0.is_closed()
@@ -424,13 +482,31 @@ impl Simulation {
             for (other, memory) in particles.get().memory() {
                 // Writing back what was read changes nothing, and is allowed.
                 if !other.contains(name) {
-                    input.is_apart_from_memory(other, &memory)?;
+                    input.is_apart_from(other, &memory)?;
                 }
             }
         }
         values.py().detach(|| set(&mut state.simulation, &input.values))?;
         state.particles = None;
         Ok(())
+    }
+}
+
+/// The library removes particles outside the domain, as in a file; an array of them is a mistake.
+fn check_inside(scene: &splashdown::Scene, particles: &splashdown::Particles) -> Result<()> {
+    if particles.is_empty() {
+        let message =
+            "there are no particles: give at least one, or leave particles out to use the fluid of the scene";
+        return Err(ArrayError::new_err(message).into());
+    }
+    let (min, max) = (scene.domain.min.to_array(), scene.domain.max.to_array());
+    let is_outside = |x: &[f32; 3]| (0..3).any(|axis| !(min[axis]..=max[axis]).contains(&x[axis]));
+    match particles.positions.iter().position(is_outside) {
+        Some(index) => {
+            let position = particles.positions[index];
+            Err(splashdown::SimulationError::OutsideDomain { index, position, min, max }.into())
+        }
+        None => Ok(()),
     }
 }
 
@@ -448,7 +524,7 @@ pub fn probes<'py>(
         let columns = splashdown::probes::columns(probe).len();
         let flat: Vec<f64> = rows.concat();
         let shaped = numpy::ndarray::Array2::from_shape_vec((rows.len(), columns), flat)
-            .map_err(|error| crate::errors::ArrayError::new_err(error.to_string()))?;
+            .map_err(|error| ArrayError::new_err(error.to_string()))?;
         found.set_item(&probe.name, PyArray2::from_owned_array(py, shaped))?;
     }
     Ok(found)

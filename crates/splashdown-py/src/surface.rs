@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use splashdown::{Device, SurfaceParams};
 
+use crate::argument::{whole, word};
 use crate::arrays;
 use crate::errors::{ParameterError, Result};
 use crate::mesh::Mesh;
@@ -14,14 +15,14 @@ use crate::mesh::Mesh;
 /// `points` are the centres of the particles, (N, 3) float32, m. `particle_spacing` is their usual distance in m; twice the
 /// particle radius of other programs. `support_radius` (m) is 2 spacings by default, `cell_size` (m) half a spacing, and
 /// `iso_level` 0.6. `smoothing` is the number of iterations of weighted Laplacian smoothing; 15 to 25 remove the bumps of
-/// the particles.
+/// the particles. `kernels` is "isotropic" or "anisotropic", for smoother films and jets and drops of the right volume.
 ///
 /// >>> points = numpy.random.default_rng(1).random((1000, 3), dtype=numpy.float32)
 /// >>> mesh = splashdown.surface(points, 0.1, smoothing=10, device="cpu")
 /// >>> mesh.is_watertight, mesh.vertices.shape == mesh.normals.shape
 /// (True, True)
 #[pyfunction]
-#[pyo3(signature = (points, particle_spacing, *, support_radius = None, cell_size = None, iso_level = None, smoothing = 0, device = "auto"))]
+#[pyo3(signature = (points, particle_spacing, *, support_radius = None, cell_size = None, iso_level = None, smoothing = 0, kernels = "isotropic", device = "auto"))]
 #[expect(clippy::too_many_arguments, reason = "they are keyword arguments in Python")]
 pub fn surface(
     py: Python<'_>,
@@ -30,7 +31,8 @@ pub fn surface(
     support_radius: Option<f32>,
     cell_size: Option<f32>,
     iso_level: Option<f32>,
-    smoothing: u32,
+    smoothing: i64,
+    kernels: &str,
     device: &str,
 ) -> Result<Mesh> {
     let points = arrays::vectors("points", points)?.values;
@@ -38,7 +40,8 @@ pub fn surface(
     params.support_radius = support_radius.unwrap_or(params.support_radius);
     params.cell_size = cell_size.unwrap_or(params.cell_size);
     params.iso_level = iso_level.unwrap_or(params.iso_level);
-    params.smoothing_iterations = smoothing;
+    params.smoothing_iterations = whole("smoothing", Some(smoothing), 0)?.unwrap_or(0);
+    params.kernels = word("kernels", kernels)?;
     let device = parse_device(device)?;
     let (mesh, _) = py.detach(|| splashdown::reconstruct(&points, &params, &device))?;
     Ok(Mesh(Arc::new(mesh)))

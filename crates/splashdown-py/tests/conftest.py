@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import signal
 import sys
 import typing
 from pathlib import Path
@@ -39,6 +40,14 @@ def simulation(scene: splashdown.Scene) -> splashdown.Simulation:
 def cloud() -> numpy.ndarray:
     """1,000 points in a unit cube."""
     return numpy.random.default_rng(1).random((1000, 3), dtype=numpy.float32)
+
+
+@pytest.fixture(autouse=True)
+def interrupts() -> typing.Iterator[None]:
+    """Ctrl-C raises `KeyboardInterrupt`, also where a shell has started the tests in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def skip(reason: str) -> typing.NoReturn:

@@ -7,6 +7,7 @@ import importlib.metadata
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -42,6 +43,25 @@ def test_the_command_is_installed(tmp_path: Path) -> None:
 
 def test_versions_agree() -> None:
     assert importlib.metadata.version("splashdown") == splashdown.__version__
+
+
+def test_the_metadata_of_the_wheel() -> None:
+    distribution = importlib.metadata.distribution("splashdown")
+    metadata = distribution.metadata
+    assert metadata["License-Expression"] == "MIT OR Apache-2.0" and metadata["Requires-Python"] == ">=3.10"
+    urls = dict(url.split(", ") for url in metadata.get_all("Project-URL") or [])
+    assert {"Repository", "Documentation", "Changelog", "Issues"} <= urls.keys()
+    linked = [REPOSITORY / url.split("/blob/main/")[1] for url in urls.values() if "/blob/main/" in url]
+    assert len(linked) == 2 and all(path.exists() for path in linked)
+    assert metadata["Description-Content-Type"].startswith("text/markdown")
+    assert "splashdown.Simulation" in str(metadata.get_payload()), "the readme is missing"
+    files = [str(file) for file in distribution.files or []]
+    licences = {file.rsplit("/", 1)[-1] for file in files if ".dist-info/licenses/" in file}
+    assert licences == {"LICENSE-APACHE", "LICENSE-MIT"}
+    # Nothing is installed beside the package, its description and the command.
+    places = {file.split("/", 1)[0] for file in files if not file.startswith("..")}
+    assert places == {"splashdown", f"splashdown-{splashdown.__version__}.dist-info"}
+    assert "splashdown/py.typed" in files and "splashdown/_splashdown.pyi" in files
 
 
 def test_importing_needs_no_optional_package() -> None:
@@ -97,30 +117,29 @@ splashdown.Simulation("dam-break")
 
 @pytest.mark.parametrize("checker", ["mypy", "pyright"])
 def test_types(checker: str, tmp_path: Path) -> None:
-    """The package itself, a correct use, and as a control a wrong one."""
+    """The files of the package and a use of it, strictly; as controls a wrong use and an error in the package."""
     optional(checker)
+    copy = tmp_path / "splashdown"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.pyd"))
+    # The settings of both programs.
+    shutil.copy(REPOSITORY / "crates/splashdown-py/pyproject.toml", tmp_path)
     (tmp_path / "use.py").write_text(USE)
     (tmp_path / "wrong.py").write_text(WRONG)
-    if checker == "mypy":
-        (tmp_path / "mypy.ini").write_text("[mypy]\nstrict = True\n[mypy-ray.*,tqdm.*,pandas.*]\nignore_missing_imports = True\n")
-        check = [sys.executable, "-m", "mypy", "--config-file", str(tmp_path / "mypy.ini")]
-    else:
-        (tmp_path / "pyrightconfig.json").write_text('{"typeCheckingMode": "strict", "reportMissingTypeStubs": false}')
-        check = [sys.executable, "-m", "pyright", "--project", str(tmp_path), "--pythonpath", sys.executable]
-    def run(*paths: object) -> subprocess.CompletedProcess[str]:
-        arguments = check + [str(path) for path in paths]
+
+    def check(*paths: str) -> subprocess.CompletedProcess[str]:
+        arguments = [sys.executable, "-m", checker, *paths]
+        if checker == "pyright":
+            arguments += ["--pythonpath", sys.executable]
         return subprocess.run(arguments, capture_output=True, text=True, cwd=tmp_path, check=False, timeout=300)
-    if checker == "pyright":
-        check = [part for part in check if part not in ("--project", str(tmp_path))]
-    right = run(tmp_path / "use.py")
+
+    right = check("use.py", "splashdown")
     if checker == "pyright" and "node" in right.stderr.lower() and right.returncode not in (0, 1):
         skip(f"pyright cannot start, it needs Node.js: {right.stderr.strip().splitlines()[-1]}")
     assert right.returncode == 0, right.stdout + right.stderr
-    wrong = run(tmp_path / "wrong.py")
-    assert wrong.returncode == 1 and "wrong.py" in wrong.stdout, wrong.stdout + wrong.stderr
-    if checker == "mypy":
-        package = run("--package", "splashdown")
-        assert package.returncode == 0, package.stdout + package.stderr
+    with (copy / "_types.py").open("a") as file:
+        file.write('\nNUMBER: int = "text"\n')
+    wrong = check("wrong.py", "splashdown")
+    assert wrong.returncode == 1 and all(name in wrong.stdout for name in ("wrong.py", "_types.py")), wrong.stdout + wrong.stderr
 
 
 def test_the_stubs_match_the_module() -> None:

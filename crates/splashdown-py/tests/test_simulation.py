@@ -33,6 +33,23 @@ def test_arrays_are_views_without_a_copy(simulation: Simulation) -> None:
     assert abs(simulation.densities.mean() / 1000 - 1) < 0.1
 
 
+def test_implicit_pressure_reports_its_iterations() -> None:
+    explicit = Simulation(column(), device="cpu").advance(0.05)
+    implicit = Simulation(column(solver={"method": "dfsph"}), device="cpu").advance(0.05)
+    assert 0 < implicit.steps < explicit.steps / 4, (implicit, explicit)
+    assert explicit.iterations == 0 < implicit.most_iterations <= implicit.iterations
+    assert implicit.unconverged == 0 <= implicit.residual <= 1e-3, implicit
+    assert 0 < implicit.mean_compression < 0.01, implicit
+
+
+def test_implicit_viscosity_reports_its_iterations() -> None:
+    scene = column(solver={"method": "dfsph"})
+    thin = Simulation(scene, device="cpu").advance(0.05)
+    thick = Simulation(scene.replace({"fluid.viscosity": 1.0}), device="cpu").advance(0.05)
+    assert thin.viscous_iterations == 0 < thick.most_viscous_iterations <= thick.viscous_iterations
+    assert thick.viscous_unconverged == 0 <= thick.viscous_residual <= 0.02, thick
+
+
 def test_arrays_outlive_the_simulation(simulation: Simulation) -> None:
     before = simulation.positions
     copy = before.copy()
@@ -153,6 +170,8 @@ def test_wrong_parameters(scene: splashdown.Scene, simulation: Simulation) -> No
         Simulation(scene, device="")
     with pytest.raises(TypeError, match="progress is 3"):
         simulation.advance(0.1, progress=3)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match="frames is -1; it must be a whole number from 0"):
+        Run(scene, device="cpu", frames=-1)
     with pytest.raises(ParameterError, match="the scene has no body"):
         simulation.body_mesh("ship")
 
@@ -242,3 +261,8 @@ def test_particles_replace_the_fluid(scene: splashdown.Scene) -> None:
     points = numpy.float32([[0.5, 0.5, 0.25], [0.6, 0.5, 0.25]])
     simulation = Simulation(scene, device="cpu", particles=splashdown.Particles(points))
     assert len(simulation) == 2 and numpy.array_equal(simulation.positions, points)
+    with pytest.raises(ArrayError, match=r"position 1 is \(0.5, 9, 0.25\) m, outside the domain"):
+        points[1] = [0.5, 9, 0.25]
+        Simulation(scene, device="cpu", particles=splashdown.Particles(points))
+    with pytest.raises(ArrayError, match="there are no particles"):
+        Simulation(scene, device="cpu", particles=splashdown.Particles(points[:0]))

@@ -64,6 +64,9 @@ def test_a_grid_with_failures(tmp_path: Path) -> None:
     assert list(table["fluid.viscosity"]) == [0.001, 0.001, 0.1, 0.1]
     assert table["front"][0] > 0.4 and table["frame"][0] == 10 and table["time"][0] == pytest.approx(0.2)
     assert seen[-1] == (4, 4)
+    assert table["warnings"][0] == ""
+    [uneven] = splashdown.sweep(column(), [{"fluid.particle_spacing": 0.07}], folder=tmp_path / "uneven", **OPTIONS)["warnings"]
+    assert "spacings long along" in uneven and uneven.count("warning:") >= 1
     frames = pandas.read_csv(Path(table["folder"][0]) / "frames.csv")
     assert list(frames["frame"]) == list(range(11)) and frames["front"].is_monotonic_increasing
     assert frames["front"].iloc[-1] == table["front"][0]
@@ -162,33 +165,95 @@ def test_the_frames_of_a_run(tmp_path: Path) -> None:
         splashdown.map_frames(tmp_path / "*.none", job)
 
 
-def test_the_pictures_of_a_run(tmp_path: Path) -> None:
-    """They are those that the run draws."""
+def test_the_pictures_of_a_finished_run(tmp_path: Path) -> None:
+    """They are those that the run draws, with a floating crate and foam."""
     pyplot = optional("matplotlib.pyplot")
-    scene = column(**{"output.picture_size": [320, 180]})
+    scene = splashdown.Scene(
+        scene={"name": "wave", "duration": 0.4, "frame_rate": 20},
+        domain={"min": [0, 0, 0], "max": [1.6, 1.0, 0.5]},
+        fluid={"particle_spacing": 0.05, "block": [{"position": [0, 0, 0], "size": [0.4, 0.8, 0.5]}]},
+        body=[{"name": "crate", "mesh": "cube", "scale": 0.2, "position": [0.9, 0.15, 0.25], "motion": "dynamic", "density": 400}],
+        foam={"enabled": True},
+        output={"picture_size": [320, 180]},
+    )
     try:
         splashdown.Painter(scene)
     except splashdown.DeviceError as error:
         assert os.environ.get("CI") != "true", error
         skip(f"pictures cannot be drawn, they need a Vulkan driver: {error}")
+    out = tmp_path / "out"
     kinds = {"surface": "mesh", "particles": "particles"}
-    splashdown.run(scene, tmp_path / "out", frames=10, formats=["ply"], pictures=list(kinds), film=False, device="cpu")
-    for kind, folder in kinds.items():
-        job = splashdown.DrawPicture(tmp_path / "drawn", scene, kind)
-        table = splashdown.map_frames(tmp_path / "out" / folder / "*.ply", job, workers=1)
-        assert list(table["status"]) == ["finished"] * 11, list(table["reason"])
-        drawn = [pyplot.imread(path) for path in table["picture"]]
-        of_run = [pyplot.imread(tmp_path / "out/pictures" / Path(path).name) for path in table["picture"]]
-        deviation = max(abs(one - other).mean() for one, other in zip(drawn, of_run))
-        control = abs(drawn[0] - drawn[10]).mean()
-        assert control > 1e-3, "control: the pictures of two frames differ"
+    splashdown.run(scene, out, formats=["ply"], pictures=list(kinds), film=False, device="cpu")
+
+    def draw(kind: str, drawn: splashdown.Scene, frames: str) -> tuple[list[str], list[str], list[object]]:
+        """The status and the reason of frames, and their pictures."""
+        job = splashdown.DrawPicture(tmp_path / "drawn", drawn, kind)
+        table = splashdown.map_frames(out / kinds[kind] / f"{kind}_{frames}.ply", job, workers=1)
+        finished = table[table["status"] == "finished"]
+        pictures = [pyplot.imread(path) for path in finished["picture"]] if len(finished) else []
+        return list(table["status"]), list(table["reason"]), pictures
+
+    def deviation(one: object, other: object) -> float:
+        return abs(one - other).mean()
+
+    for kind in kinds:
+        status, reasons, drawn = draw(kind, scene, "*")
+        assert status == ["finished"] * 9, reasons
+        of_run = [pyplot.imread(out / f"pictures/{kind}_{frame:04}.png") for frame in range(9)]
+        largest = max(deviation(one, other) for one, other in zip(drawn, of_run))
         # Surfaces are shaded with other normals, which changes colours but no edges.
-        assert deviation <= (0 if kind == "particles" else control / 4), (kind, deviation, control)
-    painter = splashdown.Painter(scene, "surface")
-    with pytest.raises(ParameterError, match="this painter draws surfaces"):
-        painter.draw(splashdown.Simulation(scene, device="cpu").particles)
+        frames_differ = deviation(drawn[0], drawn[8])
+        assert largest <= (0 if kind == "particles" else frames_differ / 4), (kind, largest, frames_differ)
+        # Controls: a picture without the crate, or without foam, is another one.
+        sections = scene.to_dict()
+        del sections["body"]
+        for other in (splashdown.Scene(sections), scene.replace({"foam.enabled": False})):
+            assert deviation(draw(kind, other, "0008")[2][0], drawn[8]) > 1e-4
+
+    # The same picture from memory.
+    *_, last = splashdown.Run(scene, device="cpu", frames=8, surface=False)
+    painter = splashdown.Painter(scene, "particles")
+    painter.write(tmp_path / "last.png", last)
+    assert (tmp_path / "last.png").read_bytes() == (out / "pictures/particles_0008.png").read_bytes()
+
+    # Files that are missing are the reason of the row.
+    for missing, reason in (("bodies/crate.csv", 'the place of body "crate" is unknown'), ("particles/foam_0008.ply", "disable the foam")):
+        (out / missing).rename(tmp_path / "away")
+        [status], [text], _ = draw("surface", scene, "0008")
+        assert status == "failed" and Path(missing).stem in text and reason in text
+        (tmp_path / "away").rename(out / missing)
+
+    # Surfaces by the same mechanism.
+    job = splashdown.ReconstructSurface(tmp_path / "mesh", 0.05, device="cpu")
+    table = splashdown.map_frames(out / "particles/particles_*.ply", job, workers=2)
+    assert list(table["status"]) == ["finished"] * 9
+    mesh, of_run = (splashdown.read_mesh(path) for path in (table["mesh"][8], out / "mesh/surface_0008.ply"))
+    assert mesh.is_watertight and mesh.volume == pytest.approx(of_run.volume, rel=0.05)
+
+
+def test_wrong_pictures() -> None:
+    try:
+        painter = splashdown.Painter(column(), "surface")
+    except splashdown.DeviceError as error:
+        assert os.environ.get("CI") != "true", error
+        skip(f"pictures cannot be drawn, they need a Vulkan driver: {error}")
+    frame = next(splashdown.Run(column(), device="cpu", surface=False))
+    post = {"name": "post", "mesh": "cube", "scale": 0.2, "position": [1, 0.2, 0.25]}
+    bodies = splashdown.Simulation(column().replace(body=[post]), device="cpu").bodies
+    mesh = splashdown.Simulation(column(), device="cpu").surface()
+    for what, options, message in (
+        (frame.particles, {}, "this painter draws surfaces"),
+        (frame, {}, "this frame has no surface"),
+        (mesh, {"bodies": bodies}, r"bodies are \[\"post\"\], and those of the painter's scene are \[\]"),
+        (frame, {"bodies": bodies}, r"bodies are .* painter's scene"),
+        ("surface_0001.ply", {}, "surface_0001.ply"),
+    ):
+        with pytest.raises(splashdown.Error, match=message):
+            painter.draw(what, **options)
+    with pytest.raises(splashdown.ArrayError, match="a painter draws a Frame, a Mesh, Particles or the path of a file, not a int"):
+        painter.draw(3)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match='kind has "film"; allowed are'):
-        splashdown.Painter(scene, "film")  # type: ignore[arg-type]
+        splashdown.Painter(column(), "film")  # type: ignore[arg-type]
 
 
 def test_a_ray_cluster_that_loses_a_node(tmp_path: Path) -> None:
@@ -198,7 +263,9 @@ def test_a_ray_cluster_that_loses_a_node(tmp_path: Path) -> None:
     from ray.cluster_utils import Cluster
 
     whole = splashdown.sweep(column(), {"fluid.viscosity": [0.001, 0.1]}, digest, folder=tmp_path / "whole", **OPTIONS)
-    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
+    # A lost node is detected after a second instead of half a minute.
+    health = {"health_check_initial_delay_ms": 500, "health_check_period_ms": 500, "health_check_failure_threshold": 2}
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 0, "_system_config": health})
     nodes = [cluster.add_node(num_cpus=1) for _ in range(2)]
     ray.init(address=cluster.address, log_to_driver=False, runtime_env={"env_vars": {"PYTHONPATH": str(Path(__file__).parent)}})
     killed: list[str] = []

@@ -49,6 +49,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         &cloud.pressures,
     )?;
     let surface = UploadedSurface::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles)?;
+    let start = Instant::now();
+    let traced = TracedMeshes::new(&device, &mesh.vertices, &mesh.normals, &mesh.triangles, [])?;
+    eprintln!("tree of the triangles: {:.0} ms", 1e3 * start.elapsed().as_secs_f64());
+    let mut one_sample = Quality::STANDARD;
+    one_sample.samples = 1;
     let domain = domain_of(&cloud.positions, 0.5 * spacing);
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
     let far = Camera::framing(&domain, 25.0, 16.0, 35.0, aspect);
@@ -60,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("above", Camera::orbit(middle, 0.7 * distance, -30.0, 50.0, 35.0)),
     ];
 
-    let liquid = Liquid::water(domain.max[1] - domain.min[1]);
+    let liquid = Liquid::water();
     let radius = 0.5 * spacing;
     let buffers = particles.buffers();
     let colouring = Colouring::new(Quantity::Speed, [0.0, 3.0]);
@@ -72,6 +77,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("particles", empty.with_particles(DrawnParticles::new(buffers, radius, colouring))),
         ("empty", empty),
         ("surface", meshed(SurfaceStyle::Liquid)),
+        ("traced", meshed(SurfaceStyle::Liquid).with_tracing(&traced, one_sample)),
+        ("traced-standard", meshed(SurfaceStyle::Liquid).with_tracing(&traced, Quality::STANDARD)),
         ("surface-lines", meshed(SurfaceStyle::LiquidWithLines)),
         ("lines", meshed(SurfaceStyle::Lines)),
         ("slice", empty.with_slice(slice)),
@@ -132,17 +139,28 @@ fn domain_of(positions: &[[f32; 3]], margin: f32) -> Domain {
     Domain::closed(low.map(|x| x - margin), high.map(|x| x + margin))
 }
 
-/// The element counts in the header of a binary .ply file, and the data after the header.
-fn open_ply(path: &Path) -> Result<(Vec<usize>, Vec<u8>), Box<dyn Error>> {
+/// A binary .ply file.
+struct Ply {
+    /// The element counts in the header.
+    counts: Vec<usize>,
+    /// Numbers per vertex.
+    numbers: usize,
+    /// The data after the header.
+    data: Vec<u8>,
+}
+
+fn open_ply(path: &Path) -> Result<Ply, Box<dyn Error>> {
     let bytes = std::fs::read(path)?;
     let end = b"end_header\n";
     let header = bytes.windows(end.len()).position(|window| window == end).ok_or("the header has no end")?;
-    let counts = String::from_utf8_lossy(&bytes[..header])
+    let text = String::from_utf8_lossy(&bytes[..header]);
+    let numbers = text.lines().filter(|line| line.starts_with("property float")).count();
+    let counts = text
         .lines()
         .filter(|line| line.starts_with("element"))
         .filter_map(|line| line.split(' ').next_back()?.parse().ok())
         .collect();
-    Ok((counts, bytes[header + end.len()..].to_vec()))
+    Ok(Ply { counts, numbers, data: bytes[header + end.len()..].to_vec() })
 }
 
 fn float(bytes: &[u8], index: usize) -> f32 {
@@ -150,10 +168,10 @@ fn float(bytes: &[u8], index: usize) -> f32 {
 }
 
 fn read_particles(path: &Path) -> Result<sample::Cloud, Box<dyn Error>> {
-    let (_, bytes) = open_ply(path)?;
+    let Ply { data, .. } = open_ply(path)?;
     let mut cloud = sample::Cloud::default();
     // Position, velocity, density, pressure and id.
-    for particle in bytes.chunks_exact(36) {
+    for particle in data.chunks_exact(36) {
         cloud.positions.push([0, 1, 2].map(|axis| float(particle, axis)));
         cloud.velocities.push([3, 4, 5].map(|axis| float(particle, axis)));
         cloud.densities.push(float(particle, 6));
@@ -163,10 +181,10 @@ fn read_particles(path: &Path) -> Result<sample::Cloud, Box<dyn Error>> {
 }
 
 fn read_mesh(path: &Path) -> Result<sample::Mesh, Box<dyn Error>> {
-    let (counts, bytes) = open_ply(path)?;
+    let Ply { counts, numbers, data } = open_ply(path)?;
     let vertices = counts.first().copied().ok_or("the header has no vertices")?;
-    let (points, faces) = bytes.split_at(24 * vertices);
-    let points = || points.chunks_exact(24);
+    let (points, faces) = data.split_at(4 * numbers * vertices);
+    let points = || points.chunks_exact(4 * numbers);
     // One byte with the number of corners, then three indices.
     let corner = |face: &[u8], index: usize| float(&face[1..], index).to_bits();
     Ok(sample::Mesh {

@@ -1,7 +1,7 @@
 //! The camera.
 
 use crate::{Domain, RenderError};
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// A perspective camera.
 ///
@@ -30,6 +30,25 @@ pub(crate) struct View {
     pub forward: Vec3,
     pub near: f32,
     pub clip_from_world: Mat4,
+}
+
+impl View {
+    /// The same view from another point of a lens and through another point of the pixels:
+    /// `picture` in halves of the picture's width and height, `lens` in metres to the right and up.
+    /// What lies at the distance `focus` in metres along the view remains in place. Returns the view
+    /// and the vector to add to its rays.
+    pub fn shifted(&self, picture: Vec2, lens: Vec2, focus: f32) -> (View, Vec3) {
+        let (right, up) = (self.right.normalize_or_zero(), self.up.normalize_or_zero());
+        let moved = right * lens.x + up * lens.y;
+        let eye = self.eye + moved;
+        let shift = self.right * picture.x + self.up * picture.y - moved / focus;
+        let row_w = self.forward.extend(-self.forward.dot(eye));
+        let row = |axis: Vec3, half: f32| (axis.extend(-axis.dot(eye)) - row_w * shift.dot(axis)) / half;
+        let row_z = Vec4::new(0.0, 0.0, 0.0, self.near);
+        let rows = [row(right, self.right.length()), row(up, self.up.length()), row_z, row_w];
+        let clip_from_world = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+        (View { eye, clip_from_world, ..*self }, shift)
+    }
 }
 
 impl Camera {
@@ -180,6 +199,27 @@ mod tests {
         };
         assert!((depth(2.0 - view.near) - 1.0).abs() < 1e-3);
         assert!(depth(1.0) > depth(0.0) && depth(0.0) > depth(-1000.0) && depth(-1000.0) > 0.0);
+    }
+
+    #[test]
+    fn a_lens_moves_everything_but_the_plane_of_focus() {
+        let view = Camera::orbit([0.0; 3], 2.0, 30.0, 20.0, 50.0).view(1.5).unwrap();
+        let seen = |view: &View, point: Vec3| {
+            let clip = view.clip_from_world * point.extend(1.0);
+            Vec2::new(clip.x, clip.y) / clip.w
+        };
+        let (same, _) = view.shifted(Vec2::ZERO, Vec2::ZERO, 2.0);
+        let (moved, shift) = view.shifted(Vec2::ZERO, Vec2::new(0.05, -0.02), 2.0);
+        for (x, y) in [(0.0, 0.0), (0.7, -0.4)] {
+            let at = |depth: f32| view.eye + depth * (view.forward + x * view.right + y * view.up);
+            assert!(seen(&same, at(3.0)).distance(Vec2::new(x, y)) < 1e-5);
+            assert!(seen(&moved, at(2.0)).distance(Vec2::new(x, y)) < 1e-5);
+            // Negative control: what is out of focus moves.
+            assert!(seen(&moved, at(3.0)).distance(Vec2::new(x, y)) > 1e-3);
+            // The ray of the pixel passes through what the matrix puts there.
+            let point = moved.eye + 3.0 * (view.forward + shift + x * view.right + y * view.up);
+            assert!(seen(&moved, point).distance(Vec2::new(x, y)) < 1e-5);
+        }
     }
 
     #[test]

@@ -44,6 +44,10 @@ impl Domain {
         })
     }
 
+    pub(crate) fn contains(&self, point: Vec3) -> bool {
+        point.cmpge(Vec3::from(self.min)).all() && point.cmple(Vec3::from(self.max)).all()
+    }
+
     /// The eight corners. Bit 0 of the index selects x, bit 1 y, bit 2 z.
     pub(crate) fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|index| {

@@ -54,6 +54,17 @@ pub enum RenderError {
     /// The frame has both a surface and liquid particles.
     #[error("a frame has either a surface or liquid particles; set one of the two to None")]
     TwoLiquids,
+    /// The trees of the triangles do not fit the device.
+    #[error(
+        "rays were to be traced through {given} triangles; this device supports about {allowed}: draw with interactive \
+         quality, or extract the surface with larger cells"
+    )]
+    TooManyTriangles {
+        /// Number of triangles.
+        given: usize,
+        /// The number that fits.
+        allowed: usize,
+    },
     /// A buffer is too short for the number of elements.
     #[error("the buffer of {what} has {given} bytes, but {needed} are required")]
     BufferTooShort {

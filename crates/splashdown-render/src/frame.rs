@@ -1,9 +1,10 @@
 //! The content of a picture.
 
+use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
 use crate::{
     BodyBuffers, Camera, Domain, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
-    RenderError,
+    Quality, RenderError, SurfaceStyle, TracedMeshes,
 };
 use glam::{Vec2, Vec3};
 
@@ -30,6 +31,10 @@ pub struct Frame<'a> {
     pub liquid_particles: Option<DrawnLiquidParticles<'a>>,
     /// A plane through the fluid.
     pub slice: Option<DrawnSlice<'a>>,
+    /// Meshes of the liquid and of the bodies for tracing rays, and how carefully. Used if there is
+    /// a `surface` and neither `particles` nor a `slice`; the rays then replace the approximations
+    /// of the interactive picture.
+    pub traced: Option<(&'a TracedMeshes, Quality)>,
     /// Foam, spray and bubbles.
     pub foam: Option<DrawnFoam<'a>>,
     /// Bodies.
@@ -81,10 +86,49 @@ impl<'a> Frame<'a> {
             surface: None,
             liquid_particles: None,
             slice: None,
+            traced: None,
             foam: None,
             bodies: None,
             caption: None,
         }
+    }
+
+    /// Draws the liquid with traced rays: see [`Frame::traced`].
+    #[must_use]
+    pub fn with_tracing(self, meshes: &'a TracedMeshes, quality: Quality) -> Frame<'a> {
+        Frame { traced: Some((meshes, quality)), ..self }
+    }
+
+    /// The number of samples if rays are traced.
+    pub(crate) fn traced_samples(&self) -> Option<u32> {
+        let (_, quality) = self.traced?;
+        let only_liquid = self.surface.is_some_and(|surface| surface.style == SurfaceStyle::Liquid)
+            && self.particles.is_none()
+            && self.slice.is_none();
+        only_liquid.then_some(quality.samples)
+    }
+
+    /// The uniforms of a sample of a picture with traced rays.
+    pub(crate) fn sample_globals(&self, size: [u32; 2], sample: u32) -> Result<Globals, RenderError> {
+        let mut globals = self.globals(size, true)?;
+        let Some((meshes, quality)) = self.traced else { return Ok(globals) };
+        quality.check()?;
+        let [width, height] = size.map(|side| side as f32);
+        let view = self.camera.view(width / height)?;
+        let target = Vec3::from(self.camera.target) - view.eye;
+        let focus = quality.focus.unwrap_or_else(|| target.dot(view.forward).max(view.near));
+        let (pixel, lens, time) = quality.place(sample);
+        let pixel = Vec2::new(2.0 * pixel[0] / width, 2.0 * pixel[1] / height);
+        let (view, shift) = view.shifted(pixel, 0.5 * quality.aperture * Vec2::from(lens), focus);
+        globals.clip_from_world = view.clip_from_world.to_cols_array_2d();
+        globals.eye = view.eye.into();
+        globals.ray_shift = shift.into();
+        globals.linear_output = 1;
+        globals.sample = sample;
+        globals.sample_count = quality.samples;
+        globals.shutter_time = time * quality.shutter;
+        (globals.water_root, globals.body_root) = meshes.roots();
+        Ok(globals)
     }
 
     /// The default sun: high, to the left and behind the box as seen from the +z side, so that the
@@ -117,10 +161,16 @@ impl<'a> Frame<'a> {
             box_min: low.into(),
             tile_size: round_tile_size(0.2 * extent.x.max(extent.z)),
             box_max: high.into(),
-            fade_distance: 2.6 * extent.length(),
+            fade_distance: 16.0 * extent.length(),
             shadow_min: shadow_min.into(),
             shadow_size: shadow_size.into(),
             picture_size: [width, height],
+            ray_offset: 2e-5 * extent.length(),
+            contact_distance: 0.006 * extent.length(),
+            glass_thickness: 0.004 * extent.length(),
+            // Seen from inside, a pane would mirror the scene and hide nothing.
+            glass: if self.domain.contains(view.eye) { [0; 4] } else { panes_of(&self.domain) },
+            sample_count: 1,
             line_width: (1.5 * scale).clamp(1.0, 8.0),
             ..Globals::default()
         };

@@ -26,7 +26,7 @@ pub(crate) struct Globals {
     pub up: [f32; 3],
     pub encode_srgb: u32,
     pub forward: [f32; 3],
-    pub liquid_film: f32,
+    pub padding: f32,
     pub sun: [f32; 3],
     pub floor_height: f32,
     pub box_min: [f32; 3],
@@ -60,6 +60,17 @@ pub(crate) struct Globals {
     pub slice_scale: f32,
     pub splat_margin: f32,
     pub foam_radius: f32,
+    pub ray_shift: [f32; 3],
+    pub linear_output: u32,
+    pub water_root: u32,
+    pub body_root: u32,
+    pub ray_offset: f32,
+    pub contact_distance: f32,
+    pub sample: u32,
+    pub sample_count: u32,
+    pub shutter_time: f32,
+    pub glass_thickness: f32,
+    pub glass: [u32; 4],
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -93,11 +104,12 @@ mod tests {
 
     fn same(source: &str) -> bool {
         let globals = layout!(Globals: clip_from_world eye near right pixel_angle up encode_srgb forward
-            liquid_film sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
+            padding sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin foam_radius edges);
+            slice_full slice_low slice_scale splat_margin foam_radius ray_shift linear_output water_root body_root
+            ray_offset contact_distance sample sample_count shutter_time glass_thickness glass edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

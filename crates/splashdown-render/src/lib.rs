@@ -33,6 +33,7 @@
 //!
 //! * spheres coloured by a quantity ([`DrawnParticles`]);
 //! * a liquid from a surface mesh, with or without its wireframe ([`DrawnSurface`]);
+//! * the same with traced rays ([`TracedMeshes`], [`Quality`]): slower, and what published pictures use;
 //! * a liquid directly from the particles, in screen space ([`DrawnLiquidParticles`]);
 //! * a plane through the fluid coloured by a quantity ([`DrawnSlice`]);
 //! * foam, spray and bubbles, combined with any other mode ([`DrawnFoam`]).
@@ -57,12 +58,14 @@ mod edges;
 mod error;
 mod foam;
 mod frame;
+mod glass;
 mod globals;
 mod liquid;
 mod offscreen;
 mod overlay;
 mod particles;
 mod pipeline;
+mod quality;
 mod recorder;
 mod renderer;
 mod screen_space;
@@ -73,6 +76,8 @@ mod surface;
 mod targets;
 mod texture;
 mod ticket;
+mod trace;
+mod tree;
 mod uploads;
 
 /// The version of wgpu whose types appear in this crate's interface.
@@ -90,9 +95,11 @@ pub use frame::Frame;
 pub use liquid::Liquid;
 pub use offscreen::Offscreen;
 pub use particles::DrawnParticles;
+pub use quality::Quality;
 pub use renderer::{PassTime, Renderer};
 pub use screen_space::DrawnLiquidParticles;
 pub use slice::{Axis, DrawnSlice};
 pub use surface::DrawnSurface;
 pub use ticket::Ticket;
+pub use tree::TracedMeshes;
 pub use uploads::{UploadedFoam, UploadedParticles, UploadedSurface};

@@ -104,11 +104,23 @@ impl Offscreen {
             return Err(RenderError::FramesInFlight { limit: Offscreen::FRAMES_IN_FLIGHT });
         };
         let submission = with_error_scopes(&self.device, || {
-            let mut encoder = self
-                .device
-                .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
             let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-            renderer.draw(&mut encoder, &view, self.size, frame)?;
+            let label = wgpu::CommandEncoderDescriptor { label: Some("picture") };
+            let mut encoder = self.device.create_command_encoder(&label);
+            match frame.traced_samples() {
+                None => renderer.draw(&mut encoder, &view, self.size, frame)?,
+                // A submission per sample: drivers stop those that take seconds.
+                Some(samples) => {
+                    for sample in 0..samples.max(1) {
+                        if sample > 0 {
+                            let next = self.device.create_command_encoder(&label);
+                            self.queue.submit([std::mem::replace(&mut encoder, next).finish()]);
+                        }
+                        let range = sample..sample + 1;
+                        renderer.draw_samples(&mut encoder, &view, self.size, frame, range)?;
+                    }
+                }
+            }
             let layout = TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(padded_row(self.size[0])),

@@ -4,9 +4,9 @@
 use crate::shader::Shader;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
-    BufferBindingType, CompareFunction, Device, Face, PrimitiveTopology, RenderPipeline, SamplerBindingType,
-    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexAttribute,
-    VertexBufferLayout, VertexFormat, VertexStepMode,
+    BufferBindingType, ColorWrites, CompareFunction, Device, Face, PrimitiveTopology, RenderPipeline,
+    SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension,
+    VertexAttribute, VertexBufferLayout, VertexFormat, VertexStepMode,
 };
 
 /// Format of the depth buffer.
@@ -23,6 +23,8 @@ pub(crate) struct PipelineDesc<'a> {
     pub cull: Option<Face>,
     pub depth: Option<Depth>,
     pub blend: Option<BlendState>,
+    /// Channels that are written.
+    pub write: ColorWrites,
     /// Number of `vec4<f32>` vertex buffers.
     pub vertex_buffers: usize,
     pub constants: &'a [(&'a str, f64)],
@@ -51,6 +53,7 @@ impl<'a> PipelineDesc<'a> {
             cull: None,
             depth: None,
             blend: None,
+            write: ColorWrites::ALL,
             vertex_buffers: 0,
             constants: &[],
         }
@@ -114,7 +117,7 @@ impl<'a> PipelineDesc<'a> {
                 targets: &[Some(wgpu::ColorTargetState {
                     format: self.format,
                     blend: self.blend,
-                    write_mask: wgpu::ColorWrites::ALL,
+                    write_mask: self.write,
                 })],
             }),
             multiview_mask: None,
@@ -132,6 +135,9 @@ pub(crate) const ADD: BlendState = {
     };
     BlendState { color: component, alpha: component }
 };
+
+/// Alpha blending of colours that are already multiplied by alpha.
+pub(crate) const PREMULTIPLIED: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
 /// Alpha blending (straight alpha) over an opaque picture, which stays opaque.
 pub(crate) const OVER: BlendState = BlendState {
@@ -152,6 +158,8 @@ pub(crate) const OVER: BlendState = BlendState {
 pub(crate) enum Bind {
     Uniform,
     Storage,
+    /// A storage buffer that the fragment shader reads.
+    FragmentStorage,
     /// A texture loaded by the vertex shader without a sampler.
     VertexTexture,
     Texture,
@@ -169,13 +177,17 @@ pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind])
             visibility: match bind {
                 Bind::Uniform => ShaderStages::VERTEX_FRAGMENT,
                 Bind::Storage | Bind::VertexTexture => ShaderStages::VERTEX,
-                Bind::Texture | Bind::Texels | Bind::Sampler => ShaderStages::FRAGMENT,
+                Bind::FragmentStorage | Bind::Texture | Bind::Texels | Bind::Sampler => {
+                    ShaderStages::FRAGMENT
+                }
             },
             ty: match bind {
                 Bind::Uniform => buffer(BufferBindingType::Uniform),
-                Bind::Storage => buffer(BufferBindingType::Storage { read_only: true }),
+                Bind::Storage | Bind::FragmentStorage => {
+                    buffer(BufferBindingType::Storage { read_only: true })
+                }
                 Bind::Texture | Bind::VertexTexture | Bind::Texels => BindingType::Texture {
-                    sample_type: TextureSampleType::Float { filterable: bind != &Bind::Texels },
+                    sample_type: TextureSampleType::Float { filterable: bind == &Bind::Texture },
                     view_dimension: TextureViewDimension::D2,
                     multisampled: false,
                 },

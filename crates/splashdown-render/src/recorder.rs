@@ -91,6 +91,28 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Clear(clear)), Some((depth, operations)))
     }
 
+    /// A pass of light with one sample per pixel and a depth buffer, both stored.
+    pub fn light(
+        &mut self,
+        label: &'static str,
+        view: &TextureView,
+        depth: &TextureView,
+        start: Start,
+    ) -> RenderPass<'_> {
+        let (load, load_depth) = match start {
+            Start::Clear => (LoadOp::Clear(Color::BLACK), LoadOp::Clear(0.0)),
+            Start::Load => (LoadOp::Load, LoadOp::Load),
+        };
+        let operations = Operations { load: load_depth, store: StoreOp::Store };
+        self.begin(label, colour(view, load), Some((depth, operations)))
+    }
+
+    /// A pass that adds to a texture.
+    pub fn sum(&mut self, label: &'static str, view: &TextureView, start: Start) -> RenderPass<'_> {
+        let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::TRANSPARENT) };
+        self.begin(label, colour(view, load), None)
+    }
+
     /// A pass over the existing contents of a texture.
     pub fn over(&mut self, label: &'static str, view: &TextureView) -> RenderPass<'_> {
         self.begin(label, colour(view, LoadOp::Load), None)

@@ -5,6 +5,7 @@ use crate::bodies::Bodies;
 use crate::colour_map::ColourTextures;
 use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
+use crate::glass::{Glass, Panes};
 use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
@@ -14,8 +15,10 @@ use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
 use crate::targets::Targets;
+use crate::trace::TracedPicture;
 use crate::{Frame, RenderError, SurfaceStyle};
 use splashdown_gpu::PassTimer;
+use std::ops::Range;
 use std::time::Duration;
 use wgpu::{
     BindGroup, BindGroupLayout, BufferUsages, Color, CommandEncoder, Device, Queue, RenderPass,
@@ -63,9 +66,12 @@ pub struct Renderer {
     particles: Particles,
     slice: Slice,
     foam: Foam,
+    glass: Glass,
     surface: Surface,
     screen_space: ScreenSpace,
     overlay: Overlay,
+    /// Created with the first picture that needs it.
+    traced: Option<TracedPicture>,
     targets: Option<Targets>,
     timer: Option<PassTimer>,
     /// The times of the latest picture that have been read back.
@@ -89,8 +95,8 @@ impl Renderer {
             return Err(RenderError::SampleCount { given: sample_count });
         }
         let globals_layout = bind_group_layout(device, "globals", &[Bind::Uniform]);
-        let shadow = Shadow::new(device, &globals_layout);
-        let layouts = [&globals_layout, &shadow.environment_layout];
+        let shadow = Shadow::new(device, queue, &globals_layout);
+        let layouts = [&globals_layout, &shadow.floor_light.layout];
         let colours = ColourTextures::new(device, queue);
         Ok(Renderer {
             background: Background::new(device, layouts, format, sample_count),
@@ -99,6 +105,7 @@ impl Renderer {
             particles: Particles::new(device, layouts, format, sample_count, colours.clone()),
             slice: Slice::new(device, layouts, format, sample_count, colours),
             foam: Foam::new(device, layouts, format, sample_count),
+            glass: Glass::new(device, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
             screen_space: ScreenSpace::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
@@ -108,6 +115,7 @@ impl Renderer {
             queue: queue.clone(),
             format,
             sample_count,
+            traced: None,
             targets: None,
             timer: None,
             pass_times: Vec::new(),
@@ -161,6 +169,9 @@ impl Renderer {
         frame: &Frame<'_>,
     ) -> Result<(), RenderError> {
         check_size(&self.device, size)?;
+        if let Some(samples) = frame.traced_samples() {
+            return self.draw_samples(encoder, target, size, frame, 0..samples);
+        }
         let mut globals = frame.globals(size, self.format.is_srgb())?;
         globals.splat_margin = margin(&self.device, size) as f32;
         if let Some(surface) = &frame.surface {
@@ -190,7 +201,11 @@ impl Renderer {
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
             self.background.record(pass);
-            self.edges.record(pass, 0..behind);
+            if has_liquid {
+                self.glass.record(pass, Panes::Behind);
+            } else {
+                self.edges.record(pass, 0..behind);
+            }
             if let Some(bodies) = &frame.bodies {
                 self.bodies.record(pass, bodies);
             }
@@ -252,9 +267,53 @@ impl Renderer {
             }
             let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
             self.foam.record(&mut pass, &foam, kinds);
-            self.edges.record(&mut pass, behind..12);
+            if has_liquid {
+                self.glass.record(&mut pass, Panes::InFront);
+            } else {
+                self.edges.record(&mut pass, behind..12);
+            }
         }
         self.overlay.record(&mut recorder, target);
+        recorder.finish();
+        Ok(())
+    }
+
+    /// Records some samples of a picture with traced rays; the last one completes it.
+    pub(crate) fn draw_samples(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        target: &TextureView,
+        size: [u32; 2],
+        frame: &Frame<'_>,
+        samples: Range<u32>,
+    ) -> Result<(), RenderError> {
+        check_size(&self.device, size)?;
+        let Some((meshes, quality)) = frame.traced else { return Ok(()) };
+        quality.check()?;
+        let globals = samples
+            .clone()
+            .map(|sample| frame.sample_globals(size, sample))
+            .collect::<Result<Vec<_>, _>>()?;
+        let of_result = frame.globals(size, self.format.is_srgb())?;
+        let globals: Vec<BindGroup> =
+            globals.iter().map(|globals| self.bind_globals(bytemuck::bytes_of(globals))).collect();
+        let of_result = self.bind_globals(bytemuck::bytes_of(&of_result));
+        self.overlay.prepare(&self.device, &self.queue, size, frame)?;
+        self.pass_times();
+        let (device, layout, format) = (&self.device, &self.globals_layout, self.format);
+        let floor_light = &self.shadow.floor_light;
+        let traced =
+            self.traced.get_or_insert_with(|| TracedPicture::new(device, layout, floor_light, format));
+        traced.prepare(device, size);
+        let trees = traced.bind(device, meshes);
+        let mut recorder = Recorder::new(encoder, self.timer.as_mut());
+        for (sample, globals) in samples.clone().zip(&globals) {
+            traced.record_sample(device, &mut recorder, globals, &trees, frame, sample);
+        }
+        if samples.end == quality.samples {
+            traced.record_result(&mut recorder, &of_result, target);
+            self.overlay.record(&mut recorder, target);
+        }
         recorder.finish();
         Ok(())
     }

@@ -11,6 +11,11 @@ pub(crate) const EYE_DISTANCE: &str = include_str!("shared/eye_distance.wgsl");
 pub(crate) const FULLSCREEN: &str = include_str!("shared/fullscreen.wgsl");
 pub(crate) const GLOBALS: &str = include_str!("shared/globals.wgsl");
 pub(crate) const ENVIRONMENT: &str = include_str!("shared/environment.wgsl");
+pub(crate) const OPTICS: &str = include_str!("shared/optics.wgsl");
+pub(crate) const MATTE: &str = include_str!("shared/matte.wgsl");
+/// Stands in for [`TRACE`] without trees of triangles.
+pub(crate) const LIT: &str = include_str!("shared/lit.wgsl");
+pub(crate) const TRACE: &str = include_str!("tree/trace.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
 pub(crate) const QUANTITY: &str = include_str!("shared/quantity.wgsl");
 pub(crate) const SPHERE: &str = include_str!("shared/sphere.wgsl");
@@ -34,7 +39,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 20] = [
+    const ALL: [Shader; 30] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -54,7 +59,17 @@ mod tests {
         crate::shadow::FROM_PARTICLES,
         crate::shadow::BLUR,
         crate::overlay::SHADER,
+        crate::shadow::ABSORB,
         crate::foam::SHADER,
+        crate::glass::SHADER,
+        crate::bodies::TRACED,
+        crate::trace::DEPTH,
+        crate::trace::LIQUID,
+        crate::trace::PHOTONS,
+        crate::trace::SPLAT,
+        crate::trace::FLOOR_SKY,
+        crate::trace::ACCUMULATE,
+        crate::trace::RESOLVE,
     ];
 
     /// The error that naga reports for a shader without optional capabilities, as in a browser.
@@ -100,8 +115,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 8,
-            "each shader has its own file, and eight are shared: {files:?}"
+            ALL.len() + 12,
+            "each shader has its own file, and twelve more are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

@@ -170,7 +170,7 @@ pub(crate) fn check_indices(triangles: &[[u32; 3]], vertices: usize) -> Result<(
     Ok(())
 }
 
-fn check_length(what: &'static str, given: usize, needed: usize) -> Result<(), RenderError> {
+pub(crate) fn check_length(what: &'static str, given: usize, needed: usize) -> Result<(), RenderError> {
     if given == 0 || given == needed { Ok(()) } else { Err(RenderError::Length { what, given, needed }) }
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn upload<T: Pod>(device: &Device, label: &str, values: &[T], usage: 
     device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: bytes, usage })
 }
 
-fn area_weighted_normals(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 4]> {
+pub(crate) fn area_weighted_normals(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 4]> {
     let mut sums = vec![Vec3::ZERO; vertices.len()];
     for corners in triangles {
         let [a, b, c] = corners.map(|corner| Vec3::from(vertices[corner as usize]));

@@ -130,7 +130,7 @@ fn a_surface_and_particles_hide_each_other() {
     let mesh = sample::ball([0.0; 3], 0.5, 32);
     let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     // Nearly opaque, so that nothing behind it is visible.
-    let opaque = with(Liquid::water(1.0), |l| {
+    let opaque = with(Liquid::water(), |l| {
         l.absorption = [40.0; 3];
         l.scattering = 40.0;
         l.colour = [0.0, 0.4, 0.0];
@@ -144,10 +144,9 @@ fn a_surface_and_particles_hide_each_other() {
     let [r, g, b] = behind.pixel(centre);
     assert!(g > r && g > b, "{:?}", behind.pixel(centre));
     // The same particle is visible through clear liquid.
-    let clear = with(Liquid::water(1.0), |l| {
+    let clear = with(Liquid::water(), |l| {
         l.absorption = [0.0; 3];
         l.scattering = 0.0;
-        l.film = 0.0;
     });
     let frame = frame.with_surface(DrawnSurface::new(ball.buffers(), clear));
     assert!(is_red(spheres(&mut harness, &[([0.0, 0.0, -1.0], 1.0)], 0.2, frame).pixel(centre)));
@@ -170,7 +169,7 @@ fn indirect_draws_equal_direct_ones() {
         (arguments(3 * mesh.triangles.len() as u32), arguments(3 * mesh.triangles.len() as u32 / 2));
     let mut draw = |draw| {
         let buffers = SurfaceBuffers { draw, ..ball.buffers() };
-        let surface = DrawnSurface::new(buffers, Liquid::water(1.0));
+        let surface = DrawnSurface::new(buffers, Liquid::water());
         harness.draw(SIZE, &level_frame(5.0).with_surface(surface))
     };
     let direct = draw(ball.buffers().draw);
@@ -206,7 +205,7 @@ fn one_sample_and_unencoded_targets_show_the_same_picture() {
     let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([0.0, 0.0, 0.0], 0.8, 48);
     let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
-    let surface = DrawnSurface::new(ball.buffers(), Liquid::water(1.0));
+    let surface = DrawnSurface::new(ball.buffers(), Liquid::water());
     let domain = Domain::closed([-1.0; 3], [1.0; 3]);
     let frame = with(level_frame(6.0), |f| f.domain = domain).with_surface(surface);
     let four = harness.draw(SIZE, &frame);

@@ -34,10 +34,9 @@ fn liquid_ball(harness: &Harness, radius: f32, clear: bool) -> (UploadedSurface,
     let ball = sample::ball([0.0; 3], radius, 48);
     let ball = UploadedSurface::new(&harness.device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
     let per_metre = if clear { 0.0 } else { 400.0 };
-    let black = with(Liquid::water(1.0), |l| {
+    let black = with(Liquid::water(), |l| {
         l.absorption = [per_metre; 3];
         l.scattering = per_metre;
-        l.film = 0.0;
         l.colour = [0.0; 3];
     });
     (ball, black)

@@ -102,13 +102,15 @@ fn invalid_frames_are_refused_and_leave_the_target_usable() {
 fn empty_input_gives_a_picture_of_the_empty_box() {
     let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
     let mut target = Offscreen::new(&device, &queue, [60, 40]).unwrap();
-    let empty = target.render_to_rgba(&mut renderer, &frame(0.0)).unwrap();
     let particles = UploadedParticles::new(&device, &[], &[], &[], &[]).unwrap();
+    // A frame with a liquid shows a tank of glass.
+    let none = DrawnLiquidParticles::new(particles.buffers(), 0.1, Liquid::water());
+    let empty = target.render_to_rgba(&mut renderer, &frame(0.0).with_liquid_particles(none)).unwrap();
     let mesh = UploadedSurface::new(&device, &[], &[], &[]).unwrap();
     let colouring = Colouring::new(Quantity::Speed, [0.0, 0.0]).with_colour_bar(false);
     let both = frame(0.0)
         .with_particles(DrawnParticles::new(particles.buffers(), 0.1, colouring))
-        .with_surface(DrawnSurface::new(mesh.buffers(), Liquid::water(1.0)));
+        .with_surface(DrawnSurface::new(mesh.buffers(), Liquid::water()));
     let drawn = target.render_to_rgba(&mut renderer, &both).unwrap();
     assert!(empty.iter().zip(&drawn).all(|(a, b)| a.abs_diff(*b) <= 1));
 }

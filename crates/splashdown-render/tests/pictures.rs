@@ -61,14 +61,14 @@ fn surfaces() {
     let waves =
         UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     for name in ["water", "honey"] {
-        let liquid = Liquid::from_name(name, 1.0).unwrap();
+        let liquid = Liquid::from_name(name).unwrap();
         let drawn = DrawnSurface::new(waves.buffers(), liquid);
         let good = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0])).with_surface(drawn);
         let picture = harness.draw(SIZE, &good);
         picture.expect(&format!("surface-{name}"));
 
         assert!(!harness.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
-        let wrong = good.with_surface(with(drawn, |d| d.liquid = Liquid::oil(1.0)));
+        let wrong = good.with_surface(with(drawn, |d| d.liquid = Liquid::oil()));
         assert!(!harness.draw(SIZE, &wrong).difference(&picture).is_small(), "another liquid");
         let flat: Vec<[f32; 3]> = vec![[0.0, 1.0, 0.0]; mesh.vertices.len()];
         let flat = UploadedSurface::new(&harness.device, &mesh.vertices, &flat, &mesh.triangles).unwrap();
@@ -90,7 +90,7 @@ fn surface_and_particles_together_in_a_half_open_box() {
         Domain { closed: [false, true, true, false, true, true], ..Domain::closed([0.0; 3], [1.0; 3]) };
     let good = frame(domain)
         .with_particles(DrawnParticles::new(particles.buffers(), 0.1, colouring))
-        .with_surface(DrawnSurface::new(ball.buffers(), Liquid::water(1.0)));
+        .with_surface(DrawnSurface::new(ball.buffers(), Liquid::water()));
     let picture = harness.draw(SIZE, &good);
     picture.expect("both");
     assert!(!harness.draw(SIZE, &moved(good)).difference(&picture).is_small(), "a moved camera");
@@ -105,14 +105,14 @@ fn liquid_from_particles() {
     let Some(mut harness) = common::harness() else { return };
     let cloud = sample::collapsing_column([2.0, 1.0, 1.0], 0.04);
     let particles = UploadedParticles::new(&harness.device, &cloud.positions, &[], &[], &[]).unwrap();
-    let drawn = DrawnLiquidParticles::new(particles.buffers(), 0.02, Liquid::water(1.0));
+    let drawn = DrawnLiquidParticles::new(particles.buffers(), 0.02, Liquid::water());
     let empty = frame(Domain::closed([0.0; 3], [2.0, 1.0, 1.0]));
     let good = empty.with_liquid_particles(drawn);
     let picture = harness.draw(WITH_BAR, &good);
     picture.expect("screen-space");
 
     assert!(!harness.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
-    for wrong in [with(drawn, |d| d.liquid = Liquid::oil(1.0)), with(drawn, |d| d.radius = 0.012)] {
+    for wrong in [with(drawn, |d| d.liquid = Liquid::oil()), with(drawn, |d| d.radius = 0.012)] {
         let wrong = harness.draw(WITH_BAR, &empty.with_liquid_particles(wrong));
         assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
     }
@@ -143,7 +143,7 @@ fn slices_and_lines() {
     let waves =
         UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
     let mut draw = |style| {
-        let drawn = DrawnSurface::new(waves.buffers(), Liquid::water(1.0)).with_style(style);
+        let drawn = DrawnSurface::new(waves.buffers(), Liquid::water()).with_style(style);
         harness.draw(SIZE, &empty.with_surface(drawn))
     };
     let picture = draw(SurfaceStyle::LiquidWithLines);

@@ -16,7 +16,7 @@ fn frame() -> Frame<'static> {
 
 /// Nearly opaque and green, so that it hides everything behind it and is easy to detect.
 fn opaque_green() -> Liquid {
-    with(Liquid::water(1.0), |l| {
+    with(Liquid::water(), |l| {
         l.absorption = [400.0; 3];
         l.scattering = 400.0;
         l.colour = [0.0, 0.4, 0.0];
@@ -129,10 +129,9 @@ fn the_surface_and_particles_hide_each_other() {
     let is_red = |[r, _, b]: [u8; 3]| i32::from(r) - i32::from(b) > 40;
     assert!(is_red(with_a_sphere_at(1.0, opaque_green())));
     assert!(is_green(with_a_sphere_at(-1.0, opaque_green())));
-    let clear = with(Liquid::water(1.0), |l| {
+    let clear = with(Liquid::water(), |l| {
         l.absorption = [0.0; 3];
         l.scattering = 0.0;
-        l.film = 0.0;
     });
     assert!(is_red(with_a_sphere_at(-1.0, clear)), "visible through clear liquid");
 }
@@ -186,9 +185,9 @@ fn one_sample_and_any_size_are_supported() {
     let Some(mut harness) = common::harness() else { return };
     let places = block([0.0; 3], [12, 8, 6], 2.0 * RADIUS);
     let view = with(frame(), |f| f.camera = Camera::orbit([0.0; 3], 3.0, 30.0, 25.0, 40.0));
-    let four = liquid(&mut harness, &places, Liquid::water(1.0), view);
+    let four = liquid(&mut harness, &places, Liquid::water(), view);
     let particles = UploadedParticles::new(&harness.device, &places, &[], &[], &[]).unwrap();
-    let drawn = DrawnLiquidParticles::new(particles.buffers(), RADIUS, Liquid::water(1.0));
+    let drawn = DrawnLiquidParticles::new(particles.buffers(), RADIUS, Liquid::water());
     let view = view.with_liquid_particles(drawn);
     // Changing sizes, including odd ones: the textures are reallocated.
     for size in [[1, 1], [33, 17], SIZE, [2, 90]] {

@@ -1,7 +1,7 @@
 //! How a scene is drawn: camera, domain, liquid and colours, for the pictures of a run and for the window.
 
-use splashdown::scene::{ColourBy, Derived, Scene};
-use splashdown_render::{Camera, Colouring, Domain, Liquid, Quantity};
+use splashdown::scene::{ColourBy, Derived, PictureQuality, Scene};
+use splashdown_render::{Camera, Colouring, Domain, Liquid, Quality, Quantity};
 
 /// The scene's camera at a simulated time in s.
 pub fn camera(scene: &Scene, time: f64) -> Camera {
@@ -24,9 +24,23 @@ pub fn domain(scene: &Scene) -> Domain {
 
 /// The optical properties of the scene's fluid; those of water for an unknown material.
 pub fn liquid(scene: &Scene) -> Liquid {
-    let size = scene.domain.size();
-    let tint = size.y.min(0.5 * size.x.max(size.z));
-    Liquid::from_name(&scene.fluid.material.name, tint).unwrap_or_else(|| Liquid::water(tint))
+    Liquid::from_name(&scene.fluid.material.name).unwrap_or_else(Liquid::water)
+}
+
+/// How rays are traced for pictures of this quality; `None` without rays.
+pub fn quality(scene: &Scene, quality: PictureQuality) -> Option<Quality> {
+    match quality {
+        PictureQuality::Interactive => None,
+        PictureQuality::Standard => Some(Quality::STANDARD),
+        PictureQuality::Final => {
+            let mut best = Quality::FINAL;
+            // A lens that leaves the domain nearly sharp.
+            best.aperture = 0.006 * scene.camera.distance;
+            // The shutter is open for half a frame (of the scene, which may be shown in slow motion).
+            best.shutter = 0.5 / scene.frame_rate;
+            Some(best)
+        }
+    }
 }
 
 /// Colours by this quantity. The range is the scene's if it sets one for this quantity, else the expected one. It is

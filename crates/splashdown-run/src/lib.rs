@@ -1,7 +1,7 @@
 //! A Splashdown run and its files.
 //!
 //! [`splashdown::Run`] computes frames. This crate turns them into an output folder: particles, meshes,
-//! checkpoints, probe tables, pictures, films and the report `run.json`. The command line and the window share it.
+//! checkpoints, tables of probes and bodies, pictures, films and the report `run.json`. The command line and the window share it.
 //! It prints nothing: a [`Reporter`] receives every message.
 //!
 //! ```
@@ -38,6 +38,7 @@
 )]
 
 pub mod appearance;
+mod body_table;
 mod checkpoints;
 mod error;
 pub mod export;
@@ -48,7 +49,6 @@ mod lock;
 mod outcome;
 #[cfg(not(target_arch = "wasm32"))]
 mod pictures;
-mod probe_files;
 mod recorder;
 mod report;
 mod reporter;
@@ -57,6 +57,7 @@ pub mod sequence;
 #[cfg(not(target_arch = "wasm32"))]
 mod session;
 mod settings;
+mod tables;
 
 pub use checkpoints::{FoundCheckpoint, find_checkpoint, recent_checkpoints};
 pub use error::RunError;
@@ -64,7 +65,7 @@ pub use folder::RunFolder;
 pub use frames::{CompleteFrame, FrameSummary};
 pub use outcome::{RunEnd, RunOutcome};
 #[cfg(not(target_arch = "wasm32"))]
-pub use pictures::Painter;
+pub use pictures::{Beside, FinishedRun, Orbit, Painter};
 pub use recorder::Recorder;
 pub use report::{PassNumbers, pass_numbers};
 pub use reporter::{Reporter, Stop};

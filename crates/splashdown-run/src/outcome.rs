@@ -10,7 +10,7 @@ use crate::{CompleteFrame, RunError, RunFolder};
 #[non_exhaustive]
 pub enum RunEnd {
     /// All frames were computed.
-    Finished(Summary),
+    Finished(Box<Summary>),
     /// It was stopped by request.
     Interrupted,
     /// It failed. Frames already written are complete.

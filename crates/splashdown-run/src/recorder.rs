@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use splashdown_io::{Film, FilmOptions, FrameWriter, Job, Picture, prepare_folder};
 
-use crate::{RunError, export, films};
+use crate::{RunError, export};
 
 /// A recording in progress. Pictures already written remain if a later one fails.
 #[derive(Debug)]
@@ -19,22 +19,17 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Starts in a new folder of this name, numbered if the name is in use. The film has the frame rate of
-    /// [`films::frame_rate`]. If the film cannot be started, for example without `ffmpeg`, the second value is the
+    /// Starts in a new folder of this name, numbered if the name is in use. `film_rate`: frames per
+    /// second of the film, see [`films::frame_rate`](crate::films::frame_rate). If the film cannot be started, for example without `ffmpeg`, the second value is the
     /// reason.
     ///
     /// # Errors
     /// [`RunError::Io`] if nothing can be written.
-    pub fn start(
-        name: &Path,
-        size: [u32; 2],
-        scene_frame_rate: f32,
-    ) -> Result<(Self, Option<String>), RunError> {
+    pub fn start(name: &Path, size: [u32; 2], film_rate: f32) -> Result<(Self, Option<String>), RunError> {
         let folder = export::unused_folder(name);
         prepare_folder(&folder)?;
-        let rate = films::frame_rate(scene_frame_rate);
         let pattern = folder.join("picture_%04d.png").display().to_string();
-        let options = FilmOptions::new(folder.join("film.mp4"), size[0], size[1], rate.into(), pattern);
+        let options = FilmOptions::new(folder.join("film.mp4"), size[0], size[1], film_rate.into(), pattern);
         let (film, failure) = match Film::start(options) {
             Ok(film) => (Some(Arc::new(film)), None),
             Err(error) => (None, Some(error.to_string())),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use splashdown::Stats;
+use splashdown::monitor::{EnergyBalance, Level};
 use splashdown::run::Summary;
 use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
@@ -40,6 +41,19 @@ pub(crate) struct Report {
     pub bytes: u64,
     /// Why the run failed.
     pub error: Option<String>,
+    /// The findings of the monitor.
+    pub monitor: Monitored,
+}
+
+/// The findings of the monitor.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Monitored {
+    /// The highest level: `sound`, `note`, `warning` or `stop`.
+    pub level: Level,
+    /// The energy balance of the last frame in J.
+    pub energy: EnergyBalance,
+    /// Every rise of a watched quantity to a new level, with those of earlier parts of a resumed run.
+    pub alarms: Vec<serde_json::Value>,
 }
 
 /// The last state.
@@ -56,6 +70,8 @@ pub(crate) struct End {
     non_finite: u32,
     wall_corrections: u32,
     max_speed: f32,
+    density_error: f32,
+    density_deficit: f32,
 }
 
 /// The whole run in a few numbers.
@@ -65,6 +81,7 @@ pub(crate) struct Numbers {
     wall: f64,
     step_wall: f64,
     frame_wall: f64,
+    monitor_wall: f64,
     particle_steps_per_second: f64,
     simulated_per_wall: f64,
     density_error: f32,
@@ -106,6 +123,8 @@ impl Report {
             non_finite: stats.non_finite,
             wall_corrections: stats.wall_corrections,
             max_speed: stats.max_speed,
+            density_error: stats.density_error,
+            density_deficit: stats.density_deficit,
         });
     }
 
@@ -118,6 +137,7 @@ impl Report {
             wall: summary.wall,
             step_wall: summary.step_wall,
             frame_wall: summary.frame_wall,
+            monitor_wall: summary.monitor_wall,
             particle_steps_per_second: summary.particle_steps_per_second,
             simulated_per_wall: summary.simulated_per_wall,
             density_error: summary.density_error,
@@ -141,9 +161,21 @@ impl Report {
 
 /// Whether the folder contains the report of a finished run.
 pub(crate) fn is_finished(folder: &RunFolder) -> bool {
-    let report = folder.report().is_file().then(|| std::fs::read(folder.report()).ok()).flatten();
-    let report = report.and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok());
-    report.is_some_and(|report| report["status"] == "finished")
+    earlier(folder).is_some_and(|report| report["status"] == "finished")
+}
+
+/// The alarms in the report of an earlier part of the run, up to a simulated time in s.
+pub(crate) fn alarms_until(folder: &RunFolder, time: f64) -> Vec<serde_json::Value> {
+    let Some(mut report) = earlier(folder) else { return Vec::new() };
+    let serde_json::Value::Array(mut alarms) = report["monitor"]["alarms"].take() else { return Vec::new() };
+    alarms.retain(|alarm| alarm["time"].as_f64().is_some_and(|at| at <= time));
+    alarms
+}
+
+/// The report in the folder, if there is one.
+fn earlier(folder: &RunFolder) -> Option<serde_json::Value> {
+    let bytes = folder.report().is_file().then(|| std::fs::read(folder.report()).ok()).flatten()?;
+    serde_json::from_slice(&bytes).ok()
 }
 
 /// The times of the passes as plain numbers.

@@ -72,7 +72,7 @@ impl RunRequest {
         let mut notes = Notes::new(&self.settings);
         if let Some(FoundCheckpoint { notes: earlier, .. }) = &self.checkpoint {
             (notes.digits, notes.since) = (earlier.digits, earlier.since);
-            notes.probe_bytes.clone_from(&earlier.probe_bytes);
+            notes.table_bytes.clone_from(&earlier.table_bytes);
         }
         notes
     }

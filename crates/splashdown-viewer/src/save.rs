@@ -1,7 +1,7 @@
 //! Writing a changed scene as a scene file.
 
 use glam::Vec3;
-use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene};
+use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene, Solver};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
@@ -37,6 +37,15 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
 }
 
 fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
+    let is_other_method = old.solver.method != new.solver.method;
+    if is_other_method && let Some(table) = document.get_mut("solver").and_then(Item::as_table_like_mut) {
+        // Keys of the old method. The other method has its own defaults, or does not know them.
+        let numerical = ["accuracy", "kernel", "artificial_viscosity", "cfl_factor", "max_dt"];
+        let implicit = ["tolerance", "max_iterations"];
+        for key in numerical.iter().chain(&implicit).chain(&Solver::NOT_IMPLICIT) {
+            table.remove(key);
+        }
+    }
     let mut set = |section: &str, key: &str, differs: bool, item: Item| {
         if differs {
             let section = document.entry(section).or_insert(Item::Table(Table::new()));
@@ -56,14 +65,18 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
     set("fluid", "viscosity", a.viscosity != b.viscosity, number(b.viscosity));
     set("fluid", "surface_tension", a.surface_tension != b.surface_tension, number(b.surface_tension));
     let (a, b) = (&old.solver, &new.solver);
-    set("solver", "method", a.method != b.method, value(b.method.name()));
-    // The default exponent depends on the method.
-    let differs = a.exponent != b.exponent || a.method != b.method;
-    set("solver", "exponent", differs, number(b.exponent));
+    set("solver", "method", is_other_method, value(b.method.name()));
+    set("solver", "support_ratio", is_other_method, number(b.support_ratio));
+    if let Some(speed) = b.sound_speed {
+        set("solver", "sound_speed", is_other_method, number(speed));
+    }
     let model = value(b.surface_tension.name());
     set("solver", "surface_tension", a.surface_tension != b.surface_tension, model);
     let damping = number(b.artificial_viscosity);
-    set("solver", "artificial_viscosity", a.artificial_viscosity != b.artificial_viscosity, damping);
+    let usual = if is_other_method { &Solver::with(b.method, b.density) } else { a };
+    set("solver", "artificial_viscosity", usual.artificial_viscosity != b.artificial_viscosity, damping);
+    set("solver", "cfl_factor", usual.cfl_factor != b.cfl_factor, number(b.cfl_factor));
+    set("solver", "max_dt", usual.max_dt != b.max_dt, number(b.max_dt));
     set("solver", "wall_friction", a.wall_friction != b.wall_friction, number(b.wall_friction));
     let (a, b) = (&old.surface, &new.surface);
     set("surface", "cell_size", a.cell_size != b.cell_size || old.fluid != new.fluid, number(b.cell_size));
@@ -157,8 +170,8 @@ mod tests {
             changed.fluid.particle_spacing *= 1.1;
             changed.surface.cell_size *= 1.1;
             changed.fluid.material.viscosity = 1.0 / 700.0;
+            changed.solver.select_method(Method::Wcsph);
             changed.solver.artificial_viscosity = 0.07;
-            changed.solver.method = Method::Wcsph;
             edit::add_ball(&mut changed);
             edit::turn_tap(&mut changed);
             let mut orbit = Orbit::of_scene(&changed);
@@ -170,6 +183,19 @@ mod tests {
             // Comments are preserved.
             assert_eq!(text.lines().next(), saved.lines().next(), "{name}");
         }
+    }
+
+    #[test]
+    fn another_method_of_an_accurate_scene_is_saved() {
+        let keys = "\n[solver]\naccuracy = \"engineering\"\ndensity_diffusion = 0.2\nwall_friction = 0.5\n";
+        let (_, floating) = presets().iter().find(|(name, _)| *name == "floating").unwrap();
+        let text = format!("{floating}{keys}");
+        let mut changed = Scene::parse(&text, "accurate.toml").unwrap();
+        assert_eq!(changed.solver.support_ratio, 3.0);
+        changed.solver.select_method(Method::Mueller2003);
+        let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+        let read = Scene::parse(&saved, "accurate.toml").unwrap();
+        assert_eq!((&read.solver, read.solver.wall_friction), (&changed.solver, 0.5), "{saved}");
     }
 
     #[test]

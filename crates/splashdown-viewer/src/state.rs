@@ -139,6 +139,10 @@ pub struct Figures {
     pub triangles: Option<u32>,
     /// Largest relative excess of density.
     pub density_error: f32,
+    /// Pressure iterations per step since the start; zero with an explicit pressure.
+    pub iterations: f64,
+    /// Mean relative excess of density, if the pressure is implicit.
+    pub compression: f32,
     /// Bytes in the simulation's buffers.
     pub memory: u64,
     /// The simulating device.

@@ -51,6 +51,7 @@ const PICTURES: &[(&str, &[u8])] = pictures![
     "falling-drop",
     "floating",
     "honey",
+    "honey-coil",
     "knot",
     "lighthouse",
     "paddle-wheel",

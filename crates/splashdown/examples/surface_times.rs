@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use splashdown::scene::Scene;
+use splashdown::scene::{Scene, SurfaceKernels};
 use splashdown::surface::{SurfaceParams, interpolate, reconstruct_with};
 use splashdown::{Device, Simulation};
 use splashdown_gpu::Executor;
@@ -48,15 +48,23 @@ fn input() -> Result<(Vec<[f32; 3]>, f32), Failure> {
 #[expect(clippy::print_stdout, reason = "an example that prints")]
 fn main() -> Result<(), Failure> {
     let (points, spacing) = input()?;
-    for (cell_ratio, smoothing_iterations) in [(0.5, 0), (0.5, 25), (0.25, 0)] {
+    use SurfaceKernels::{Anisotropic, Isotropic};
+    for (cell_ratio, smoothing_iterations, kernels) in [
+        (0.5, 0, Isotropic),
+        (0.5, 0, Anisotropic),
+        (0.5, 25, Isotropic),
+        (0.25, 0, Isotropic),
+        (0.25, 0, Anisotropic),
+    ] {
         let params = {
             let mut params = SurfaceParams::new(spacing);
             params.cell_size = cell_ratio * spacing;
             params.smoothing_iterations = smoothing_iterations;
+            params.kernels = kernels;
             params
         };
         println!(
-            "{} particles, cells of {cell_ratio} spacings, {smoothing_iterations} smoothing iterations",
+            "{} particles, {kernels} kernels, cells of {cell_ratio} spacings, {smoothing_iterations} smoothing iterations",
             points.len()
         );
         for name in ["cpu", "llvmpipe"] {

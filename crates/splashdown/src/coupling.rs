@@ -16,6 +16,11 @@ pub enum Stage {
     BoundaryDensity,
     /// After the accelerations by fluid and walls: adds a part of the boundary forces, and the reactions to it.
     BoundaryForces(Part),
+    /// In an implicit viscosity: adds the friction of bodies.
+    Viscosity(ViscousStage),
+    /// In each iteration of an implicit pressure, after the velocities of the particles that it leads to: the velocities of
+    /// the bodies.
+    PressureIteration,
     /// After all boundary forces: moves the bodies by the reactions.
     BodyMotion,
     /// After all forces: changes accelerations, or removes particles.
@@ -24,6 +29,21 @@ pub enum Stage {
     Measurement,
     /// At the end of the step: adds particles.
     Emission,
+}
+
+/// A stage of an implicit viscosity; see [`passes::viscous`](crate::passes::viscous).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ViscousStage {
+    /// After the first residual.
+    Start,
+    /// In each iteration, before the product of the matrix with the preconditioned residual.
+    Product,
+    /// In each iteration, before the sums are used.
+    Sum,
+    /// In each iteration, after the velocities have changed.
+    Update,
+    /// After the iterations.
+    Force,
 }
 
 /// A step during its recording. Couplings and schemes append their passes to it.
@@ -40,6 +60,8 @@ pub struct StepRecorder<'a> {
     pub particles: DispatchSize,
     /// True if the density is integrated by the continuity equation, false if it is summed.
     pub is_density_integrated: bool,
+    /// True if the pressure is implicit.
+    pub is_implicit: bool,
 }
 
 impl StepRecorder<'_> {

@@ -49,6 +49,16 @@ pub enum SimulationError {
         /// The numbers of particles lost by each cause.
         reason: String,
     },
+    /// The fluid has burst: the monitor found values that are meaningless.
+    #[error(
+        "the fluid has burst: {message}. The run stops here; to continue: --on-burst warn, in Python on_burst=\"warn\""
+    )]
+    Burst {
+        /// Simulated time in seconds.
+        time: f64,
+        /// What is wrong, where, the likely cause, and what to change.
+        message: String,
+    },
     /// The time step required for stability is below `solver.min_dt`.
     #[error(
         "at {time:.4} s the time step that keeps the simulation stable is below solver.min_dt = {min_dt:.3e} s (largest speed \

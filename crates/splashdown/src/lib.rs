@@ -32,6 +32,7 @@
 //! | advance a simulation and read its state | [`Simulation`], [`Stats`], [`Particles`] |
 //! | compute all frames of a scene, with their surfaces | [`Run`], which emits [`Event`]s; [`run`] |
 //! | read foam and probes | [`foam`], [`probes`] |
+//! | know whether the results are plausible | [`monitor`] |
 //! | stop and continue | [`Checkpoint`] |
 //! | choose where it runs | [`Device`], [`gpu`] |
 //! | reconstruct a surface | [`reconstruct()`], or [`Surface`] on the device of a simulation; [`surface`] |
@@ -49,7 +50,7 @@
 //! simulation
 //! memory reconstruct
 //! error
-//! checkpoint surface schemes
+//! checkpoint surface schemes monitor
 //! check foam
 //! sample flow probes
 //! bodies mouse_force passes
@@ -82,6 +83,7 @@ pub(crate) mod marching_cubes;
 mod memory;
 #[doc(hidden)]
 pub mod models;
+pub mod monitor;
 #[doc(hidden)]
 pub mod mouse_force;
 mod pairs;
@@ -118,8 +120,9 @@ pub use reconstruct::reconstruct;
 pub use run::{Event, Run, RunOptions};
 pub use scene::{Scene, SceneBuilder};
 pub use simulation::Simulation;
+pub use simulation::{InitialDensity, Packing};
 #[doc(hidden)]
-pub use simulation::inventory;
+pub use simulation::{initial_packing, inventory};
 pub use stats::Stats;
 pub use surface::{Surface, SurfaceParams};
 pub use {glam, splashdown_io::Mesh, splashdown_io::Particles};

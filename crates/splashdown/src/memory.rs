@@ -22,6 +22,12 @@ const NORMAL: u64 = 16;
 const CORRECTION: u64 = 32 + 16;
 const BOUNDARY_MATRIX: u64 = 32;
 const PAIR: u64 = 8;
+/// Of the implicit pressure: three vectors, a part of the sums of 64 particles, the carried pressure; and the gradient of
+/// bodies.
+const IMPLICIT: u64 = 3 * 16 + 8;
+const SOLID_GRADIENT: u64 = 16;
+/// Of the implicit viscosity: four vectors.
+const VISCOUS: u64 = 4 * 16;
 /// Bytes per cell: its count and its start.
 const PER_CELL: u64 = 8;
 
@@ -97,7 +103,11 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
         return motion.saturating_add(PER_CELL << 31);
     };
     let surface = if scene.surface.enabled {
-        let params = SurfaceParams::of_scene(&scene.surface, scene.fluid.particle_spacing);
+        let params = SurfaceParams::of_scene(
+            &scene.surface,
+            scene.fluid.particle_spacing,
+            surface::Walls::of_domain(&scene.domain),
+        );
         let count = u32::try_from(particles).unwrap_or(u32::MAX);
         surface::forecast(&params, &grid, count).unwrap_or(0)
     } else {
@@ -121,6 +131,9 @@ fn per_particle(scene: &Scene) -> u64 {
         + some(extras.normals, NORMAL)
         + some(extras.corrections, CORRECTION)
         + some(extras.boundary_matrices, BOUNDARY_MATRIX)
+        + some(extras.implicit, IMPLICIT)
+        + some(extras.solid_gradients, SOLID_GRADIENT)
+        + some(extras.viscous, VISCOUS)
         + some(scene.solver.sort == Sort::Bitonic, PAIR)
 }
 
@@ -137,7 +150,7 @@ mod tests {
 
     use super::*;
     use crate::cells::Cells;
-    use crate::scene::{Derived, SurfaceSettings};
+    use crate::scene::{Derived, SurfaceKernels, SurfaceSettings};
     use crate::state::Params;
     use crate::state::{Extras, Fields};
     use crate::{Device, Simulation};
@@ -163,7 +176,7 @@ mod tests {
         assert_eq!(plain, 92);
         assert_eq!(plain, PER_PARTICLE);
         // With all optional buffers.
-        let all = Extras { normals: true, corrections: true, boundary_matrices: true };
+        let all = Extras { normals: true, corrections: true, boundary_matrices: true, ..Extras::default() };
         let most = per_particle(all, Sort::Bitonic);
         assert_eq!(most, PER_PARTICLE + ACCELERATION + NORMAL + CORRECTION + BOUNDARY_MATRIX + PAIR);
         assert!(most <= 212, "{most}");
@@ -176,8 +189,12 @@ mod tests {
             if Derived::new(&scene).particles > 20_000 {
                 continue;
             }
-            for (smoothing_iterations, sort) in [(0, Sort::Counting), (5, Sort::Bitonic)] {
+            for (smoothing_iterations, sort, kernels) in [
+                (0, Sort::Counting, SurfaceKernels::Isotropic),
+                (5, Sort::Bitonic, SurfaceKernels::Anisotropic),
+            ] {
                 scene.surface.smoothing_iterations = smoothing_iterations;
+                scene.surface.kernels = kernels;
                 scene.solver.sort = sort;
                 // Without the particles inside bodies, which the simulation removes.
                 let inventory = crate::inventory(&scene).unwrap();

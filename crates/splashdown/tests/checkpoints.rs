@@ -142,7 +142,11 @@ fn a_resumed_run_is_bit_identical_on_an_adapter() -> Outcome {
 
 #[test]
 fn a_resumed_run_is_bit_identical_with_other_solvers() -> Outcome {
-    for extra in ["[solver]\nmethod = \"mueller2003\"\n", "[solver]\ndensity = \"summation\"\n"] {
+    for extra in [
+        "[solver]\nmethod = \"mueller2003\"\n",
+        "[solver]\ndensity = \"summation\"\n",
+        "[solver]\nmethod = \"dfsph\"\n",
+    ] {
         let scene = Scene::parse(&format!("{EVERYTHING}\n{extra}"), "everything")?;
         assert_bit_identical(&scene, &cpu)?;
     }
@@ -167,7 +171,7 @@ fn invalid_checkpoints_are_rejected_with_a_reason() -> Outcome {
 
     // Checkpoints of another version or another scene.
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
-    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 2", "\"version\": 7"));
+    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 3", "\"version\": 7"));
     assert!(refused(&other.to_bytes()?).contains("format 7"));
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
     other.set_text(

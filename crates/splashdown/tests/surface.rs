@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use proptest::prelude::*;
 use splashdown::cells::Grid;
+use splashdown::scene::SurfaceKernels;
 use splashdown::surface::{
     self, Surface, SurfaceError, SurfaceInput, SurfaceParams, SurfaceStats, reconstruct_with,
 };
@@ -199,9 +200,12 @@ fn clouds() -> impl Strategy<Value = Vec<[f32; 3]>> {
 fn parameters() -> impl Strategy<Value = SurfaceParams> {
     // Cells from a quarter of a spacing to more than the support radius; iso levels over the whole
     // range of the field.
-    (0.25_f32..3.0, 1.2_f32..3.0, 0.02_f32..1.1, 0..4_u32).prop_map(
-        |(cell, support, iso_level, smoothing_iterations)| {
+    (0.25_f32..3.0, 1.2_f32..3.0, 0.02_f32..1.1, 0..4_u32, any::<bool>()).prop_map(
+        |(cell, support, iso_level, smoothing_iterations, is_anisotropic)| {
             let mut params = SurfaceParams::new(SPACING);
+            if is_anisotropic {
+                params.kernels = SurfaceKernels::Anisotropic;
+            }
             params.cell_size = cell * SPACING;
             params.support_radius = support * SPACING;
             params.iso_level = iso_level;

@@ -2,6 +2,7 @@
 //! machine with the same number of threads. The other programs are Python wheels.
 
 mod numbers;
+mod simulated;
 mod steps;
 mod surface;
 mod table;
@@ -67,7 +68,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let ours = process::build_release()?;
     setup::ensure_gl();
     let folder = target().join("peers");
-    let python = python::environment(&folder, &root().join("xtask/peers/requirements.txt"))
+    let python = python::environment(None, &folder, &root().join("xtask/peers/requirements.txt"))
         .context("cannot install the other programs; check the network connection")?;
     let sides = Sides {
         ours,
@@ -88,6 +89,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
          the Python wheels of `xtask/peers/requirements.txt`.",
         sides.rounds, sides.threads
     ));
+    simulated::compare(&sides, &mut page)?;
     steps::compare(&sides, &mut page)?;
     surface::compare(&sides, options.particles, &mut page)?;
     if options.quick {

@@ -28,7 +28,7 @@ pub struct BenchArguments {
     /// Number of steps to measure [default: as many as fit into about two seconds]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
-    /// Solver to measure: wcsph or mueller2003 [default: wcsph, or the scene's]
+    /// Solver to measure: wcsph, dfsph or mueller2003 [default: wcsph, or the scene's]
     #[arg(short = 'm', long, value_parser = choice::<Method>())]
     pub solver: Option<Method>,
     /// Scene to measure instead of the benchmark's dam break: a file, or the name of a built-in scene

@@ -2,6 +2,7 @@
 
 mod bench;
 mod plot;
+mod render;
 mod run;
 mod scenes;
 mod surface;
@@ -21,6 +22,7 @@ use crate::exit;
 
 pub use bench::BenchArguments;
 pub use plot::PlotArguments;
+pub use render::RenderArguments;
 pub use run::RunArguments;
 pub use scenes::{ScenesAction, ScenesArguments};
 pub use surface::SurfaceArguments;
@@ -62,6 +64,8 @@ pub enum Command {
     Scenes(ScenesArguments),
     /// Reconstruct surface meshes from particle files
     Surface(SurfaceArguments),
+    /// Draw the frames of a finished run again
+    Render(RenderArguments),
     /// Plot the tables of probes
     Plot(PlotArguments),
     /// Measure the time per step, by pass and by number of particles

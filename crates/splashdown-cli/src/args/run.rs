@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use splashdown::Device;
-use splashdown::scene::{self, PictureKind};
+use splashdown::scene::{self, OnBurst, PictureKind, PictureQuality};
 use splashdown_io::Format;
 
 use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file};
@@ -33,7 +33,7 @@ Files in the output folder:
   surface.mp4, particles.mp4             if ffmpeg is installed
   checkpoints/checkpoint_0010.splashdown to resume from; written after Ctrl-C and with
                                          --checkpoint-every; numpy.load opens them
-  run.json                               the summary
+  run.json                               the summary, the energy balance and all alarms
 Every file is complete or absent. Frames of an earlier run in the same folder are removed.
 A resumed run keeps the settings of the original run, except those given again. If all frames
 are complete, --resume completes the film, the USD files and run.json.
@@ -80,12 +80,19 @@ pub struct RunArguments {
     /// Draw no pictures
     #[arg(long, conflicts_with = "pictures")]
     pub no_pictures: bool,
+    /// How carefully pictures of the surface are drawn, overriding the scene
+    #[arg(long, value_name = "QUALITY", value_parser = choice::<PictureQuality>())]
+    pub quality: Option<PictureQuality>,
     /// Make no films of the pictures
     #[arg(long)]
     pub no_film: bool,
     /// Do not flush each file to the disk: quicker on slow disks, but a power failure can destroy the newest files
     #[arg(long)]
     pub no_sync: bool,
+    /// When the fluid bursts, that is when speeds, energy or densities become meaningless [default: stop, or the choice of
+    /// the resumed run]
+    #[arg(long, value_name = "stop|warn|ignore", value_parser = choice::<OnBurst>())]
+    pub on_burst: Option<OnBurst>,
     /// Measure the time of every pass and print it at the end
     #[arg(long)]
     pub timing: bool,

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use splashdown::scene::SurfaceKernels;
 use splashdown_io::Format;
 
-use super::{DeviceArgument, is_mesh_file};
+use super::{DeviceArgument, choice, is_mesh_file};
 
 /// The examples, and the formats in the order of their table.
 fn after_help() -> String {
@@ -51,6 +52,9 @@ pub struct SurfaceArguments {
     /// Use the given spacing even if it does not fit the particles
     #[arg(long)]
     pub force: bool,
+    /// Kernels of the particles: `anisotropic` gives smoother films and jets, and drops of the right volume
+    #[arg(short, long, value_name = "KERNELS", value_parser = choice::<SurfaceKernels>(), default_value = "isotropic")]
+    pub kernels: SurfaceKernels,
     /// Edge of a marching-cubes cell [default: half a spacing]
     #[arg(short, long, value_name = "C", allow_negative_numbers = true, value_parser = length)]
     pub cell_size: Option<f32>,

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use splashdown::check::{Interpretation, interpretations};
 use splashdown::sample::Inventory;
-use splashdown::scene::{Derived, Scene, SceneWarning};
-use splashdown::{Device, Simulation, check_particles, memory_forecast_of};
+use splashdown::scene::{Derived, Method, Scene, SceneWarning};
+use splashdown::{Device, Packing, Simulation, check_particles, memory_forecast_of};
 
 use crate::args::CheckArguments;
 use crate::exit::{Exit, Failure};
@@ -33,6 +33,9 @@ struct Report<'a> {
     derived: &'a Derived,
     /// Particles removed because they are inside bodies.
     removed: u64,
+    /// The density at the start; absent for a single lattice without bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_packing: Option<&'a Packing>,
     memory_forecast: u64,
     speed: &'a Speed,
     /// How the meshes of bodies and fluid are interpreted.
@@ -63,6 +66,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let inventory = splashdown::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let meshes = interpretations(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
+    let packing = splashdown::initial_packing(&scene)?;
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let largest = arguments.device.device.executor()?.largest_buffer();
@@ -77,6 +81,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             duration: scene.duration,
             derived: &derived,
             removed: inventory.removed,
+            initial_packing: packing.as_ref(),
             memory_forecast: memory,
             speed: &speed,
             meshes: &meshes,
@@ -89,6 +94,9 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     }
     let file = arguments.scene.display();
     console::print(format!("{file}: valid\n{}", describe(&scene, &derived, &inventory, memory, &speed)));
+    if let Some(packing) = &packing {
+        print_packing(packing);
+    }
     print_meshes(&meshes);
     Ok(fits?)
 }
@@ -96,7 +104,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
 fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {
     let fluid = &scene.fluid;
     let size = scene.domain.size();
-    console::table(&[
+    let mut rows = vec![
         ("name", scene.name.clone()),
         ("domain", format!("{} x {} x {} m", size.x, size.y, size.z)),
         (
@@ -136,7 +144,36 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
                 human::count(speed.measured_particles),
             ),
         ),
-    ])
+    ];
+    if scene.solver.method == Method::Dfsph {
+        // An implicit pressure has no speed of sound.
+        rows.retain(|(name, _)| *name != "sound");
+    }
+    console::table(&rows)
+}
+
+/// The density of the particles at the start.
+fn print_packing(packing: &Packing) {
+    let density = packing.density();
+    let [x, y, z] = density.place;
+    console::print(format!(
+        "  initial density: mean {:.1}, at most {:.1} kg/m^3, at ({x:.3}, {y:.3}, {z:.3}) m",
+        density.mean, density.max
+    ));
+    if packing.after.is_some() {
+        console::print(format!("  initial packing: {packing}"));
+    } else if !packing.is_sound() {
+        console::print(
+            "  initial packing: the run relaxes so many particles before its first step; not tried here",
+        );
+    }
+    if packing.after.is_some() && !packing.is_sound() {
+        console::note(format!(
+            "warning: the fluid starts {:.0} % too dense and cannot rest: move its pieces and the bodies apart, or check \
+             fluid.particle_spacing\n",
+            100.0 * density.excess
+        ));
+    }
 }
 
 /// One line per mesh, and one per volume that it closes.

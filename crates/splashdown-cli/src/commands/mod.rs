@@ -6,6 +6,7 @@ pub mod completions;
 pub mod doctor;
 #[cfg(feature = "plot")]
 pub mod plot;
+pub mod render;
 pub mod run;
 pub mod scenes;
 pub mod surface;

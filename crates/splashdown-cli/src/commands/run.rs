@@ -63,7 +63,9 @@ fn settings(arguments: &RunArguments) -> Result<RunSettings, Failure> {
     settings.formats = formats;
     settings.surface = !arguments.no_surface;
     settings.pictures = if arguments.no_pictures { Some(Vec::new()) } else { arguments.pictures.clone() };
+    settings.quality = arguments.quality;
     settings.film = !arguments.no_film;
     settings.checkpoint_every = arguments.checkpoint_every;
+    settings.on_burst = arguments.on_burst;
     Ok(settings)
 }

@@ -70,6 +70,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let mut params = SurfaceParams::new(spacing);
     params.support_radius = arguments.support_radius.unwrap_or(params.support_radius);
     params.cell_size = arguments.cell_size.unwrap_or(params.cell_size);
+    params.kernels = arguments.kernels;
     params.iso_level = arguments.iso_level;
     params.smoothing_iterations = arguments.smoothing;
     params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;

@@ -27,7 +27,7 @@ density = 500
 /// The files of a run by name. The report is excluded because it contains wall times, and so are the checkpoints.
 fn results(root: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     let mut found = BTreeMap::new();
-    for folder in ["particles", "mesh", "probes"] {
+    for folder in ["particles", "mesh", "probes", "bodies"] {
         for entry in fs::read_dir(root.join(folder))? {
             let path = entry?.path();
             let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();

@@ -1,6 +1,7 @@
 //! Tests of the command line. They start the program and check its output, exit codes and files.
 
 mod bad_input;
+mod bursts;
 #[cfg(target_os = "linux")]
 mod checkpoints;
 mod guide;

@@ -48,6 +48,17 @@ fn a_file_becomes_a_closed_mesh_with_velocities() -> Outcome {
         assert!((0..3).all(|axis| (velocity[axis] - wanted[axis]).abs() < 1e-5), "{vertex:?}: {velocity:?}");
     }
 
+    // With anisotropic kernels a drop of one particle has its volume.
+    let output =
+        place.splashdown(&[&arguments[..], &["--kernels", "anisotropic", "--json"]].concat()).output()?;
+    let line: Value = serde_json::from_str(stdout(&output).trim())?;
+    let volume = line["volume"].as_f64().unwrap_or_default() / f64::from(SPACING).powi(3);
+    assert!((volume / 1731.0 - 1.0).abs() < 0.02, "{volume}");
+    let mut drops = ply::read_mesh(&place.path("new/mesh.ply"))?;
+    splashdown::surface::remove_small_components(&mut drops, 100.0 * f64::from(SPACING).powi(3));
+    let volume = volume - drops.volume() / f64::from(SPACING).powi(3);
+    assert!((2.7..3.3).contains(&volume), "{volume}");
+
     // Without the drops, and smoothed.
     let more = [&arguments[..], &["--min-blob", "4", "--smoothing", "15", "--json"]].concat();
     let output = place.splashdown(&more).output()?;

@@ -6,7 +6,6 @@ from __future__ import annotations
 class Error(Exception):
     """The base class of all exceptions of this package.
 
-    >>> import splashdown
     >>> try:
     ...     splashdown.Scene.load("missing.toml")
     ... except splashdown.Error as error:
@@ -18,9 +17,8 @@ class Error(Exception):
 class SceneError(Error, ValueError):
     """A scene is invalid, or a file that it names is missing. The text lists all problems at once.
 
-    >>> import splashdown
     >>> try:
-    ...     splashdown.Scene.preset("dam-break").replace({"fluid.particle_spacing": -1})
+    ...     scene.replace({"fluid.particle_spacing": -1})
     ... except splashdown.SceneError as error:
     ...     print(error.problems[0])
     fluid.particle_spacing is -1, which is out of range
@@ -36,40 +34,108 @@ class SceneError(Error, ValueError):
 
 
 class ArrayError(Error, ValueError):
-    """An array has the wrong shape, type, order or values. The text says how to convert it."""
+    """An array has the wrong shape, type, order or values. The text says how to convert it.
+
+    >>> try:
+    ...     splashdown.Particles(numpy.zeros((3, 100), numpy.float32))
+    ... except splashdown.ArrayError as error:
+    ...     print(error)
+    positions has shape (3, 100); (N, 3) is needed: use numpy.ascontiguousarray(positions.T)
+    """
 
 
 class ParameterError(Error, ValueError):
-    """A number or word is outside the allowed range."""
+    """A number or word is outside the allowed range.
+
+    >>> try:
+    ...     splashdown.Simulation(scene, device="")
+    ... except splashdown.ParameterError as error:
+    ...     print(str(error)[:15])
+    device is empty
+    """
 
 
 class SimulationError(Error, RuntimeError):
-    """The simulation failed, for example because it became unstable."""
+    """The simulation failed, for example because it became unstable.
+
+    >>> issubclass(splashdown.SimulationError, (splashdown.Error, RuntimeError))
+    True
+    """
 
 
 class DeviceError(Error, RuntimeError):
-    """The device is missing, too small, or was lost."""
+    """The device is missing, too small, or was lost.
+
+    >>> try:
+    ...     splashdown.Simulation(scene, device="no such adapter")
+    ... except splashdown.DeviceError as error:
+    ...     print("no such adapter" in str(error))
+    True
+    """
 
 
 class FileError(Error, OSError):
-    """A file or folder cannot be read or written."""
+    """A file or folder cannot be read or written.
+
+    >>> try:
+    ...     splashdown.read_mesh("missing.ply")
+    ... except splashdown.FileError as error:
+    ...     print("missing.ply" in str(error))
+    True
+    """
 
 
 class CheckpointError(Error, ValueError):
-    """A checkpoint is damaged, of another version, or does not fit the files of its scene."""
+    """A checkpoint is damaged, of another version, or does not fit the files of its scene.
+
+    >>> try:
+    ...     splashdown.Checkpoint.from_bytes(b"text")
+    ... except splashdown.CheckpointError as error:
+    ...     print(type(error).__name__)
+    CheckpointError
+    """
 
 
 class ClosedError(Error, ValueError):
-    """A simulation or a run is used after `close`."""
+    """A simulation or a run is used after `close`.
+
+    >>> simulation.close()
+    >>> try:
+    ...     simulation.advance(0.01)  # s
+    ... except splashdown.ClosedError as error:
+    ...     print(error)
+    this simulation is closed: create another one
+    """
 
 
 class VersionError(Error, RuntimeError):
-    """A worker of a parameter study has another version of the program."""
+    """A worker of a parameter study has another version of the program.
+
+    It is the `reason` of a run in the table of a study, and not raised there.
+    
+    >>> issubclass(splashdown.VersionError, splashdown.Error)
+    True
+    """
 
 
 class MissingPackageError(Error, ImportError):
-    """An optional Python package is needed and missing. The text says how to install it."""
+    """An optional Python package is needed and missing. The text says how to install it.
+
+    >>> import sys, unittest.mock
+    >>> with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
+    ...     try:
+    ...         splashdown.map_frames([], str)
+    ...     except splashdown.MissingPackageError as error:
+    ...         print(error)
+    parameter studies need the package pandas: pip install 'splashdown[sweep]'
+    """
 
 
 class SimulationWarning(UserWarning):
-    """A problem that does not stop a simulation."""
+    """A problem that does not stop a simulation.
+
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", splashdown.SimulationWarning)  # stop at the first one
+    ...     simulation = splashdown.Simulation(scene, device="cpu")
+    """

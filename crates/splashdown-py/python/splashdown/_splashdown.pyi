@@ -78,6 +78,10 @@ class Scene:
     @property
     def particle_spacing(self) -> float: ...
     @property
+    def particle_mass(self) -> float: ...
+    @property
+    def rest_density(self) -> float: ...
+    @property
     def warnings(self) -> list[str]: ...
     @property
     def probe_columns(self) -> dict[str, list[str]]: ...
@@ -170,8 +174,23 @@ class Body:
 @final
 class Painter:
     def __new__(cls, scene: Scene, kind: Literal["particles", "surface"] = "surface") -> Self: ...
-    def draw(self, what: Mesh | Particles, *, time: float = 0.0) -> NDArray[numpy.uint8]: ...
-    def write(self, path: _Path, what: Mesh | Particles, *, time: float = 0.0) -> int: ...
+    def draw(
+        self,
+        what: Frame | Mesh | Particles | _Path,
+        *,
+        time: float | None = None,
+        bodies: Sequence[Body] | None = None,
+        foam: Foam | None = None,
+    ) -> NDArray[numpy.uint8]: ...
+    def write(
+        self,
+        path: _Path,
+        what: Frame | Mesh | Particles | _Path,
+        *,
+        time: float | None = None,
+        bodies: Sequence[Body] | None = None,
+        foam: Foam | None = None,
+    ) -> int: ...
 
 @final
 class Stats:
@@ -204,7 +223,29 @@ class Stats:
     @property
     def density_error(self) -> float: ...
     @property
+    def density_deficit(self) -> float: ...
+    @property
     def max_speed(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def most_iterations(self) -> int: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def compression(self) -> float: ...
+    @property
+    def mean_compression(self) -> float: ...
+    @property
+    def unconverged(self) -> int: ...
+    @property
+    def viscous_iterations(self) -> int: ...
+    @property
+    def most_viscous_iterations(self) -> int: ...
+    @property
+    def viscous_residual(self) -> float: ...
+    @property
+    def viscous_unconverged(self) -> int: ...
     def to_dict(self) -> dict[str, float]: ...
 
 @final
@@ -327,6 +368,7 @@ class Run:
         frames: int | None = None,
         surface: bool | None = None,
         foam: bool | None = None,
+        on_burst: Literal["stop", "warn", "ignore"] = "stop",
         progress: _Progress = None,
     ) -> Self: ...
     @staticmethod
@@ -337,6 +379,7 @@ class Run:
         frames: int | None = None,
         surface: bool | None = None,
         foam: bool | None = None,
+        on_burst: Literal["stop", "warn", "ignore"] = "stop",
         progress: _Progress = None,
     ) -> Run: ...
     def __iter__(self) -> Self: ...
@@ -366,11 +409,12 @@ def run(
     *,
     device: str | None = None,
     frames: int | None = None,
-    formats: Sequence[str] | None = None,
-    pictures: Sequence[Literal["particles", "surface"]] | None = None,
+    formats: str | Sequence[str] | None = None,
+    pictures: str | Sequence[Literal["particles", "surface"]] | None = None,
     surface: bool = True,
     film: bool = True,
     checkpoint_every: int | None = None,
+    on_burst: Literal["stop", "warn", "ignore"] | None = None,
     progress: _Progress = None,
 ) -> RunFiles: ...
 def surface(
@@ -381,6 +425,7 @@ def surface(
     cell_size: float | None = None,
     iso_level: float | None = None,
     smoothing: int = 0,
+    kernels: Literal["isotropic", "anisotropic"] = "isotropic",
     device: str = "auto",
 ) -> Mesh: ...
 def read_particles(path: _Path) -> Particles: ...

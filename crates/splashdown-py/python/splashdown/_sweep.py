@@ -9,7 +9,6 @@ import importlib
 import itertools
 import json
 import os
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
@@ -22,7 +21,6 @@ from splashdown._splashdown import (
     Painter,
     Scene,
     __version__,
-    read_mesh,
     read_particles,
     surface,
     write_mesh,
@@ -72,8 +70,8 @@ def sweep(
     frame are in the table; those of all frames are in `frames.csv` in the folder of the run.
 
     The columns are those of `changes`, then `status` ("finished" or "failed"), `reason` (of a failure), those of `keep`
-    with `frame` and `time` (s), `wall` (s), `worker`, `resumed_from` (the frame from which a lost run continued, 0 if it
-    was not lost) and `folder`.
+    with `frame` and `time` (s), `warnings` (texts), `wall` (s), `worker`, `resumed_from` (the frame from which a lost run
+    continued, 0 if it was not lost) and `folder`.
 
     All workers must see `folder` under this path. A run writes a checkpoint there every `checkpoint_every` frames (0:
     none) and deletes it at its end. If its worker is lost, it continues from the checkpoint on another one, up to
@@ -85,12 +83,8 @@ def sweep(
     cluster. `progress` is called with the number of runs that have ended and the number of all.
     A script that is not a notebook must call `sweep` below `if __name__ == "__main__":`, because new processes read it.
 
-    >>> import splashdown, tempfile
-    >>> scene = splashdown.Scene.preset("dam-break-small")
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     table = splashdown.sweep(
-    ...         scene, {"fluid.viscosity": [0.001, 0.1]}, folder=folder, frames=1, workers=1, device="cpu"
-    ...     )
+    >>> changes = {"fluid.viscosity": [0.001, 0.1]}  # m^2/s
+    >>> table = splashdown.sweep(scene, changes, folder=folder / "study", frames=1, workers=1, device="cpu")
     >>> list(table["status"])
     ['finished', 'finished']
     """
@@ -134,7 +128,7 @@ def sweep(
         _remember(Path(task["folder"]), task["key"], outcome)
         if progress is not None:
             progress(len(outcomes), len(variants))
-    rows = []
+    rows: list[dict[str, Any]] = []
     for index, change in enumerate(variants):
         rows.append({**change, **_columns(outcomes[index]), "folder": str(root / f"run_{index:04}")})
     return _table(rows)
@@ -190,11 +184,21 @@ def map_frames(
 class ReconstructSurface(NamedTuple):
     """Reconstructs the surface of a file of particles and writes the mesh into a folder: a function for `map_frames`.
 
-    `particle_spacing` and `cell_size` are in m. `format` is the ending of the meshes.
+    `particle_spacing` and `cell_size` are in m. `format` is the ending of the meshes. `kernels` is "isotropic" or
+    "anisotropic" as in `surface`.
 
     >>> import splashdown
-    >>> splashdown.ReconstructSurface("meshes", particle_spacing=0.02).format
-    'ply'
+    >>> job = splashdown.ReconstructSurface(
+    ...     folder="meshes",
+    ...     particle_spacing=0.02,
+    ...     cell_size=0.01,
+    ...     smoothing=15,
+    ...     format="obj",
+    ...     kernels="anisotropic",
+    ...     device="cpu",
+    ... )
+    >>> job.smoothing
+    15
     """
 
     folder: PathLike
@@ -203,6 +207,7 @@ class ReconstructSurface(NamedTuple):
     smoothing: int = 0
     format: str = "ply"
     device: str = "auto"
+    kernels: Literal["isotropic", "anisotropic"] = "isotropic"
 
     def __call__(self, path: Path) -> dict[str, Any]:
         """Reconstructs one file; returns the file of the mesh and its numbers of vertices and triangles."""
@@ -212,6 +217,7 @@ class ReconstructSurface(NamedTuple):
             self.particle_spacing,
             cell_size=self.cell_size,
             smoothing=self.smoothing,
+            kernels=self.kernels,
             device=self.device,
         )
         Path(self.folder).mkdir(parents=True, exist_ok=True)
@@ -221,15 +227,18 @@ class ReconstructSurface(NamedTuple):
 
 
 class DrawPicture(NamedTuple):
-    """Draws a file of a finished run as PNG into a folder: a function for `map_frames`.
+    """Draws a file of a finished run as PNG into a folder, as the run draws it: a function for `map_frames`.
 
     `kind` is "surface" for files of meshes and "particles" for those of particles. The number at the end of the file name
-    is the frame, which gives the time in the caption. Bodies and foam are not drawn, and surfaces are
-    shaded with the normals of their triangles, because readers drop normals.
+    is the frame. Bodies and foam of the frame are read from the output folder of the file; if one is missing, the row of
+    the table has the reason. Surfaces are shaded with the normals of their triangles, because readers drop normals.
 
     >>> import splashdown
-    >>> splashdown.DrawPicture("pictures", splashdown.Scene.preset("dam-break-small")).kind
-    'surface'
+    >>> job = splashdown.DrawPicture(
+    ...     folder="pictures", scene=splashdown.Scene.preset("dam-break-small"), kind="particles"
+    ... )
+    >>> job.scene.name
+    'dam-break-small'
     """
 
     folder: PathLike
@@ -238,12 +247,9 @@ class DrawPicture(NamedTuple):
 
     def __call__(self, path: Path) -> dict[str, Any]:
         """Draws one file; returns the file of the picture."""
-        what = read_mesh(path) if self.kind == "surface" else read_particles(path)
-        number = re.search(r"(\d+)$", path.stem)
-        time = int(number[1]) / self.scene.frame_rate if number else 0.0
         Path(self.folder).mkdir(parents=True, exist_ok=True)
         target = Path(self.folder) / f"{path.stem}.png"
-        _painter(self.scene, self.kind).write(target, what, time=time)
+        _painter(self.scene, self.kind).write(target, path)
         return {"picture": str(target)}
 
 
@@ -265,11 +271,12 @@ def _key(task: Task, function: Callable[..., Any]) -> str:
 def _known(folder: Path, key: str) -> dict[str, Any] | None:
     """The outcome of a run that an earlier call has finished."""
     try:
-        saved = json.loads((folder / "result.json").read_text())
-    except (OSError, ValueError):
+        saved: Any = json.loads((folder / "result.json").read_text())
+        is_same = saved["key"] == key and saved["status"] == "finished"
+    # Also if the file contains something else.
+    except (OSError, ValueError, LookupError, TypeError):
         return None
-    matches = isinstance(saved, dict) and saved.get("key") == key and saved.get("status") == "finished"
-    return saved if matches else None
+    return saved if is_same else None
 
 
 def _remember(folder: Path, key: str, outcome: dict[str, Any]) -> None:
@@ -282,7 +289,7 @@ def _remember(folder: Path, key: str, outcome: dict[str, Any]) -> None:
 def _columns(outcome: dict[str, Any]) -> dict[str, Any]:
     kept = outcome.get("kept", {})
     shown = {"status": outcome["status"], "reason": outcome["reason"], **kept}
-    for name in ("wall", "worker", "resumed_from"):
+    for name in ("warnings", "wall", "worker", "resumed_from"):
         if name in outcome:
             shown[name] = outcome[name]
     return shown

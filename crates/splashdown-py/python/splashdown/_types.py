@@ -7,7 +7,12 @@ from typing import TypedDict
 
 
 class RunFiles(TypedDict, total=False):
-    """What `splashdown.run` returns. The last three are absent if the run was stopped."""
+    """What `splashdown.run` returns: a dictionary. The last three values are absent if the run was stopped.
+
+    >>> result: splashdown.RunFiles = splashdown.run(scene, folder / "out", frames=1, pictures=[], device="cpu")
+    >>> result["frames"], result["density_error"] < 0.1
+    (2, True)
+    """
 
     #: The output folder.
     folder: os.PathLike[str]

@@ -12,11 +12,12 @@ import os
 import pickle
 import platform
 import time
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
-from splashdown._errors import CheckpointError, Error, ParameterError, SceneError, VersionError
+from splashdown._errors import CheckpointError, Error, ParameterError, SceneError, SimulationWarning, VersionError
 from splashdown._splashdown import Checkpoint, Frame, Run, Scene, __version__
 
 Row = dict[str, Any]
@@ -26,13 +27,20 @@ def compute_run(task: dict[str, Any]) -> dict[str, Any]:
     """Computes a run and returns its outcome. Errors of the run are outcomes as well."""
     begun = time.perf_counter()
     outcome: dict[str, Any] = {"worker": f"{platform.node()}:{os.getpid()}"}
-    try:
-        _prepare(task)
-        outcome.update(_compute(task))
-        outcome.update(status="finished", reason="")
-    # Whatever one run raises, in the program or in the user's function, the study continues.
-    except Exception as error:
-        outcome.update(status="failed", reason=_reason(task, error))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SimulationWarning)
+        try:
+            _prepare(task)
+            outcome.update(_compute(task))
+            outcome.update(status="finished", reason="")
+        # Whatever one run raises, in the program or in the user's function, the study continues.
+        except Exception as error:
+            outcome.update(status="failed", reason=_reason(task, error))
+    ours = [warning for warning in caught if issubclass(warning.category, SimulationWarning)]
+    for warning in caught:
+        if warning not in ours:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+    outcome["warnings"] = "\n".join(dict.fromkeys(str(warning.message) for warning in ours))
     outcome["wall"] = time.perf_counter() - begun
     return outcome
 
@@ -110,7 +118,7 @@ def _resume(path: Path, key: str, options: dict[str, Any]) -> tuple[Run | None, 
 
 def plain(kept: object) -> Row:
     """The values that the function of the user has returned, as plain numbers and texts."""
-    if not isinstance(kept, Mapping):
+    if not _is_mapping(kept):
         raise ParameterError(f"the function returned {kept!r}; it must return a dictionary of numbers and texts")
     row: Row = {}
     for name, value in kept.items():
@@ -122,6 +130,10 @@ def plain(kept: object) -> Row:
             )
         row[str(name)] = value
     return row
+
+
+def _is_mapping(value: object) -> TypeGuard[Mapping[Any, Any]]:
+    return isinstance(value, Mapping)
 
 
 def write_rows(path: Path, rows: list[Row]) -> None:

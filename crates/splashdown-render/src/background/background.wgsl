@@ -19,6 +19,6 @@ fn fragment_main(@builtin(position) position: vec4f) -> Output {
         output.colour = vec4f(sky(direction), 1.0);
         output.depth = 0.0;
     }
-    output.colour = vec4f(encode(compress_highlights(output.colour.rgb)), 1.0);
+    output.colour = vec4f(present(output.colour.rgb), 1.0);
     return output;
 }

@@ -63,6 +63,27 @@ impl PlacedBody {
         }
         Ok(body)
     }
+
+    /// Vertices and normals at a position (m) with a rotation (quaternion x, y, z, w).
+    pub(crate) fn placed(
+        &self,
+        position: [f32; 3],
+        rotation: [f32; 4],
+    ) -> impl Iterator<Item = (Vec3, Vec3)> {
+        let (position, rotation) = (Vec3::from(position), Quat::from_array(rotation));
+        let pairs = self.vertices.iter().zip(&self.normals);
+        pairs.map(move |(&x, &n)| (position + rotation * x, rotation * n))
+    }
+
+    /// Three vertices each.
+    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Linear RGB.
+    pub(crate) fn colour(&self) -> [f32; 3] {
+        self.colour
+    }
 }
 
 /// All bodies of one frame.
@@ -84,11 +105,11 @@ impl UploadedBodies {
     ) -> Self {
         let (mut vertices, mut normals, mut colours, mut indices) = (vec![], vec![], vec![], vec![]);
         for (body, position, rotation) in bodies {
-            let (position, rotation) = (Vec3::from(position), Quat::from_array(rotation));
             let first = vertices.len() as u32;
-            let placed = body.vertices.iter().map(|&x| (position + rotation * x).extend(1.0).to_array());
-            vertices.extend(placed);
-            normals.extend(body.normals.iter().map(|&n| (rotation * n).extend(0.0).to_array()));
+            for (x, n) in body.placed(position, rotation) {
+                vertices.push(x.extend(1.0).to_array());
+                normals.push(n.extend(0.0).to_array());
+            }
             let [r, g, b] = body.colour;
             colours.resize(vertices.len(), [r, g, b, 1.0]);
             indices.extend(body.triangles.iter().map(|t| t.map(|v| first + v)));

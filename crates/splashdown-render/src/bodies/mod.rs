@@ -12,13 +12,13 @@
 //! but would need one draw per body.
 //!
 //! # Things we might try
-//! Shadows on bodies and on the water; caustics on bodies.
+//! Caustics on bodies.
 
 mod meshes;
 
 use crate::BodyBuffers;
 use crate::pipeline::{Depth, PipelineDesc};
-use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, Shader};
+use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIT, MATTE, Shader, TRACE};
 use crate::targets::THICKNESS_FORMAT;
 use wgpu::{
     BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, Device, RenderPass,
@@ -28,7 +28,12 @@ use wgpu::{
 pub use meshes::{PlacedBody, UploadedBodies};
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "bodies", parts: &[GLOBALS, ENVIRONMENT, include_str!("bodies.wgsl")] };
+    Shader { label: "bodies", parts: &[GLOBALS, ENVIRONMENT, LIT, MATTE, include_str!("bodies.wgsl")] };
+/// With shadows of bodies on bodies, by rays through the trees in group 2.
+pub(crate) const TRACED: Shader = Shader {
+    label: "bodies in shadow",
+    parts: &[GLOBALS, ENVIRONMENT, TRACE, MATTE, include_str!("bodies.wgsl")],
+};
 pub(crate) const DISTANCE: Shader =
     Shader { label: "distance of bodies", parts: &[GLOBALS, EYE_DISTANCE, include_str!("distance.wgsl")] };
 
@@ -56,27 +61,19 @@ impl Bodies {
         samples: u32,
     ) -> Bodies {
         let layouts = [globals, environment];
-        let desc = PipelineDesc {
-            samples,
-            depth: Some(Depth::TestAndWrite),
-            vertex_buffers: 3,
-            ..PipelineDesc::new(SHADER, &layouts, format)
-        };
+        let pipeline = pipeline(device, SHADER, &layouts, format, samples);
         let distance_layouts = [globals];
         let distance = PipelineDesc {
             blend: Some(MINIMUM),
             vertex_buffers: 1,
             ..PipelineDesc::new(DISTANCE, &distance_layouts, THICKNESS_FORMAT)
         };
-        Bodies { pipeline: desc.build(device), distance: distance.build(device) }
+        Bodies { pipeline, distance: distance.build(device) }
     }
 
     /// Draws the bodies. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, buffers: &BodyBuffers<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_vertex_buffer(1, buffers.normals.slice(..));
-        pass.set_vertex_buffer(2, buffers.colours.slice(..));
-        buffers.draw(pass);
+        record(&self.pipeline, pass, buffers);
     }
 
     /// Draws the distances of the bodies. Expects group 0 (globals) to be bound.
@@ -84,4 +81,25 @@ impl Bodies {
         pass.set_pipeline(&self.distance);
         buffers.draw(pass);
     }
+}
+
+/// A pipeline that draws bodies.
+pub(crate) fn pipeline(
+    device: &Device,
+    shader: Shader,
+    layouts: &[&BindGroupLayout],
+    format: TextureFormat,
+    samples: u32,
+) -> RenderPipeline {
+    let depth = Some(Depth::TestAndWrite);
+    let desc = PipelineDesc::new(shader, layouts, format);
+    PipelineDesc { samples, depth, vertex_buffers: 3, ..desc }.build(device)
+}
+
+/// Draws bodies with a pipeline. Expects its groups to be bound.
+pub(crate) fn record(pipeline: &RenderPipeline, pass: &mut RenderPass<'_>, buffers: &BodyBuffers<'_>) {
+    pass.set_pipeline(pipeline);
+    pass.set_vertex_buffer(1, buffers.normals.slice(..));
+    pass.set_vertex_buffer(2, buffers.colours.slice(..));
+    buffers.draw(pass);
 }

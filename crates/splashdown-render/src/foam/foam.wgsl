@@ -39,8 +39,8 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     var size = 0.26;
     var nearer = 0.0;
     if kind == FOAM {
-        opacity = 0.42;
-        size = 0.62;
+        opacity = 0.40;
+        size = 0.50;
         // Foam lies in the surface; the depth offset prevents the surface from cutting its discs.
         nearer = 2.5 * globals.foam_radius;
     } else if kind == BUBBLE {
@@ -81,6 +81,6 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     } else if u32(in.appearance.z + 0.5) == BUBBLE {
         shape = smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
     }
-    let light = SKY_LIGHT + 0.62 * SUN_LIGHT * max(globals.sun.y, 0.0);
-    return vec4f(encode(compress_highlights(in.appearance.y * light)), in.appearance.x * shape);
+    let light = 0.86 * (SKY_LIGHT + 0.72 * SUN_LIGHT * max(globals.sun.y, 0.0));
+    return vec4f(present(in.appearance.y * light), in.appearance.x * shape);
 }

@@ -5,27 +5,33 @@
 //! particle is projected along the rays of the sun onto the floor, and blending sums the path
 //! length in fluid above each texel: a closed mesh adds the heights of its upper faces and
 //! subtracts those of its lower ones, a particle adds its volume divided by the area of the texel.
-//! Two one-dimensional Gaussian blurs soften the edge. The floor is then darkened by absorption
-//! (Beer-Lambert), so a clear liquid casts a bright and tinted shadow, and spheres a dark one.
+//! The path becomes a fraction of sunlight by absorption (Beer-Lambert), so a clear liquid casts a
+//! bright and tinted shadow, and spheres a dark one. Two one-dimensional Gaussian blurs soften the
+//! edge.
 //!
 //! # Why not the other way
 //! A shadow map with depths distinguishes only lit and unlit, which is wrong for water, and needs a
 //! bias. The map used here does not model shadows on the fluid itself, which a depth map would.
-//!
-//! # Things we might try
-//! Caustics: refract the ray of each vertex at the surface and divide by the area it illuminates.
+//! Caustics need rays that are refracted: see the module `trace`.
+
+mod blur;
+mod floor_light;
 
 use crate::chunks::bind_chunks;
 use crate::globals::SHADOW_SIDE;
-use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
+use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::shader::{FULLSCREEN, GLOBALS, Shader};
 use crate::targets::texture;
+use crate::texture::upload_texture;
 use crate::{DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, RenderPipeline,
+    BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, Queue, RenderPipeline,
     TextureFormat, TextureUsages, TextureView,
 };
+
+pub(crate) use blur::Blur;
+pub(crate) use floor_light::{FloorLight, SKY, SUNLIGHT};
 
 const FORMAT: TextureFormat = TextureFormat::R16Float;
 
@@ -33,8 +39,10 @@ pub(crate) const FROM_SURFACE: Shader =
     Shader { label: "surface shadow", parts: &[GLOBALS, include_str!("surface_shadow.wgsl")] };
 pub(crate) const FROM_PARTICLES: Shader =
     Shader { label: "particle shadow", parts: &[GLOBALS, include_str!("particle_shadow.wgsl")] };
-pub(crate) const BLUR: Shader =
-    Shader { label: "shadow blur", parts: &[FULLSCREEN, include_str!("blur.wgsl")] };
+pub(crate) const ABSORB: Shader =
+    Shader { label: "shadow absorption", parts: &[GLOBALS, FULLSCREEN, include_str!("absorb.wgsl")] };
+#[cfg(test)]
+pub(crate) const BLUR: Shader = blur::SHADER;
 
 #[derive(Debug)]
 pub(crate) struct Shadow {
@@ -42,30 +50,30 @@ pub(crate) struct Shadow {
     from_bodies: RenderPipeline,
     from_particles: RenderPipeline,
     particles_layout: BindGroupLayout,
-    blurs: [RenderPipeline; 2],
-    blur_sources: [BindGroup; 2],
-    /// The sum, and the intermediate result between the two blurs.
+    absorb: RenderPipeline,
+    absorb_source: BindGroup,
+    blur: Blur,
+    /// The path in fluid.
+    path: TextureView,
+    /// The fraction of sunlight, and the intermediate result between the two blurs.
     maps: [TextureView; 2],
-    /// Layout and bind group of group 1, for every shader that uses the environment.
-    pub environment_layout: BindGroupLayout,
+    pub floor_light: FloorLight,
     pub environment: BindGroup,
 }
 
 impl Shadow {
-    pub fn new(device: &Device, globals: &BindGroupLayout) -> Shadow {
-        let maps = ["shadow", "shadow between blurs"].map(|label| {
-            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-            texture(device, label, [SHADOW_SIDE; 2], FORMAT, 1, usage)
-        });
-        let blur_layout = bind_group_layout(device, "shadow blur", &[Bind::Texture]);
-        let blur_sources = [0, 1].map(|source: usize| {
-            bind_group(device, "shadow blur", &blur_layout, &[BindingResource::TextureView(&maps[source])])
-        });
-        let blurs = [(1.0, 0.0), (0.0, 1.0)].map(|(x, y)| {
-            let constants = [("STEP_X", x), ("STEP_Y", y)];
-            PipelineDesc { constants: &constants, ..PipelineDesc::new(BLUR, &[&blur_layout], FORMAT) }
-                .build(device)
-        });
+    pub fn new(device: &Device, queue: &Queue, globals: &BindGroupLayout) -> Shadow {
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let map = |label, side, format| texture(device, label, [side; 2], format, 1, usage);
+        let path = map("path to the sun", SHADOW_SIDE, FORMAT);
+        let maps = ["sunlight", "sunlight between blurs"].map(|label| map(label, SHADOW_SIDE, SUNLIGHT));
+        // One texel: the whole sky is visible.
+        let open_sky = upload_texture(device, queue, "open sky", [1, 1], &[255; 4]);
+        let path_layout = bind_group_layout(device, "path to the sun", &[Bind::Texels]);
+        let resources = [BindingResource::TextureView(&path)];
+        let absorb_source = bind_group(device, "path to the sun", &path_layout, &resources);
+        let absorb = PipelineDesc::new(ABSORB, &[globals, &path_layout], SUNLIGHT).build(device);
+        let blur = Blur::new(device, [&maps[0], &maps[1]], SUNLIGHT, 2.6);
         let surface_layouts = [globals];
         let from_surface = PipelineDesc {
             blend: Some(ADD),
@@ -82,18 +90,18 @@ impl Shadow {
             topology: PrimitiveTopology::PointList,
             ..PipelineDesc::new(FROM_PARTICLES, &particle_layouts, FORMAT)
         };
-        let environment_layout = bind_group_layout(device, "environment", &[Bind::Texture, Bind::Sampler]);
-        let sampler = linear_sampler(device);
-        let resources = [BindingResource::TextureView(&maps[0]), BindingResource::Sampler(&sampler)];
+        let floor_light = FloorLight::new(device);
         Shadow {
             from_surface: from_surface.build(device),
             from_bodies: from_bodies.build(device),
             from_particles: from_particles.build(device),
-            environment: bind_group(device, "environment", &environment_layout, &resources),
-            environment_layout,
+            environment: floor_light.bind(device, &maps[0], &open_sky),
+            floor_light,
             particles_layout,
-            blurs,
-            blur_sources,
+            absorb,
+            absorb_source,
+            blur,
+            path,
             maps,
         }
     }
@@ -113,7 +121,7 @@ impl Shadow {
             (None, None) => None,
         };
         {
-            let mut pass = recorder.cleared("shadow", &self.maps[0], Color::TRANSPARENT);
+            let mut pass = recorder.cleared("shadow", &self.path, Color::TRANSPARENT);
             pass.set_bind_group(0, globals, &[]);
             if let Some(DrawnSurface { buffers, .. }) = &frame.surface {
                 pass.set_pipeline(&self.from_surface);
@@ -125,19 +133,21 @@ impl Shadow {
                 for chunk in bind_chunks(device, "particle shadow", layout, buffers.count, &positions, &[]) {
                     chunk.draw(&mut pass, 1, 1);
                 }
-            } else if frame.bodies.is_none() {
-                return;
             }
             if let Some(buffers) = &frame.bodies {
                 pass.set_pipeline(&self.from_bodies);
                 buffers.draw(&mut pass);
             }
         }
-        for (blur, source) in self.blurs.iter().zip([0, 1]) {
-            let mut pass = recorder.cleared("shadow blur", &self.maps[1 - source], Color::TRANSPARENT);
-            pass.set_pipeline(blur);
-            pass.set_bind_group(0, &self.blur_sources[source], &[]);
+        {
+            let mut pass = recorder.cleared("shadow absorption", &self.maps[0], Color::WHITE);
+            pass.set_pipeline(&self.absorb);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(1, &self.absorb_source, &[]);
             pass.draw(0..3, 0..1);
+        }
+        if particles.is_some() || frame.surface.is_some() || frame.bodies.is_some() {
+            self.blur.record(recorder, [&self.maps[0], &self.maps[1]]);
         }
     }
 }

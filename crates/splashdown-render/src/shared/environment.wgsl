@@ -1,12 +1,19 @@
-// Procedural environment as a function of a ray: sky, sun and floor. Background and reflections use
-// the same functions and therefore agree. Needs globals.wgsl.
+// Procedural environment as a function of a ray: sky, sun and floor, as light without tone mapping.
+// Background, reflections and refractions use the same functions and therefore agree. Needs
+// globals.wgsl.
 
-@group(1) @binding(0) var shadow_map: texture_2d<f32>;
-@group(1) @binding(1) var shadow_sampler: sampler;
+@group(1) @binding(0) var sunlight_map: texture_2d<f32>;   // fraction of the sunlight on the floor, per colour
+@group(1) @binding(1) var sky_map: texture_2d<f32>;        // fraction of the sky that a point of the floor sees
+@group(1) @binding(2) var map_sampler: sampler;
 
-const SUN_LIGHT = vec3f(1.0, 0.95, 0.86);
-const SKY_LIGHT = vec3f(0.46, 0.52, 0.60);
-const HORIZON = vec3f(0.66, 0.76, 0.85);
+// Light of the sun on a surface that faces it, of the sky on a horizontal surface, and of the
+// horizon. A white diffuse surface in a light of 1 has the colour 1.
+const SUN_LIGHT = vec3f(2.50, 2.26, 1.88);
+const SKY_LIGHT = vec3f(0.42, 0.54, 0.74);
+const HORIZON = vec3f(0.86, 1.02, 1.20);
+const ZENITH = vec3f(0.10, 0.27, 0.66);
+// The distant ground in the haze, where floor and hills meet.
+const HAZE = vec3f(0.46, 0.56, 0.66);
 
 fn hash(p: vec2f) -> f32 {
     let q = fract(p * vec2f(0.1031, 0.1030));
@@ -26,59 +33,86 @@ fn value_noise(p: vec2f) -> f32 {
 fn clouds(direction: vec3f) -> f32 {
     let p = direction.xz / (direction.y + 0.15) * 1.4 + vec2f(3.7, 1.9);
     let density = 0.55 * value_noise(p) + 0.30 * value_noise(2.3 * p) + 0.15 * value_noise(5.1 * p);
-    return smoothstep(0.48, 0.80, density) * smoothstep(0.04, 0.30, direction.y);
+    return smoothstep(0.46, 0.82, density) * smoothstep(0.05, 0.35, direction.y);
 }
 
-// Colour of the sky in a unit direction; below the horizon, the colour of the horizon.
+// Height of the distant hills above the horizon, as the sine of the angle.
+fn hills(direction: vec3f) -> f32 {
+    let around = atan2(direction.z, direction.x);
+    return 0.030 + 0.014 * sin(3.0 * around + 1.0) + 0.009 * sin(7.0 * around + 4.0) + 0.004 * sin(17.0 * around);
+}
+
+// Light from the sky in a unit direction, with hills at the horizon; below it, the haze of the
+// horizon. The disc of the sun is not included: surfaces add its reflection as a highlight.
 fn sky(direction: vec3f) -> vec3f {
     let height = max(direction.y, 0.0);
-    var colour = mix(HORIZON, vec3f(0.25, 0.47, 0.76), smoothstep(0.0, 0.36, height));
-    colour = mix(colour, vec3f(0.08, 0.21, 0.50), smoothstep(0.30, 1.0, height));
-    if direction.y > 0.04 {
-        colour = mix(colour, vec3f(0.95, 0.96, 0.97), 0.75 * clouds(direction));
+    var colour = mix(HORIZON, ZENITH, 1.0 - exp(-4.2 * height));
+    if direction.y > 0.05 {
+        colour = mix(colour, vec3f(1.30, 1.28, 1.25), 0.75 * clouds(direction));
     }
     let glow = max(dot(direction, globals.sun), 0.0);
-    return colour + SUN_LIGHT * (0.25 * pow(glow, 24.0) + 1.5 * pow(glow, 600.0));
+    colour += SUN_LIGHT * (0.16 * pow(glow, 10.0) + 0.8 * pow(glow, 120.0) + 5.0 * pow(glow, 2400.0));
+    let above_hills = direction.y - hills(direction);
+    let hill = mix(HAZE, vec3f(0.24, 0.32, 0.40), smoothstep(0.0, 0.03, height));
+    return mix(hill, colour, smoothstep(-0.002, 0.002, above_hills));
 }
 
-// Checkerboard averaged over a square of the given width (in tiles), which prevents aliasing; 0.5
-// far away.
-fn checker(p: vec2f, width: f32) -> f32 {
+// Lines of a grid of unit squares, averaged over a square of the given width, which prevents
+// aliasing: the fraction that is within `half_line` of a line.
+fn grid_lines(p: vec2f, half_line: f32, width: f32) -> f32 {
     let w = vec2f(max(width, 1e-4));
-    let a = abs(fract((p - 0.5 * w) * 0.5) - 0.5);
-    let b = abs(fract((p + 0.5 * w) * 0.5) - 0.5);
-    let wave = 2.0 * (a - b) / w;
-    return 0.5 - 0.5 * wave.x * wave.y;
+    let low = p - 0.5 * w + half_line;
+    let high = p + 0.5 * w + half_line;
+    // Integral of the indicator of [0, 2 half_line] in each period.
+    let a = floor(low) * 2.0 * half_line + min(fract(low), vec2f(2.0 * half_line));
+    let b = floor(high) * 2.0 * half_line + min(fract(high), vec2f(2.0 * half_line));
+    let covered = (b - a) / w;
+    return 1.0 - (1.0 - covered.x) * (1.0 - covered.y);
 }
 
-// Fraction of the sunlight that reaches a point of the floor through the fluid.
+// Fraction of the sunlight that reaches a point of the floor, per colour: less behind bodies and
+// liquid, more where the liquid focuses it.
 fn sunlight_on_floor(p: vec2f) -> vec3f {
     let uv = (p - globals.shadow_min) / globals.shadow_size;
-    let path = textureSampleLevel(shadow_map, shadow_sampler, uv, 0.0).r;
-    let inside = select(0.0, 1.0, all(uv > vec2f(0.0)) && all(uv < vec2f(1.0)));
-    return exp(-globals.shadow_absorption * max(path, 0.0) * inside);
+    let inside = all(uv > vec2f(0.0)) && all(uv < vec2f(1.0));
+    let light = textureSampleLevel(sunlight_map, map_sampler, uv, 0.0).rgb;
+    return select(vec3f(1.0), light, inside);
 }
 
-// Colour of the floor where a ray of unit direction hits it after `distance`. `spread`: angular
-// width of the ray.
+// Fraction of the sky that a point of the floor sees.
+fn sky_on_floor(p: vec2f) -> f32 {
+    let uv = (p - globals.shadow_min) / globals.shadow_size;
+    let inside = all(uv > vec2f(0.0)) && all(uv < vec2f(1.0));
+    return select(1.0, textureSampleLevel(sky_map, map_sampler, uv, 0.0).r, inside);
+}
+
+// Reflectance of the floor at a point: slabs of concrete of the size of a tile with joints. `width`:
+// width of the ray in tiles.
+fn floor_albedo(p: vec2f, width: f32) -> vec3f {
+    let q = p / globals.tile_size;
+    let slab = hash(floor(q) + vec2f(0.5, 0.5));
+    // Octaves of noise, each fading before it aliases.
+    let coarse = value_noise(2.3 * q) - 0.5;
+    let medium = (value_noise(9.0 * q + 5.0) - 0.5) * clamp(1.6 - 9.0 * width, 0.0, 1.0);
+    let fine = (value_noise(47.0 * q + 11.0) - 0.5) * clamp(1.6 - 47.0 * width, 0.0, 1.0);
+    let tone = 0.165 + 0.022 * (slab - 0.5) + 0.018 * coarse + 0.014 * medium + 0.018 * fine;
+    let joint = grid_lines(q, 0.010, width);
+    return vec3f(0.97, 0.98, 1.0) * tone * (1.0 - 0.55 * joint);
+}
+
+// Light from a point of the floor that a ray hits after `distance`. `spread`: angular width of the
+// ray.
 fn floor_colour(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> vec3f {
     let p = (origin + direction * distance).xz;
     let width = distance * spread / (max(-direction.y, 0.02) * globals.tile_size);
-    let albedo = mix(vec3f(0.385, 0.395, 0.41), vec3f(0.455, 0.465, 0.475), checker(p / globals.tile_size, width));
-    let light = SUN_LIGHT * globals.sun.y * sunlight_on_floor(p) + SKY_LIGHT;
+    let light = SUN_LIGHT * globals.sun.y * sunlight_on_floor(p) + SKY_LIGHT * sky_on_floor(p);
     let centre = 0.5 * (globals.box_min + globals.box_max).xz;
     let away = length(p - centre) / globals.fade_distance;
-    let fog = 1.0 - exp(-away * away);
-    return mix(albedo * light, HORIZON, fog);
+    let haze = 1.0 - exp(-away * away);
+    return mix(floor_albedo(p, width) * light, HAZE, haze);
 }
 
-// Distance along a ray to the floor, or -1 if the ray does not hit it.
-fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
-    let distance = (globals.floor_height - origin.y) / direction.y;
-    return select(-1.0, distance, direction.y < -1e-5 && distance > 0.0);
-}
-
-// Colour of the environment in the unit direction of a ray, without the fluid.
+// Light from the environment in the unit direction of a ray, without fluid and bodies.
 fn environment(origin: vec3f, direction: vec3f, spread: f32) -> vec3f {
     let distance = floor_distance(origin, direction);
     if distance > 0.0 {

@@ -17,7 +17,7 @@ struct Globals {
     up: vec3f,              // half the picture's height at unit distance
     encode_srgb: u32,       // 1: the target format does not encode sRGB, so the shader does
     forward: vec3f,         // unit vector
-    liquid_film: f32,       // minimum fraction of the liquid's own colour
+    padding: f32,
     sun: vec3f,             // unit vector towards the sun
     floor_height: f32,
     box_min: vec3f,
@@ -51,6 +51,17 @@ struct Globals {
     slice_scale: f32,       // 1 / (high - low)
     splat_margin: f32,      // extra pixels on each side of the distance texture
     foam_radius: f32,       // radius of the fluid's particles
+    ray_shift: vec3f,       // moves every view ray: place in the pixel, and on the lens
+    linear_output: u32,     // 1: the target stores linear light, without tone mapping
+    water_root: u32,        // root of the tree of the liquid's triangles
+    body_root: u32,         // root of the tree of the bodies' triangles
+    ray_offset: f32,        // m; rays ignore triangles nearer than this
+    contact_distance: f32,  // m; liquid within this distance of the floor touches it
+    sample: u32,            // index of the sample of a picture with many samples
+    sample_count: u32,
+    shutter_time: f32,      // s; time of the sample relative to the frame
+    glass_thickness: f32,   // m
+    glass: vec4u,           // per axis: bit 0: the lower side is a pane of glass, bit 1: the upper one
     edges: array<Edge, 12>,
 }
 
@@ -60,7 +71,13 @@ struct Globals {
 fn view_ray(pixel: vec2f) -> vec3f {
     let x = 2.0 * pixel.x / globals.picture_size.x - 1.0;
     let y = 1.0 - 2.0 * pixel.y / globals.picture_size.y;
-    return globals.forward + x * globals.right + y * globals.up;
+    return globals.forward + globals.ray_shift + x * globals.right + y * globals.up;
+}
+
+// Distance along a ray to the floor, or -1 if the ray does not hit it.
+fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
+    let distance = (globals.floor_height - origin.y) / direction.y;
+    return select(-1.0, distance, direction.y < -1e-5 && distance > 0.0);
 }
 
 // Depth buffer value at a distance along `forward`. Reversed depth: 1 at the near plane, 0 at
@@ -95,9 +112,42 @@ fn decode(stored: vec3f) -> vec3f {
     return stored;
 }
 
-// Tone mapping of highlights: compresses values above 0.75 smoothly below 1, leaves all others
+// Tone mapping of data colours: compresses values above 0.75 smoothly below 1, leaves all others
 // unchanged.
 fn compress_highlights(linear: vec3f) -> vec3f {
     let over = max(linear - 0.75, vec3f(0.0));
     return min(linear, vec3f(0.75)) + 0.25 * (1.0 - exp(-over / 0.25));
+}
+
+const EXPOSURE = 0.80;
+
+// Filmic tone mapping of light: a rational fit of the curve of the Academy Color Encoding System
+// (Narkowicz, "ACES filmic tone mapping curve", 2016).
+fn film(light: vec3f) -> vec3f {
+    let x = max(light * EXPOSURE, vec3f(0.0));
+    return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
+}
+
+// The light that `film` maps to a value; the inverse of the fit, for values below 1.
+fn light_of_film(shown: vec3f) -> vec3f {
+    let y = clamp(shown, vec3f(0.0), vec3f(0.98));
+    let a = 2.51 - 2.43 * y;
+    let b = 0.03 - 0.59 * y;
+    return (sqrt(b * b + 0.56 * a * y) - b) / (2.0 * a * EXPOSURE);
+}
+
+// Converts light to the colour that is stored.
+fn present(light: vec3f) -> vec3f {
+    if globals.linear_output == 1u {
+        return light;
+    }
+    return encode(film(light));
+}
+
+// Converts a stored colour to light.
+fn light_of(stored: vec3f) -> vec3f {
+    if globals.linear_output == 1u {
+        return stored;
+    }
+    return light_of_film(decode(stored));
 }

@@ -4,10 +4,11 @@
 //! The colour of a pixel combines three parts.
 //!
 //! * *Reflection*: the reflected ray samples the same procedural environment as the background.
-//! * *Refraction*: the picture without the liquid was resolved to a texture. The length of the
-//!   refracted ray inside the liquid is assumed to be that of the view ray, and the texture is
-//!   sampled where the ray leaves the liquid. Light is absorbed along the path (Beer-Lambert), and
-//!   the liquid's own colour increases with depth.
+//! * *Refraction*: the walls of the tank are known, so that a ray that meets one inside the liquid is
+//!   refracted there or reflected totally, up to three times. Other rays end after the length of the
+//!   view ray inside the liquid, or at the floor, in a texture with the picture without the liquid.
+//!   Light is absorbed along the path (Beer-Lambert), and the liquid's own colour increases with
+//!   depth.
 //! * *Fresnel*: the exact equations for a dielectric and unpolarised light weight the two. A rough
 //!   highlight of the sun (GGX, Walter et al. 2007) is added.
 //!
@@ -30,12 +31,11 @@
 //! behind it contribute to the sum.
 //!
 //! # Things we might try
-//! Foam from the speed of the particles; total internal reflection; a second refraction where the
-//! ray leaves the liquid.
+//! A second refraction where the ray leaves the liquid through a free surface.
 
 use crate::globals::Globals;
 use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
-use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIQUID, Shader};
+use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIQUID, OPTICS, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets};
 use crate::{Draw, Liquid, RenderError, SurfaceBuffers, SurfaceStyle};
 use wgpu::{
@@ -44,7 +44,7 @@ use wgpu::{
 };
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, LIQUID, include_str!("surface.wgsl")] };
+    Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, OPTICS, LIQUID, include_str!("surface.wgsl")] };
 pub(crate) const THICKNESS: Shader =
     Shader { label: "thickness", parts: &[GLOBALS, EYE_DISTANCE, include_str!("thickness.wgsl")] };
 pub(crate) const LINES: Shader =

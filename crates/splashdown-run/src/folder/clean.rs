@@ -10,10 +10,10 @@ use std::path::Path;
 use splashdown::scene::{Choice, PictureKind};
 use splashdown_io::WrittenFile;
 
-use super::{PROBES, RunFolder, numbered};
+use super::{BODIES, PROBES, RunFolder, numbered};
 
-/// The first bytes of a probe table.
-const PROBE_HEADER: &[u8] = b"time (s),";
+/// The first bytes of the table of a probe or body.
+const TABLE_HEADER: &[u8] = b"time (s),";
 
 impl RunFolder {
     /// Removes all checkpoints but the newest `count`.
@@ -34,7 +34,7 @@ impl RunFolder {
         }
     }
 
-    /// The existing files of the frames up to this one. Films, probes, index and report are not included.
+    /// The existing files of the frames up to this one. Films, tables, index and report are not included.
     pub(crate) fn files_up_to(&self, frame: u32) -> Vec<WrittenFile> {
         let numbered = numbered::ALL.iter().flat_map(|series| series.files(&self.root));
         let numbered = numbered.filter(|(number, _)| *number <= frame).map(|(_, path)| path);
@@ -66,13 +66,14 @@ impl RunFolder {
             remove(&part);
         }
         let _ = fs::remove_dir(self.checkpoint_folder());
-        let probes = self.root.join(PROBES);
-        for entry in fs::read_dir(&probes).into_iter().flatten().flatten() {
-            if is_probe_table(&entry.path()) {
-                remove(&entry.path());
+        for tables in [PROBES, BODIES].map(|name| self.root.join(name)) {
+            for entry in fs::read_dir(&tables).into_iter().flatten().flatten() {
+                if is_table(&entry.path()) {
+                    remove(&entry.path());
+                }
             }
+            let _ = fs::remove_dir(&tables);
         }
-        let _ = fs::remove_dir(&probes);
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
@@ -96,11 +97,11 @@ pub(crate) fn remove_partial(root: &Path) {
     }
 }
 
-/// Whether a file is the table of a probe. Its content decides, because the scene chooses the names.
-fn is_probe_table(path: &Path) -> bool {
-    let mut start = [0; PROBE_HEADER.len()];
+/// Whether a file is the table of a probe or body. Its content decides, because the scene chooses the names.
+fn is_table(path: &Path) -> bool {
+    let mut start = [0; TABLE_HEADER.len()];
     let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    path.extension().is_some_and(|ending| ending == "csv") && read.is_ok() && start == PROBE_HEADER
+    path.extension().is_some_and(|ending| ending == "csv") && read.is_ok() && start == TABLE_HEADER
 }
 
 #[cfg(test)]
@@ -112,22 +113,30 @@ mod tests {
     fn an_earlier_run_is_removed_and_nothing_else() -> Result<(), Box<dyn std::error::Error>> {
         let temporary = tempfile::tempdir()?;
         let folder = RunFolder::new(temporary.path().to_owned(), 10);
-        let all =
-            Subfolders { particles: true, mesh: true, pictures: true, probes: true, checkpoints: false };
+        let all = Subfolders {
+            particles: true,
+            mesh: true,
+            pictures: true,
+            probes: true,
+            bodies: true,
+            checkpoints: false,
+        };
         folder.create_subfolders(all)?;
         let mine = temporary.path().join("particles/notes.txt");
         let frame = folder.particles(3, "ply");
         fs::write(&mine, "mine")?;
         fs::write(&frame, "old")?;
         fs::write(folder.probe("gauge"), "time (s),height (m)\n")?;
+        fs::write(folder.body("crate"), "time (s),position x (m)\n")?;
         let other = folder.probe("measured");
         fs::write(&other, "seconds,metres\n")?;
         // Without a report the folder may belong to another program.
         assert_eq!(folder.remove_earlier(), 0);
         assert!(frame.exists());
         fs::write(folder.report(), "{}")?;
-        assert_eq!(folder.remove_earlier(), 3);
+        assert_eq!(folder.remove_earlier(), 4);
         assert!(!frame.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
+        assert!(!folder.body("crate").exists());
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use splashdown::scene::{Format, Scene};
 use splashdown_io::{IoError, prepare_folder};
 
-use super::{PROBES, RunFolder, numbered};
+use super::{BODIES, PROBES, RunFolder, numbered};
 
 /// The subfolders that a run needs.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,8 @@ pub(crate) struct Subfolders {
     pub pictures: bool,
     /// Probe tables.
     pub probes: bool,
+    /// Tables of bodies.
+    pub bodies: bool,
     /// Checkpoints.
     pub checkpoints: bool,
 }
@@ -31,6 +33,7 @@ impl Subfolders {
             mesh: scene.surface.enabled && any(Format::has_surface),
             pictures,
             probes: !scene.probes.is_empty(),
+            bodies: !scene.bodies.is_empty(),
             checkpoints,
         }
     }
@@ -56,6 +59,7 @@ impl RunFolder {
             (wanted.mesh, numbered::MESHES.folder),
             (wanted.pictures, numbered::PICTURES.folder),
             (wanted.probes, PROBES),
+            (wanted.bodies, BODIES),
             (wanted.checkpoints, numbered::CHECKPOINTS),
         ];
         for (_, name) in subfolders.into_iter().filter(|(wanted, _)| *wanted) {

@@ -6,6 +6,7 @@ mod numbered;
 
 pub(crate) use clean::remove_partial;
 pub(crate) use create::Subfolders;
+pub(crate) use numbered::MESHES;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
 
 /// The folder of the probe tables, whose names come from the scene.
 const PROBES: &str = "probes";
+/// The folder of the tables of the bodies.
+const BODIES: &str = "bodies";
 
 /// The names of all files of a run.
 #[derive(Clone, Debug)]
@@ -119,6 +122,11 @@ impl RunFolder {
     /// The table of a probe.
     pub fn probe(&self, name: &str) -> PathBuf {
         self.root.join(PROBES).join(format!("{name}.csv"))
+    }
+
+    /// The table of a body.
+    pub fn body(&self, name: &str) -> PathBuf {
+        self.root.join(BODIES).join(format!("{name}.csv"))
     }
 
     /// The report.

@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use splashdown::BodyMesh;
-use splashdown::scene::{PictureKind, Scene};
+use splashdown::scene::{Camera, PictureKind, Scene};
 use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
 use splashdown_render::{
     Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
-    Renderer, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
+    Renderer, TracedMeshes, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 
 use super::FrameData;
+use super::spray::with_droplets;
 use crate::{RunError, appearance};
 
 /// Draws frames on a device.
@@ -49,6 +50,11 @@ impl FrameRenderer {
         Ok(Self { gpu, scene: scene.clone(), kinds, renderer, target, colouring, liquid, bodies })
     }
 
+    /// Looks from another camera from now on.
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.scene.camera = camera;
+    }
+
     /// Draws one picture per kind.
     ///
     /// # Errors
@@ -67,7 +73,10 @@ impl FrameRenderer {
             true => Some(UploadedParticles::new(device, positions, velocities, densities, pressures)?),
             false => None,
         };
-        let surface = match &data.mesh {
+        let spacing = self.scene.fluid.particle_spacing;
+        let mesh = data.mesh.as_ref().filter(|_| self.kinds.contains(&PictureKind::Surface));
+        let mesh = mesh.map(|mesh| with_droplets(mesh, &data.particles, spacing));
+        let surface = match &mesh {
             Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
             None => None,
         };
@@ -85,6 +94,18 @@ impl FrameRenderer {
                 placed.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array())),
             )
         });
+        let quality = appearance::quality(&self.scene, self.scene.output.quality);
+        let traced = match (&mesh, quality) {
+            (Some(mesh), Some(quality)) => {
+                let placed = self.bodies.iter().zip(&*data.bodies);
+                let bodies = placed
+                    .map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array()));
+                let meshes =
+                    TracedMeshes::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles, bodies)?;
+                Some((meshes, quality))
+            }
+            _ => None,
+        };
         let caption = format!("{}   t = {:.3} s", self.scene.name, data.time);
         let radius = self.scene.fluid.particle_radius();
         let (camera, domain) = (appearance::camera(&self.scene, data.time), appearance::domain(&self.scene));
@@ -103,6 +124,7 @@ impl FrameRenderer {
                 PictureKind::Surface => {
                     frame.surface =
                         surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
+                    frame.traced = traced.as_ref().map(|(meshes, quality)| (meshes, *quality));
                 }
             }
             tickets.push(self.target.submit(&mut self.renderer, &frame)?);

@@ -1,7 +1,10 @@
 //! Pictures of the frames, drawn by a separate thread while the simulation continues.
 
+mod beside;
 mod draw;
+mod finished;
 mod painter;
+mod spray;
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -17,6 +20,8 @@ use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
 use crate::{RunError, RunFolder};
 use draw::FrameRenderer;
 
+pub use beside::Beside;
+pub use finished::{FinishedRun, Orbit};
 pub use painter::Painter;
 
 /// Number of frames that can wait while one is drawn.

@@ -1,50 +1,62 @@
 //! Pictures of frames that are already computed.
 
+use std::path::Path;
 use std::sync::Arc;
 
+use splashdown::SimulationError;
+use splashdown::bodies::body_meshes;
 use splashdown::scene::{PictureKind, Scene};
-use splashdown_io::{Mesh, Particles, Picture};
+use splashdown_io::{Mesh, Particles, Picture, read_mesh, read_particles};
 
+use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
 use super::{FrameData, drawing_device};
 use crate::RunError;
 
-/// Draws pictures of frames that are already computed, such as those in the files of a finished run: those that the run
-/// draws, without bodies and foam.
+/// Draws pictures of frames that are already computed, such as those in the files of a finished run, as the run draws
+/// them.
 ///
 /// ```no_run
 /// use splashdown::scene::{PictureKind, Scene};
-/// use splashdown_io::{picture::write_png, read_particles};
+/// use splashdown_io::picture::write_png;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let scene = Scene::load("my.toml")?;
 /// let mut painter = splashdown_run::Painter::new(&scene, PictureKind::Particles)?;
-/// let particles = read_particles("out/my/particles/particles_0010.ply".as_ref())?;
-/// write_png("again.png".as_ref(), &*painter.particles(particles.into(), 0.2)?)?;
+/// let picture = painter.file("out/my/particles/particles_0010.ply".as_ref(), None)?;
+/// write_png("again.png".as_ref(), &*picture)?;
 /// # Ok(())
 /// # }
 /// ```
 pub struct Painter {
     renderer: FrameRenderer,
     kind: PictureKind,
+    scene: Scene,
 }
 
 impl Painter {
-    /// Opens the best device, software drivers included.
+    /// Opens the best device, software drivers included, and reads the meshes of the scene's bodies.
     ///
     /// # Errors
-    /// [`RunError::Gpu`] without a driver; [`RunError::Render`] if the device cannot draw pictures of the scene's size.
+    /// [`RunError::Gpu`] without a driver; [`RunError::Render`] if the device cannot draw pictures of the scene's size;
+    /// [`RunError::Simulation`] if a mesh cannot be read.
     pub fn new(scene: &Scene, kind: PictureKind) -> Result<Self, RunError> {
-        let renderer = FrameRenderer::new(drawing_device(None)?, scene, &[], vec![kind])?;
-        Ok(Self { renderer, kind })
+        let bodies = body_meshes(scene).map_err(SimulationError::from)?;
+        let renderer = FrameRenderer::new(drawing_device(None)?, scene, &bodies, vec![kind])?;
+        Ok(Self { renderer, kind, scene: scene.clone() })
     }
 
     /// Draws particles at a time in s.
     ///
     /// # Errors
     /// [`RunError::Input`] if the painter draws surfaces; [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
-    pub fn particles(&mut self, particles: Arc<Particles>, time: f64) -> Result<Arc<Picture>, RunError> {
+    pub fn particles(
+        &mut self,
+        particles: Arc<Particles>,
+        beside: &Beside,
+        time: f64,
+    ) -> Result<Arc<Picture>, RunError> {
         self.expect(PictureKind::Particles)?;
-        self.draw(particles, None, time)
+        self.draw(particles, None, beside, time)
     }
 
     /// Draws a surface at a time in s. Without normals, as in meshes that were read from files, those of the triangles are
@@ -52,9 +64,32 @@ impl Painter {
     ///
     /// # Errors
     /// [`RunError::Input`] if the painter draws particles; [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
-    pub fn surface(&mut self, mesh: Arc<Mesh>, time: f64) -> Result<Arc<Picture>, RunError> {
+    pub fn surface(&mut self, mesh: Arc<Mesh>, beside: &Beside, time: f64) -> Result<Arc<Picture>, RunError> {
         self.expect(PictureKind::Surface)?;
-        self.draw(Arc::default(), Some(mesh), time)
+        self.draw(Arc::default(), Some(mesh), beside, time)
+    }
+
+    /// Draws a file of a finished run, with the bodies and the foam of its frame from the same output folder. The number at
+    /// the end of the file's name is the frame, which gives the time unless `time` (s) does.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] if a file cannot be read; [`RunError::Input`] if a file that the scene needs is missing;
+    /// [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
+    pub fn file(&mut self, path: &Path, time: Option<f64>) -> Result<Arc<Picture>, RunError> {
+        let frame = FrameOfFile::of(path, &self.scene);
+        let time = time.unwrap_or(frame.time);
+        match self.kind {
+            PictureKind::Particles => {
+                let particles = read_particles(path)?.into();
+                let beside = frame.beside(&self.scene)?;
+                self.particles(particles, &beside, time)
+            }
+            PictureKind::Surface => {
+                let mesh = read_mesh(path)?.into();
+                let beside = frame.beside(&self.scene)?;
+                self.surface(mesh, &beside, time)
+            }
+        }
     }
 
     fn expect(&self, kind: PictureKind) -> Result<(), RunError> {
@@ -74,9 +109,11 @@ impl Painter {
         &mut self,
         particles: Arc<Particles>,
         mesh: Option<Arc<Mesh>>,
+        Beside { bodies, foam }: &Beside,
         time: f64,
     ) -> Result<Arc<Picture>, RunError> {
-        let data = FrameData { index: 0, time, particles, mesh, foam: None, bodies: [].into() };
+        let (foam, bodies) = (foam.clone(), Arc::clone(bodies));
+        let data = FrameData { index: 0, time, particles, mesh, foam, bodies };
         let pictures = self.renderer.draw(&data)?;
         pictures.into_iter().next().ok_or_else(|| RunError::Input("no picture was drawn".to_owned()))
     }

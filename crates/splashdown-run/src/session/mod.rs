@@ -5,6 +5,7 @@ mod start;
 
 use std::sync::Arc;
 
+use splashdown::monitor::Level;
 use splashdown::run::Summary;
 use splashdown::{Event, Run};
 use splashdown_io::{Film, WrittenFile};
@@ -13,8 +14,8 @@ use crate::checkpoints::CheckpointWriter;
 use crate::frames::FrameFiles;
 use crate::lock::FolderLock;
 use crate::pictures::Pictures;
-use crate::probe_files::ProbeFiles;
 use crate::report::Report;
+use crate::tables::Tables;
 use crate::{CompleteFrame, Reporter, RunEnd, RunError, RunFolder, RunOutcome, RunRequest, Stop, films};
 
 /// Runs a scene or resumes a run, and writes its files. `stop` is polled after every event.
@@ -34,7 +35,7 @@ pub struct Session {
     run: Run,
     folder: RunFolder,
     files: FrameFiles,
-    probes: ProbeFiles,
+    tables: Tables,
     checkpoints: CheckpointWriter,
     pictures: Option<Pictures>,
     /// The films of a run that draws no more pictures.
@@ -51,6 +52,8 @@ pub struct Session {
     summary: Option<Summary>,
     /// Files of earlier frames of a resumed run.
     earlier: Vec<WrittenFile>,
+    /// Whether alarms of the monitor are warnings.
+    warns_of_bursts: bool,
     /// Excludes other runs from the folder.
     _lock: FolderLock,
 }
@@ -64,13 +67,17 @@ impl Session {
             let finished = matches!(event, Ok(Event::Finished(_)));
             let handled = event.map_err(RunError::from).and_then(|event| self.handle(event, reporter));
             if let Err(error) = handled.and_then(|()| self.report_progress(reporter)) {
+                // The computed frames are worth more than the failed one: the run can be resumed before it.
+                if matches!(error, RunError::Simulation(_)) {
+                    self.checkpoints.take_held();
+                }
                 failure = Some(error);
                 break;
             }
             match stop() {
                 Stop::AfterFrame if frame_ended && !finished => {
                     if let Some(frame) = self.frame {
-                        failure = self.checkpoints.take(&mut self.run, frame, self.probes.bytes()).err();
+                        failure = self.checkpoints.take(&mut self.run, frame, self.tables.bytes()).err();
                     }
                     break;
                 }
@@ -89,18 +96,32 @@ impl Session {
             }
             Event::Progress(progress) => reporter.progress(&progress),
             Event::Frame(frame) => {
+                (self.report.monitor.energy, self.report.monitor.level) = (frame.energy, frame.level);
                 let pictures = self.pictures.as_ref().filter(|_| !self.pictures_failed);
                 let names = pictures.map(|pictures| pictures.names(frame.index)).unwrap_or_default();
                 self.frame = Some(frame.index);
-                self.probes.write(&frame)?;
+                self.tables.write(&frame)?;
                 if self.checkpoints.due(frame.index) {
-                    self.probes.sync()?;
-                    self.checkpoints.take(&mut self.run, frame.index, self.probes.bytes())?;
+                    self.tables.sync()?;
+                    self.checkpoints.take(&mut self.run, frame.index, self.tables.bytes())?;
+                }
+                if frame.level < Level::Stop {
+                    self.checkpoints.hold(&mut self.run, frame.index, self.tables.bytes())?;
                 }
                 self.files.submit(&frame, names)?;
                 if let Some(pictures) = pictures {
                     pictures.submit(&frame);
                 }
+            }
+            Event::Alarm(alarm) => {
+                // Unusual values, such as the speed of a single particle in a jet, are only recorded.
+                if alarm.level >= Level::Warning && self.warns_of_bursts {
+                    reporter.warning(&alarm.message);
+                } else if alarm.level >= Level::Warning {
+                    reporter.note(&alarm.message);
+                }
+                // An alarm consists of numbers and words, which can always be represented.
+                self.report.monitor.alarms.extend(serde_json::to_value(&alarm));
             }
             Event::Warning(message) => reporter.warning(&message),
             Event::Note(message) => reporter.note(&message),
@@ -136,7 +157,7 @@ impl Session {
             run,
             folder,
             files,
-            probes,
+            tables,
             checkpoints,
             pictures,
             mut films,
@@ -147,6 +168,7 @@ impl Session {
             mut last_complete,
             summary,
             earlier: mut written,
+            warns_of_bursts: _,
             _lock,
         } = self;
         drop(run);
@@ -164,7 +186,7 @@ impl Session {
         }
         let ended = files.finish(pictures_failed);
         written.extend(ended.files);
-        written.extend(probes.finish());
+        written.extend(tables.finish());
         complete(ended.frames, &mut report, &mut last_complete, reporter);
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());
@@ -210,7 +232,7 @@ impl Session {
         RunOutcome {
             end: match (failure, summary) {
                 (Some(failure), _) => RunEnd::Failed(failure),
-                (None, Some(summary)) => RunEnd::Finished(summary),
+                (None, Some(summary)) => RunEnd::Finished(Box::new(summary)),
                 (None, None) => RunEnd::Interrupted,
             },
             complete_frames: report.complete_frames,

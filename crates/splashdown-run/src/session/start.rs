@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use splashdown::scene::{PictureKind, Scene};
+use splashdown::scene::{OnBurst, PictureKind, Scene};
 use splashdown::{Run, RunOptions};
 
 use super::earlier::Earlier;
@@ -12,9 +12,9 @@ use crate::folder::{Subfolders, remove_partial};
 use crate::frames::FrameFiles;
 use crate::lock::FolderLock;
 use crate::pictures::{self, Pictures};
-use crate::probe_files::ProbeFiles;
-use crate::report::{Report, is_finished};
+use crate::report::{Report, alarms_until, is_finished};
 use crate::sequence::is_same;
+use crate::tables::Tables;
 use crate::{FoundCheckpoint, Reporter, RunError, RunFolder, RunRequest, films};
 
 impl Session {
@@ -55,6 +55,8 @@ impl Session {
 
         let mut options = RunOptions::new(&scene);
         (options.device, options.frames, options.timing) = (device, settings.frames, timing);
+        let on_burst = settings.on_burst.unwrap_or(OnBurst::Stop);
+        options.on_burst = on_burst;
         options.progress = reporter.preparation();
         let run = match &found {
             Some(found) => Run::resume(&found.checkpoint, &scene, options)?,
@@ -74,17 +76,21 @@ impl Session {
         }
         let resumed_after = in_place.then(|| run.first_frame());
         let mut report = Report::new(&scene);
+        if in_place {
+            let time = f64::from(run.first_frame()) / f64::from(scene.frame_rate);
+            report.monitor.alarms = alarms_until(&folder, time + 1e-9);
+        }
         report.complete_frames = resumed_after.map_or(0, |frame| frame as usize + 1);
         if in_place || folder.report().exists() {
             remove_partial(folder.root());
         }
         let keep = settings.checkpoint_every.is_some();
         let files = FrameFiles::start(folder.clone(), &scene, resumed_after, keep)?;
-        let probe_bytes = std::mem::take(&mut notes.probe_bytes);
+        let table_bytes = std::mem::take(&mut notes.table_bytes);
         let mut session = Self {
             run,
             files,
-            probes: ProbeFiles::default(),
+            tables: Tables::default(),
             checkpoints: CheckpointWriter::new(folder.clone(), settings.checkpoint_every, notes),
             pictures: None,
             films: Vec::new(),
@@ -95,6 +101,7 @@ impl Session {
             last_complete: None,
             summary: None,
             earlier: Vec::new(),
+            warns_of_bursts: on_burst != OnBurst::Ignore,
             folder,
             _lock: lock,
         };
@@ -116,9 +123,9 @@ impl Session {
         }
         // A killed run must not leave the report of an earlier run.
         session.report.write(&session.folder)?;
-        session.probes = match resumed_after {
-            Some(_) => ProbeFiles::resume(&scene, &session.folder, &probe_bytes, reporter)?,
-            None => ProbeFiles::create(&scene, &session.folder)?,
+        session.tables = match resumed_after {
+            Some(_) => Tables::resume(&scene, &session.folder, &table_bytes, reporter)?,
+            None => Tables::create(&scene, &session.folder)?,
         };
         Ok(session)
     }

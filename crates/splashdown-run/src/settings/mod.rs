@@ -5,7 +5,7 @@ mod notes;
 pub(crate) use notes::Notes;
 
 use splashdown::Device;
-use splashdown::scene::{Format, PictureKind, Scene};
+use splashdown::scene::{Format, OnBurst, PictureKind, PictureQuality, Scene};
 
 use crate::RunError;
 
@@ -23,10 +23,14 @@ pub struct RunSettings {
     pub surface: bool,
     /// Pictures; an empty list draws none. If pictures are given, a device that cannot draw them is an error.
     pub pictures: Option<Vec<PictureKind>>,
+    /// How carefully pictures of the surface are drawn.
+    pub quality: Option<PictureQuality>,
     /// Make films of the pictures, if the scene enables them.
     pub film: bool,
     /// Frames between two checkpoints.
     pub checkpoint_every: Option<u32>,
+    /// What to do when the fluid bursts; `None` stops, or continues as the resumed run did.
+    pub on_burst: Option<OnBurst>,
 }
 
 impl Default for RunSettings {
@@ -37,8 +41,10 @@ impl Default for RunSettings {
             formats: None,
             surface: true,
             pictures: None,
+            quality: None,
             film: true,
             checkpoint_every: None,
+            on_burst: None,
         }
     }
 }
@@ -52,8 +58,10 @@ impl RunSettings {
             formats: self.formats.or(earlier.formats),
             surface: self.surface && earlier.surface,
             pictures: self.pictures.or(earlier.pictures),
+            quality: self.quality.or(earlier.quality),
             film: self.film && earlier.film,
             checkpoint_every: self.checkpoint_every.or(earlier.checkpoint_every),
+            on_burst: self.on_burst.or(earlier.on_burst),
         }
     }
 
@@ -65,6 +73,9 @@ impl RunSettings {
         }
         if let Some(pictures) = &self.pictures {
             scene.output.pictures = distinct(pictures);
+        }
+        if let Some(quality) = self.quality {
+            scene.output.quality = quality;
         }
     }
 

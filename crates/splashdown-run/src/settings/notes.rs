@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use splashdown::Checkpoint;
 use splashdown::error::CheckpointError;
-use splashdown::scene::{Choice, Format, PictureKind};
+use splashdown::scene::{Choice, Format, OnBurst, PictureKind, PictureQuality};
 
 use super::RunSettings;
 
@@ -18,14 +18,17 @@ pub(crate) struct Notes {
     no_surface: bool,
     pictures: Option<Vec<String>>,
     no_pictures: bool,
+    quality: Option<String>,
     no_film: bool,
     checkpoint_every: Option<u32>,
+    on_burst: Option<String>,
     /// Digits of the frame numbers in file names.
     pub digits: Option<usize>,
     /// The first frame written with these formats.
     pub since: u32,
-    /// Bytes in each probe's file at the checkpoint, in the order of the scene.
-    pub probe_bytes: Vec<u64>,
+    /// Bytes in each table at the checkpoint: probes, then bodies, in the order of the scene.
+    #[serde(alias = "probe_bytes")]
+    pub table_bytes: Vec<u64>,
 }
 
 impl Notes {
@@ -40,8 +43,10 @@ impl Notes {
             no_surface: !settings.surface,
             pictures: pictures.map(|kinds| words(kinds)),
             no_pictures,
+            quality: settings.quality.map(|quality| quality.name().to_owned()),
             no_film: !settings.film,
             checkpoint_every: settings.checkpoint_every,
+            on_burst: settings.on_burst.map(|choice| choice.name().to_owned()),
             ..Self::default()
         }
     }
@@ -66,8 +71,10 @@ impl Notes {
             formats: self.formats.as_deref().map(choices::<Format>),
             surface: !self.no_surface,
             pictures: if self.no_pictures { Some(Vec::new()) } else { pictures },
+            quality: self.quality.as_deref().and_then(PictureQuality::from_name),
             film: !self.no_film,
             checkpoint_every: self.checkpoint_every,
+            on_burst: self.on_burst.as_deref().and_then(OnBurst::from_name),
         }
     }
 
@@ -88,7 +95,9 @@ impl Notes {
         }
         let formats = self.formats.iter().flatten().filter(|word| Format::from_name(word).is_none());
         let pictures = self.pictures.iter().flatten().filter(|word| PictureKind::from_name(word).is_none());
-        match formats.chain(pictures).next() {
+        let quality = self.quality.iter().filter(|word| PictureQuality::from_name(word).is_none());
+        let reaction = self.on_burst.iter().filter(|word| OnBurst::from_name(word).is_none());
+        match formats.chain(pictures).chain(quality).chain(reaction).next() {
             Some(word) => Err(format!("it requests {word:?}, which this program cannot write")),
             None => Ok(self),
         }
@@ -121,6 +130,7 @@ mod tests {
                 pictures: Some(vec![PictureKind::Particles]),
                 film: false,
                 checkpoint_every: Some(3),
+                on_burst: Some(OnBurst::Warn),
                 ..RunSettings::default()
             },
         ];

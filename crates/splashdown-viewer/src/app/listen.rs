@@ -81,6 +81,8 @@ impl Viewer {
         figures.dt = snapshot.stats.dt;
         figures.particles = snapshot.stats.particles;
         figures.density_error = snapshot.stats.density_error;
+        figures.iterations = snapshot.stats.iterations as f64 / snapshot.stats.steps.max(1) as f64;
+        figures.compression = snapshot.stats.compression;
         figures.triangles = snapshot.drawn.mesh().map(|mesh| mesh.stats.triangles);
         figures.timings = Arc::clone(&snapshot.timings);
         figures.timed_steps = snapshot.timed_steps;

@@ -25,7 +25,11 @@ impl Viewer {
             return;
         }
         let name = std::path::PathBuf::from(format!("{}-film", self.state.scene.name));
-        match Recorder::start(&name, self.size, self.state.scene.frame_rate) {
+        match Recorder::start(
+            &name,
+            self.size,
+            splashdown_run::films::frame_rate(self.state.scene.frame_rate),
+        ) {
             Ok((recorder, failure)) => {
                 if let Some(failure) = failure {
                     self.state.notify(failure, true, now);

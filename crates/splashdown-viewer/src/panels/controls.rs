@@ -99,18 +99,10 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let solver = &mut state.scene.solver;
     let mut changed = false;
     ComboBox::from_label("method").selected_text(name(solver.method)).show_ui(ui, |ui| {
-        for method in [Method::Wcsph, Method::Mueller2003] {
+        for method in [Method::Wcsph, Method::Dfsph, Method::Mueller2003] {
             if ui.selectable_label(solver.method == method, name(method)).clicked() && solver.method != method
             {
-                solver.method = method;
-                solver.exponent = match method {
-                    Method::Wcsph => 7.0,
-                    Method::Mueller2003 => 1.0,
-                };
-                // Each method has its own model of surface tension.
-                if solver.surface_tension != SurfaceTension::None {
-                    solver.surface_tension = tension_of(method);
-                }
+                solver.select_method(method);
                 changed = true;
             }
         }
@@ -144,7 +136,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 
 fn tension_of(method: Method) -> SurfaceTension {
     match method {
-        Method::Wcsph => SurfaceTension::Akinci2013,
+        Method::Wcsph | Method::Dfsph => SurfaceTension::Akinci2013,
         Method::Mueller2003 => SurfaceTension::ColourField,
     }
 }
@@ -152,6 +144,7 @@ fn tension_of(method: Method) -> SurfaceTension {
 fn name(method: Method) -> &'static str {
     match method {
         Method::Wcsph => "wcsph (weakly compressible)",
+        Method::Dfsph => "dfsph (implicit pressure)",
         Method::Mueller2003 => "mueller2003 (the original thesis)",
     }
 }

@@ -26,6 +26,16 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) {
             format!("density +{:.1} %", 100.0 * figures.density_error),
             "Largest recent density above the rest density",
         );
+        if figures.iterations > 0.0 {
+            item(
+                format!(
+                    "{:.1} iterations, {:.2} % compressed",
+                    figures.iterations,
+                    100.0 * figures.compression
+                ),
+                "Pressure iterations per step, and mean density above the rest density",
+            );
+        }
         item(format!("{:.0} MB", figures.memory as f64 / 1e6), "Memory of the simulation's buffers");
         item(figures.device.clone(), "Simulating device");
         ui.toggle_value(&mut state.shown.timings, "time per pass")

@@ -37,9 +37,10 @@ struct Body {
     samples_z: u32,
     reach: f32,
     script: u32,
-    unused: vec2<f32>,
+    is_complete: u32,
+    work: f32,
     moment: vec3<f32>,
-    unused_2: f32,
+    coupling: f32,
 }
 
 struct Contact {
@@ -57,6 +58,11 @@ struct Contact {
 fn direction(contact: Contact, scale: f32) -> vec3<f32> {
     let steep = length(contact.slope);
     return select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
+}
+
+// The gradient of the contribution to the density with which a body acts on the implicit pressure; see solid_gradient.
+fn solid_gradient_of(contact: Contact) -> vec3<f32> {
+    return -2.0 * contact.slope;
 }
 
 struct ScriptSample {

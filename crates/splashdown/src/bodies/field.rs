@@ -4,7 +4,36 @@
 use glam::{UVec3, Vec2, Vec3, Vec4};
 
 use super::types::Body;
+use crate::boundary::closed_bounds;
 use crate::kernel::Kernel;
+use crate::state::Params;
+
+/// The inside of the closed sides of the domain.
+pub(super) struct Interior {
+    /// Corners in m, infinite at open sides.
+    low: Vec3,
+    high: Vec3,
+    spacing: f32,
+}
+
+impl Interior {
+    pub fn new(params: &Params) -> Self {
+        let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
+        Self { low, high, spacing: params.particle_spacing }
+    }
+
+    /// Whether all cells of one spacing within `reach` of a point lie inside.
+    fn holds(&self, x: Vec3, reach: f32) -> bool {
+        let reach = reach + 0.5 * self.spacing;
+        x.cmpgt(self.low + reach).all() && x.cmplt(self.high - reach).all()
+    }
+
+    /// The part of a cell of one spacing around a point that lies inside.
+    fn part(&self, x: Vec3) -> f32 {
+        let inside = (x - self.low).min(self.high - x) / self.spacing;
+        (inside + 0.5).clamp(Vec3::ZERO, Vec3::ONE).element_product()
+    }
+}
 
 /// The values of a body's map at a point.
 pub(super) struct Field {
@@ -59,14 +88,23 @@ pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Fi
 }
 
 /// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction
-/// (xyz), and the fraction (w).
-pub(super) fn sampled<K: Kernel>(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Vec4 {
+/// (xyz), and the fraction (w). What lies outside the domain does not count.
+pub(super) fn sampled<K: Kernel>(
+    body: &Body,
+    maps: &[Vec2],
+    y: Vec3,
+    support: f32,
+    domain: &Interior,
+) -> Vec4 {
     let scale = 1.0 / support;
     let scale3 = scale * scale * scale;
     let size = UVec3::new(body.samples_x, body.samples_y, body.samples_z).as_ivec3();
     let home = ((y - body.field_min) * scale).floor().as_ivec3();
     let (low, high) = ((home - 1).max(glam::IVec3::ZERO), (home + 1).min(size - 1));
     let mut sum = Vec4::ZERO;
+    let rotation = body.rotation();
+    // Boundary particles within the support of this point may lie outside.
+    let is_cut = !domain.holds(body.position + rotation * (y - body.center), support);
     for z in low.z..=high.z {
         for row in low.y..=high.y {
             for x in low.x..=high.x {
@@ -78,7 +116,12 @@ pub(super) fn sampled<K: Kernel>(body: &Body, maps: &[Vec2], y: Vec3, support: f
                     let q = d.length() * scale;
                     if q < 1.0 {
                         let slope = -K::g(q) * scale * scale * d;
-                        sum += zv.y * scale3 * slope.extend(K::w(q));
+                        let mut volume = zv.y * scale3;
+                        if is_cut {
+                            let sample = xy.extend(zv.x) - body.center;
+                            volume *= domain.part(body.position + rotation * sample);
+                        }
+                        sum += volume * slope.extend(K::w(q));
                     }
                 }
             }

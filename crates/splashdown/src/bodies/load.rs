@@ -1,15 +1,17 @@
 //! Loads the bodies of a scene: meshes, solids, masses, and boundary particles.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{Mat3, Quat, Vec2, Vec3, Vec4};
 use splashdown_io::{IoError, Mesh};
 
+use super::BodyMesh;
 use super::types::{Body, Contact};
-use crate::boundary::{KernelPair, solid_offset};
+use crate::boundary::{KernelPair, closed_bounds, solid_offset};
 use crate::models;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
-use crate::solid::{self, Solid, SolidError, SolidKind, SolidSettings};
+use crate::solid::{self, Placed, Solid, SolidError, SolidKind, SolidSettings, Surroundings};
 use crate::state::Params;
 
 /// Why a mesh could not be used: of a body, an outlet, a sink or a piece of fluid.
@@ -99,6 +101,7 @@ fn known() -> String {
 }
 
 /// A body ready for a device.
+#[derive(Clone)]
 pub struct LoadedBody {
     /// Its name.
     pub name: String,
@@ -154,6 +157,19 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
     Ok(mesh)
 }
 
+/// The shapes of a scene's bodies without their solids, for drawing.
+///
+/// # Errors
+/// The first [`BodyError`] of reading.
+pub fn body_meshes(scene: &scene::Scene) -> Result<Vec<BodyMesh>, BodyError> {
+    let shape = |body: &scene::Body| {
+        let mesh = mesh_of(&owner("body", &body.name, &body.mesh), &body.mesh)?;
+        let mesh = Arc::new(solid::repair(&mesh, body.shell).0);
+        Ok(BodyMesh { name: body.name.clone(), mesh, colour: body.colour })
+    };
+    scene.bodies.iter().map(shape).collect()
+}
+
 /// Builds the bodies of a scene from their meshes, which [`mesh_of`] has read in the order of the scene. `progress`
 /// is called with the name of a body and the completed part of it in [0, 1].
 ///
@@ -167,16 +183,22 @@ pub fn load(
     cache: Option<PathBuf>,
     progress: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<Vec<LoadedBody>, BodyError> {
-    let bodies = scene.bodies.iter().zip(meshes);
-    bodies.map(|(body, mesh)| load_one(scene, body, mesh, params, kernels, cache.clone(), progress)).collect()
+    let mut loaded: Vec<LoadedBody> = Vec::with_capacity(meshes.len());
+    for (body, mesh) in scene.bodies.iter().zip(meshes) {
+        let body = load_one(scene, body, mesh, params, kernels, &loaded, cache.clone(), progress)?;
+        loaded.push(body);
+    }
+    Ok(loaded)
 }
 
+#[expect(clippy::too_many_arguments, reason = "the inputs of one body")]
 fn load_one(
     scene: &scene::Scene,
     body: &scene::Body,
     mesh: Result<Mesh, BodyError>,
     params: &Params,
     kernels: KernelPair,
+    earlier: &[LoadedBody],
     cache: Option<PathBuf>,
     progress: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<LoadedBody, BodyError> {
@@ -204,13 +226,26 @@ fn load_one(
         cache,
     };
     let solid_error = |source| BodyError::Solid { owner: owner.clone(), source };
-    let solid = Solid::build(&mesh, &settings, &|part| progress(&body.name, part)).map_err(solid_error)?;
+    let others = if body.motion == Motion::Static { static_solids(earlier) } else { Vec::new() };
+    let surroundings = Surroundings {
+        position: body.mesh.position,
+        rotation: body.mesh.rotation,
+        closed: closed_bounds(params.domain_min, params.domain_max, params.closed),
+        others: others.clone(),
+    };
+    let surroundings = surroundings
+        .within(solid::bounds(&mesh), params.support_radius + half_thickness)
+        .filter(|_| body.motion == Motion::Static);
+    let solid =
+        Solid::build_within(&mesh, &settings, surroundings.as_ref(), &|part| progress(&body.name, part))
+            .map_err(solid_error)?;
     let mut state = Body {
         position: body.mesh.position,
         orientation: Vec4::from(body.mesh.rotation),
         friction: body.friction,
         adhesion: body.adhesion,
         way: if body.boundary == BoundaryKind::Particles { Body::PARTICLES } else { Body::MAP },
+        is_complete: u32::from(body.motion == Motion::Static && body.boundary == BoundaryKind::Map),
         ..bytemuck::Zeroable::zeroed()
     };
     let mut script = None;
@@ -245,10 +280,29 @@ fn load_one(
     state.radius = state.reach + params.support_radius + settings.half_thickness + 4.0 * settings.cell_size;
     let samples = match body.boundary {
         BoundaryKind::Map => Vec::new(),
-        BoundaryKind::Particles => boundary_particles(&solid, params, kernels),
+        BoundaryKind::Particles => {
+            let mut samples = boundary_particles(&solid, params, kernels);
+            for sample in &mut samples {
+                let x = body.mesh.position + body.mesh.rotation * sample.truncate();
+                // The part of its cell that lies in an earlier solid is counted there.
+                sample.w *= others.iter().map(|other| other.open_part(x, spacing)).product::<f32>();
+            }
+            samples.retain(|sample| sample.w > 0.0);
+            samples
+        }
     };
     let density = if let Motion::Dynamic { density, .. } = body.motion { density } else { 0.0 };
     Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour, density })
+}
+
+/// The solids of the static bodies.
+fn static_solids(bodies: &[LoadedBody]) -> Vec<Placed<'_>> {
+    let is_static = |body: &&LoadedBody| body.state.kind == Body::STATIC;
+    let placed = |body| {
+        let (position, rotation) = LoadedBody::pose(body);
+        Placed { solid: &body.solid, position, rotation }
+    };
+    bodies.iter().filter(is_static).map(placed).collect()
 }
 
 /// Attaches a dynamic body, with this inertia about its centre of mass, to a hinge: the body rotates about the point

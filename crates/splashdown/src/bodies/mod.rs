@@ -16,17 +16,24 @@ mod field;
 mod key;
 mod load;
 mod motion;
+mod pressure_force;
+mod pressure_reaction;
+mod pressure_response;
+mod reaction;
 #[cfg(feature = "rigid")]
 mod rigid;
 #[cfg(not(feature = "rigid"))]
 #[path = "no_rigid.rs"]
 mod rigid;
+mod solid_gradient;
+mod solid_velocity;
 mod types;
+mod viscous;
 
 pub(crate) use closed::{closed_solid, solid_of};
 pub(crate) use key::{BodiesChanged, BodyKey};
 pub(crate) use load::forecast;
-pub use load::{BodyError, LoadedBody, load, mesh_of};
+pub use load::{BodyError, LoadedBody, body_meshes, load, mesh_of};
 pub(crate) use load::{check_scale, owner};
 pub use types::{Body, Contact, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample, WGSL as BODY};
 
@@ -38,14 +45,14 @@ use splashdown_io::{Mesh, Particles};
 
 use crate::boundary::KernelPair;
 use crate::boundary::part::Part;
-use crate::coupling::{Coupling, Stage, StepRecorder};
+use crate::coupling::{Coupling, Stage, StepRecorder, ViscousStage};
 use crate::scene::{Domain, Script};
 use crate::solid::{DistanceField, RepairReport};
 use crate::state::Params;
 use rigid::Rigid;
 
-/// Numbers per body in a checkpoint: five vectors and a quaternion.
-const MOTION_COLUMNS: usize = 19;
+/// Numbers per body in a checkpoint: five vectors, a quaternion and the work.
+const MOTION_COLUMNS: usize = 20;
 
 /// The shape of a body.
 #[derive(Clone, Debug)]
@@ -75,9 +82,17 @@ pub struct BodyState {
     pub force: Vec3,
     /// Its torque about the centre of mass (dynamic bodies) or the mesh's origin, in N m.
     pub torque: Vec3,
+    /// The work of the body on the fluid since the start, in J.
+    pub work: f32,
 }
 
 impl BodyState {
+    /// A body at rest without forces, with its mesh's origin at a position in m.
+    pub fn at(position: Vec3, orientation: Quat) -> Self {
+        let [velocity, angular_velocity, force, torque] = [Vec3::ZERO; 4];
+        Self { position, orientation, velocity, angular_velocity, force, torque, work: 0.0 }
+    }
+
     /// Transforms a point in m from the mesh's frame into the world.
     pub fn world(&self, y: Vec3) -> Vec3 {
         self.position + self.orientation * y
@@ -86,7 +101,7 @@ impl BodyState {
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![
+    [
         &boundary_lookup::WENDLAND_C2,
         &boundary_lookup::CUBIC_SPLINE,
         &boundary_lookup::MUELLER,
@@ -98,7 +113,15 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &boundary_force::PRESSURE,
         &boundary_force::OTHER,
         &motion::MOTION,
+        &solid_gradient::SOLID_GRADIENT,
+        &pressure_reaction::PRESSURE_REACTION,
+        &pressure_response::PRESSURE_RESPONSE,
+        &solid_velocity::SOLID_VELOCITY,
+        &pressure_force::PRESSURE_FORCE,
     ]
+    .into_iter()
+    .chain(viscous::passes())
+    .collect()
 }
 
 /// The bodies of a simulation, on its device and on the host.
@@ -112,6 +135,14 @@ pub struct Bodies {
     pub contacts: Buffer<Contact>,
     /// The reactions to the boundary forces, [`SUM_WORDS`] words per body.
     pub sums: Buffer<u32>,
+    /// The forces of the present implicit pressure, as `sums`.
+    pub pressure_sums: Buffer<u32>,
+    /// The velocity and the angular velocity of each body by the present implicit pressure, two vectors per body.
+    pub responses: Buffer<Vec4>,
+    /// The unknowns of the implicit viscosity, ten vectors per body.
+    pub unknowns: Buffer<Vec4>,
+    /// True if forces move a body.
+    has_dynamic: bool,
     scripts: Buffer<ScriptSample>,
     /// The scripts, one per scripted body.
     host_scripts: Vec<Script>,
@@ -140,6 +171,7 @@ impl Bodies {
         for body in &loaded {
             let mut state = body.state;
             place_map(body, params, &mut state, &mut maps);
+            state.coupling = state.coupling_of(area(&body.solid.mesh));
             if let Some(script) = &body.script {
                 state.script = host_scripts.len() as u32;
                 host_scripts.push(script.clone());
@@ -154,6 +186,10 @@ impl Bodies {
             maps: executor.create_from("maps", &maps)?,
             contacts: executor.create("contacts", 2 * params.particle_count.max(1) as usize)?,
             sums: executor.create_from("sums", &vec![0; SUM_WORDS * states.len()])?,
+            pressure_sums: executor.create_from("pressure_sums", &vec![0; SUM_WORDS * states.len()])?,
+            responses: executor.create("responses", 2 * states.len())?,
+            unknowns: executor.create("unknowns", viscous::VECTORS * states.len())?,
+            has_dynamic: states.iter().any(|state| state.kind == Body::DYNAMIC),
             scripts: executor.create_from("scripts", &scripts)?,
             host_scripts,
             meshes: loaded
@@ -187,15 +223,53 @@ impl Bodies {
         } else {
             &boundary_density::SUMMATION
         });
+        if step.is_implicit {
+            step.dispatch_particles(&solid_gradient::SOLID_GRADIENT);
+        }
     }
 
     fn record_boundary_force(&self, part: Part, step: &mut StepRecorder<'_>) {
         step.dispatch_particles(match part {
             Part::All if step.is_density_integrated => &boundary_force::CORRECTED,
             Part::All => &boundary_force::ALL,
+            Part::Pressure if step.is_implicit => &pressure_force::PRESSURE_FORCE,
             Part::Pressure => &boundary_force::PRESSURE,
             Part::Other => &boundary_force::OTHER,
         });
+    }
+
+    /// The response of the bodies to the present implicit pressure.
+    fn record_pressure_iteration(&self, step: &mut StepRecorder<'_>) {
+        if !self.has_dynamic {
+            return;
+        }
+        let buffers = step.buffers.clone().with("sums", self.pressure_sums);
+        step.recording.dispatch(&pressure_reaction::PRESSURE_REACTION, step.particles, &buffers);
+        step.dispatch(&pressure_response::PRESSURE_RESPONSE, DispatchSize::Items(self.bodies.len()));
+        step.dispatch_particles(&solid_velocity::SOLID_VELOCITY);
+    }
+
+    /// The friction of bodies in the implicit viscosity.
+    fn record_viscous(&self, stage: ViscousStage, step: &mut StepRecorder<'_>) {
+        let buffers = step.buffers.clone().with("sums", self.pressure_sums);
+        let bodies = DispatchSize::Items(self.bodies.len());
+        match stage {
+            ViscousStage::Start => {
+                step.recording.dispatch(&viscous::start::VISCOUS_FRICTION, step.particles, &buffers);
+                step.dispatch(&viscous::begin::VISCOUS_BODIES, bodies);
+            }
+            ViscousStage::Product => {
+                step.recording.dispatch(&viscous::product::VISCOUS_PRODUCT, step.particles, &buffers);
+            }
+            ViscousStage::Sum if self.has_dynamic => {
+                step.dispatch(&viscous::sum::VISCOUS_SUM, DispatchSize::Groups(1));
+            }
+            ViscousStage::Update if self.has_dynamic => {
+                step.dispatch(&viscous::update::VISCOUS_BODY_UPDATE, bodies);
+            }
+            ViscousStage::Sum | ViscousStage::Update => {}
+            ViscousStage::Force => step.dispatch_particles(&viscous::force::VISCOUS_FORCE),
+        }
     }
 
     fn record_motion(&self, step: &mut StepRecorder<'_>) {
@@ -307,12 +381,14 @@ impl Bodies {
         MOTION_COLUMNS
     }
 
-    /// Position, orientation, velocity, angular velocity, force and torque of each body.
+    /// Position, velocity, angular velocity, force, torque, orientation and work of each body.
     pub(crate) async fn fetch_motion(&self, executor: &mut Executor) -> Result<Vec<f32>, GpuError> {
         let bodies = executor.fetch(self.bodies).await?;
         let vectors = |b: &Body| [b.position, b.velocity, b.angular_velocity, b.force, b.torque];
-        let row =
-            |b: &Body| vectors(b).into_iter().flat_map(|v| v.to_array()).chain(b.orientation.to_array());
+        let row = |b: &Body| {
+            let motion = vectors(b).into_iter().flat_map(|v| v.to_array());
+            motion.chain(b.orientation.to_array()).chain([b.work])
+        };
         Ok(bodies.iter().flat_map(|b| row(b).collect::<Vec<f32>>()).collect())
     }
 
@@ -333,7 +409,8 @@ impl Bodies {
             let vector = |k: usize| Vec3::from_slice(&row[3 * k..]);
             (body.position, body.velocity, body.angular_velocity) = (vector(0), vector(1), vector(2));
             (body.force, body.torque) = (vector(3), vector(4));
-            body.orientation = Vec4::from_slice(&row[15..]);
+            body.orientation = Vec4::from_slice(&row[15..19]);
+            body.work = row[19];
         }
         self.rigid = collisions;
         executor.write(self.bodies, &bodies)
@@ -378,12 +455,19 @@ impl Bodies {
     }
 
     /// The distance in m from a point to the surface of the nearest body, negative inside, and the name of the body.
-    /// Computed on the host.
-    pub fn nearest(&self, states: &[BodyState], x: Vec3) -> Option<(f32, &str)> {
-        let distances = self.fields.iter().zip(states).zip(&self.meshes).map(|((field, state), mesh)| {
-            (field.distance(state.orientation.conjugate() * (x - state.position)), mesh.name.as_str())
-        });
-        distances.min_by(|a, b| a.0.total_cmp(&b.0))
+    /// Computed on the host, on any thread.
+    pub fn nearest<'a>(
+        &'a self,
+        states: &'a [BodyState],
+    ) -> impl Fn(Vec3) -> Option<(f32, &'a str)> + Sync + 'a {
+        // Not `self`: on a web page buffers stay on their thread.
+        let (fields, meshes) = (&self.fields, &self.meshes);
+        move |x| {
+            let distances = fields.iter().zip(states).zip(meshes).map(|((field, state), mesh)| {
+                (field.distance(state.orientation.conjugate() * (x - state.position)), mesh.name.as_str())
+            });
+            distances.min_by(|a, b| a.0.total_cmp(&b.0))
+        }
     }
 
     /// The number of these particles that lie inside a body. Computed on the host.
@@ -405,12 +489,18 @@ impl Coupling for Bodies {
             Stage::BoundaryForces(Part::All),
             Stage::BoundaryForces(Part::Pressure),
             Stage::BoundaryForces(Part::Other),
+            Stage::Viscosity(ViscousStage::Start),
+            Stage::Viscosity(ViscousStage::Product),
+            Stage::Viscosity(ViscousStage::Sum),
+            Stage::Viscosity(ViscousStage::Update),
+            Stage::Viscosity(ViscousStage::Force),
+            Stage::PressureIteration,
             Stage::BodyMotion,
         ]
     }
 
     fn buffers(&self) -> BufferSet {
-        buffer_set!(self => bodies, maps, contacts, sums, scripts)
+        buffer_set!(self => bodies, maps, contacts, sums, scripts, pressure_sums, responses, unknowns)
     }
 
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {
@@ -418,6 +508,8 @@ impl Coupling for Bodies {
             Stage::BoundaryLookup => self.record_boundary_lookup(step),
             Stage::BoundaryDensity => self.record_boundary_density(step),
             Stage::BoundaryForces(part) => self.record_boundary_force(part, step),
+            Stage::Viscosity(stage) => self.record_viscous(stage, step),
+            Stage::PressureIteration => self.record_pressure_iteration(step),
             _ => self.record_motion(step),
         }
     }
@@ -433,7 +525,17 @@ fn state_of(body: &Body) -> BodyState {
         angular_velocity: body.angular_velocity,
         force: body.force,
         torque: body.torque,
+        work: body.work,
     }
+}
+
+/// The area of a mesh in m^2.
+fn area(mesh: &Mesh) -> f32 {
+    let triangle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|k| Vec3::from(mesh.vertices[k as usize]));
+        0.5 * (b - a).cross(c - a).length()
+    };
+    mesh.triangles.iter().map(triangle).sum()
 }
 
 /// Appends the distances of a body and its boundary particles, if any.

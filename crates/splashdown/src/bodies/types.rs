@@ -68,13 +68,16 @@ gpu_struct! {
         reach: f32,
         /// Its index among the scripted bodies.
         script: u32,
-        /// Padding to a multiple of 16 bytes.
-        unused: [f32; 2],
+        /// 1 if its map contains its images behind closed sides.
+        is_complete: u32,
+        /// Its work on the fluid since the start in J.
+        work: f32,
         /// For a hinged body, whose hinge is at `center`: the mass times the arm from the hinge to the centre of
         /// mass, in the mesh's frame, in kg m.
         moment: Vec3,
-        /// Padding.
-        unused_2: f32,
+        /// What it adds to the diagonal of the implicit pressure, in m^2/kg: half the area of its mesh times the larger of
+        /// its inverse mass and a twelfth of that at its farthest point by rotation; 0 if forces do not move it.
+        coupling: f32,
     }
 }
 
@@ -138,6 +141,15 @@ impl Body {
     /// Boundary represented by boundary particles.
     pub const PARTICLES: u32 = 1;
 
+    /// [`coupling`](Self::coupling) for the surface area in m^2 of the mesh.
+    pub fn coupling_of(&self, area: f32) -> f32 {
+        if self.kind != Self::DYNAMIC {
+            return 0.0;
+        }
+        let by_rotation = self.reach * self.reach * self.inverse_inertia.element_sum() / 12.0;
+        0.5 * area * self.inverse_mass.max(by_rotation)
+    }
+
     /// Its rotation.
     pub fn rotation(&self) -> Quat {
         Quat::from_vec4(self.orientation)
@@ -191,6 +203,13 @@ impl Body {
 impl Contact {
     /// No body.
     pub const NONE: u32 = u32::MAX;
+
+    /// The gradient in 1/m of the contribution to the density with which the body acts on the implicit pressure. The body
+    /// reflects the fluid, which doubles it.
+    #[inline]
+    pub fn solid_gradient(&self) -> Vec3 {
+        -2.0 * self.slope
+    }
 
     /// The unit vector along which the body's pressure acts: that of the slope, or the normal where the slope vanishes.
     /// `scale` is one over the support radius.

@@ -55,6 +55,21 @@ impl Images {
         Self { low, high }
     }
 
+    /// The number of closed sides within `reach` of a point, in metres.
+    #[inline(always)]
+    pub fn sides_near(&self, x: Vec3, reach: f32) -> u32 {
+        let reach = Vec3::splat(reach);
+        [(x - self.low).cmplt(reach), (self.high - x).cmplt(reach)]
+            .map(|near| near.bitmask().count_ones())
+            .iter()
+            .sum()
+    }
+
+    /// The sides between two corners in metres, infinite or far away where open.
+    pub fn between(low: Vec3, high: Vec3) -> Self {
+        Self { low, high }
+    }
+
     /// The reflections whose images can be within `reach` of a point in the box between `low` and `high`, in metres.
     #[inline(always)]
     pub fn near(

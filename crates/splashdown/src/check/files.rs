@@ -6,15 +6,18 @@ use splashdown_io::{Mesh, Particles};
 use super::{Built, motion};
 use crate::bodies::{check_scale, mesh_of, owner};
 use crate::flow::{LoadedFlow, outlet};
-use crate::sample::{self, Added, Filler, SampleError, Sources, file_title, mesh_title, typical_spacing};
+use crate::sample::{
+    self, Added, Filler, SampleError, Sources, file_title, fitted_spacing, mesh_title, typical_spacing,
+};
 use crate::scene::{
     Body, Domain, Emitter, MeshSource, Motion, Reach, Reported, Scene, Section, grouped, outlet_outside,
     place, rounded,
 };
 use crate::solid;
 
-/// Largest relative difference between a file's spacing and the scene's that gives no warning.
-const SPACING_TOLERANCE: f32 = 0.2;
+/// Largest relative difference between a file's spacing and the scene's that gives no warning: measured inside the
+/// fluid, and estimated from the distances of neighbours.
+const SPACING_TOLERANCE: [f32; 2] = [0.02, 0.2];
 /// A point is inside a mesh if the absolute winding number exceeds this value; on the surface it is 0.5.
 const INSIDE: f64 = 0.75;
 /// Maximum number of points of an outlet that are tested against bodies.
@@ -272,14 +275,24 @@ fn warn_outside_particles(section: &Section<'_>, title: &str, added: Added, scen
 }
 
 fn warn_spacing(section: &Section<'_>, title: &str, positions: &[[f32; 3]], spacing: f32) {
-    let Some(found) = typical_spacing(positions) else { return };
-    if (found / spacing - 1.0).abs() <= SPACING_TOLERANCE {
+    let typical = typical_spacing(positions);
+    // On a lattice the distance of neighbours is exact.
+    let on_lattice =
+        |fitted: f32| typical.filter(|typical| (*typical / fitted - 1.0).abs() < SPACING_TOLERANCE[0]);
+    let fitted = fitted_spacing(positions).map(|fitted| on_lattice(fitted).unwrap_or(fitted));
+    let Some(found) = fitted.or(typical) else { return };
+    if (found / spacing - 1.0).abs() <= SPACING_TOLERANCE[usize::from(fitted.is_none())] {
         return;
     }
-    let message = format!(
+    let mut message = format!(
         "the particles of {title} are about {} m apart, but fluid.particle_spacing is {spacing} m",
         rounded(found)
     );
+    if fitted.is_some() {
+        let change = (spacing / found).powi(3) - 1.0;
+        let how = if change > 0.0 { "grows" } else { "shrinks" };
+        message += &format!(": at rest their volume {how} by {:.0} %", 100.0 * change.abs());
+    }
     let hint = if found > 0.0 {
         format!(
             "use fluid.particle_spacing = {}, or multiply the file's scale by {}",

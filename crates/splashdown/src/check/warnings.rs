@@ -18,6 +18,20 @@ const SLOWEST_SOUND: f32 = 5.0;
 pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
     let (fluid, solver) = (&root.section("fluid")?, &root.section("solver")?);
     check_flow(scene, root);
+    if scene.solver.method == Method::Dfsph {
+        let limit = Derived::body_force_dt(scene);
+        for (name, given) in [("max_dt", scene.solver.max_dt), ("min_dt", scene.solver.min_dt)] {
+            if solver.has(name) && given > limit {
+                let message = format!(
+                    "solver.{name} = {given} s is longer than the stable time step of this scene, {limit:.3e} s"
+                );
+                let hint = "body forces move a particle by a small part of a spacing per step: leave the key out, or use a coarser \
+                            particle_spacing";
+                return Err(solver.complain(name, message, &format!("at most {limit:.3e} s"), hint));
+            }
+        }
+    }
+    check_viscosity(scene, solver, derived);
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",
@@ -59,8 +73,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         && !sample::can_start_at_rest(scene)
     {
         let message = "fluid.initial_pressure has no effect: all fluid starts without pressure".to_owned();
-        let hint = "it needs a box at rest on a closed side and gravity along an axis; with summed densities it also \
-                    needs a scene without bodies";
+        let hint = "it needs a box at rest on a closed side and gravity along an axis";
         fluid.warn("initial_pressure", message, hint);
     }
     let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
@@ -97,6 +110,25 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         }
     }
     Ok(())
+}
+
+/// A viscosity that shortens the time step by more than this factor gives a warning with an explicit solver.
+const MUCH_SHORTER: f32 = 10.0;
+
+/// Warns of a viscosity that makes an explicit solver take many more steps than an implicit one.
+fn check_viscosity(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
+    let by_body_force = Derived::body_force_dt(scene).min(scene.solver.max_dt);
+    if scene.solver.method != Method::Wcsph
+        || derived.dt_limit != "viscosity"
+        || derived.dt_estimate * MUCH_SHORTER > by_body_force
+    {
+        return;
+    }
+    let message = format!(
+        "the viscosity of {} m^2/s limits the time step to {:.1e} s",
+        scene.fluid.material.viscosity, derived.dt_estimate
+    );
+    solver.warn("method", message, "method = \"dfsph\" integrates the viscosity implicitly, in longer steps");
 }
 
 /// Warns of emitters, sinks and probes that have no effect or an inexact one.

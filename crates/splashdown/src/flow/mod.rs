@@ -19,6 +19,7 @@ pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
 use glam::{UVec3, Vec2, Vec3, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, WgslModule, buffer_set};
+use splashdown_io::Particles;
 
 use crate::bodies::{BodyError, closed_solid, owner};
 use crate::coupling::{Coupling, Stage, StepRecorder};
@@ -100,6 +101,47 @@ impl LoadedFlow {
         Ok(())
     }
 
+    /// Replaces the fluid inside the nozzles that emit from the start by their layers, which then continue without a jump.
+    /// Returns whether there was any. In front of an inlet in a wall the fluid stays as it is: its lattice begins at the wall
+    /// too, and layers that are relaxed against it would hold back the first ones that are emitted.
+    pub(crate) fn fill_nozzles(&self, particles: &mut Particles, scene: &Scene) -> bool {
+        let spacing = scene.fluid.particle_spacing;
+        let before = particles.positions.len();
+        let mut layers = Vec::new();
+        let is_filled = |nozzle: &&Nozzle| nozzle.start <= 0.0 && !is_inlet_in_wall(nozzle, scene);
+        for nozzle in self.nozzles.iter().filter(is_filled) {
+            let holds = |x: &[f32; 3]| nozzle.holds(Vec3::from(*x), spacing);
+            if !particles.positions.iter().any(holds) {
+                continue;
+            }
+            let kept: Vec<bool> = particles.positions.iter().map(|x| !holds(x)).collect();
+            let mut flags = kept.iter();
+            particles.velocities.retain(|_| *flags.next().unwrap_or(&true));
+            let mut flags = kept.iter();
+            particles.positions.retain(|_| *flags.next().unwrap_or(&true));
+            let points = &self.points[nozzle.first_point as usize..][..nozzle.points as usize];
+            // The first layer is emitted at the back face in the first step.
+            for layer in 1..=(nozzle.length / spacing) as u32 {
+                for q in points {
+                    let forward = (layer as f32 * spacing + q.z) * nozzle.direction;
+                    let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
+                    if holds(&x.to_array()) {
+                        layers.push((x.to_array(), (nozzle.speed * nozzle.direction).to_array()));
+                    }
+                }
+            }
+        }
+        let is_changed = !layers.is_empty() || particles.positions.len() != before;
+        for (x, v) in layers {
+            particles.positions.push(x);
+            particles.velocities.push(v);
+        }
+        if is_changed {
+            particles.ids = (0..particles.positions.len() as u32).collect();
+        }
+        is_changed
+    }
+
     /// The particles that the emitters create until `duration` (s) at this spacing (m): their number, and how many of
     /// them exist on average over that time, without obstacles and sinks.
     pub(crate) fn forecast(&self, duration: f32, spacing: f32) -> (u64, f64) {
@@ -175,6 +217,18 @@ impl LoadedFlow {
             }
         })
     }
+}
+
+/// Whether a nozzle begins at a closed side of the domain: its back face is half a spacing in front of it, to the quarter
+/// of a spacing (`outlet::forward`).
+fn is_inlet_in_wall(nozzle: &Nozzle, scene: &Scene) -> bool {
+    let near = 0.8 * scene.fluid.particle_spacing;
+    (0..3).any(|axis| {
+        let [low, high] = scene.domain.closed[axis];
+        let (at, along) = (nozzle.back[axis], nozzle.direction[axis]);
+        low && along > 0.99 && (at - scene.domain.min[axis]).abs() < near
+            || high && along < -0.99 && (at - scene.domain.max[axis]).abs() < near
+    })
 }
 
 /// The counters of emitters.

@@ -45,7 +45,7 @@ use splashdown_gpu::bytemuck::Zeroable;
 use splashdown_gpu::compact::Compact;
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, wgsl};
-use splashdown_io::Particles;
+use splashdown_io::{Attribute, Particles};
 
 use crate::cells::{Cells, GRID, ROWS};
 use crate::kernel;
@@ -286,6 +286,9 @@ pub struct KeptFoam {
     pub(crate) pool: Vec<Diffuse>,
 }
 
+/// The name of the attribute of diffuse particles in files: the remaining lifetime as foam in s.
+pub const LIFETIME: &str = "lifetime";
+
 /// The diffuse particles at one time, on the host; in order of age, the oldest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -325,12 +328,38 @@ impl DiffuseParticles {
         self.positions.is_empty()
     }
 
-    /// The particles of a kind, with ids, positions and velocities.
+    /// The particles of a kind, with ids, positions, velocities and the attribute [`LIFETIME`].
     pub fn of_kind(&self, kind: DiffuseKind) -> Particles {
         let of_kind = || (0..self.len()).filter(|&i| self.kinds[i] == kind);
+        let values = of_kind().map(|i| self.lifetimes[i]).collect();
         Particles::from_positions(of_kind().map(|i| self.positions[i]).collect())
             .with_ids(of_kind().map(|i| self.ids[i]).collect())
             .with_velocities(of_kind().map(|i| self.velocities[i]).collect())
+            .with_attributes(vec![Attribute { name: LIFETIME.to_owned(), components: 1, values }])
+    }
+
+    /// The inverse of [`of_kind`](Self::of_kind), for particles that were read from files. Without ids they are numbered from
+    /// 0, without velocities they rest, and without the attribute [`LIFETIME`] they do not fade.
+    pub fn of_kinds(parts: &[(DiffuseKind, Particles)]) -> Self {
+        let mut rows = Vec::new();
+        for (kind, particles) in parts {
+            let lifetimes = particles.attributes.iter().find(|attribute| attribute.name == LIFETIME);
+            let lifetimes = lifetimes.map_or(&[][..], |attribute| &attribute.values);
+            rows.extend(particles.positions.iter().enumerate().map(|(i, &position)| {
+                let id = particles.ids.get(i).copied().unwrap_or(i as u32);
+                let velocity = particles.velocities.get(i).copied().unwrap_or_default();
+                (id, position, velocity, *kind, lifetimes.get(i).copied().unwrap_or(f32::MAX))
+            }));
+        }
+        // The order of age, in which they are drawn.
+        rows.sort_by_key(|row| row.0);
+        Self {
+            ids: rows.iter().map(|row| row.0).collect(),
+            positions: rows.iter().map(|row| row.1).collect(),
+            velocities: rows.iter().map(|row| row.2).collect(),
+            kinds: rows.iter().map(|row| row.3).collect(),
+            lifetimes: rows.iter().map(|row| row.4).collect(),
+        }
     }
 
     /// Number of particles of a kind.

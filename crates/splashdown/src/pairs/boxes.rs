@@ -6,6 +6,8 @@ use rayon::prelude::*;
 use super::Sorted;
 use super::candidates::{Candidates, Region};
 use super::columns::Columns;
+use super::vector::reflected_point;
+use crate::boundary::Reflection;
 use crate::simd::{Leaf, Register, Simd, run_with};
 
 /// A pass that visits the particles within the support radius of boxes, in `F` columns. The first
@@ -16,8 +18,20 @@ pub(crate) trait BoxPass<const F: usize>: Sync {
     /// The result of a box.
     type Output: Send;
 
+    /// The column with the square of the distance within which a particle is near a box, if each has its own. It is at most
+    /// the support radius.
+    const REACH2: Option<usize> = None;
+
     /// The values of particle `j` in the columns.
     fn load(&self, j: usize) -> [f32; F];
+
+    /// The columns of the images of a register of particles behind a wall.
+    #[inline(always)]
+    fn reflect<V: Register>(&self, reflection: &Reflection, values: [V; F]) -> [V; F] {
+        let mut image = values;
+        image[..3].copy_from_slice(&reflected_point(reflection, [values[0], values[1], values[2]]));
+        image
+    }
 
     /// The lower and upper corner of box `i`, in metres.
     fn corners(&self, i: usize) -> [Vec3; 2];
@@ -63,8 +77,9 @@ impl<const F: usize, P: BoxPass<F>> Leaf for OneBox<'_, F, P> {
     fn run<V: Register>(self) {
         let Self { sorted, columns, candidates, i, out, pass } = self;
         let corners = pass.corners(i);
-        let region = Region::around(corners, sorted.support_radius);
-        candidates.pack_range::<V>(columns, &sorted, corners, &region);
+        let region = Region::around(corners, sorted.support_radius).with_own_reach2(P::REACH2);
+        let reflect = |by: &Reflection, values| pass.reflect(by, values);
+        candidates.pack_range::<V>(columns, &sorted, corners, &region, reflect);
         pass.visit::<V>(i, candidates.columns(), out);
     }
 }

@@ -21,6 +21,8 @@ pub(super) struct Region {
     pub high: [f32; 3],
     /// Square of the largest distance from the box.
     reach2: f32,
+    /// The column with such a square for each particle, which counts instead.
+    own_reach2: Option<usize>,
 }
 
 impl Region {
@@ -35,7 +37,13 @@ impl Region {
             }
         }
         let reach = MARGIN * support_radius;
-        Self { low, high, reach2: reach * reach }
+        Self { low, high, reach2: reach * reach, own_reach2: None }
+    }
+
+    /// The points within the reaches in a column.
+    #[inline(always)]
+    pub fn with_own_reach2(self, column: Option<usize>) -> Self {
+        Self { own_reach2: column, ..self }
     }
 }
 
@@ -84,7 +92,8 @@ impl<const F: usize> Candidates<F> {
         self.pad(count);
     }
 
-    /// Packs the particles in the region, from all cells within the support radius of a box.
+    /// Packs the particles in the region and those of their images that are, from all cells within the support radius of
+    /// a box. `reflect` computes all columns of an image.
     #[inline(always)]
     pub fn pack_range<V: Register>(
         &mut self,
@@ -92,6 +101,7 @@ impl<const F: usize> Candidates<F> {
         sorted: &Sorted<'_>,
         [low, high]: [Vec3; 2],
         region: &Region,
+        reflect: impl Fn(&Reflection, [V; F]) -> [V; F],
     ) {
         let grid = sorted.grid;
         let size = [grid.size_x, grid.size_y, grid.size_z];
@@ -108,10 +118,19 @@ impl<const F: usize> Candidates<F> {
             let first = row * size[0] as usize + x.start;
             sorted.run(first, x.len())
         });
-        self.reserve(runs.clone().map(|run| run.len()).sum());
+        let reflections = sorted.images.near(low, high, sorted.support_radius);
+        let particles: usize = runs.clone().map(|run| run.len()).sum();
+        self.reserve(particles * (1 + reflections.clone().count()));
         let mut count = 0;
-        for run in runs {
-            count = self.append::<V>(all, run, region, count);
+        for run in runs.clone() {
+            count = self.append_with::<V>(all, run, region, count, |x| x, |values| values);
+        }
+        for reflection in reflections {
+            for run in runs.clone() {
+                let place = |x| reflected_point(&reflection, x);
+                let reflect = |values| reflect(&reflection, values);
+                count = self.append_with::<V>(all, run, region, count, place, reflect);
+            }
         }
         self.pad(count);
     }
@@ -155,7 +174,7 @@ impl<const F: usize> Candidates<F> {
         let length = self.columns[0].len();
         let to = self.columns.each_mut().map(|column| column.as_mut_ptr());
         let (low, high) = (region.low.map(V::splat), region.high.map(V::splat));
-        let (zero, reach2) = (V::splat(0.0), V::splat(region.reach2));
+        let zero = V::splat(0.0);
         assert!(run.end + BLOCK <= from[0].len(), "a run of particles ends at {}", run.end);
         assert!(count + run.len() + BLOCK <= length, "{} candidates exceed the columns", run.len());
         for j in run.clone().step_by(V::WIDTH) {
@@ -167,6 +186,7 @@ impl<const F: usize> Candidates<F> {
                 let outside = (low[axis] - x[axis]).max(x[axis] - high[axis]).max(zero);
                 distance2 = distance2 + outside * outside;
             }
+            let reach2 = region.own_reach2.map_or(V::splat(region.reach2), load);
             let of_run = u32::MAX >> (32 - V::WIDTH.min(run.end - j));
             let near = distance2.less_bits(reach2) & of_run;
             if near == 0 {

@@ -40,9 +40,11 @@ use glam::Vec4;
 use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
-pub(crate) use particles::{PairSum, for_each};
+pub(crate) use particles::{Outputs, PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
-pub(crate) use vector::{difference, dot, extrapolated, reflected, reflected_point, scaled, splat};
+pub(crate) use vector::{
+    difference, dot, extrapolated, reflected, reflected_matrix, reflected_point, scaled, splat,
+};
 
 /// Particles sorted by cell.
 #[derive(Clone, Copy)]
@@ -64,7 +66,8 @@ impl<'a> Sorted<'a> {
         Self { grid, cell_start, positions, support_radius, images: Images::NONE }
     }
 
-    /// The same particles with their images behind closed sides. Only [`for_each`] visits images.
+    /// The same particles with their images behind closed sides. [`for_each`] and [`for_each_box`] visit images; boxes
+    /// lie in front of the sides.
     pub fn with_images(self, images: Images) -> Self {
         Self { images, ..self }
     }

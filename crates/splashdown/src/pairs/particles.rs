@@ -63,16 +63,16 @@ impl<T: Send> Outputs<T> for &mut [T] {
 }
 
 /// Two results per particle.
-impl<A: Send, B: Send> Outputs<(A, B)> for (&mut [A], &mut [B]) {
+impl<A, B, X: Outputs<A>, Y: Outputs<B>> Outputs<(A, B)> for (X, Y) {
     fn split_at(self, middle: usize) -> (Self, Self) {
-        let (first, second) = (self.0.split_at_mut(middle), self.1.split_at_mut(middle));
+        let (first, second) = (self.0.split_at(middle), self.1.split_at(middle));
         ((first.0, second.0), (first.1, second.1))
     }
 
     #[inline(always)]
     fn put(&mut self, i: usize, (a, b): (A, B)) {
-        self.0[i] = a;
-        self.1[i] = b;
+        self.0.put(i, a);
+        self.1.put(i, b);
     }
 }
 

@@ -42,6 +42,13 @@ pub(crate) fn reflected<V: Lanes>(by: &Reflection, v: [V; 3]) -> [V; 3] {
     [v[0] * V::splat(by.sign.x), v[1] * V::splat(by.sign.y), v[2] * V::splat(by.sign.z)]
 }
 
+/// The image of a symmetric matrix (xx, xy, xz, yy, yz, zz), in every lane.
+#[inline(always)]
+pub(crate) fn reflected_matrix<V: Lanes>(by: &Reflection, [xx, xy, xz, yy, yz, zz]: [V; 6]) -> [V; 6] {
+    let sign = by.sign;
+    [xx, xy * (sign.x * sign.y), xz * (sign.x * sign.z), yy, yz * (sign.y * sign.z), zz]
+}
+
 /// The pressure of an image, or a multiple of it, for that of the particle and the hydrostatic difference: not below the
 /// smaller of zero and the particle's pressure.
 #[inline(always)]

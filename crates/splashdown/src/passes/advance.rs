@@ -125,8 +125,6 @@ struct Moved {
     cell: u32,
 }
 
-/// The largest distance that a particle moves per step by its velocity, in spacings.
-const LONGEST: f32 = 0.5;
 /// The largest distance by which the shifting moves a particle per step in addition, in spacings.
 const LONGEST_SHIFT: f32 = 0.1;
 
@@ -145,7 +143,8 @@ struct Mover<'a> {
 impl<'a> Mover<'a> {
     fn new(params: &'a Params, grid: &'a Grid, dt: f32) -> Self {
         let [low, high] = closed_bounds(params.domain_min, params.domain_max, params.closed);
-        let margin = 1.01 * (LONGEST + LONGEST_SHIFT + law::CLEARANCE) * params.particle_spacing;
+        let margin =
+            1.01 * (params.longest_motion + LONGEST_SHIFT + law::CLEARANCE) * params.particle_spacing;
         let inner = [params.domain_min + margin, params.domain_max - margin];
         Self { params, grid, dt, low, high, inner }
     }
@@ -159,7 +158,7 @@ impl<'a> Mover<'a> {
             return Moved { position: p, velocity: old, cell: grid.cell_count };
         }
         let mut v = old.xyz() + dt * a;
-        let (step, most) = (v.length() * dt, LONGEST * params.particle_spacing);
+        let (step, most) = (v.length() * dt, params.longest_motion * params.particle_spacing);
         if step > most {
             v *= most / step;
             found.limited += 1;

@@ -50,7 +50,7 @@ fn advance(i: u32, p: vec4<f32>, old: vec4<f32>, change: Change) -> u32 {
     let dt = state.dt;
     var v = old.xyz + dt * a;
     let step = length(v) * dt;
-    let most = 0.5 * params.particle_spacing;
+    let most = params.longest_motion * params.particle_spacing;
     if (step > most) {
         v *= most / step;
         atomicAdd(&counters[COUNTER_LIMITED], 1u);

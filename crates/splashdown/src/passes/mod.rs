@@ -11,14 +11,17 @@ pub mod continuity;
 pub mod corrected_acceleration;
 pub mod density;
 pub mod force_integrate;
+pub mod implicit;
 pub mod integrate;
 pub mod mueller;
 pub mod normals;
 pub mod shifted_integrate;
 pub mod state_equation;
+pub mod viscous;
 
 pub(crate) mod advance;
 pub(crate) mod correction;
+pub(crate) mod group_sum;
 pub(crate) mod tension;
 
 pub use advance::WGSL as ADVANCE;
@@ -31,7 +34,7 @@ pub const FORCES: WgslModule = WgslModule { name: "sph/forces", source: include_
 
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
-    vec![
+    let explicit = [
         &continuity::WENDLAND_C2,
         &continuity::CUBIC_SPLINE,
         &continuity::WENDLAND_C2_BODIES,
@@ -57,5 +60,6 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &normals::WENDLAND_C2,
         &normals::CUBIC_SPLINE,
         &state_equation::STATE_EQUATION,
-    ]
+    ];
+    explicit.into_iter().chain(implicit::passes()).chain(viscous::passes()).collect()
 }

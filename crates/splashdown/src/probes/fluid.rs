@@ -1,4 +1,4 @@
-//! Probes of the whole fluid, or of the fluid in a box: volume, energies, momentum.
+//! Probes of the whole fluid, or of the fluid in a box: volume, energies, momentum; and of the energy balance.
 //!
 //! The host computes these sums in double precision once per frame, when it has the particles anyway. A sum over all
 //! particles in every step would cost the device more than all gauges together.
@@ -20,11 +20,27 @@ pub(super) const COLUMNS: &[&str] = &[
     "momentum z (N s)",
 ];
 
+/// The columns of a probe of the energy balance: the time, and the terms of
+/// [`EnergyBalance`](crate::monitor::EnergyBalance).
+pub(super) const BALANCE: &[&str] = &[
+    "time (s)",
+    "kinetic energy (J)",
+    "potential energy (J)",
+    "elastic energy (J)",
+    "work of bodies (J)",
+    "work of shaking (J)",
+    "emitted energy (J)",
+    "removed energy (J)",
+    "dissipated energy (J)",
+];
+
 /// The probes of this kind of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct FluidProbes {
     /// Index among the probes of the scene, and the corners of the box in m.
     boxes: Vec<(usize, [DVec3; 2])>,
+    /// Indices of the probes of the energy balance.
+    balances: Vec<usize>,
     /// Volume of a particle in m^3, and its mass in kg.
     volume: f64,
     mass: f64,
@@ -40,14 +56,22 @@ impl FluidProbes {
         let volume = f64::from(scene.fluid.particle_spacing).powi(3);
         Self {
             boxes: boxes.collect(),
+            balances: (0..scene.probes.len())
+                .filter(|&k| scene.probes[k].quantity == Quantity::Energy)
+                .collect(),
             volume,
-            mass: f64::from(scene.fluid.material.rest_density) * volume,
+            mass: scene.fluid.particle_mass(),
             gravity: scene.gravity.as_dvec3(),
         }
     }
 
-    /// Appends a row for this time to each of the probes.
-    pub(crate) fn read(&self, rows: &mut [ProbeRows], time: f64, particles: &Particles) {
+    /// Appends a row for this time to each of the probes. `balance` are the terms of the energy balance.
+    pub(crate) fn read(&self, rows: &mut [ProbeRows], time: f64, particles: &Particles, balance: &[f64]) {
+        for &number in &self.balances {
+            if let Some(rows) = rows.get_mut(number) {
+                rows.push(std::iter::once(time).chain(balance.iter().copied()).collect());
+            }
+        }
         for &(number, corners) in &self.boxes {
             if let Some(rows) = rows.get_mut(number) {
                 rows.push(self.row(corners, time, particles));
@@ -78,8 +102,13 @@ mod tests {
 
     #[test]
     fn only_particles_in_the_box_contribute_to_the_sums() {
-        let probes =
-            FluidProbes { boxes: Vec::new(), volume: 0.001, mass: 2.0, gravity: DVec3::new(0.0, -10.0, 0.0) };
+        let probes = FluidProbes {
+            boxes: Vec::new(),
+            balances: Vec::new(),
+            volume: 0.001,
+            mass: 2.0,
+            gravity: DVec3::new(0.0, -10.0, 0.0),
+        };
         let particles = Particles::from_positions(vec![[0.0, 1.0, 0.0], [0.5, 3.0, 0.0], [9.0, 5.0, 0.0]])
             .with_velocities(vec![[1.0, 0.0, 0.0], [0.0, -2.0, 3.0], [100.0; 3]]);
         let all = [DVec3::NEG_INFINITY, DVec3::INFINITY];

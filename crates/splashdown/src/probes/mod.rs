@@ -51,6 +51,7 @@ pub fn columns(probe: &Probe) -> &'static [&'static str] {
         ],
         Quantity::Flow { .. } => &["time (s)", "flow (m^3/s)"],
         Quantity::Fluid { .. } => fluid::COLUMNS,
+        Quantity::Energy => fluid::BALANCE,
     }
 }
 
@@ -179,7 +180,7 @@ impl Coupling for Probes {
 fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
     let standard = match probe.quantity {
         // Evaluated by the host, and never due on the device.
-        Quantity::Fluid { .. } => f32::MAX,
+        Quantity::Fluid { .. } | Quantity::Energy => f32::MAX,
         _ => 0.1 * scene.frame_duration(),
     };
     let interval = probe.interval.unwrap_or(standard);
@@ -208,7 +209,7 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
             point.across = normal.cross(*along);
             [point.half_along, point.half_across] = size.map(|edge| 0.5 * edge);
         }
-        Quantity::Fluid { .. } => point.kind = ProbePoint::FLUID,
+        Quantity::Fluid { .. } | Quantity::Energy => point.kind = ProbePoint::FLUID,
     }
     point
 }

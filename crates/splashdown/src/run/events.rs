@@ -7,8 +7,9 @@ use splashdown_gpu::Timings;
 use splashdown_io::{Mesh, Particles};
 
 use crate::foam::DiffuseParticles;
+use crate::monitor::{Alarm, DensityError, EnergyBalance, Level};
 use crate::probes::ProbeRows;
-use crate::scene::Scene;
+use crate::scene::{OnBurst, Scene};
 use crate::{BodyState, Device, Stats};
 
 /// Options of a run: the device, and what is computed in addition to the motion of particles.
@@ -35,6 +36,8 @@ pub struct RunOptions {
     pub vertex_velocities: bool,
     /// Measure the time of every pass.
     pub timing: bool,
+    /// What to do when the fluid bursts.
+    pub on_burst: OnBurst,
     /// Called while the distance fields of bodies are computed, before the first event.
     pub progress: Option<ProgressFn>,
 }
@@ -75,6 +78,7 @@ impl RunOptions {
             foam: scene.foam.enabled,
             vertex_velocities: scene.output.formats.iter().any(|format| format.has_vertex_velocities()),
             timing: false,
+            on_burst: OnBurst::Stop,
             progress: None,
         }
     }
@@ -82,6 +86,11 @@ impl RunOptions {
     /// The same options on this device.
     pub fn with_device(self, device: Device) -> Self {
         Self { device, ..self }
+    }
+
+    /// The same options with this reaction to a burst.
+    pub fn with_on_burst(self, on_burst: OnBurst) -> Self {
+        Self { on_burst, ..self }
     }
 
     /// The same options with this number of frames, after the initial one.
@@ -116,6 +125,9 @@ pub enum Event {
     Frame(Frame),
     /// A problem that does not stop the run.
     Warning(String),
+    /// A watched quantity has risen to a new level. After an alarm of the level [`Level::Stop`] the run ends with
+    /// [`SimulationError::Burst`](crate::SimulationError::Burst), unless [`RunOptions::on_burst`] says otherwise.
+    Alarm(Alarm),
     /// Information.
     Note(String),
     /// The last event.
@@ -174,6 +186,12 @@ pub struct Frame {
     pub time: f64,
     /// The statistics of the simulation.
     pub stats: Stats,
+    /// The energy balance.
+    pub energy: EnergyBalance,
+    /// The density by the positions of the particles.
+    pub density: DensityError,
+    /// The highest level of the monitor so far.
+    pub level: Level,
     /// The particles in order of id.
     pub particles: Arc<Particles>,
     /// The surface of the fluid, if enabled.
@@ -204,12 +222,18 @@ pub struct Summary {
     pub step_wall: f64,
     /// Wall time of surface extraction and of reading frames back, in seconds.
     pub frame_wall: f64,
+    /// Wall time of the monitor, in seconds.
+    pub monitor_wall: f64,
     /// Particles times steps per second of `step_wall`.
     pub particle_steps_per_second: f64,
     /// Simulated seconds per second of `wall`.
     pub simulated_per_wall: f64,
-    /// The largest density error of all frames.
+    /// The largest density error of all frames, of excess and deficit.
     pub density_error: f32,
+    /// The energy balance at the end.
+    pub energy: EnergyBalance,
+    /// The highest level of the monitor.
+    pub level: Level,
     /// Enclosed volume of the first and the last surface in m^3.
     pub volume: Option<[f64; 2]>,
     /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.

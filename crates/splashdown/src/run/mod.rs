@@ -15,8 +15,9 @@ use splashdown_io::Mesh;
 use web_time::Instant;
 
 use crate::foam::Foam;
+use crate::monitor::{EnergyBalance, Monitor};
 use crate::probes::FluidProbes;
-use crate::scene::{Domain, Motion, Scene};
+use crate::scene::{Domain, Motion, OnBurst, Scene};
 use crate::surface::{Surface, interpolate};
 use crate::{BodyMesh, BodyState, Simulation, SimulationError, Stats};
 
@@ -43,6 +44,9 @@ pub struct Run {
     foam: Option<Foam>,
     vertex_velocities: bool,
     fluid_probes: FluidProbes,
+    monitor: Monitor,
+    energy: EnergyBalance,
+    on_burst: OnBurst,
     frames: u32,
     frame_rate: f32,
     frame_duration: f32,
@@ -71,7 +75,10 @@ pub struct Run {
     domain: Domain,
     /// For each body, whether it is dynamic and has not been reported as lost.
     watched: Vec<bool>,
-    stats_before: Stats,
+    /// Particles that had left through open sides at the last note.
+    escaped: u32,
+    /// The statistics of the last frame.
+    last: Stats,
     /// Simulated time at the start in seconds.
     start_time: f64,
 }
@@ -81,6 +88,7 @@ pub struct Run {
 struct Clock {
     steps: Duration,
     frames: Duration,
+    monitor: Duration,
 }
 
 enum Stage {
@@ -91,6 +99,8 @@ enum Stage {
     Steps(u32),
     /// The frame with this number is complete and must be fetched.
     Fetch(u32),
+    /// The fluid has burst.
+    Burst(SimulationError),
     Finish,
     End,
 }
@@ -127,6 +137,9 @@ impl Run {
             foam,
             vertex_velocities: options.vertex_velocities,
             fluid_probes: FluidProbes::of(scene),
+            monitor: simulation.monitor(),
+            energy: EnergyBalance::default(),
+            on_burst: options.on_burst,
             frames,
             frame_rate: scene.frame_rate,
             frame_duration,
@@ -148,7 +161,8 @@ impl Run {
             probe_warnings,
             domain: scene.domain.clone(),
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
-            stats_before: simulation.stats(),
+            escaped: simulation.stats().escaped,
+            last: simulation.stats(),
             start_time: simulation.stats().time,
             simulation,
         })
@@ -183,6 +197,15 @@ impl Run {
                 format!("{removed} particles of the fluid were removed because they are inside bodies");
             self.pending_events.push_back(Event::Note(text));
         }
+        if let Some(packing) = self.simulation.packing().filter(|packing| packing.after.is_some()) {
+            let text = format!("initial packing: {packing}");
+            self.pending_events.push_back(if packing.is_sound() {
+                Event::Note(text)
+            } else {
+                let hint = "the fluid does not fit: move the pieces apart, or check particle_spacing";
+                Event::Warning(format!("{text}; {hint}"))
+            });
+        }
         Event::Started(Started {
             device: self.simulation.device_name(),
             particles: self.simulation.stats().particles,
@@ -201,9 +224,10 @@ impl Run {
         let outcome = self.simulation.continue_frame();
         self.clock.steps += begun.elapsed();
         if let Some(stats) = outcome? {
-            self.density_error = self.density_error.max(stats.density_error);
             self.particle_steps += f64::from(stats.particles) * f64::from(stats.steps_in_frame);
-            self.warn(&stats);
+            self.note_escaped(&stats);
+            self.warn_of_pressure(&stats);
+            self.warn_of_viscosity(&stats);
             self.stage = Stage::Fetch(frame);
             return Ok(None);
         }
@@ -265,20 +289,31 @@ impl Run {
         let warnings = self.simulation.take_warnings().into_iter();
         self.pending_events.extend(warnings.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
         let inside_bodies = self.simulation.inside_bodies(&particles)?;
-        let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
-        if inside_bodies > 0 {
-            let plural = if inside_bodies == 1 { " is" } else { "s are" };
-            let text = format!("at {time:.4} s: {inside_bodies} particle{plural} inside a body");
-            self.pending_events.push_back(Event::Warning(text));
-        }
-        let mut probes = self.simulation.take_probe_rows();
-        self.fluid_probes.read(&mut probes, time, &particles);
         let bodies: Arc<[BodyState]> = self.simulation.body_states()?.into();
+        let stats = Stats { time, inside_bodies, ..self.simulation.stats() };
+        let examined = Instant::now();
+        let found = self.simulation.examine(&mut self.monitor, (time, &stats), &particles, &bodies);
+        self.clock.monitor += examined.elapsed();
+        let (energy, density) = (found.energy, found.density);
+        self.energy = energy;
+        self.report(found.alarms);
+        let stats = Stats {
+            density_error: density.excess.max(density.deficit),
+            density_deficit: density.deficit,
+            ..stats
+        };
+        self.density_error = self.density_error.max(stats.density_error);
+        self.last = stats;
+        let mut probes = self.simulation.take_probe_rows();
+        self.fluid_probes.read(&mut probes, time, &particles, &energy.terms());
         self.warn_of_lost_bodies(&bodies, time);
         Ok(Frame {
             index,
             time,
             stats,
+            energy,
+            density,
+            level: self.monitor.level(),
             particles,
             mesh: mesh.map(Arc::new),
             volume,
@@ -290,7 +325,8 @@ impl Run {
 
     fn finish(&mut self) -> Event {
         self.stage = Stage::End;
-        let stats = self.simulation.stats();
+        // The time of the simulation is exact; a frame has its nominal time.
+        let stats = Stats { time: self.simulation.stats().time, ..self.last };
         let wall = self.started.elapsed().as_secs_f64();
         let step_wall = self.clock.steps.as_secs_f64();
         Event::Finished(Summary {
@@ -300,9 +336,12 @@ impl Run {
             wall,
             step_wall,
             frame_wall: self.clock.frames.as_secs_f64(),
+            monitor_wall: self.clock.monitor.as_secs_f64(),
             particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
             simulated_per_wall: (stats.time - self.start_time) / wall,
             density_error: self.density_error,
+            energy: self.energy,
+            level: self.monitor.level(),
             volume: self.volume,
             particle_volume: self.particle_volume,
             timings: self.simulation.take_timings(),
@@ -318,15 +357,20 @@ impl Iterator for Run {
             if let Some(event) = self.pending_events.pop_front() {
                 return Some(Ok(event));
             }
-            let outcome = match self.stage {
+            let stage = std::mem::replace(&mut self.stage, Stage::End);
+            let outcome = match stage {
                 Stage::Start => Ok(Some(self.start())),
                 Stage::Begin(frame) => {
                     let duration = self.next_duration.take().unwrap_or(self.frame_duration);
                     self.stage = Stage::Steps(frame);
                     self.simulation.begin(duration).map(|()| None)
                 }
-                Stage::Steps(frame) => self.steps(frame),
+                Stage::Steps(frame) => {
+                    self.stage = Stage::Steps(frame);
+                    self.steps(frame)
+                }
                 Stage::Fetch(frame) => self.fetch(frame).map(|frame| Some(Event::Frame(frame))),
+                Stage::Burst(error) => Err(error),
                 Stage::Finish => Ok(Some(self.finish())),
                 Stage::End => return None,
             };

@@ -6,6 +6,7 @@ use web_time::Instant;
 
 use super::{Run, RunOptions, Stage};
 use crate::error::CheckpointError;
+use crate::monitor::SavedMonitor;
 use crate::scene::Scene;
 use crate::{Checkpoint, Simulation, SimulationError};
 
@@ -17,6 +18,7 @@ struct RunState {
     volume: Option<[f64; 2]>,
     particle_volume: f64,
     watched: Vec<bool>,
+    monitor: SavedMonitor,
 }
 
 /// The largest number of frames.
@@ -57,7 +59,7 @@ impl Run {
             }
             Some(state) => {
                 let frame = state.frame;
-                run.restore(state);
+                run.restore(state, time)?;
                 run.complete = Some(frame);
                 frame
             }
@@ -91,14 +93,19 @@ impl Run {
             volume: self.volume,
             particle_volume: self.particle_volume,
             watched: self.watched.clone(),
+            monitor: self.monitor.save(),
         });
         checkpoint.set(ENTRY, &state);
         Ok(checkpoint)
     }
 
-    fn restore(&mut self, state: RunState) {
-        let RunState { density_error, volume, particle_volume, watched, .. } = state;
+    fn restore(&mut self, state: RunState, time: f64) -> Result<(), SimulationError> {
+        let RunState { density_error, volume, particle_volume, watched, monitor, .. } = state;
         (self.density_error, self.volume, self.particle_volume) = (density_error, volume, particle_volume);
         self.watched = watched;
+        let particles = self.simulation.particles()?;
+        let bodies = self.simulation.body_states()?;
+        self.monitor.restore(monitor, time, &particles, &bodies);
+        Ok(())
     }
 }

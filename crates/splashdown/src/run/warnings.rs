@@ -1,50 +1,91 @@
-//! Warnings of a run: lost particles, limited speeds, implausible densities.
+//! Warnings of a run: lost particles and bodies, and the alarms of the monitor.
 
-use super::{Event, Run};
-use crate::{BodyState, Stats};
+use super::{Event, Run, Stage};
+use crate::monitor::{Alarm, Level};
+use crate::scene::OnBurst;
+use crate::{BodyState, SimulationError, Stats};
 
-/// The relative excess of density above which a run warns.
-const MAX_EXCESS: f32 = 0.3;
+/// The mean of an implicit pressure above which a run warns.
+const MAX_MEAN_EXCESS: f32 = 0.02;
 
 impl Run {
-    /// Warns of problems since the last frame.
-    pub(super) fn warn(&mut self, stats: &Stats) {
-        let before = std::mem::replace(&mut self.stats_before, *stats);
-        if stats.density_error > MAX_EXCESS && before.density_error <= MAX_EXCESS {
+    /// Notes particles that left through open sides since the last report: the first ones, and every doubling.
+    pub(super) fn note_escaped(&mut self, stats: &Stats) {
+        let before = self.escaped;
+        if stats.escaped > 0 && stats.escaped >= 2 * before {
+            self.escaped = stats.escaped;
+            let plural = if stats.escaped == 1 { "" } else { "s" };
             let text = format!(
-                "at {:.4} s: the density is up to {:.0} % above the rest density: the fluid does not fit into the \
-                 available space, or is pressed into a wall. Check emitters in closed or narrow places, and overlapping particles",
+                "at {:.4} s: {} particle{plural} left the domain through open sides",
+                stats.time, stats.escaped
+            );
+            self.pending_events.push_back(Event::Note(text));
+        }
+    }
+
+    /// Warns of an implicit pressure that did not converge, or compresses the fluid on average.
+    pub(super) fn warn_of_pressure(&mut self, stats: &Stats) {
+        let before = self.last;
+        if self.simulation.params().is_implicit == 0 {
+            return;
+        }
+        if stats.compression > MAX_MEAN_EXCESS && before.compression <= MAX_MEAN_EXCESS {
+            let text = format!(
+                "at {:.4} s: the density is on average {:.0} % above the rest density: the fluid does not fit into the \
+                 available space, or is pressed into a wall. Check emitters in closed or narrow places, and overlapping \
+                 particles",
                 stats.time,
-                100.0 * stats.density_error
+                100.0 * stats.compression
             );
             self.pending_events.push_back(Event::Warning(text));
         }
-        let mut warn = |count: u32, noun: &str, what: &str| {
-            if count > 0 {
-                let plural = if count == 1 { "" } else { "s" };
-                let text = format!("at {:.4} s: {count} {noun}{plural} {what}", stats.time);
-                self.pending_events.push_back(Event::Warning(text));
-            }
-        };
-        warn(stats.escaped - before.escaped, "particle", "left the domain through open sides");
-        let [x, y, z] = stats.non_finite_place;
-        let lost = format!(
-            "became NaN or infinite and were removed; the first, id {}, was last at ({x:.4}, {y:.4}, {z:.4}) m. \
-             Lower solver.cfl_factor, or check for overlapping particles",
-            stats.non_finite_id
+        // The first ones, and again whenever their number has doubled.
+        let count = stats.unconverged.saturating_sub(before.unconverged);
+        if count > 0 && stats.unconverged.checked_ilog2() > before.unconverged.checked_ilog2() {
+            let plural = if count == 1 { "" } else { "s" };
+            let text = format!(
+                "at {:.4} s: {count} step{plural} did not reach solver.tolerance within solver.max_iterations; their pressure \
+                 is inexact. Lower solver.cfl_factor, raise max_iterations or tolerance, or make light bodies heavier",
+                stats.time
+            );
+            self.pending_events.push_back(Event::Warning(text));
+        }
+    }
+
+    /// Warns of an implicit viscosity that did not converge.
+    pub(super) fn warn_of_viscosity(&mut self, stats: &Stats) {
+        let before = self.last;
+        let count = stats.viscous_unconverged.saturating_sub(before.viscous_unconverged);
+        // The first ones, and again whenever their number has doubled.
+        if count == 0
+            || stats.viscous_unconverged.checked_ilog2() <= before.viscous_unconverged.checked_ilog2()
+        {
+            return;
+        }
+        let params = self.simulation.params();
+        let plural = if count == 1 { "" } else { "s" };
+        let text = format!(
+            "at {:.4} s: the viscosity of {} m^2/s did not converge in {count} step{plural}: after {} iterations the \
+             residual is {:.1} % of the change of the velocity by all other forces, and {:.1} % are allowed. The flow is \
+             inexact, and the next step is shorter. Lower fluid.viscosity, use a coarser particle_spacing or a shorter \
+             solver.max_dt, or raise solver.max_iterations or solver.tolerance",
+            stats.time,
+            params.implicit_viscosity,
+            stats.most_viscous_iterations,
+            100.0 * stats.viscous_residual,
+            100.0 * params.viscous_tolerance
         );
-        warn(stats.non_finite - before.non_finite, "particle", &lost);
-        warn(
-            stats.wall_corrections - before.wall_corrections,
-            "time",
-            "a particle was moved back through a closed wall or the surface of a body",
-        );
-        warn(
-            stats.speed_limits - before.speed_limits,
-            "time",
-            "a particle was limited to half a spacing per step: the time step is too long for its speed. \
-             Lower solver.cfl_factor, or raise solver.sound_speed",
-        );
+        self.pending_events.push_back(Event::Warning(text));
+    }
+
+    /// Reports alarms. The run ends after this frame if the fluid has burst.
+    pub(super) fn report(&mut self, alarms: Vec<Alarm>) {
+        let burst = alarms.iter().find(|alarm| alarm.level == Level::Stop);
+        if let (Some(alarm), OnBurst::Stop) = (burst, self.on_burst) {
+            let (time, message) = (alarm.time, alarm.message.clone());
+            self.stage = Stage::Burst(SimulationError::Burst { time, message });
+        }
+        self.pending_events.extend(alarms.into_iter().map(Event::Alarm));
     }
 
     /// Warns once of each dynamic body whose distance from the domain exceeds the domain's size or is NaN.

@@ -4,26 +4,37 @@ use glam::Vec3;
 use rayon::prelude::*;
 use splashdown_io::Particles;
 
+use crate::bodies::LoadedBody;
 use crate::scene::{Block, DensityMode, Derived, InitialPressure, Method, Scene, Shape};
 
+/// Maximum number of steps of a search for the body below a particle.
+const MOST_STEPS: u32 = 2000;
 /// The largest distance of the direction of gravity from an axis.
 const STRAIGHT: f32 = 1e-3;
 
 /// Gives particles of boxes that stand on a closed side below them, or on such a box, the pressure of fluid at rest.
-/// Where the density is integrated, they get its initial value. Where it is summed, their layers move closer together,
-/// unless the scene has bodies, into which they might move.
+/// An implicit pressure starts with it. Where the density is integrated, they get its initial value. Where it is summed,
+/// their layers move closer together, above the floor or the body below them.
 ///
 /// A fluid that starts without pressure falls on itself: in a tank at rest the pressure at the floor oscillates by an
 /// eighth of rho g h for seconds.
-pub fn start_at_rest(scene: &Scene, particles: &mut Particles) {
+pub fn start_at_rest(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) {
     let Some(columns) = Columns::new(scene) else { return };
     let derived = Derived::without_particles(scene);
     let (rest, exponent) = (scene.fluid.material.rest_density, scene.solver.exponent);
     let per_depth = scene.gravity.length() / (derived.sound_speed * derived.sound_speed);
     let is_integrated = is_density_integrated(scene);
-    let Particles { positions, velocities, densities, .. } = particles;
+    let Particles { positions, velocities, densities, pressures, .. } = particles;
     let at = |(x, v): (&[f32; 3], &[f32; 3])| if *v == [0.0; 3] { columns.at(Vec3::from(*x)) } else { None };
-    if is_integrated {
+    if scene.solver.method == Method::Dfsph {
+        pressures.resize(positions.len(), 0.0);
+        let all = positions.par_iter().zip(velocities.par_iter()).zip(pressures.par_iter_mut());
+        all.for_each(|(particle, pressure)| {
+            if let Some((_, depth)) = at(particle) {
+                *pressure = rest * scene.gravity.length() * depth;
+            }
+        });
+    } else if is_integrated {
         densities.resize(positions.len(), rest);
         let all = positions.par_iter().zip(velocities.par_iter()).zip(densities.par_iter_mut());
         all.for_each(|(particle, density)| {
@@ -31,10 +42,13 @@ pub fn start_at_rest(scene: &Scene, particles: &mut Particles) {
                 *density = rest * (1.0 + exponent * per_depth * depth).powf(exponent.recip());
             }
         });
-    } else if scene.bodies.is_empty() {
+    } else {
+        let lowered = |height: f32, total: f32| height - compressed(height, total, per_depth, exponent);
         positions.par_iter_mut().zip(velocities.par_iter()).for_each(|(x, v)| {
             if let Some((height, depth)) = at((x, v)) {
-                let lowered = height - compressed(height, height + depth, per_depth, exponent);
+                let total = height + depth;
+                let base = height - room_below(bodies, Vec3::from(*x), columns.up, height);
+                let lowered = lowered(height, total) - lowered(base, total);
                 *x = (Vec3::from(*x) - lowered * columns.up).into();
             }
         });
@@ -43,15 +57,37 @@ pub fn start_at_rest(scene: &Scene, particles: &mut Particles) {
 
 /// True if [`start_at_rest`] has an effect.
 pub(crate) fn can_start_at_rest(scene: &Scene) -> bool {
-    let is_possible = is_density_integrated(scene) || scene.bodies.is_empty();
-    is_possible
-        && Columns::new(scene).is_some_and(|columns| {
-            columns.boxes.iter().any(|&(min, max)| columns.at(0.5 * (min + max)).is_some())
-        })
+    Columns::new(scene).is_some_and(|columns| {
+        columns.boxes.iter().any(|&(min, max)| columns.at(0.5 * (min + max)).is_some())
+    })
 }
 
 fn is_density_integrated(scene: &Scene) -> bool {
     scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity
+}
+
+/// The distance in m from a point to the first body below it, and at most `height`. Follows the distances to the bodies.
+fn room_below(bodies: &[LoadedBody], x: Vec3, up: Vec3, height: f32) -> f32 {
+    let distance = |x: Vec3| {
+        let of = |body: &LoadedBody| {
+            let (position, rotation) = body.pose();
+            body.solid.field.distance(rotation.conjugate() * (x - position))
+        };
+        bodies.iter().map(of).fold(f32::INFINITY, f32::min)
+    };
+    let mut room = 0.0;
+    // Beside a surface that runs along the way the steps are as short as the distance from it.
+    for _ in 0..MOST_STEPS {
+        let step = distance(x - room * up);
+        room += step.max(0.0);
+        if room >= height {
+            return height;
+        }
+        if step < 1e-3 * height {
+            break;
+        }
+    }
+    room
 }
 
 /// The height to which fluid at a height falls when a column of this total height is compressed by its weight: the
@@ -151,7 +187,7 @@ mod tests {
         let mut particles = Particles::default();
         particles.positions.push(x);
         particles.velocities.push([0.0; 3]);
-        start_at_rest(scene, &mut particles);
+        start_at_rest(scene, &mut particles, &[]);
         particles
     }
 
@@ -218,7 +254,7 @@ mod tests {
         let mut particles = Particles::default();
         particles.positions = vec![[0.75, 0.25, 0.5]; 2];
         particles.velocities = vec![[0.0; 3], [1.0, 0.0, 0.0]];
-        start_at_rest(&scene, &mut particles);
+        start_at_rest(&scene, &mut particles, &[]);
         assert!(particles.densities[0] > scene.fluid.material.rest_density);
         assert_eq!(particles.densities[1], scene.fluid.material.rest_density);
     }

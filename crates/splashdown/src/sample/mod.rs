@@ -24,7 +24,7 @@ use serde::Serialize;
 use splashdown_io::{Attribute, IoError, Particles};
 
 use crate::bodies::{BodyError, LoadedBody};
-use crate::scene::{DensityMode, Fluid, Scene, place};
+use crate::scene::{DensityMode, Domain, Fluid, Scene, place};
 
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
@@ -32,7 +32,7 @@ pub(crate) use filler::{Added, Filler};
 pub(crate) use hydrostatic::can_start_at_rest;
 pub use hydrostatic::start_at_rest;
 pub(crate) use sources::{Sources, file_title, mesh_title};
-pub use spacing::typical_spacing;
+pub use spacing::{fitted_spacing, typical_spacing};
 
 /// Smallest distance, in spacings, between the initial fluid and a body: for density summation, and for
 /// density from the continuity equation.
@@ -43,6 +43,8 @@ pub use spacing::typical_spacing;
 /// would displace more than its volume (a quarter more for a ball 12 spacings across), so all particles whose
 /// centres lie outside stay.
 const CLEARANCE: [f32; 2] = [0.49, 0.05];
+/// Smallest width, in spacings, of a gap between bodies or between a body and a wall that holds fluid.
+const NARROWEST: f32 = 0.95;
 
 /// Why a scene could not be filled with particles. [`Scene::load`] reports most of these errors with the line
 /// of the scene file. For a scene built in code they are reported when it is filled.
@@ -196,13 +198,22 @@ pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[
 
 /// Removes the particles inside or too near to a body at its initial pose and returns the number removed.
 pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &[&LoadedBody]) -> u32 {
-    let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)];
-    let clearance = clearance * scene.fluid.particle_spacing;
-    let poses: Vec<_> = bodies.iter().map(|body| body.pose()).collect();
+    let spacing = scene.fluid.particle_spacing;
+    let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)] * spacing;
     let free = |x: Vec3| {
-        bodies.iter().zip(&poses).all(|(body, (position, rotation))| {
-            body.solid.field.distance(rotation.conjugate() * (x - position)) >= clearance
-        })
+        let mut near = surfaces_near(bodies, x, spacing);
+        if near.iter().any(|(distance, _)| *distance < clearance) {
+            return false;
+        }
+        let bodies = near.len();
+        near.extend(walls_near(&scene.domain, x, spacing));
+        // A gap between surfaces that face one another.
+        let is_narrow = |(k, (distance, normal)): (usize, &(f32, Vec3))| {
+            near[k + 1..].iter().any(|(other, opposite)| {
+                distance + other < NARROWEST * spacing && normal.dot(*opposite) < -0.5
+            })
+        };
+        !near.iter().enumerate().take(bodies).any(is_narrow)
     };
     let kept: Vec<bool> = particles.positions.par_iter().map(|&x| free(x.into())).collect();
     let removed = kept.iter().filter(|kept| !**kept).count();
@@ -218,6 +229,33 @@ pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &
         }
     }
     removed as u32
+}
+
+/// The distances in m and the normals of the bodies that are less than `reach` (m) from a point.
+fn surfaces_near(bodies: &[&LoadedBody], x: Vec3, reach: f32) -> Vec<(f32, Vec3)> {
+    let near = |body: &&LoadedBody| {
+        let (position, rotation) = body.pose();
+        let y = rotation.conjugate() * (x - position);
+        let distance = body.solid.field.distance(y);
+        (distance < reach).then(|| (distance, rotation * body.solid.field.normal(y)))
+    };
+    bodies.iter().filter_map(near).collect()
+}
+
+/// The distances in m and the normals of the closed sides that are less than `reach` (m) from a point.
+fn walls_near(domain: &Domain, x: Vec3, reach: f32) -> impl Iterator<Item = (f32, Vec3)> {
+    (0..6).filter_map(move |k| {
+        let (axis, side) = (k / 2, k % 2);
+        let distance = if side == 0 { x[axis] - domain.min[axis] } else { domain.max[axis] - x[axis] };
+        let normal = if side == 0 { Vec3::AXES[axis] } else { -Vec3::AXES[axis] };
+        (domain.closed[axis][side] && distance < reach).then_some((distance, normal))
+    })
+}
+
+/// For each position whether it is farther than `reach` (m) from all bodies.
+pub(crate) fn far_from(bodies: &[LoadedBody], positions: &[[f32; 3]], reach: f32) -> Vec<bool> {
+    let bodies: Vec<&LoadedBody> = bodies.iter().collect();
+    positions.par_iter().map(|&x| surfaces_near(&bodies, x.into(), reach).is_empty()).collect()
 }
 
 /// Removes the values whose flag is false. The list of an absent quantity is empty and stays empty.

@@ -40,9 +40,66 @@ pub fn typical_spacing(positions: &[[f32; 3]]) -> Option<f32> {
     Some(*distances.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
+/// The radius, in typical spacings, of the neighbourhood in which [`fitted_spacing`] counts particles.
+const REACH: f64 = 3.0;
+/// A particle is inside the fluid if the centre of its neighbourhood is no farther from it than this, over the radius.
+const CENTRED: f64 = 0.05;
+/// Smallest number of particles inside the fluid.
+const FEWEST: usize = 8;
+
+/// The spacing in m of the lattice with the same number of particles per volume, measured inside the fluid with the
+/// Wendland C2 kernel over a sample of the particles. `None` if too few particles are inside.
+pub fn fitted_spacing(positions: &[[f32; 3]]) -> Option<f32> {
+    let reach = REACH * f64::from(typical_spacing(positions).filter(|spacing| *spacing > 0.0)?);
+    let n = positions.len();
+    let samples = (MAX_DISTANCES / n).clamp(16, MAX_SAMPLES).min(n);
+    let inside: Vec<f64> = (0..samples)
+        .into_par_iter()
+        .filter_map(|k| {
+            let x = positions[(k as u64 * n as u64 / samples as u64) as usize];
+            let (mut sum, mut centre) = (0.0, [0.0; 3]);
+            for y in positions {
+                let d: [f64; 3] = std::array::from_fn(|a| f64::from(y[a]) - f64::from(x[a]));
+                let q = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() / reach;
+                if q < 1.0 {
+                    let w = (1.0 - q).powi(4) * (1.0 + 4.0 * q);
+                    sum += w;
+                    (0..3).for_each(|a| centre[a] += w * d[a] / reach);
+                }
+            }
+            let off = centre.iter().map(|c| c * c).sum::<f64>().sqrt() / sum;
+            (off < CENTRED).then_some(sum)
+        })
+        .collect();
+    if inside.len() < FEWEST {
+        return None;
+    }
+    // The kernel's integral, and its sum over a lattice of this radius.
+    let integral = 2.0 * std::f64::consts::PI / 21.0 * reach.powi(3);
+    let density = inside.iter().sum::<f64>() / inside.len() as f64 / (1.0031 * integral);
+    Some(density.cbrt().recip() as f32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_fitted_spacing_is_that_of_equal_numbers_per_volume() {
+        // Layers at 0.02 m with columns at 0.01 x 0.005 m have the density of a lattice of 0.01 m.
+        let points = |steps: [f32; 3], n: [i32; 3]| -> Vec<[f32; 3]> {
+            let index = (0..n[0] * n[1] * n[2]).map(|i| [i % n[0], i / n[0] % n[1], i / (n[0] * n[1])]);
+            index.map(|p| std::array::from_fn(|a| p[a] as f32 * steps[a])).collect()
+        };
+        let cubic = fitted_spacing(&points([0.01; 3], [16; 3])).expect("particles inside");
+        assert!((cubic / 0.01 - 1.0).abs() < 0.005, "{cubic}");
+        let stretched = fitted_spacing(&points([0.0125, 0.01, 0.008], [16; 3])).expect("particles inside");
+        assert!((stretched / 0.01 - 1.0).abs() < 0.01, "{stretched}");
+        // Control: 1.35 times as many particles per volume.
+        let dense = fitted_spacing(&points([0.01 / 1.35_f32.cbrt(); 3], [16; 3])).expect("particles inside");
+        assert!((dense / 0.00905 - 1.0).abs() < 0.005, "{dense}");
+        assert_eq!(fitted_spacing(&points([0.01; 3], [2, 2, 2])), None, "no particle is inside");
+    }
 
     #[test]
     fn the_spacing_of_a_lattice_is_found() {

@@ -3,8 +3,9 @@
 use glam::Vec3;
 use serde::Serialize;
 
+use super::solver::{KernelKind, Method, SurfaceTension};
 use super::things::Motion;
-use super::types::{KernelKind, Method, Scene, Shape, SurfaceTension};
+use super::types::{Scene, Shape};
 
 /// Ratio of the speed of sound to the reference speed. With this value the density varies by at most one per
 /// cent (Monaghan 1994).
@@ -45,9 +46,12 @@ pub struct Derived {
     /// (`mueller2003`).
     pub stiffness: f32,
     /// Expected time step in s: the smallest of `cfl_factor * support_radius / 2 / sound_speed`,
-    /// `0.125 (support_radius / 2)^2 / viscosity` (Morris et al. 1997) and `max_dt`.
+    /// `0.125 (support_radius / 2)^2 / viscosity` (Morris et al. 1997), `0.17 support_radius / 2 / (density_diffusion *
+    /// sound_speed)` with `density = "continuity"`, and `max_dt`. With `dfsph` the first is `cfl_factor *
+    /// particle_spacing / reference_speed`, and `sqrt(0.02 particle_spacing / gravity)` is another limit.
     pub dt_estimate: f32,
-    /// The limit that determines the time step: `sound`, `viscosity` or `max_dt`.
+    /// The limit that determines the time step: `sound`, `viscosity`, `diffusion` or `max_dt`; with `dfsph` also `speed` or
+    /// `gravity`.
     pub dt_limit: &'static str,
     /// Number of frames.
     pub frames: u32,
@@ -93,20 +97,41 @@ impl Derived {
         let density = fluid.material.rest_density;
         let support_radius = solver.support_radius(spacing);
         let lattice_sum = lattice_sum(solver.method, solver.kernel, f64::from(solver.support_ratio));
-        let volume = f64::from(spacing).powi(3);
         let head = head(scene, reaches);
         let reference_speed = reference_speed(scene, head, reaches);
         // Both equations of state have the slope c^2 = dp/drho at rest.
         let per_square = match solver.method {
-            Method::Wcsph => density / solver.exponent,
+            Method::Wcsph | Method::Dfsph => density / solver.exponent,
             Method::Mueller2003 => 1.0,
         };
         let from_stiffness = solver.stiffness.map(|stiffness| (stiffness / per_square).sqrt());
         let sound_speed = solver.sound_speed.or(from_stiffness).unwrap_or(SOUND_RATIO * reference_speed);
         let half = 0.5 * support_radius;
         let limits = [
-            (solver.cfl_factor * half / sound_speed, "sound"),
-            (0.125 * half * half / fluid.material.viscosity, "viscosity"),
+            match solver.method {
+                Method::Dfsph => (solver.cfl_factor * spacing / reference_speed, "speed"),
+                _ => (solver.cfl_factor * half / sound_speed, "sound"),
+            },
+            match solver.method {
+                Method::Dfsph => (Self::body_force_dt(scene), "gravity"),
+                _ => (f32::INFINITY, "gravity"),
+            },
+            match solver.method {
+                // The pressure at rest; see state/end_step.
+                Method::Dfsph => (0.5 * spacing / (scene.gravity.length() * head).sqrt(), "pressure"),
+                _ => (f32::INFINITY, "pressure"),
+            },
+            (
+                if Self::has_implicit_viscosity(scene) { f32::INFINITY } else { Self::viscous_dt(scene) },
+                "viscosity",
+            ),
+            match solver.method {
+                Method::Dfsph => (f32::INFINITY, "diffusion"),
+                _ => (
+                    0.17 * half / (solver.density_diffusion * sound_speed).max(f32::MIN_POSITIVE),
+                    "diffusion",
+                ),
+            },
             (solver.max_dt, "max_dt"),
         ];
         let (dt_estimate, dt_limit) =
@@ -117,7 +142,7 @@ impl Derived {
             particles: 0,
             emitted: 0,
             mean_particles: 0.0,
-            particle_mass: (f64::from(density) * volume) as f32,
+            particle_mass: fluid.particle_mass() as f32,
             lattice_sum,
             volume: 0.0,
             support_radius,
@@ -130,6 +155,38 @@ impl Derived {
             frames,
             steps_estimate: steps_per_frame.saturating_mul(u64::from(frames)),
         }
+    }
+}
+
+impl Derived {
+    /// The largest time step in s for which an explicit integration of the viscosity is stable.
+    pub(crate) fn viscous_dt(scene: &Scene) -> f32 {
+        let half = 0.5 * scene.solver.support_radius(scene.fluid.particle_spacing);
+        0.125 * half * half / scene.fluid.material.viscosity
+    }
+
+    /// True if the viscosity is integrated implicitly: with `dfsph`, where it would otherwise determine the time step. The
+    /// limit by the speed is not considered, because it is not known.
+    pub(crate) fn has_implicit_viscosity(scene: &Scene) -> bool {
+        let solver = &scene.solver;
+        solver.method == Method::Dfsph
+            && Self::viscous_dt(scene) < Self::falling_dt(scene, 0.02).min(solver.max_dt)
+    }
+
+    /// The largest time step in s that body forces allow with `dfsph`. With a motion of 0.1 spacings instead of 0.02 every
+    /// implicit solver that was tried gained energy at a CFL factor of 1. An implicit viscosity dissipates it.
+    pub(crate) fn body_force_dt(scene: &Scene) -> f32 {
+        Self::falling_dt(scene, if Self::has_implicit_viscosity(scene) { 0.1 } else { 0.02 })
+    }
+
+    /// The time step in s in which body forces move a particle by this many spacings.
+    fn falling_dt(scene: &Scene, spacings: f32) -> f32 {
+        let oscillation = scene.domain.oscillation.map_or(0.0, |oscillation| {
+            let rate = std::f32::consts::TAU / oscillation.period;
+            oscillation.amplitude.length() * rate * rate
+        });
+        let force = scene.gravity.length() + oscillation;
+        (spacings * scene.fluid.particle_spacing / force.max(1e-20)).sqrt()
     }
 }
 
@@ -181,9 +238,9 @@ fn reference_speed(scene: &Scene, head: f32, reaches: &[Reach]) -> f32 {
 pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
     let weight = |q: f64| match (method, kernel) {
         (Method::Mueller2003, _) => 315.0 / 64.0 * (1.0 - q * q).powi(3),
-        (Method::Wcsph, KernelKind::WendlandC2) => 10.5 * (1.0 - q).powi(4) * (1.0 + 4.0 * q),
-        (Method::Wcsph, KernelKind::CubicSpline) if q <= 0.5 => 8.0 * (6.0 * q * q * (q - 1.0) + 1.0),
-        (Method::Wcsph, KernelKind::CubicSpline) => 16.0 * (1.0 - q).powi(3),
+        (_, KernelKind::WendlandC2) => 10.5 * (1.0 - q).powi(4) * (1.0 + 4.0 * q),
+        (_, KernelKind::CubicSpline) if q <= 0.5 => 8.0 * (6.0 * q * q * (q - 1.0) + 1.0),
+        (_, KernelKind::CubicSpline) => 16.0 * (1.0 - q).powi(3),
     };
     // The ratio of a checked scene is at most 4. The clamp bounds the loops for scenes built in code.
     let reach = (ratio.ceil() as i64).clamp(0, 32);

@@ -14,6 +14,10 @@ const TOUCH: f64 = 0.02;
 /// half a spacing inside its faces, so at least three quarters of a spacing remain between the particles.
 const MARGIN: f64 = 0.25;
 
+/// Two boxes that touch share a lattice if their lattices are no further apart than this along the faces that touch, in
+/// spacings.
+const ALIGNED: f64 = 0.25;
+
 /// A block's shape in f64.
 #[derive(Debug, Clone, Copy)]
 enum Solid {
@@ -105,7 +109,48 @@ impl Sampler {
     pub fn all(domain: &Domain, fluid: &Fluid) -> Vec<Self> {
         let spacing = f64::from(fluid.particle_spacing);
         let solids: Vec<Solid> = fluid.blocks.iter().map(|block| Solid::new(&block.shape)).collect();
-        (0..solids.len()).map(|index| Self::new(domain, spacing, &solids[..=index])).collect()
+        let mut samplers: Vec<Self> = Vec::with_capacity(solids.len());
+        for index in 0..solids.len() {
+            let mut sampler = Self::new(domain, spacing, &solids[..=index]);
+            if let Some(first) = samplers.iter().find_map(|earlier| sampler.joined(earlier, domain)) {
+                sampler.first = first;
+            }
+            samplers.push(sampler);
+        }
+        samplers
+    }
+
+    /// The first point of this box's lattice, moved onto the lattice of an earlier box that it touches; `None` if it does
+    /// not touch it. Across the faces that touch, it moves by at most half a spacing, and otherwise by at most a quarter.
+    /// It does not move away from a wall that it touches.
+    fn joined(&self, earlier: &Self, domain: &Domain) -> Option<[f64; 3]> {
+        let (Solid::Box { min: low, max: high }, Solid::Box { min: from, max: to }) =
+            (&self.solid, &earlier.solid)
+        else {
+            return None;
+        };
+        let spacing = self.spacing;
+        if (0..3).any(|a| low[a] - to[a] >= spacing || from[a] - high[a] >= spacing) {
+            return None;
+        }
+        let mut first = self.first;
+        for a in 0..3 {
+            let is_fixed = (0..2).any(|side| {
+                let (face, wall) = [(low[a], domain.min[a]), (high[a], domain.max[a])][side];
+                domain.closed[a][side] && (face - f64::from(wall)).abs() <= TOUCH * spacing
+            });
+            let gap = (low[a] - to[a]).max(from[a] - high[a]);
+            let tolerance = if gap > -spacing { 0.5 } else { ALIGNED };
+            let apart = (self.first[a] - earlier.first[a]) / spacing;
+            let shift = apart.round() - apart;
+            let moved = self.first[a] + shift * spacing;
+            let last = moved + self.counts[a].saturating_sub(1) as f64 * spacing;
+            let fits = moved >= self.bounds.0[a] && last <= self.bounds.1[a];
+            if !is_fixed && fits && shift.abs() <= tolerance {
+                first[a] = moved;
+            }
+        }
+        Some(first)
     }
 
     fn new(domain: &Domain, spacing: f64, solids: &[Solid]) -> Self {

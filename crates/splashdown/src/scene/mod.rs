@@ -45,6 +45,7 @@ mod reader;
 mod schema;
 mod script;
 mod slot;
+mod solver;
 mod source;
 mod spec;
 mod suggest;
@@ -69,12 +70,13 @@ pub use materials::{KnownMaterial, MATERIALS};
 pub use presets::presets;
 pub use schema::schema;
 pub use script::{Keyframe, Pose, Script};
+pub use solver::{DensityMode, KernelKind, Method, NegativePressure, Solver, Sort, SurfaceTension};
 pub use things::{
     Body, BoundaryKind, Emitter, Hinge, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink,
     SinkRegion, UpAxis,
 };
 pub use types::{
-    Block, Camera, ColourBy, DensityMode, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format,
-    InitialPressure, KernelKind, Material, Method, NegativePressure, Oscillation, Output, PictureKind, Scene,
-    Shape, Solver, Sort, SurfaceSettings, SurfaceTension,
+    Block, Camera, ColourBy, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format, InitialPressure,
+    Material, OnBurst, Oscillation, Output, PictureKind, PictureQuality, Scene, Shape, SurfaceKernels,
+    SurfaceSettings,
 };

@@ -16,6 +16,7 @@ presets![
     "falling-drop",
     "sloshing-tank",
     "honey",
+    "honey-coil",
     "lighthouse",
     "knot",
     "floating",

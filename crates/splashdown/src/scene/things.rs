@@ -213,4 +213,6 @@ pub enum Quantity {
         /// Upper corner in m.
         max: Vec3,
     },
+    /// The energy balance of all fluid in J, at the end of every frame.
+    Energy,
 }

@@ -11,6 +11,7 @@ use glam::{Quat, Vec3};
 use super::choice::{Choice, choices};
 use super::errors::SceneWarning;
 use super::slot::BuiltSlot;
+use super::solver::Solver;
 use super::things::{Body, Emitter, MeshSource, Probe, Sink};
 
 /// A scene: what is simulated, how it is computed, and what is written.
@@ -146,6 +147,11 @@ impl Fluid {
     pub fn particle_radius(&self) -> f32 {
         self.particle_spacing * 0.5
     }
+
+    /// The mass of a particle in kg: that of the fluid at rest in a cube with edges of one spacing.
+    pub fn particle_mass(&self) -> f64 {
+        f64::from(self.material.rest_density) * f64::from(self.particle_spacing).powi(3)
+    }
 }
 
 /// Properties of a liquid; see [`crate::scene::MATERIALS`] for the known liquids and their sources.
@@ -236,65 +242,12 @@ impl Shape {
 }
 
 choices! {
-    /// The solver of the fluid's equations.
-    Method {
-        /// Forces of Mueller, Charypar and Gross 2003, the method of the thesis of Figueroa 2012: fast, and more
-        /// compressible.
-        Mueller2003 = "mueller2003",
-        /// Weakly compressible SPH with Tait's equation of state.
-        Wcsph = "wcsph",
-    }
-    /// The smoothing kernel of `wcsph` (`mueller2003` brings its own three).
-    KernelKind {
-        /// Wendland's C2 function, without pairing instability.
-        WendlandC2 = "wendland_c2",
-        /// The cubic spline of Monaghan and Lattanzio.
-        CubicSpline = "cubic_spline",
-    }
-    /// The purpose that determines the defaults of the other keys of the solver.
-    Accuracy {
-        /// Fast: fronts, water heights and draughts are right, pressures are noisy.
-        Standard = "standard",
-        /// For pressures, forces and waves: density = "continuity" and support_ratio = 3.
-        Engineering = "engineering",
-    }
-    /// The computation of the density.
-    DensityMode {
-        /// Sum over the neighbours in every step: robust.
-        Summation = "summation",
-        /// Continuity equation with diffusion (delta-SPH), corrected gradients and particle shifting: smooth pressure, and
-        /// waves of the right period and height.
-        Continuity = "continuity",
-    }
-    /// The treatment of negative pressures.
-    NegativePressure {
-        /// They are set to zero: no clumping at the surface.
-        Clamp = "clamp",
-        /// They are kept: needed to compare pressures with measurements.
-        Keep = "keep",
-    }
     /// The pressure at the start.
     InitialPressure {
         /// rho g depth.
         Hydrostatic = "hydrostatic",
         /// None: water in a tank at rest then oscillates for seconds.
         Zero = "zero",
-    }
-    /// The model of surface tension.
-    SurfaceTension {
-        /// None.
-        None = "none",
-        /// Cohesion and area forces of Akinci, Akinci and Teschner 2013; for `wcsph`.
-        Akinci2013 = "akinci2013",
-        /// Curvature of the colour field, Mueller et al. 2003; for `mueller2003`.
-        ColourField = "mueller2003",
-    }
-    /// The algorithm that sorts particles into cells.
-    Sort {
-        /// Counting sort: a histogram, a scan, a scatter.
-        Counting = "counting",
-        /// Bitonic sort, the method of the thesis; a baseline for comparison.
-        Bitonic = "bitonic",
     }
     /// A kind of output file.
     Format {
@@ -317,12 +270,37 @@ choices! {
         /// Animated USD, one file for all frames: particles and the surface.
         Usd = "usd",
     }
+    /// What a run does when the fluid bursts: when the monitor finds values that are meaningless.
+    OnBurst {
+        /// The run stops with an error. Complete frames and a checkpoint of the last sound frame are kept.
+        Stop = "stop",
+        /// It warns and continues.
+        Warn = "warn",
+        /// It records the finding as a note and continues.
+        Ignore = "ignore",
+    }
     /// The subject of a picture.
     PictureKind {
         /// The particles as shaded spheres with a colour bar.
         Particles = "particles",
         /// The reconstructed surface as a liquid.
         Surface = "surface",
+    }
+    /// How carefully pictures of the surface are drawn.
+    PictureQuality {
+        /// Approximations as in the window: quickest.
+        Interactive = "interactive",
+        /// Traced rays, four samples per pixel.
+        Standard = "standard",
+        /// Traced rays, 64 samples per pixel, with depth of field and motion blur.
+        Final = "final",
+    }
+    /// The kernels of the surface's field.
+    SurfaceKernels {
+        /// Balls: the same kernel at every particle.
+        Isotropic = "isotropic",
+        /// Ellipsoids that follow the arrangement of the neighbours, at smoothed positions.
+        Anisotropic = "anisotropic",
     }
     /// The quantity that colours the particles.
     ColourBy {
@@ -370,82 +348,14 @@ impl Format {
     }
 }
 
-/// The solver and its parameters. [`Solver::default`] gives the defaults of the scene file.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Solver {
-    /// The method.
-    pub method: Method,
-    /// The kernel of `wcsph`.
-    pub kernel: KernelKind,
-    /// Support radius divided by the particle spacing.
-    pub support_ratio: f32,
-    /// The computation of the density.
-    pub density: DensityMode,
-    /// The treatment of negative pressures.
-    pub negative_pressure: NegativePressure,
-    /// Speed of sound in m/s; `None`: ten times the reference speed (see [`crate::scene::Derived::sound_speed`]).
-    pub sound_speed: Option<f32>,
-    /// Stiffness of the equation of state; `None`: computed from the speed of sound. It is the Tait constant
-    /// B = c^2 rho0 / exponent in Pa for `wcsph`, and k = c^2 in m^2/s^2 for `mueller2003`, where p = k (rho
-    /// - rho0).
-    pub stiffness: Option<f32>,
-    /// Exponent of the equation of state.
-    pub exponent: f32,
-    /// Factor alpha of Monaghan's artificial viscosity.
-    pub artificial_viscosity: f32,
-    /// Factor delta of the density diffusion; requires `continuity`.
-    pub density_diffusion: f32,
-    /// The model of surface tension.
-    pub surface_tension: SurfaceTension,
-    /// Friction at closed sides: 0 for free slip, 1 for no slip.
-    pub wall_friction: f32,
-    /// Time step divided by the time in which sound travels half the support radius.
-    pub cfl_factor: f32,
-    /// Maximum time step in s.
-    pub max_dt: f32,
-    /// Minimum time step in s.
-    pub min_dt: f32,
-    /// The algorithm that sorts particles into cells.
-    pub sort: Sort,
-}
-
-impl Solver {
-    /// Support radius in m for this particle spacing (m).
-    pub fn support_radius(&self, particle_spacing: f32) -> f32 {
-        self.support_ratio * particle_spacing
-    }
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self {
-            method: Method::Wcsph,
-            kernel: KernelKind::WendlandC2,
-            support_ratio: 2.0,
-            density: DensityMode::Summation,
-            negative_pressure: NegativePressure::Clamp,
-            sound_speed: None,
-            stiffness: None,
-            exponent: 7.0,
-            artificial_viscosity: 0.05,
-            density_diffusion: 0.1,
-            surface_tension: SurfaceTension::None,
-            wall_friction: 0.0,
-            cfl_factor: 0.3,
-            max_dt: 0.005,
-            min_dt: 1e-7,
-            sort: Sort::Counting,
-        }
-    }
-}
-
 /// Parameters of surface reconstruction.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceSettings {
     /// Whether the surface is reconstructed.
     pub enabled: bool,
+    /// The kernels of the field.
+    pub kernels: SurfaceKernels,
     /// Edge of a marching-cubes cell in m.
     pub cell_size: f32,
     /// Value of the field at the surface; the field is about 1 inside the fluid.
@@ -461,6 +371,7 @@ impl SurfaceSettings {
     pub fn for_spacing(particle_spacing: f32) -> Self {
         Self {
             enabled: true,
+            kernels: SurfaceKernels::Isotropic,
             cell_size: particle_spacing * 0.5,
             iso_level: 0.6,
             smoothing_iterations: 5,
@@ -542,6 +453,8 @@ pub struct Output {
     pub pictures: Vec<PictureKind>,
     /// Width and height of a picture in pixels.
     pub picture_size: [u32; 2],
+    /// How carefully pictures of the surface are drawn.
+    pub quality: PictureQuality,
     /// The quantity that colours the particles.
     pub colour_by: ColourBy,
     /// Whether a film is made of the pictures.
@@ -556,6 +469,7 @@ impl Default for Output {
             formats: vec![Format::Ply],
             pictures: vec![PictureKind::Particles, PictureKind::Surface],
             picture_size: [1280, 720],
+            quality: PictureQuality::Interactive,
             colour_by: ColourBy::Speed,
             film: true,
             colour_range: None,

@@ -3,11 +3,13 @@
 //! | scheme | function | reference |
 //! |---|---|---|
 //! | `wcsph` | `wcsph::wcsph` | Monaghan 1994; Becker & Teschner 2007; delta-SPH: Molteni & Colagrossi 2009 |
+//! | `dfsph` | `dfsph::dfsph` | Bender & Koschier 2015, 2017; solver: Silcowitz, Niebe & Erleben 2010 |
 //! | `mueller2003` | `mueller2003::mueller2003` | Müller, Charypar & Gross 2003 |
 //!
 //! The functions call the operations of [`Step`], which select the variant of a pass by the scene's kernel, density
 //! formulation and surface tension. Parameters of a single scheme are defined beside its function.
 
+mod dfsph;
 mod mueller2003;
 mod params;
 mod step;
@@ -26,8 +28,8 @@ use crate::boundary::part::Part;
 use crate::cells::{self, Cells};
 #[cfg(test)]
 use crate::coupling::Stage;
-use crate::scene::{self, DensityMode, KernelKind, Method, Scene, SurfaceTension};
-use crate::state::{Extras, Fields, begin};
+use crate::scene::{self, DensityMode, Derived, KernelKind, Method, Scene, SurfaceTension};
+use crate::state::{CARRIED, CARRIED_IMPLICIT, Carried, Extras, Fields, begin};
 
 /// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
 /// its output from its input alone, and with empty cells there is no input. `flow.emit` follows the schedule, which is
@@ -50,6 +52,8 @@ pub struct Scheme {
     kernel: KernelKind,
     is_density_integrated: bool,
     has_tension: bool,
+    max_iterations: u32,
+    has_implicit_viscosity: bool,
 }
 
 impl Scheme {
@@ -61,6 +65,8 @@ impl Scheme {
             is_density_integrated: scene.solver.method == Method::Wcsph
                 && scene.solver.density == DensityMode::Continuity,
             has_tension: scene.solver.surface_tension == SurfaceTension::Akinci2013,
+            max_iterations: scene.solver.max_iterations,
+            has_implicit_viscosity: Derived::has_implicit_viscosity(scene),
         }
     }
 
@@ -68,8 +74,8 @@ impl Scheme {
     pub fn walls(&self) -> KernelPair {
         match (self.method, self.kernel) {
             (Method::Mueller2003, _) => KernelPair::Mueller,
-            (Method::Wcsph, KernelKind::WendlandC2) => KernelPair::WendlandC2,
-            (Method::Wcsph, KernelKind::CubicSpline) => KernelPair::CubicSpline,
+            (_, KernelKind::WendlandC2) => KernelPair::WendlandC2,
+            (_, KernelKind::CubicSpline) => KernelPair::CubicSpline,
         }
     }
 
@@ -79,7 +85,30 @@ impl Scheme {
             normals: self.has_tension,
             corrections: self.is_density_integrated,
             boundary_matrices: self.is_density_integrated && bodies,
+            implicit: self.is_implicit(),
+            solid_gradients: self.is_implicit() && bodies,
+            viscous: self.has_implicit_viscosity,
         }
+    }
+
+    /// True if the pressure is implicit.
+    pub fn is_implicit(&self) -> bool {
+        self.method == Method::Dfsph
+    }
+
+    /// True if the viscosity is implicit.
+    pub fn has_implicit_viscosity(&self) -> bool {
+        self.has_implicit_viscosity
+    }
+
+    /// The largest number of iterations of the implicit viscosity in a step.
+    fn most_viscous_iterations(&self) -> u32 {
+        dfsph::most_viscous_iterations(self.max_iterations)
+    }
+
+    /// The table of the quantities that its particles carry.
+    pub fn carried(&self) -> &'static [Carried] {
+        if self.is_implicit() { CARRIED_IMPLICIT } else { CARRIED }
     }
 
     /// True if the forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
@@ -101,6 +130,7 @@ impl Scheme {
         match self.method {
             Method::Wcsph => wcsph::wcsph(&mut step),
             Method::Mueller2003 => mueller2003::mueller2003(&mut step),
+            Method::Dfsph => dfsph::dfsph(&mut step),
         }
         step.finish()
     }

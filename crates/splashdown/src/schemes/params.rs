@@ -1,9 +1,13 @@
 //! Computes the constants of a simulation from its scene.
 
-use super::{Scheme, mueller2003, wcsph};
+use super::{Scheme, dfsph, mueller2003, wcsph};
 use crate::boundary::solid_offset;
-use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
+use crate::passes::viscous;
+use crate::scene::{Derived, Method, NegativePressure, Scene, SurfaceTension};
 use crate::state::Params;
+
+/// The smallest alpha for the friction at bodies.
+const SMALLEST_BOUNDARY_ALPHA: f32 = 0.05;
 
 /// The constants of a scene with this number of particles.
 pub fn params(scene: &Scene, particles: u32) -> Params {
@@ -19,15 +23,27 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     let closed = scene.domain.closed.as_flattened();
     let scheme = Scheme::new(scene);
     let numerical_viscosity = match solver.method {
-        Method::Wcsph => 0.0,
+        Method::Wcsph | Method::Dfsph => 0.0,
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
     };
-    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero, and the friction
-    // uses at least the default of the other form.
+    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero.
     let boundary_alpha = if scheme.is_density_integrated {
-        solver.artificial_viscosity.max(Solver::default().artificial_viscosity)
+        solver.artificial_viscosity.max(SMALLEST_BOUNDARY_ALPHA)
     } else {
         solver.artificial_viscosity
+    };
+    let is_viscous = scheme.has_implicit_viscosity();
+    let implicit_viscosity = if is_viscous { material.viscosity } else { 0.0 };
+    let volume = derived.particle_mass / rest_density;
+    // The artificial viscosity acts as the viscosity alpha c0 H / 20 (Monaghan 2005).
+    let max_dt = if scheme.is_implicit() {
+        let artificial = solver.artificial_viscosity * derived.sound_speed * support_radius / 20.0;
+        let half = 0.5 * support_radius;
+        let explicit = if is_viscous { 0.0 } else { material.viscosity };
+        let by_viscosity = 0.125 * half * half / (explicit + artificial).max(1e-20);
+        solver.max_dt.min(Derived::body_force_dt(scene)).min(by_viscosity)
+    } else {
+        solver.max_dt
     };
     Params {
         gravity: scene.gravity,
@@ -42,7 +58,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         sound_speed: derived.sound_speed,
         solid_offset: scene.fluid.particle_spacing * solid_offset(scheme.walls(), solver.support_ratio),
         exponent: solver.exponent,
-        viscosity: material.viscosity + numerical_viscosity,
+        viscosity: material.viscosity + numerical_viscosity - implicit_viscosity,
         artificial_viscosity: solver.artificial_viscosity,
         density_diffusion: solver.density_diffusion,
         surface_tension: match solver.surface_tension {
@@ -54,12 +70,12 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         },
         wall_friction: solver.wall_friction,
         cfl_factor: solver.cfl_factor,
-        max_dt: solver.max_dt,
+        max_dt,
         min_dt: solver.min_dt,
         closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
         clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
         particle_count: particles,
-        approach_damping_factor: if scheme.is_density_integrated { 0.0 } else { 1.0 },
+        approach_damping_factor: if scheme.is_density_integrated || scheme.is_implicit() { 0.0 } else { 1.0 },
         summed_mass: if scheme.is_density_integrated {
             derived.particle_mass
         } else {
@@ -67,6 +83,15 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         },
         inverse_kernel_at_spacing: 1.0 / scheme.walls().w(1.0 / solver.support_ratio),
         boundary_viscosity: boundary_alpha * derived.sound_speed * support_radius / 20.0,
-        unused: 0.0,
+        is_implicit: u32::from(scheme.is_implicit()),
+        tolerance: solver.tolerance,
+        max_iterations: solver.max_iterations,
+        longest_motion: if scheme.is_implicit() { dfsph::longest_motion(solver.cfl_factor) } else { 0.5 },
+        pressure_factor: dfsph::pressure_factor(solver.kernel, f64::from(solver.support_ratio)),
+        implicit_viscosity,
+        viscous_factor: implicit_viscosity * volume * viscous::pair::factor(support_radius)
+            / viscous::pair::lattice_factor(f64::from(solver.support_ratio)) as f32,
+        viscous_tolerance: dfsph::viscous_tolerance(solver.tolerance),
+        most_viscous_iterations: scheme.most_viscous_iterations(),
     }
 }

@@ -1,21 +1,23 @@
 //! The operations from which schemes compose a step.
 
-use splashdown_gpu::{DispatchSize, PassDesc, Recording};
+use std::mem::offset_of;
+
+use splashdown_gpu::{DispatchSize, Flag, PassDesc, Recording, Rounds};
 
 use super::Scheme;
 use crate::bodies::Bodies;
 use crate::boundary::part::Part;
 use crate::cells::Cells;
-use crate::coupling::{Coupling, Stage, StepRecorder};
+use crate::coupling::{Coupling, Stage, StepRecorder, ViscousStage};
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
-    acceleration, continuity, corrected_acceleration, density, force_integrate, integrate, mueller, normals,
-    shifted_integrate, state_equation,
+    acceleration, continuity, corrected_acceleration, density, force_integrate, implicit, integrate, mueller,
+    normals, shifted_integrate, state_equation, viscous,
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method};
-use crate::state::{CarriedArrays, Fields, Reordered};
+use crate::state::{CarriedArrays, Fields, Reordered, SolveState, ViscousState};
 
 /// The couplings of a simulation.
 #[derive(Clone, Copy, Default)]
@@ -83,6 +85,7 @@ impl<'a> Step<'a> {
             // At least one invocation, so that time advances without particles.
             particles: DispatchSize::Items(count.max(1)),
             is_density_integrated: scheme.is_density_integrated,
+            is_implicit: scheme.is_implicit(),
         };
         Self { scheme, couplings: *couplings, recorder, count }
     }
@@ -120,7 +123,7 @@ impl<'a> Step<'a> {
             Method::Wcsph if self.scheme.is_density_integrated => {
                 self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE)
             }
-            Method::Wcsph => self.by_kernel(&density::WENDLAND_C2, &density::CUBIC_SPLINE),
+            _ => self.by_kernel(&density::WENDLAND_C2, &density::CUBIC_SPLINE),
         };
         self.recorder.dispatch_particles(pass);
     }
@@ -153,13 +156,90 @@ impl<'a> Step<'a> {
             (Method::Wcsph, Part::Pressure) => {
                 self.by_kernel(&acceleration::WENDLAND_C2_PRESSURE, &acceleration::CUBIC_SPLINE_PRESSURE)
             }
-            (Method::Wcsph, Part::Other) => {
+            (Method::Wcsph | Method::Dfsph, Part::Other) => {
                 self.by_kernel(&acceleration::WENDLAND_C2_OTHER, &acceleration::CUBIC_SPLINE_OTHER)
             }
             (Method::Mueller2003, Part::All) => &mueller::MUELLER,
-            (Method::Mueller2003, _) => panic!("mueller2003 has no pass for {part:?}"),
+            (method, part) => panic!("{method} has no pass for {part:?}"),
         };
         self.recorder.dispatch_particles(pass);
+    }
+
+    /// Density, diagonal of the implicit pressure, viscosity and body forces.
+    pub(super) fn implicit_system(&mut self) {
+        let pass = self.by_kernel(&implicit::system::WENDLAND_C2, &implicit::system::CUBIC_SPLINE);
+        self.recorder.dispatch_particles(pass);
+    }
+
+    /// All forces but pressure, if they include surface tension, which needs the densities.
+    pub(super) fn surface_tension(&mut self) {
+        if self.scheme.has_tension {
+            self.surface_normals();
+            self.acceleration(Part::Other);
+        }
+    }
+
+    /// The viscosity, if it is implicit, after all other forces.
+    pub(super) fn implicit_viscosity(&mut self) {
+        if !self.scheme.has_implicit_viscosity {
+            return;
+        }
+        let (start, product) = if self.couplings.bodies.is_some() {
+            let start =
+                self.by_kernel(&viscous::start::WENDLAND_C2_BODIES, &viscous::start::CUBIC_SPLINE_BODIES);
+            (start, &viscous::product::BODIES)
+        } else {
+            let start = self.by_kernel(&viscous::start::WENDLAND_C2, &viscous::start::CUBIC_SPLINE);
+            (start, &viscous::product::PRODUCT)
+        };
+        self.recorder.dispatch(&viscous::begin::BEGIN, DispatchSize::Groups(1));
+        self.recorder.dispatch_particles(start);
+        self.couple(Stage::Viscosity(ViscousStage::Start));
+        let step = std::mem::replace(&mut self.recorder.recording, Recording::new("viscosity"));
+        self.couple(Stage::Viscosity(ViscousStage::Product));
+        self.recorder.dispatch_particles(product);
+        self.couple(Stage::Viscosity(ViscousStage::Sum));
+        self.recorder.dispatch(&viscous::decide::DECIDE, DispatchSize::Groups(1));
+        self.recorder.dispatch_particles(&viscous::update::UPDATE);
+        self.couple(Stage::Viscosity(ViscousStage::Update));
+        let iteration = std::mem::replace(&mut self.recorder.recording, step);
+        let stopped = Flag::new(self.recorder.fields.viscous, offset_of!(ViscousState, stopped));
+        let rounds = Rounds::new(self.scheme.most_viscous_iterations());
+        self.recorder.recording.repeat(&iteration, &rounds, stopped);
+        self.couple(Stage::Viscosity(ViscousStage::Force));
+        self.recorder.dispatch_particles(&viscous::finish::FINISH);
+    }
+
+    /// The implicit pressure, and the accelerations by all forces.
+    pub(super) fn implicit_pressure(&mut self) {
+        let has_bodies = self.couplings.bodies.is_some();
+        let [predict, residual] = if has_bodies {
+            [
+                self.by_kernel(
+                    &implicit::predict::WENDLAND_C2_BODIES,
+                    &implicit::predict::CUBIC_SPLINE_BODIES,
+                ),
+                self.by_kernel(
+                    &implicit::residual::WENDLAND_C2_BODIES,
+                    &implicit::residual::CUBIC_SPLINE_BODIES,
+                ),
+            ]
+        } else {
+            [
+                self.by_kernel(&implicit::predict::WENDLAND_C2, &implicit::predict::CUBIC_SPLINE),
+                self.by_kernel(&implicit::residual::WENDLAND_C2, &implicit::residual::CUBIC_SPLINE),
+            ]
+        };
+        self.recorder.dispatch(&implicit::begin::BEGIN, DispatchSize::Groups(1));
+        let step = std::mem::replace(&mut self.recorder.recording, Recording::new("pressure"));
+        self.recorder.dispatch_particles(predict);
+        self.couple(Stage::PressureIteration);
+        self.recorder.dispatch_particles(residual);
+        self.recorder.dispatch(&implicit::decide::DECIDE, DispatchSize::Groups(1));
+        let iteration = std::mem::replace(&mut self.recorder.recording, step);
+        let stopped = Flag::new(self.recorder.fields.solve, offset_of!(SolveState, stopped));
+        self.recorder.recording.repeat(&iteration, &Rounds::new(self.scheme.max_iterations), stopped);
+        self.recorder.dispatch_particles(&implicit::finish::FINISH);
     }
 
     /// Forces and integration in one pass.

@@ -66,7 +66,7 @@ fn start(executor: Executor) -> Simulation {
 
 fn start_scene(scene: &Scene, executor: Executor) -> Simulation {
     let mut particles = crate::sample::particles(scene).unwrap();
-    crate::sample::start_at_rest(scene, &mut particles);
+    crate::sample::start_at_rest(scene, &mut particles, &[]);
     block_on(Simulation::with_bodies(scene, executor, &particles, Vec::new(), TABLE)).unwrap()
 }
 

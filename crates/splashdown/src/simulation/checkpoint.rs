@@ -6,7 +6,8 @@ use splashdown_io::{Archive, NpyElement};
 use super::Simulation;
 use crate::check::Built;
 use crate::checkpoint::{Checkpoint, CheckpointError, HostState};
-use crate::state::{CARRIED, Carried, CarriedArrays, Kind, StepCounters};
+use crate::schemes::Scheme;
+use crate::state::{Carried, CarriedArrays, Kind, StepCounters};
 use crate::{SimulationError, memory, schemes};
 
 impl Simulation {
@@ -87,7 +88,8 @@ impl Simulation {
         executor: Executor,
         progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<Self, SimulationError> {
-        Self::resume_with_table(checkpoint, executor, progress, CARRIED).await
+        let table = Scheme::new(&checkpoint.scene()?).carried();
+        Self::resume_with_table(checkpoint, executor, progress, table).await
     }
 
     pub(super) async fn resume_with_table(

@@ -11,6 +11,8 @@ use crate::{SimulationError, Stats};
 
 /// The largest number of steps in one submission to a device: bounds the time for which the device is unresponsive.
 pub(super) const MOST_STEPS: u32 = 64;
+/// The same with an implicit pressure, whose steps take several times as long.
+pub(super) const MOST_IMPLICIT_STEPS: u32 = 8;
 /// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
 /// CPU executor tests for the end of the frame before each step.
 pub(super) const HOST_STEPS: u32 = 16;
@@ -150,6 +152,15 @@ impl Simulation {
             dt: state.stable_dt,
             density_error: state.density_error,
             max_speed: state.max_speed,
+            iterations: last.iterations + u64::from(state.iterations),
+            most_iterations: state.most_iterations,
+            residual: state.residual,
+            compression: state.compression / state.steps.max(1) as f32,
+            mean_compression: (last.mean_compression * last.steps as f64 + f64::from(state.compression))
+                / (last.steps + u64::from(state.steps)).max(1) as f64,
+            viscous_iterations: last.viscous_iterations + u64::from(state.viscous_iterations),
+            most_viscous_iterations: state.most_viscous_iterations,
+            viscous_residual: state.viscous_residual,
             ..last
         };
         self.count().await?;
@@ -180,6 +191,8 @@ impl Simulation {
         stats.escaped = counters[StepCounters::ESCAPED];
         stats.wall_corrections = counters[StepCounters::CORRECTIONS];
         stats.speed_limits = counters[StepCounters::LIMITED];
+        stats.unconverged = counters[StepCounters::UNCONVERGED];
+        stats.viscous_unconverged = counters[StepCounters::VISCOUS_UNCONVERGED];
         stats.drained = counters[StepCounters::DRAINED];
         if let Some(flow) = &mut self.flow {
             let (count, warnings) = flow.count(&mut self.executor).await?;

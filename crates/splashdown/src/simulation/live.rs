@@ -7,6 +7,7 @@ use super::Simulation;
 use crate::bodies::{BodyState, LoadedBody};
 use crate::mouse_force::{MouseForce, MouseForceCoupling};
 use crate::scene::{Motion, Scene, Solver};
+use crate::schemes::Scheme;
 use crate::state::{Params, StepState};
 use crate::{SimulationError, sample, schemes};
 
@@ -89,9 +90,12 @@ impl Simulation {
             density: kinds.density,
             surface_tension: kinds.surface_tension,
             sort: kinds.sort,
+            max_iterations: kinds.max_iterations,
             ..old.solver.clone()
         };
-        if twin != *old {
+        // The passes of a step depend on how the viscosity is integrated.
+        let has_implicit_viscosity = |scene| Scheme::new(scene).has_implicit_viscosity();
+        if twin != *old || has_implicit_viscosity(scene) != has_implicit_viscosity(old) {
             return Ok(false);
         }
         // The speed of sound must not decrease: the state of the fluid would be too compressed for a softer equation
@@ -138,9 +142,11 @@ impl Simulation {
         // The fluid does not overlap the old bodies: only new ones displace particles.
         let new: Vec<&LoadedBody> = loaded.iter().filter(|body| place(&body.name).is_none()).collect();
         let removed = sample::retain_outside(scene, &mut particles, &new);
-        let mut next =
-            Self::with_bodies(scene, self.executor.successor(), &particles, loaded, self.fields.table())
-                .await?;
+        let table = match scene.solver.method == self.scene.solver.method {
+            true => self.fields.table(),
+            false => Scheme::new(scene).carried(),
+        };
+        let mut next = Self::with_bodies(scene, self.executor.successor(), &particles, loaded, table).await?;
         next.removed = removed;
         next.most_steps = self.most_steps;
         next.begin_at(self.stats.time, &kept).await?;

@@ -8,13 +8,15 @@ mod frame;
 mod inventory;
 mod live;
 mod motion;
+mod packing;
 #[cfg(test)]
 mod part_tests;
 mod phases;
 mod results;
 mod start;
 
-pub use inventory::inventory;
+pub use inventory::{initial_packing, inventory};
+pub use packing::{InitialDensity, Packing};
 
 use std::sync::Arc;
 
@@ -60,6 +62,7 @@ pub struct Simulation {
     frame: Option<FrameInProgress>,
     bodies: Option<Bodies>,
     removed: u32,
+    packing: Option<Packing>,
     flow: Option<Flow>,
     probes: Option<Probes>,
     mouse_force: Option<MouseForceCoupling>,
@@ -118,6 +121,11 @@ impl Simulation {
     /// The number of particles of the scene that were not created because they lie inside a body.
     pub fn removed(&self) -> u32 {
         self.removed
+    }
+
+    /// How densely the particles were placed, and how they were relaxed; `None` for a single lattice without bodies.
+    pub fn packing(&self) -> Option<&Packing> {
+        self.packing.as_ref()
     }
 
     /// The repairs of the meshes of the scene's bodies, in the order of the scene.

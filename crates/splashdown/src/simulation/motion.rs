@@ -143,9 +143,13 @@ impl Simulation {
     /// Reduces the next time step to what this speed allows, by the formula of [`end_step`](crate::state::end_step).
     async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
         let Params { support_radius, sound_speed, cfl_factor, particle_spacing, min_dt, .. } = self.params;
-        let by_sound = cfl_factor * 0.5 * support_radius / (sound_speed + speed);
-        let by_motion = cfl_factor * 0.4 * particle_spacing / speed.max(1e-20);
-        let allowed = by_sound.min(by_motion).max(min_dt);
+        let by_motion = cfl_factor * particle_spacing / speed.max(1e-20);
+        let allowed = if self.params.is_implicit == 1 {
+            by_motion
+        } else {
+            (cfl_factor * 0.5 * support_radius / (sound_speed + speed)).min(0.4 * by_motion)
+        };
+        let allowed = allowed.max(min_dt);
         let state = self.executor.fetch(self.fields.state).await?[0];
         self.stable_dt = state.stable_dt.min(allowed);
         let state = StepState { stable_dt: self.stable_dt, dt: self.stable_dt, ..state };

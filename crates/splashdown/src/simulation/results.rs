@@ -4,11 +4,12 @@ use splashdown_gpu::{GpuError, Recording, block_on};
 use splashdown_io::{Mesh, Particles};
 
 use super::Simulation;
-use crate::SimulationError;
 use crate::bodies::BodyState;
+use crate::monitor::{Findings, Monitor, Observed};
 use crate::scene::{Probe, Quantity, SurfaceSettings};
 use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, Values};
-use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats};
+use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
+use crate::{SimulationError, Stats};
 
 impl Simulation {
     /// The active particles in the order of their ids. Densities and pressures are those at the beginning of the last
@@ -63,6 +64,36 @@ impl Simulation {
         Ok(bodies.inside(&states, particles))
     }
 
+    /// A monitor of this simulation from now on: examine every frame with it.
+    pub fn monitor(&self) -> Monitor {
+        Monitor::new(&self.scene, &self.params, self.body_meshes())
+    }
+
+    /// Examines the state at the end of a frame, whose particles, statistics and bodies are given.
+    pub(crate) fn examine(
+        &self,
+        monitor: &mut Monitor,
+        (time, stats): (f64, &Stats),
+        particles: &Particles,
+        bodies: &[BodyState],
+    ) -> Findings {
+        let of_bodies = self.bodies.as_ref().map(|all| all.nearest(bodies));
+        let nearest = |x| of_bodies.as_ref().and_then(|nearest| nearest(x));
+        monitor.observe(Observed { time, stats, particles, bodies, nearest: &nearest })
+    }
+
+    /// Reads the particles and bodies, and examines the state between two frames.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub async fn examine_async(&mut self, monitor: &mut Monitor) -> Result<Findings, SimulationError> {
+        let particles = self.particles_async().await?;
+        let bodies = self.body_states_async().await?;
+        let inside_bodies = self.bodies.as_ref().map_or(0, |all| all.inside(&bodies, &particles));
+        let stats = Stats { inside_bodies, ..self.stats };
+        Ok(self.examine(monitor, (stats.time, &stats), &particles, &bodies))
+    }
+
     /// A warning for each gauge that lies so deep inside a body that no fluid is within its reach.
     ///
     /// # Errors
@@ -70,9 +101,10 @@ impl Simulation {
     pub fn buried_probes(&mut self, probes: &[Probe]) -> Result<Vec<String>, SimulationError> {
         let Some(bodies) = &self.bodies else { return Ok(Vec::new()) };
         let states = block_on(bodies.states(&mut self.executor))?;
+        let nearest = bodies.nearest(&states);
         let buried = probes.iter().filter_map(|probe| {
             let (Quantity::Pressure(x) | Quantity::Height(x)) = probe.quantity else { return None };
-            let (distance, body) = bodies.nearest(&states, x)?;
+            let (distance, body) = nearest(x)?;
             let depth = -1000.0 * distance;
             (distance < -self.params.particle_spacing).then(|| {
                 format!(
@@ -123,7 +155,8 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub fn surface(&mut self, settings: &SurfaceSettings) -> Result<Surface, SimulationError> {
-        let params = SurfaceParams::of_scene(settings, self.params.particle_spacing);
+        let params =
+            SurfaceParams::of_scene(settings, self.params.particle_spacing, Walls::of_params(&self.params));
         let input = SurfaceInput {
             sorted_positions: self.fields.sorted_positions,
             cell_start: self.cells.cell_start,

@@ -5,9 +5,9 @@ use std::mem::offset_of;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
-use super::Simulation;
-use super::frame::{HOST_STEPS, MOST_STEPS};
+use super::frame::{HOST_STEPS, MOST_IMPLICIT_STEPS, MOST_STEPS};
 use super::phases::{HostAction, Phase, Schedule};
+use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
 use crate::cells::{Cells, Grid};
 use crate::check::Built;
@@ -16,7 +16,7 @@ use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::schemes::{self, Couplings, Scheme};
 use crate::solid;
-use crate::state::{CARRIED, Carried, Fields, Initial, Params, StepState};
+use crate::state::{Carried, Fields, Initial, Params, StepState};
 use crate::{Device, SimulationError, Stats, bodies, memory, sample, state};
 
 impl Simulation {
@@ -61,12 +61,16 @@ impl Simulation {
         let bodies = Self::load_bodies(scene, progress)?;
         let mut particles = Built::of(scene).take_particles(scene)?;
         let removed = sample::remove_inside(scene, &mut particles, &bodies);
-        sample::start_at_rest(scene, &mut particles);
+        Built::of(scene).flow(scene)?.fill_nozzles(&mut particles, scene);
+        let packing = packing::relax(scene, &mut particles, &bodies, packing::MAX_ROUNDS)?;
+        sample::start_at_rest(scene, &mut particles, &bodies);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());
         }
-        let mut simulation = Self::with_bodies(scene, executor, &particles, bodies, CARRIED).await?;
+        let mut simulation =
+            Self::with_bodies(scene, executor, &particles, bodies, Scheme::new(scene).carried()).await?;
         simulation.removed = removed;
+        simulation.packing = packing;
         Ok(simulation)
     }
 
@@ -82,7 +86,7 @@ impl Simulation {
         particles: &Particles,
     ) -> Result<Self, SimulationError> {
         let bodies = Self::load_bodies(scene, &|_, _| {})?;
-        block_on(Self::with_bodies(scene, executor, particles, bodies, CARRIED))
+        block_on(Self::with_bodies(scene, executor, particles, bodies, Scheme::new(scene).carried()))
     }
 
     pub(crate) fn load_bodies(
@@ -177,6 +181,7 @@ impl Simulation {
             frame: None,
             bodies,
             removed: 0,
+            packing: None,
             flow,
             rows: vec![Vec::new(); scene.probes.len()],
             probes,
@@ -211,7 +216,8 @@ impl Simulation {
         }
         let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);
-        self.schedule = Schedule::new(phases, &end_step, done, MOST_STEPS);
+        let most = if scheme.is_implicit() { MOST_IMPLICIT_STEPS } else { MOST_STEPS };
+        self.schedule = Schedule::new(phases, &end_step, done, most);
         Ok(())
     }
 }

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use splashdown_io::Mesh;
 
 use super::field::DistanceField;
-use super::{RepairReport, SolidSettings};
+use super::{RepairReport, SolidSettings, Surroundings};
 
 /// Version of the file contents. Increase it when the same inputs give a different solid.
 const VERSION: u32 = 3;
@@ -23,7 +23,12 @@ pub fn default_cache_folder() -> Option<PathBuf> {
 }
 
 /// The file for a mesh and settings.
-pub(super) fn file(folder: &Path, mesh: &Mesh, settings: &SolidSettings) -> PathBuf {
+pub(super) fn file(
+    folder: &Path,
+    mesh: &Mesh,
+    settings: &SolidSettings,
+    surroundings: Option<&Surroundings<'_>>,
+) -> PathBuf {
     let mut hash = Fnv::default();
     hash.add(&VERSION.to_le_bytes());
     hash.add(bytemuck::cast_slice(&mesh.vertices));
@@ -40,6 +45,9 @@ pub(super) fn file(folder: &Path, mesh: &Mesh, settings: &SolidSettings) -> Path
         Some(false) => 1,
         Some(true) => 2,
     }]);
+    if let Some(surroundings) = surroundings {
+        hash.add(bytemuck::cast_slice(&surroundings.words()));
+    }
     folder.join(format!("{:032x}.solid", hash.0))
 }
 

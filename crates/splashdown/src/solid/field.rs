@@ -4,6 +4,7 @@ use glam::{UVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::bvh::Bvh;
+use super::surroundings::{Surroundings, filled};
 use crate::boundary::KernelPair;
 
 /// Distances on the nodes of a grid around a solid, in the frame of its mesh.
@@ -135,6 +136,7 @@ impl DistanceField {
         &mut self,
         support_radius: f32,
         kernels: KernelPair,
+        surroundings: Option<&Surroundings<'_>>,
         progress: &(dyn Fn(f32) + Sync),
     ) {
         let step = 2.0 / POINTS as f32;
@@ -152,7 +154,7 @@ impl DistanceField {
         }
         let total: f32 = ball.iter().map(|(_, w)| w).sum();
         ball.iter_mut().for_each(|(_, w)| *w /= total);
-        let sample_size = step * support_radius;
+        let quadrature = Quadrature { support: support_radius, kernels, ball, size: step * support_radius };
         let plane = (self.nodes[0] * self.nodes[1]) as usize;
         let slices = self.nodes[2];
         let effective: Vec<Vec<f32>> = (0..slices)
@@ -161,11 +163,19 @@ impl DistanceField {
                 let slice = (0..plane as u32)
                     .map(|k| {
                         let at = UVec3::new(k % self.nodes[0], k / self.nodes[0], z);
-                        let phi = self.values[z as usize * plane + k as usize].x;
+                        let mut x = self.node(at);
+                        let mut phi = self.values[z as usize * plane + k as usize].x;
+                        // Behind a closed side lies the image of what is in front of it.
+                        if let Some(surroundings) = surroundings {
+                            x = surroundings.fold(x);
+                            phi = self.distance(x);
+                        }
                         if phi.abs() >= support_radius {
                             return phi;
                         }
-                        self.effective(at, phi, support_radius, kernels, &ball, sample_size)
+                        let near =
+                            surroundings.filter(|surroundings| surroundings.is_near(x, support_radius));
+                        self.effective(x, phi, &quadrature, near)
                     })
                     .collect();
                 progress(0.5 / slices as f32);
@@ -179,24 +189,22 @@ impl DistanceField {
 
     fn effective(
         &self,
-        at: UVec3,
+        x: Vec3,
         phi: f32,
-        support: f32,
-        kernels: KernelPair,
-        ball: &[(Vec3, f32)],
-        sample_size: f32,
+        quadrature: &Quadrature,
+        surroundings: Option<&Surroundings<'_>>,
     ) -> f32 {
-        let x = self.node(at);
-        let e = 0.5 * self.cell_size;
-        let slope = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
+        let &Quadrature { support, kernels, ref ball, size } = quadrature;
         // The gradient vanishes in the middle of a wall or slot. A plane of any orientation is a valid
         // reference there.
-        let normal = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).normalize_or(Vec3::X);
-        let inside = |distance: f32| (0.5 - distance / sample_size).clamp(0.0, 1.0);
+        let normal = self.slope(x).normalize_or(Vec3::X);
         let (mut solid, mut plane) = (0.0, 0.0);
         for &(r, w) in ball {
-            solid += w * inside(self.distance(x + r));
-            plane += w * inside(phi + normal.dot(r));
+            solid += w * match surroundings {
+                None => filled(self.distance(x + r), size),
+                Some(surroundings) => surroundings.share(self, x + r, size),
+            };
+            plane += w * filled(phi + normal.dot(r), size);
         }
         if plane <= 1e-7 {
             return phi;
@@ -209,6 +217,18 @@ impl DistanceField {
             exact * solid / plane
         };
         support * inverse_wall_fraction(kernels, kernel_fraction.clamp(0.0, 1.0))
+    }
+
+    /// The unit normal of the surface at a point of the mesh's frame, or zero.
+    pub(crate) fn normal(&self, x: Vec3) -> Vec3 {
+        self.slope(x).normalize_or_zero()
+    }
+
+    /// The difference of the distances half a cell before and behind a point, per axis.
+    fn slope(&self, x: Vec3) -> Vec3 {
+        let e = 0.5 * self.cell_size;
+        let along = |axis: Vec3| self.distance(x + e * axis) - self.distance(x - e * axis);
+        Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z))
     }
 
     /// The position of a node in m.
@@ -234,6 +254,17 @@ impl DistanceField {
         let y1 = mix(mix(node(plane), node(plane + 1), f.x), mix(node(far), node(far + 1), f.x), f.y);
         mix(y0, y1, f.z) + p.distance(x)
     }
+}
+
+/// The points of a ball of the kernel's support.
+struct Quadrature {
+    /// The support radius in m.
+    support: f32,
+    kernels: KernelPair,
+    /// Points relative to the centre in m, with weights that add up to 1.
+    ball: Vec<(Vec3, f32)>,
+    /// Distance between the points in m.
+    size: f32,
 }
 
 /// The kernel fraction D(q) of a plane wall for signed q: 1 - D(-q) inside the wall.

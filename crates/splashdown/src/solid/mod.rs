@@ -6,7 +6,8 @@
 //! open seams. A mesh whose holes are too large becomes a shell: a sheet with a thickness; open fins of a solid
 //! become sheets, too (`openness`). Finally each node
 //! gets the effective wall distance, which describes the fraction of the kernel that the solid fills
-//! ([`DistanceField`]). The result is cached on disk under a hash of its inputs.
+//! ([`DistanceField`]). For a solid that does not move, closed sides and other solids limit this fraction to its share of
+//! their union ([`Surroundings`]). The result is cached on disk under a hash of its inputs.
 //!
 //! *Why not* use the mesh itself in the simulation: a lookup in a grid costs the same for twelve triangles
 //! and for a million.
@@ -18,11 +19,13 @@ mod mass;
 mod openness;
 mod repair;
 mod sample;
+mod surroundings;
 
 pub use cache::default_cache_folder;
 pub use field::DistanceField;
 pub use mass::MassProperties;
 pub use repair::{RepairReport, repair};
+pub use surroundings::{Placed, Surroundings};
 
 use std::path::PathBuf;
 
@@ -137,15 +140,29 @@ impl Solid {
         settings: &SolidSettings,
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Self, SolidError> {
+        Self::build_within(mesh, settings, None, progress)
+    }
+
+    /// As [`build`](Self::build), for a solid that does not move: its effective distances describe its share of the union
+    /// of all solids and their images behind closed sides.
+    ///
+    /// # Errors
+    /// [`SolidError`] if the mesh cannot be used.
+    pub fn build_within(
+        mesh: &Mesh,
+        settings: &SolidSettings,
+        surroundings: Option<&Surroundings<'_>>,
+        progress: &(dyn Fn(f32) + Sync),
+    ) -> Result<Self, SolidError> {
         #[cfg(test)]
         crate::work::count("solid built");
         check(mesh)?;
-        let path = settings.cache.as_deref().map(|folder| cache::file(folder, mesh, settings));
+        let path = settings.cache.as_deref().map(|folder| cache::file(folder, mesh, settings, surroundings));
         let cached = path.as_deref().and_then(cache::load);
         let found = cached.is_some();
         let (mesh, report, field) = match cached {
             Some(cached) => cached,
-            None => make(mesh, settings, progress)?,
+            None => make(mesh, settings, surroundings, progress)?,
         };
         if let (Some(path), false) = (&path, found) {
             cache::save(path, &mesh, report, &field);
@@ -196,6 +213,7 @@ impl Solid {
 fn make(
     mesh: &Mesh,
     settings: &SolidSettings,
+    surroundings: Option<&Surroundings<'_>>,
     progress: &(dyn Fn(f32) + Sync),
 ) -> Result<(Mesh, RepairReport, DistanceField), SolidError> {
     let given = mesh.triangles.len();
@@ -223,7 +241,7 @@ fn make(
     if !fins.is_empty() {
         field.add_sheets(&Bvh::new(corners(fins)), settings.half_thickness);
     }
-    field.fill_effective(settings.support_radius, settings.kernels, progress);
+    field.fill_effective(settings.support_radius, settings.kernels, surroundings, progress);
     Ok((mesh, report, field))
 }
 

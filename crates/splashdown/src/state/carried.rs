@@ -208,10 +208,29 @@ pub(crate) const IDS: Carried = Carried {
     output: |particles, values| particles.with_ids(values.integers()),
 };
 
+/// The implicit pressure with which the next step starts, as the unknown of `passes::implicit` in m^2/s^2.
+pub(crate) const PRESSURES: Carried = Carried {
+    name: "pressures",
+    sorted: Some("sorted_pressures"),
+    kind: Kind::F32,
+    update: Update::Evolved,
+    emitted: [0.0; 4],
+    initial: Some(|start, i| {
+        let unit = start.params.rest_density * start.params.pressure_factor;
+        let given = start.particles.pressures.get(i).map_or(0.0, |p| p / unit);
+        let pressure = if given.is_finite() { given.max(0.0) } else { 0.0 };
+        [pressure.to_bits(), 0, 0, 0]
+    }),
+    output: |particles, _| particles,
+};
+
 /// The quantities of every simulation. The order is that of the entries in a checkpoint.
 pub static CARRIED: &[Carried] = &[POSITIONS, VELOCITIES, DENSITIES, IDS];
+/// The quantities of a simulation with implicit pressure.
+pub static CARRIED_IMPLICIT: &[Carried] = &[POSITIONS, VELOCITIES, DENSITIES, IDS, PRESSURES];
 
 const _: () = Carried::check(CARRIED);
+const _: () = Carried::check(CARRIED_IMPLICIT);
 
 /// The bits of a vector.
 pub fn bits(v: Vec4) -> [u32; 4] {

@@ -31,8 +31,16 @@ impl StepCounters {
     pub const DRAINED: usize = 7;
     /// 1 if particles have moved since the last step was [ended](super::end_step).
     pub const MOVED: usize = 8;
+    /// Steps whose pressure did not converge.
+    pub const UNCONVERGED: usize = 9;
+    /// 1 if the pressure or the viscosity of the present step did not converge, so that the next step is shorter.
+    pub const SHORTEN: usize = 10;
+    /// Largest pressure over the rest density, with implicit pressure.
+    pub const MAX_PRESSURE: usize = 11;
+    /// Steps whose viscosity did not converge.
+    pub const VISCOUS_UNCONVERGED: usize = 12;
     /// Number of words.
-    pub const WORDS: usize = 9;
+    pub const WORDS: usize = 13;
 }
 
 /// Mark of a particle that left through an open side, in the fourth component of its position.

@@ -4,7 +4,9 @@ use bytemuck::Zeroable;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
-use super::{Array, CARRIED, Carried, CarriedArrays, Params, StepCounters, StepState};
+use super::{
+    Array, CARRIED, Carried, CarriedArrays, Params, SolveState, StepCounters, StepState, ViscousState,
+};
 
 /// The arrays that a scheme needs in addition; without them the buffers have a single entry.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,6 +17,12 @@ pub struct Extras {
     pub corrections: bool,
     /// The contributions of bodies to the corrections.
     pub boundary_matrices: bool,
+    /// The arrays of the implicit pressure.
+    pub implicit: bool,
+    /// The contributions of bodies to the system of the implicit pressure.
+    pub solid_gradients: bool,
+    /// The arrays of the implicit viscosity.
+    pub viscous: bool,
 }
 
 /// The buffers shared by all passes, except those of the sort. One entry per particle unless noted otherwise.
@@ -55,6 +63,35 @@ pub struct Fields {
     pub shifts: Buffer<Vec4>,
     /// The contributions of bodies to the matrices, two vectors per particle. A single entry without bodies.
     pub boundary_matrices: Buffer<Vec4>,
+    /// The state of the implicit pressure; one entry.
+    pub solve: Buffer<SolveState>,
+    /// The sum of the gradients in 1/m, and the sum of their squares in 1/m^2: the diagonal of the implicit pressure. Order
+    /// as `densities`. A single entry if the pressure is explicit, as all of the following.
+    pub stiffness: Buffer<Vec4>,
+    /// An iteration of the implicit pressure: its result in m^2/s^2, the previous direction, the change, the residual.
+    pub iterates: Buffer<Vec4>,
+    /// Velocity in m/s at the end of the step by the present pressure, and this pressure over the rest density in m^2/s^2;
+    /// -1 where a nozzle determines the motion.
+    pub predicted: Buffer<Vec4>,
+    /// The gradient of the bodies' part of the density in 1/m, and its product with the velocity of the bodies in 1/s. A
+    /// single entry without bodies.
+    pub solid_gradients: Buffer<Vec4>,
+    /// Sums over 64 particles: residual, squared change, relative excess of density, pressure times residual.
+    pub residuals: Buffer<Vec4>,
+    /// Over 64 particles: the sum of the squared change of the velocity in m^2/s^2, by pressure or by all forces but
+    /// viscosity; the largest pressure over the rest density in m^2/s^2; the sums of its square and of that of the velocity.
+    pub impulses: Buffer<Vec4>,
+    /// The state of the implicit viscosity; one entry.
+    pub viscous: Buffer<ViscousState>,
+    /// The residual of the implicit viscosity in m/s, and one over the diagonal of its matrix; zero where a nozzle
+    /// determines the motion. A single entry if the viscosity is explicit, as all of the following.
+    pub viscous_residuals: Buffer<Vec4>,
+    /// The product of the matrix with the preconditioned residual, in m/s.
+    pub viscous_products: Buffer<Vec4>,
+    /// The direction in which the velocities change, in m/s.
+    pub viscous_directions: Buffer<Vec4>,
+    /// The product of the matrix with this direction, in m/s.
+    pub viscous_images: Buffer<Vec4>,
     /// The arrays of the carried quantities, row by row of their table: those above, and others.
     pub carried: Vec<CarriedArrays>,
     table: &'static [Carried],
@@ -117,6 +154,18 @@ impl Fields {
             corrections: executor.create("corrections", some(extras.corrections, 2 * n))?,
             shifts: executor.create("shifts", some(extras.corrections, n))?,
             boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
+            solve: executor.create_small("solve", &[SolveState::new(true)])?,
+            stiffness: executor.create("stiffness", some(extras.implicit, n))?,
+            iterates: executor.create("iterates", some(extras.implicit, n))?,
+            predicted: executor.create("predicted", some(extras.implicit, n))?,
+            solid_gradients: executor.create("solid_gradients", some(extras.solid_gradients, n))?,
+            residuals: executor.create("residuals", some(extras.implicit, n.div_ceil(64)))?,
+            impulses: executor.create("impulses", some(extras.implicit, n.div_ceil(64)))?,
+            viscous: executor.create_small("viscous", &[ViscousState::new(true)])?,
+            viscous_residuals: executor.create("viscous_residuals", some(extras.viscous, n))?,
+            viscous_products: executor.create("viscous_products", some(extras.viscous, n))?,
+            viscous_directions: executor.create("viscous_directions", some(extras.viscous, n))?,
+            viscous_images: executor.create("viscous_images", some(extras.viscous, n))?,
             carried,
             table,
         })
@@ -133,7 +182,8 @@ impl Fields {
         let mut set = buffer_set!(self =>
             params, state, duration, counters, positions, velocities, ids, sorted_positions,
             sorted_velocities, sorted_ids, densities, accelerations, normals, corrections, shifts,
-            boundary_matrices,
+            boundary_matrices, solve, stiffness, iterates, predicted, solid_gradients, residuals, impulses,
+            viscous, viscous_residuals, viscous_products, viscous_directions, viscous_images,
         );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));
         set

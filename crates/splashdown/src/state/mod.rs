@@ -9,11 +9,13 @@ mod counters;
 pub mod end_step;
 mod fields;
 mod params;
+mod solve;
 mod step;
 mod symmetric;
+mod viscous;
 
 pub use carried::{
-    Array, CARRIED, Carried, CarriedArrays, Initial, Kind, Reordered, Update, Values, bits,
+    Array, CARRIED, CARRIED_IMPLICIT, Carried, CarriedArrays, Initial, Kind, Reordered, Update, Values, bits,
     bytes_per_particle,
 };
 #[cfg(test)]
@@ -25,9 +27,11 @@ pub use counters::{
 pub(crate) use end_step::finish_step;
 pub use fields::{Extras, Fields};
 pub use params::{Params, WGSL as PARAMS};
+pub use solve::{SolveState, WGSL as SOLVE};
 pub use step::{STEPS, StepState, WGSL as STATE};
 pub(crate) use symmetric::Symmetric;
 pub use symmetric::WGSL as SYMMETRIC;
+pub use viscous::{ViscousState, WGSL as VISCOUS};
 
 use splashdown_gpu::PassDesc;
 

@@ -34,7 +34,7 @@ gpu_struct! {
         solid_offset: f32,
         /// Exponent of the equation of state.
         exponent: f32,
-        /// Kinematic viscosity in m^2/s.
+        /// Kinematic viscosity in m^2/s that is integrated explicitly.
         viscosity: f32,
         /// Coefficient alpha of the artificial viscosity.
         artificial_viscosity: f32,
@@ -65,8 +65,24 @@ gpu_struct! {
         inverse_kernel_at_spacing: f32,
         /// Numerical viscosity in m^2/s in the friction of bodies, in addition to that of the material.
         boundary_viscosity: f32,
-        /// Padding.
-        unused: f32,
+        /// 1 if the pressure is implicit: the time step then does not depend on sound and accelerations.
+        is_implicit: u32,
+        /// Largest mean residual of the density that the implicit pressure may have.
+        tolerance: f32,
+        /// Largest number of iterations of the implicit pressure.
+        max_iterations: u32,
+        /// The largest distance that a particle moves per step by its velocity, in spacings.
+        longest_motion: f32,
+        /// The pressure over rho0 times the solution of the implicit pressure: that of its forces on a lattice.
+        pressure_factor: f32,
+        /// Kinematic viscosity in m^2/s that is integrated implicitly. `viscosity` is zero then.
+        implicit_viscosity: f32,
+        /// Factor of the sums of the implicit viscosity in 1/s.
+        viscous_factor: f32,
+        /// The residual of the implicit viscosity at which its iterations stop, as a part of its reference.
+        viscous_tolerance: f32,
+        /// Largest number of iterations of the implicit viscosity.
+        most_viscous_iterations: u32,
     }
 }
 

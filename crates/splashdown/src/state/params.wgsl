@@ -28,7 +28,15 @@ struct Params {
     summed_mass: f32,
     inverse_kernel_at_spacing: f32,
     boundary_viscosity: f32,
-    unused: f32,
+    is_implicit: u32,
+    tolerance: f32,
+    max_iterations: u32,
+    longest_motion: f32,
+    pressure_factor: f32,
+    implicit_viscosity: f32,
+    viscous_factor: f32,
+    viscous_tolerance: f32,
+    most_viscous_iterations: u32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -12,6 +12,14 @@ struct StepState {
     max_acceleration: f32,
     density_error: f32,
     frame_duration: f32,
+    iterations: u32,
+    most_iterations: u32,
+    residual: f32,
+    compression: f32,
+    viscous_iterations: u32,
+    most_viscous_iterations: u32,
+    viscous_residual: f32,
+    unused: u32,
 }
 
 // The length of a step. Near the end of a frame the remaining time is split evenly, so that the last step is not tiny.

@@ -34,6 +34,23 @@ gpu_struct! {
         density_error: f32,
         /// Length of the frame in seconds.
         frame_duration: f32,
+        /// Iterations of the pressure solver in this frame.
+        iterations: u32,
+        /// Most iterations of one step in this frame.
+        most_iterations: u32,
+        /// Largest mean residual of the density that the pressure solver has accepted in this frame.
+        residual: f32,
+        /// Sum over the steps of this frame of the mean relative excess of density, computed from the positions at the
+        /// beginning of the step.
+        compression: f32,
+        /// Iterations of the implicit viscosity in this frame.
+        viscous_iterations: u32,
+        /// Most of them in one step of this frame.
+        most_viscous_iterations: u32,
+        /// Largest residual of the viscosity that was accepted in this frame, as a part of its reference.
+        viscous_residual: f32,
+        /// Padding.
+        unused: u32,
     }
 }
 

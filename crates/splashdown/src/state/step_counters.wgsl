@@ -8,6 +8,10 @@ const COUNTER_MAX_ACCELERATION: u32 = 5u;
 const COUNTER_MAX_EXCESS: u32 = 6u;
 const COUNTER_DRAINED: u32 = 7u;
 const COUNTER_MOVED: u32 = 8u;
+const COUNTER_UNCONVERGED: u32 = 9u;
+const COUNTER_SHORTEN: u32 = 10u;
+const COUNTER_MAX_PRESSURE: u32 = 11u;
+const COUNTER_VISCOUS_UNCONVERGED: u32 = 12u;
 
 // Marks of removed particles in the fourth component of a position.
 const DEAD_ESCAPED: f32 = 1.0;

@@ -15,10 +15,22 @@ fn finish_step() {
 
     let h = 0.5 * params.support_radius;
     let c = params.cfl_factor;
-    var stable = min(1.1 * state.stable_dt, params.max_dt);
-    stable = min(stable, c * h / (params.sound_speed + speed));
-    stable = min(stable, c * sqrt(h / max(acceleration, 1e-20)));
-    stable = min(stable, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
+    let is_slow = counters[COUNTER_SHORTEN] != 0u;
+    counters[COUNTER_SHORTEN] = 0u;
+    let pressure = bitcast<f32>(counters[COUNTER_MAX_PRESSURE]);
+    counters[COUNTER_MAX_PRESSURE] = 0u;
+    var stable = params.max_dt;
+    if (params.is_implicit == 1u) {
+        stable = min(stable, select(1.5, 0.7, is_slow) * state.stable_dt);
+        stable = min(stable, c * params.particle_spacing / max(speed, 1e-20));
+        stable = min(stable, 0.5 * params.particle_spacing / sqrt(max(pressure, 1e-20)));
+    } else {
+        stable = min(stable, 1.1 * state.stable_dt);
+        stable = min(stable, c * h / (params.sound_speed + speed));
+        stable = min(stable, c * sqrt(h / max(acceleration, 1e-20)));
+        stable = min(stable, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
+        stable = min(stable, 0.17 * h / max(params.density_diffusion * params.sound_speed, 1e-20));
+    }
     stable = min(stable, 0.125 * h * h / max(params.viscosity, 1e-20));
     if (stable < params.min_dt) {
         stable = params.min_dt;

@@ -1,6 +1,8 @@
 //! Removal of small connected components of a surface: single particles and spray.
 
-use glam::DVec3;
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
 use splashdown_io::Mesh;
 
 /// Removes the connected components of a mesh that enclose less than `volume` m^3; returns their
@@ -9,6 +11,11 @@ use splashdown_io::Mesh;
 /// Bubbles have triangles that face inwards and a negative volume; they remain. A closed mesh
 /// remains closed. The remaining vertices keep their order, normals and velocities.
 pub fn remove_small_components(mesh: &mut Mesh, volume: f64) -> usize {
+    take_small_components(mesh, volume).len()
+}
+
+/// As [`remove_small_components`]; returns the bounding boxes of the components, lower and upper corner in m.
+pub fn take_small_components(mesh: &mut Mesh, volume: f64) -> Vec<[[f32; 3]; 2]> {
     let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     for &[a, b, c] in &mesh.triangles {
         join(&mut parents, a, b);
@@ -24,15 +31,14 @@ pub fn remove_small_components(mesh: &mut Mesh, volume: f64) -> usize {
         six_fold[piece as usize] += a.dot(b.cross(c));
     }
     let dropped = |vertex: u32| (0.0..6.0 * volume).contains(&six_fold[roots[vertex as usize] as usize]);
-    let used: Vec<bool> = {
-        let mut used = vec![false; roots.len()];
-        mesh.triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
-        used
-    };
-    let count =
-        (0..roots.len() as u32).filter(|&v| roots[v as usize] == v && used[v as usize] && dropped(v)).count();
-    if count == 0 {
-        return 0;
+    let mut boxes: BTreeMap<u32, [Vec3; 2]> = BTreeMap::new();
+    for &vertex in mesh.triangles.as_flattened().iter().filter(|&&vertex| dropped(vertex)) {
+        let at = Vec3::from(mesh.vertices[vertex as usize]);
+        let [low, high] = boxes.entry(roots[vertex as usize]).or_insert([at; 2]);
+        (*low, *high) = (low.min(at), high.max(at));
+    }
+    if boxes.is_empty() {
+        return Vec::new();
     }
     let keep: Vec<bool> = (0..roots.len() as u32).map(|vertex| !dropped(vertex)).collect();
     let mut number = 0;
@@ -53,7 +59,7 @@ pub fn remove_small_components(mesh: &mut Mesh, volume: f64) -> usize {
         let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
         attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
     }
-    count
+    boxes.into_values().map(|corners| corners.map(Into::into)).collect()
 }
 
 /// The smallest known vertex of the component (union-find).
@@ -100,7 +106,16 @@ mod tests {
         // bulk.
         assert_eq!(remove_small_components(&mut mesh, 0.1 * particle), 0);
         assert_eq!(mesh.topology().unwrap().components, 3);
-        assert_eq!(remove_small_components(&mut mesh, 3.0 * particle), 2);
+        let boxes = take_small_components(&mut mesh, 3.0 * particle);
+        assert_eq!(boxes.len(), 2);
+        for ([low, high], place) in boxes.into_iter().zip(lone) {
+            let (low, high, place) = (Vec3::from(low), Vec3::from(high), Vec3::from(place));
+            assert!(
+                low.cmplt(place).all()
+                    && high.cmpgt(place).all()
+                    && (high - low).max_element() < 2.0 * spacing
+            );
+        }
         assert_eq!(mesh.vertices.len(), alone.vertices.len());
         assert_eq!(mesh.velocities, mesh.vertices);
         assert!(mesh.vertices.iter().map(|vertex| vertex[1]).eq(mesh.attributes[0].values.iter().copied()));

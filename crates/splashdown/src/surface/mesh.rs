@@ -6,9 +6,10 @@ use splashdown_gpu::{Buffer, BufferId, BufferSet, DispatchSize, Executor, Record
 use splashdown_io::Mesh;
 
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
-use super::{SurfaceError, blocks, field, march, smooth, volume};
+use super::{SurfaceError, anisotropy, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
 use crate::marching_cubes;
+use crate::scene::SurfaceKernels;
 
 /// The particles of a surface, in the buffers of the simulation. The label of each buffer is the
 /// name of its field.
@@ -75,6 +76,9 @@ pub(super) struct Buffers {
     pub lattice: Buffer<Lattice>,
     pub cases: Buffer<UVec2>,
     pub samples: Buffer<Vec4>,
+    pub neighbour_moments: Buffer<Vec4>,
+    pub kernel_centres: Buffer<Vec4>,
+    pub kernel_matrices: Buffer<Vec4>,
     pub local_density: Buffer<f32>,
     pub marks: Buffer<u32>,
     pub mark_starts: Buffer<u32>,
@@ -109,6 +113,9 @@ impl Buffers {
             lattice: e.create_uniform("lattice", lattice)?,
             cases: e.create_from("cases", &marching_cubes::packed())?,
             samples: e.create("samples", 0)?,
+            neighbour_moments: e.create("neighbour_moments", 0)?,
+            kernel_centres: e.create("kernel_centres", 0)?,
+            kernel_matrices: e.create("kernel_matrices", 0)?,
             local_density: e.create("local_density", 0)?,
             marks: e.create("marks", 0)?,
             mark_starts: e.create("mark_starts", 0)?,
@@ -139,7 +146,7 @@ impl Buffers {
     /// The buffers by name, for recordings.
     fn by_name(&self) -> BufferSet {
         buffer_set!(self =>
-            lattice, cases, samples, local_density, marks, mark_starts, block_slot, block_list, field_values, signs, rows,
+            lattice, cases, samples, neighbour_moments, kernel_centres, kernel_matrices, local_density, marks, mark_starts, block_slot, block_list, field_values, signs, rows,
             vertex_counts, triangle_counts, vertex_starts, triangle_starts, status, draw_args, block_groups,
             vertex_groups, triangle_groups, vertex_positions, normals, indices, valences, one_ring_starts, one_rings,
             relaxed,
@@ -147,7 +154,12 @@ impl Buffers {
     }
 
     /// Resizes every buffer to the capacities of the lattice.
-    fn resize(&mut self, e: &mut Executor, lattice: &Lattice, smoothed: bool) -> Result<(), SurfaceError> {
+    fn resize(
+        &mut self,
+        e: &mut Executor,
+        lattice: &Lattice,
+        params: &SurfaceParams,
+    ) -> Result<(), SurfaceError> {
         macro_rules! resize {
             ($($buffer:ident: $len:expr),* $(,)?) => {
                 $(if self.$buffer.len() as usize != $len { e.resize(&mut self.$buffer, $len)?; })*
@@ -163,6 +175,9 @@ impl Buffers {
             vertex_counts: blocks, triangle_counts: blocks, vertex_starts: blocks + 1, triangle_starts: blocks + 1,
             vertex_positions: vertices, normals: vertices, indices: 3 * triangles,
         }
+        let particles = if params.kernels == SurfaceKernels::Anisotropic { particles } else { 0 };
+        resize! { neighbour_moments: 3 * particles, kernel_centres: particles, kernel_matrices: 2 * particles }
+        let smoothed = params.smoothing_iterations > 0;
         let (vertices, triangles) = if smoothed { (vertices, triangles) } else { (0, 0) };
         resize! { valences: vertices, one_ring_starts: vertices + 1, one_rings: 3 * triangles, relaxed: vertices }
         e.write(self.lattice, std::slice::from_ref(lattice))?;
@@ -187,7 +202,9 @@ pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> R
         + triangles * 12;
     // Valences, one-ring starts, relaxed vertices; one-rings.
     let smoothing = vertices * (4 + 4 + 16) + triangles * 24;
-    Ok(whole + if params.smoothing_iterations > 0 { smoothing } else { 0 })
+    // Moments, centres and matrices.
+    let kernels = u64::from(particles) * if params.kernels == SurfaceKernels::Anisotropic { 96 } else { 0 };
+    Ok(whole + kernels + if params.smoothing_iterations > 0 { smoothing } else { 0 })
 }
 
 impl Surface {
@@ -264,7 +281,7 @@ impl Surface {
     /// Resizes the buffers to the lattice, and rebuilds the list of passes.
     fn allocate(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let smoothed = self.params.smoothing_iterations > 0;
-        self.b.resize(executor, &self.lattice, smoothed)?;
+        self.b.resize(executor, &self.lattice, &self.params)?;
         if self.block_scan.len() != self.lattice.block_capacity {
             let scan = Scan::new(executor, self.lattice.block_capacity)?;
             std::mem::replace(&mut self.block_scan, scan).free(executor)?;
@@ -295,13 +312,21 @@ impl Surface {
 
     fn record_field(&self, recording: &mut Recording, buffers: &BufferSet) {
         let particles = DispatchSize::Items(self.input.particle_capacity);
-        recording.dispatch(&volume::VOLUME, particles, buffers);
+        let is_anisotropic = self.params.kernels == SurfaceKernels::Anisotropic;
+        if is_anisotropic {
+            recording.dispatch(&anisotropy::MOMENTS, particles, buffers);
+            recording.dispatch(&anisotropy::SHAPES, particles, buffers);
+            recording.dispatch(&anisotropy::WEIGHTS, particles, buffers);
+        } else {
+            recording.dispatch(&volume::VOLUME, particles, buffers);
+        }
         recording.clear(self.b.marks);
         recording.dispatch(&blocks::MARK, particles, buffers);
         self.mark_scan.record(recording, self.b.marks, self.b.mark_starts);
         recording.dispatch(&blocks::COMPACT, DispatchSize::Items(self.lattice.block_count), buffers);
         recording.dispatch(&blocks::PLAN, DispatchSize::Groups(1), buffers);
-        recording.dispatch(&field::FIELD, self.per_block(), buffers);
+        let field = if is_anisotropic { &field::STRETCHED_FIELD } else { &field::FIELD };
+        recording.dispatch(field, self.per_block(), buffers);
     }
 
     fn record_march(&self, recording: &mut Recording, buffers: &BufferSet) {

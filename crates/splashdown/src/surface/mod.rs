@@ -2,7 +2,11 @@
 //!
 //! # How it works
 //!
-//! 1. `volume`: the volume and the local density of each particle.
+//! Closed sides of the domain are planes of symmetry of the field, and the mesh ends there: see
+//! `walls`.
+//!
+//! 1. `volume`: the volume and the local density of each particle; or `anisotropy`, the ellipsoids of
+//!    the anisotropic field.
 //! 2. `blocks`: the blocks of 8x8x8 nodes within reach of particles are marked, numbered by a scan,
 //!    and listed.
 //! 3. `field`: the colour field and its signs at the nodes of these blocks.
@@ -38,6 +42,7 @@
 //! reproducible; indices from scans avoid both. Dual contouring places vertices at creases, which
 //! water does not have, and can produce edges with four triangles.
 
+mod anisotropy;
 mod blocks;
 mod components;
 mod error;
@@ -53,8 +58,9 @@ mod smooth;
 #[cfg(test)]
 mod tests;
 mod volume;
+mod walls;
 
-pub use components::remove_small_components;
+pub use components::{remove_small_components, take_small_components};
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
 #[doc(hidden)]
@@ -65,6 +71,7 @@ pub use mesh::{Surface, SurfaceStats};
 pub use params::Status;
 pub use params::SurfaceParams;
 pub use reconstruct::reconstruct_with;
+pub use walls::{Walls, remove_caps};
 
 use splashdown_gpu::PassDesc;
 
@@ -73,10 +80,14 @@ use splashdown_gpu::PassDesc;
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
         &volume::VOLUME,
+        &anisotropy::MOMENTS,
+        &anisotropy::SHAPES,
+        &anisotropy::WEIGHTS,
         &blocks::MARK,
         &blocks::COMPACT,
         &blocks::PLAN,
         &field::FIELD,
+        &field::STRETCHED_FIELD,
         &march::COUNT,
         &march::FINISH,
         &march::VERTICES,

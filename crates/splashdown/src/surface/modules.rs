@@ -5,6 +5,9 @@ use splashdown_gpu::WgslModule;
 /// The neighbour grid.
 pub(crate) use crate::cells::GRID;
 
+/// The walls at which the surface ends.
+pub(crate) use super::walls::WGSL as WALLS;
+
 /// The size of the mesh.
 pub(crate) const STATUS: WgslModule =
     WgslModule { name: "surface/status", source: include_str!("status.wgsl") };

@@ -3,9 +3,10 @@
 use glam::{DVec3, UVec3, Vec3};
 use splashdown_gpu::gpu_struct;
 
-use super::SurfaceError;
+use super::anisotropy::{self, MAX_SHIFT, MAX_STRETCH};
+use super::{SurfaceError, Walls};
 use crate::cells::Grid;
-use crate::scene::SurfaceSettings;
+use crate::scene::{SurfaceKernels, SurfaceSettings};
 
 /// Nodes along the side of a block.
 pub(crate) const SIDE: u32 = 8;
@@ -30,6 +31,8 @@ pub struct SurfaceParams {
     pub particle_spacing: f32,
     /// Distance at which the kernel becomes zero; usually 2 spacings.
     pub support_radius: f32,
+    /// The kernels of the field.
+    pub kernels: SurfaceKernels,
     /// Edge length of a marching-cubes cell; usually 0.5 spacings.
     pub cell_size: f32,
     /// Value of the colour field at the surface. The field is about 1 inside the fluid and 0
@@ -38,6 +41,8 @@ pub struct SurfaceParams {
     /// Iterations of weighted Laplacian smoothing. 0 keeps the vertices of marching cubes; 15 to 25
     /// remove the bumps of the particles.
     pub smoothing_iterations: u32,
+    /// Closed sides at which the mesh ends; [`Walls::NONE`] without.
+    pub walls: Walls,
 }
 
 impl SurfaceParams {
@@ -47,20 +52,24 @@ impl SurfaceParams {
         Self {
             particle_spacing,
             support_radius: 2.0 * particle_spacing,
+            kernels: SurfaceKernels::Isotropic,
             cell_size: 0.5 * particle_spacing,
             iso_level: 0.6,
             smoothing_iterations: 0,
+            walls: Walls::NONE,
         }
     }
 
-    /// The settings of a scene.
-    pub fn of_scene(settings: &SurfaceSettings, particle_spacing: f32) -> Self {
+    /// The settings of a scene. Its surface ends at the [closed sides](Walls::of_domain) of its domain.
+    pub fn of_scene(settings: &SurfaceSettings, particle_spacing: f32, walls: Walls) -> Self {
         Self {
             particle_spacing,
             support_radius: settings.support_ratio * particle_spacing,
+            kernels: settings.kernels,
             cell_size: settings.cell_size,
             iso_level: settings.iso_level,
             smoothing_iterations: settings.smoothing_iterations,
+            walls,
         }
     }
 
@@ -123,8 +132,30 @@ gpu_struct! {
         vertex_capacity: u32,
         triangle_capacity: u32,
         particle_capacity: u32,
+        /// Corners of the closed sides in m, see [`Walls`].
+        wall_low: Vec3,
+        /// Distance from a wall in m within which a node counts as outside.
+        wall_margin: f32,
+        wall_high: Vec3,
+        /// Largest distance in m at which a sample contributes to the field.
+        reach: f32,
+        /// The layers of nodes that are moved to the walls, see [`Lattice::coordinate`].
+        wall_low_nodes: UVec3,
+        /// Largest distance in m from the position by which a particle is sorted to a node that its sample contributes to.
+        search_reach: f32,
+        wall_high_nodes: UVec3,
+        /// Number of neighbours in the bulk, as [`anisotropy`](super::anisotropy) counts them.
+        bulk_number: f32,
+        padding: UVec3,
+        /// Size of the anisotropic kernel of a lone particle, see [`lone_size`](super::anisotropy::lone_size).
+        lone_size: f32,
     }
 }
+
+/// [`Lattice::wall_margin`] in cells. A vertex on a wall is at least this far from the inner end of its edge.
+const WALL_MARGIN: f32 = 1e-3;
+/// Distance in wall margins of the layer of nodes that is moved to a wall.
+pub(crate) const LAYER_MARGINS: f32 = 2.0;
 
 impl Lattice {
     /// The lattice over everything within reach of particles in `grid`, with capacities estimated
@@ -141,10 +172,21 @@ impl Lattice {
             return Err(SurfaceError::GridTooFine { cell_size, support_radius });
         }
         let cell = f64::from(params.cell_size);
-        let low = grid.origin.as_dvec3();
-        let extent = UVec3::new(grid.size_x, grid.size_y, grid.size_z).as_dvec3() * f64::from(grid.cell_size);
+        let [reach, search_reach] = match params.kernels {
+            SurfaceKernels::Isotropic => [params.support_radius; 2],
+            SurfaceKernels::Anisotropic => {
+                [MAX_STRETCH, MAX_STRETCH + MAX_SHIFT].map(|ratio| ratio * params.support_radius)
+            }
+        };
+        // Part of the reach beyond a ghost cell.
+        let beyond = f64::from(search_reach - params.support_radius);
+        let low = grid.origin.as_dvec3() - beyond;
+        let extent = 2.0 * beyond
+            + UVec3::new(grid.size_x, grid.size_y, grid.size_z).as_dvec3() * f64::from(grid.cell_size);
         let cell_size = params.cell_size;
-        let (most, allowed) = (low.abs().max((low + extent).abs()).max_element(), farthest(cell_size));
+        let most = low.abs().max((low + extent).abs()).max_element();
+        // The layers of nodes at walls need more bits within a cell.
+        let allowed = farthest(cell_size) / if params.walls == Walls::NONE { 1.0 } else { 16.0 };
         if most > f64::from(allowed) {
             return Err(SurfaceError::TooFar { farthest: most as f32, cell_size, allowed });
         }
@@ -159,6 +201,12 @@ impl Lattice {
             let size = extent.as_vec3().to_array();
             return Err(SurfaceError::TooLarge { size, cell_size: params.cell_size, blocks: count, allowed });
         }
+        // The layers of nodes nearest to the walls; an index that no node has without a wall, and for walls far outside.
+        let layers = |wall: Vec3| {
+            let nearest = (wall.as_dvec3() / cell - first).round();
+            let index = |n: f64| if (0.0..1e9).contains(&n) { n as u32 } else { 1 << 31 };
+            UVec3::from_array(nearest.to_array().map(index))
+        };
         let mut lattice = Self {
             origin: (first * cell).as_vec3(),
             cell_size: params.cell_size,
@@ -174,6 +222,17 @@ impl Lattice {
             vertex_capacity: 1,
             triangle_capacity: 1,
             particle_capacity,
+            wall_low: params.walls.low,
+            // At least two steps of the coordinates, far from the origin.
+            wall_margin: (WALL_MARGIN * params.cell_size).max(2.0 * f32::EPSILON * most as f32),
+            wall_high: params.walls.high,
+            reach,
+            wall_low_nodes: layers(params.walls.low),
+            search_reach,
+            wall_high_nodes: layers(params.walls.high),
+            bulk_number: anisotropy::bulk_number(params),
+            padding: UVec3::ZERO,
+            lone_size: anisotropy::lone_size(params),
         };
         lattice.estimate(params);
         Ok(lattice)
@@ -209,9 +268,22 @@ impl Lattice {
             .then(|| (z as usize * self.blocks_y as usize + y as usize) * self.blocks_x as usize + x as usize)
     }
 
-    /// The coordinate of a node along an axis.
+    /// The walls.
+    pub fn walls(&self) -> Walls {
+        Walls { low: self.wall_low, high: self.wall_high }
+    }
+
+    /// The coordinate of a node along an axis: a multiple of the cell size, except that the layer of nodes nearest to a wall
+    /// lies immediately in front of it. The cells of the surface then fill the edges of a box. On a regular lattice they
+    /// cut every edge off, by up to a cell.
     pub fn coordinate(&self, axis: usize, node: u32) -> f32 {
-        self.origin[axis] + self.cell_size * node as f32
+        if node == self.wall_low_nodes[axis] {
+            self.wall_low[axis] + LAYER_MARGINS * self.wall_margin
+        } else if node == self.wall_high_nodes[axis] {
+            self.wall_high[axis] - LAYER_MARGINS * self.wall_margin
+        } else {
+            self.origin[axis] + self.cell_size * node as f32
+        }
     }
 }
 

@@ -9,7 +9,8 @@ use splashdown_gpu::{Command, CpuExecutor, Executor, GpuExecutor, Recording, tes
 
 use super::mesh::Buffers;
 use super::params::SurfaceParams;
-use super::{Surface, reconstruct};
+use super::{Surface, Walls, reconstruct};
+use crate::scene::SurfaceKernels;
 
 const SPACING: f32 = 0.05;
 
@@ -42,7 +43,7 @@ fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<St
 macro_rules! for_each_buffer {
     ($a:expr, $b:expr, $one:ident, $two:ident, $name:ident => $body:block) => {
         for_each_buffer!(@ $a, $b, $one, $two, $name, $body;
-            samples local_density marks mark_starts block_slot block_list field_values signs rows vertex_counts triangle_counts
+            samples neighbour_moments kernel_centres kernel_matrices local_density marks mark_starts block_slot block_list field_values signs rows vertex_counts triangle_counts
             vertex_starts triangle_starts status draw_args block_groups vertex_groups triangle_groups vertex_positions normals
             indices valences one_ring_starts one_rings relaxed)
     };
@@ -79,7 +80,7 @@ fn compare(buffers: [&Buffers; 2], iso: f32, cpu: &mut Executor, gpu: &mut Execu
         match name {
             // Sums of about thirty terms of order one, in another order: thirty roundings of 6e-8,
             // and the hardware's square root.
-            "samples" | "local_density" | "field_values" | "vertex_positions" | "relaxed" | "normals" => {
+            "samples" | "neighbour_moments" | "kernel_centres" | "kernel_matrices" | "local_density" | "field_values" | "vertex_positions" | "relaxed" | "normals" => {
                 // A normal is a difference of such values divided by its length, which can be a
                 // hundred times smaller.
                 let tolerance = if name == "normals" { 5e-4 } else { 1e-5 };
@@ -156,9 +157,17 @@ fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Optio
 #[test]
 fn every_pass_agrees_with_its_cpu_counterpart() {
     let Some(gpu) = testing::gpu_or_skip("every_pass_agrees_with_its_cpu_counterpart") else { return };
-    for smoothing_iterations in [0, 3] {
-        let params = SurfaceParams { smoothing_iterations, ..SurfaceParams::new(SPACING) };
-        command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, None);
+    // Walls that touch the ball and the single particles.
+    let walls =
+        Walls::new([-0.215, -0.36, -0.215], [0.43, 0.36, 0.215], [[true, true], [true, false], [true; 2]]);
+    for (smoothing_iterations, kernels) in
+        [(0, SurfaceKernels::Isotropic), (3, SurfaceKernels::Isotropic), (3, SurfaceKernels::Anisotropic)]
+    {
+        for walls in [Walls::NONE, walls] {
+            let params =
+                SurfaceParams { smoothing_iterations, kernels, walls, ..SurfaceParams::new(SPACING) };
+            command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, None);
+        }
     }
 }
 

@@ -104,14 +104,17 @@ fn begin(name: &str, length: f32) -> Case {
 
 fn end_step_cases() -> Vec<Case> {
     let state = state(100);
-    let calm = [0.5, 10.0, 0.002];
-    let ways: [(&str, StepState, [f32; 3], Params); 9] = [
+    let calm = [0.5, 10.0, 0.002, 0.0];
+    let implicit = Params { is_implicit: 1, ..params(2.0) };
+    let ways: [(&str, StepState, [f32; 4], Params); 11] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
         ("limited by sound", state, calm, params(2.0)),
-        ("limited by acceleration", state, [0.5, 1e6, 0.0], params(2.0)),
-        ("limited by speed", state, [300.0, 10.0, 0.2], Params { sound_speed: 0.1, ..params(2.0) }),
+        ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
+        ("limited by speed", state, [300.0, 10.0, 0.2, 0.0], Params { sound_speed: 0.1, ..params(2.0) }),
         ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
-        ("below the smallest", state, [0.5, 1e9, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
+        ("below the smallest", state, [0.5, 1e9, 0.0, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
+        ("implicit, grown by half", state, [0.5, 1e6, 0.0, 4.0], implicit),
+        ("implicit, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], implicit),
         ("two steps before the last", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
         ("before the last", StepState { remaining: 7e-4, ..state }, calm, params(2.0)),
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
@@ -128,16 +131,24 @@ fn end_step_cases() -> Vec<Case> {
     cases
 }
 
-fn end_step(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> Case {
-    let mut counters = vec![5, 6, 7, 8, 0, 0, 0, 0, 0];
+fn end_step(name: &str, state: StepState, maxima: [f32; 4], params: Params) -> Case {
+    let mut left = vec![0; StepCounters::WORDS];
+    left[..4].copy_from_slice(&[5, 6, 7, 8]);
+    let mut counters = left.clone();
     counters[StepCounters::MOVED] = u32::from(state.run_count > 0);
-    for (k, value) in maxima.iter().enumerate() {
-        counters[StepCounters::MAX_SPEED + k] = value.to_bits();
+    let words = [
+        StepCounters::MAX_SPEED,
+        StepCounters::MAX_ACCELERATION,
+        StepCounters::MAX_EXCESS,
+        StepCounters::MAX_PRESSURE,
+    ];
+    for (word, value) in words.into_iter().zip(maxima) {
+        counters[word] = value.to_bits();
     }
     let (expected, left) = if state.run_count == 0 {
         (state, counters.clone())
     } else {
-        (next_state(&params, &state, maxima.map(f64::from)), vec![5, 6, 7, 8, 0, 0, 0, 0, 0])
+        (next_state(&params, &state, maxima.map(f64::from)), left)
     };
     let oracle: Check = Box::new(move |out| {
         same_state(&state_of(&out[0]), &expected)?;
@@ -160,18 +171,29 @@ fn end_step(name: &str, state: StepState, maxima: [f32; 3], params: Params) -> C
 }
 
 /// Monaghan's and Morris's limits, in f64.
-pub fn next_state(params: &Params, state: &StepState, [speed, acceleration, excess]: [f64; 3]) -> StepState {
+pub fn next_state(
+    params: &Params,
+    state: &StepState,
+    [speed, acceleration, excess, pressure]: [f64; 4],
+) -> StepState {
     let p = |value: f32| f64::from(value);
     let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
-    let limits = [
+    let explicit = [
         1.1 * p(state.stable_dt),
-        p(params.max_dt),
         factor * h / (p(params.sound_speed) + speed),
         factor * (h / acceleration).sqrt(),
         factor * 0.4 * p(params.particle_spacing) / speed,
-        0.125 * h * h / p(params.viscosity),
+        0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),
     ];
-    let least = limits.into_iter().fold(f64::INFINITY, f64::min);
+    let implicit = [
+        1.5 * p(state.stable_dt),
+        factor * p(params.particle_spacing) / speed,
+        0.5 * p(params.particle_spacing) / pressure.sqrt(),
+    ];
+    let common = [p(params.max_dt), 0.125 * h * h / p(params.viscosity)];
+    let limits = if params.is_implicit == 1 { &implicit[..] } else { &explicit[..] };
+    let limits = limits.iter().copied().chain(common);
+    let least = limits.fold(f64::INFINITY, f64::min);
     let stable = least.max(p(params.min_dt));
     // In the same order as the pass: the remaining time is a difference, and another rounding would change it.
     let complete = state.dt >= state.remaining;
@@ -295,7 +317,7 @@ fn integrate(label: &str, name: &str, params: Params, remaining: f32, counts: bo
         Data::Vec4(accelerations.clone()),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
         Data::Vec4(vec![Vec4::ZERO; n]).poison(),
-        Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0, 0]),
+        Data::U32(vec![0, 3, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]),
         Data::U32(cell_counts.clone()),
     ];
     let (positions, velocities, counters) = moved(&world, &accelerations, &shifts);
@@ -340,7 +362,7 @@ fn moved(world: &World, accelerations: &[Vec4], shifts: &[Vec4]) -> (Vec<f64>, V
     let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
     let closed = |axis: usize, side: usize| params.closed >> (2 * axis + side) & 1 == 1;
     let (mut positions, mut velocities) = (Vec::new(), Vec::new());
-    let mut counters = [0, 3, 1, 2, 0, 0, 0, 0, 1];
+    let mut counters = [0, 3, 1, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0];
     let mut highest = [0.0_f64; 3];
     for (i, &p) in world.positions.iter().enumerate() {
         let (old, a) = (world.velocities[i], accelerations[i].xyz().as_dvec3());

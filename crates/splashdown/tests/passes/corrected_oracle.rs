@@ -90,7 +90,8 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
         let scale = open * 4.0 * c.support.powi(2);
         Continued {
             density: (density, rho(i) + c.dt * rate_size + 4.0 * determinant_size * deficit),
-            matrix: corrected,
+            // Where a body fills a twentieth of the kernel, gradients are not corrected.
+            matrix: open * corrected + (1.0 - open) * DMat3::IDENTITY,
             matrix_size: matrix_error,
             shifting: (
                 scale * complete * contract(strain, strain).sqrt(),

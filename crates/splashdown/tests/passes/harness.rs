@@ -7,7 +7,7 @@ use splashdown::cells::Grid;
 use splashdown::flow::{Nozzle, SinkShape};
 use splashdown::foam::{Diffuse, FoamParams, FoamState};
 use splashdown::probes::ProbePoint;
-use splashdown::state::{Params, StepState};
+use splashdown::state::{Params, SolveState, StepState, ViscousState};
 use splashdown_gpu::{
     Access, Buffer, BufferSet, DispatchSize, Executor, GpuElement, GpuStruct, PassDesc, Recording, bytemuck,
 };
@@ -23,6 +23,8 @@ pub enum Data {
     Params(Params),
     Grid(Grid),
     State(StepState),
+    Solve(SolveState),
+    Viscous(ViscousState),
     Nozzles(Vec<Nozzle>),
     Drains(Vec<SinkShape>),
     Probes(Vec<ProbePoint>),
@@ -53,6 +55,8 @@ impl Data {
             Self::Params(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Grid(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::State(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Solve(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Viscous(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
         }
     }
 
@@ -86,6 +90,8 @@ impl Data {
             Self::Params(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Grid(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::State(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Solve(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Viscous(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
         }
     }
 
@@ -176,6 +182,8 @@ fn upload(
         Data::FoamState(v) => target.array(&[*v], |v| Data::FoamState(v[0])),
         Data::Diffuse(v) => target.array(v, Data::Diffuse),
         Data::State(v) => target.array(&[*v], |v| Data::State(v[0])),
+        Data::Solve(v) => target.array(&[*v], |v| Data::Solve(v[0])),
+        Data::Viscous(v) => target.array(&[*v], |v| Data::Viscous(v[0])),
         Data::Params(v) => target.uniform(v),
         Data::Foam(v) => target.uniform(v),
         Data::Grid(v) => target.uniform(v),

@@ -10,11 +10,14 @@ mod corrected_oracle;
 mod flow_cases;
 mod foam_cases;
 mod harness;
+mod implicit_cases;
 mod mouse_force_cases;
 mod neighbour_cases;
 mod oracle;
 mod probe_cases;
 mod sort_cases;
+mod viscous_cases;
+mod viscous_solve;
 mod walls;
 mod whole_step;
 mod world;
@@ -30,6 +33,8 @@ fn all_cases() -> Vec<Case> {
         carried_cases::cases(),
         cases::cases(),
         neighbour_cases::cases(),
+        implicit_cases::cases(),
+        viscous_cases::cases(),
         flow_cases::cases(),
         foam_cases::cases(),
         probe_cases::cases(),

@@ -216,8 +216,8 @@ fn scatter(world: &World, name: &str, moved: u32) -> Case {
     counters[StepCounters::MOVED] = moved;
     let mut after = before;
     if moved == 1 {
-        let maxima = [0.5, 10.0, 0.002];
-        for (k, value) in maxima.iter().enumerate() {
+        let maxima = [0.5, 10.0, 0.002, 0.0];
+        for (k, value) in maxima[..3].iter().enumerate() {
             counters[StepCounters::MAX_SPEED + k] = f32::to_bits(*value);
         }
         after = next_state(&params, &before, maxima.map(f64::from));

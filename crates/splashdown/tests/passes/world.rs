@@ -53,6 +53,15 @@ pub fn params(support_ratio: f32) -> Params {
         closed: 0b111111,
         clamp_pressure: 0,
         approach_damping_factor: 1.0,
+        tolerance: 0.001,
+        max_iterations: 5,
+        longest_motion: 0.5,
+        pressure_factor: 0.9,
+        implicit_viscosity: 0.02,
+        viscous_factor: 0.02 * SPACING.powi(3) * 525.0
+            / (std::f32::consts::PI * (support_ratio * SPACING).powi(5)),
+        viscous_tolerance: 0.01,
+        most_viscous_iterations: 6,
         ..bytemuck::Zeroable::zeroed()
     }
 }
@@ -71,6 +80,14 @@ pub fn state(particles: usize) -> StepState {
         max_acceleration: 9.0,
         density_error: 0.01,
         frame_duration: 0.02,
+        iterations: 7,
+        most_iterations: 3,
+        residual: 0.0002,
+        compression: 0.004,
+        viscous_iterations: 9,
+        most_viscous_iterations: 4,
+        viscous_residual: 0.003,
+        unused: 0,
     }
 }
 

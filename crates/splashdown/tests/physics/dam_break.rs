@@ -72,7 +72,6 @@ impl Column {
             position = [0, 0, 0]
             size = [{A}, {}, {thick}]
             [solver]
-            method = "wcsph"
             {}
             "#,
             -self.gravity,
@@ -149,8 +148,9 @@ fn height_error(simulated: &Series, measured: &Series, until: f64) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-const SUMMATION: &str = "";
-const CONTINUITY: &str = "density = \"continuity\"\nartificial_viscosity = 0.1";
+const SUMMATION: &str = "method = \"wcsph\"";
+const CONTINUITY: &str = "method = \"wcsph\"\ndensity = \"continuity\"\nartificial_viscosity = 0.1";
+const DFSPH: &str = "method = \"dfsph\"";
 
 fn compare(figures: &mut Figures, column: &Column) -> Collapse {
     let collapse = column.simulate();
@@ -170,7 +170,7 @@ fn compare(figures: &mut Figures, column: &Column) -> Collapse {
 #[test]
 fn a_collapsing_column_agrees_with_martin_and_moyce() {
     let (across, until) = if full() { (20, 4.2) } else { (16, 2.5) };
-    for (word, solver) in [("summation", SUMMATION), ("continuity", CONTINUITY)] {
+    for (word, solver) in [("summation", SUMMATION), ("continuity", CONTINUITY), ("dfsph", DFSPH)] {
         let column = Column { across, solver, gravity: GRAVITY, until };
         let mut figures = Figures::new(format!("dam break, {word}, CPU"));
         let collapse = compare(&mut figures, &column);

@@ -9,13 +9,18 @@ mod figures;
 mod floating;
 mod free_fall;
 mod hydrostatics;
+mod implicit;
+#[path = "../meshes/mod.rs"]
+mod meshes;
 mod plot;
 mod shapes;
 mod spheric2;
+mod still_water;
 mod stretching;
 mod submerged;
 mod tilted;
 mod torricelli;
+mod viscosity;
 mod waves;
 
 use glam::DVec3;

@@ -13,7 +13,8 @@ use splashdown_gpu::CpuExecutor;
 use splashdown_io::Particles;
 
 use super::figures::{Figures, full};
-use super::shapes::{body, file, tub};
+use super::meshes::tub;
+use super::shapes::{body, file};
 use super::{rms_speed, scene};
 
 const GRAVITY: f32 = 9.81;

@@ -11,8 +11,9 @@ use splashdown::scene::Motion;
 use splashdown::{Device, Simulation};
 
 use super::figures::{Figures, Series, full};
+use super::meshes::cuboid;
 use super::scene;
-use super::shapes::{body, cuboid, file};
+use super::shapes::{body, file};
 
 const GRAVITY: f64 = 9.81;
 const SLIT: f32 = 0.08;

@@ -69,7 +69,7 @@ impl Wave {
             self.solver
         ));
         let mut particles = sample::particles(&scene).unwrap();
-        sample::start_at_rest(&scene, &mut particles);
+        sample::start_at_rest(&scene, &mut particles, &[]);
         let (k, omega) = (wave_number(), frequency());
         let amplitude = STEEPNESS * DEPTH * omega / (k * DEPTH).sinh();
         for (x, v) in particles.positions.iter().zip(&mut particles.velocities) {
@@ -145,7 +145,9 @@ fn a_standing_wave_keeps_its_height_and_its_period() {
             for (word, solver) in [
                 ("accuracy = engineering", ENGINEERING),
                 ("artificial viscosity 0.1", VISCOUS),
-                ("summation", ""),
+                ("summation", "density = \"summation\""),
+                ("dfsph", "method = \"dfsph\""),
+                ("dfsph, support ratio 3", "method = \"dfsph\"\nsupport_ratio = 3"),
             ] {
                 let variant = Wave { solver, ..wave }.measure();
                 figures.report(format!("loss of height, {word}"), variant.loss);

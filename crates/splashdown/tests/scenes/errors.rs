@@ -77,6 +77,13 @@ snapshot!(
         "\"mueller2003\"\nsurface_tension = \"akinci2013\"\ndensity = \"continuity\"\nkernel = \"cubic_spline\"\nstiffness = 3\nsound_speed = 10"
     )
 );
+snapshot!(
+    implicit_tolerances,
+    changed("\"wcsph\"", "\"dfsph\"\ntolerance = 0\nmax_iterations = 1\ncfl_factor = 1.5\nsound_speed = 20")
+);
+snapshot!(implicit_keys, changed("\"wcsph\"", "\"dfsph\"\nsound_speed = 20\ndensity = \"continuity\""));
+snapshot!(implicit_step, changed("\"wcsph\"", "\"dfsph\"\nmax_dt = 0.1"));
+snapshot!(tolerance_without_iterations, format!("{CUBE}tolerance = 0.001\n"));
 snapshot!(ignored_diffusion, format!("{CUBE}density_diffusion = 0.2\nsurface_tension = \"mueller2003\"\n"));
 snapshot!(
     output_without_surface,

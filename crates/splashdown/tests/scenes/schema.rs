@@ -150,7 +150,7 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
         for (name, key) in keys {
             let Some(default) = key.get("default") else { continue };
             // Keys without effect for the plain method; their defaults are compared below.
-            if name == "density_diffusion" {
+            if ["density_diffusion", "tolerance", "max_iterations"].contains(&name.as_str()) {
                 continue;
             }
             let header = format!("[{section}]");
@@ -175,6 +175,10 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
     assert!(seen > 20, "only {seen} defaults were compared");
     assert_eq!(plain.solver, Solver::default());
     assert_eq!(plain.surface, SurfaceSettings::for_spacing(0.05));
-    let diffusion = &schema["properties"]["solver"]["properties"]["density_diffusion"]["default"];
-    assert_eq!(diffusion.as_f64().map(|x| x as f32), Some(plain.solver.density_diffusion));
+    for (name, standard) in
+        [("density_diffusion", plain.solver.density_diffusion), ("tolerance", plain.solver.tolerance)]
+    {
+        let default = &schema["properties"]["solver"]["properties"][name]["default"];
+        assert_eq!(default.as_f64().map(|x| x as f32), Some(standard), "{name}");
+    }
 }

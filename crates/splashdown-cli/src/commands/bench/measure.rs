@@ -52,6 +52,11 @@ pub struct Row {
     pub fastest: f64,
     pub nanoseconds_per_particle: f64,
     pub particle_steps_per_second: f64,
+    /// The last time step over `seconds_per_step`.
+    pub simulated_per_wall: f64,
+    /// With an implicit pressure: iterations per step, the residual at which those of the last steps stopped, the tolerance,
+    /// and the mean compression from the positions.
+    pub pressure: Option<Pressure>,
     /// Particle spacing in m.
     pub spacing: f32,
     /// Where the kernel becomes zero, in m.
@@ -76,6 +81,17 @@ pub struct Row {
     pub passes: BTreeMap<&'static str, PassNumbers>,
     #[serde(skip)]
     pub timings: Timings,
+}
+
+/// The iterations of an implicit pressure.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Pressure {
+    pub iterations_per_step: f64,
+    pub residual: f32,
+    pub tolerance: f32,
+    pub compression: f64,
+    /// Steps that did not converge.
+    pub unconverged: u32,
 }
 
 /// Measures a scene.
@@ -124,6 +140,14 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
     // For the current number of dispatches. Fewer dispatches would lower it.
     let roofline_seconds = roofline.seconds(bytes, operations, dispatches);
     let support_radius = simulation.params().support_radius;
+    let stats = simulation.stats();
+    let pressure = (stats.iterations > 0).then(|| Pressure {
+        iterations_per_step: stats.iterations as f64 / stats.steps.max(1) as f64,
+        residual: stats.residual,
+        tolerance: scene.solver.tolerance,
+        compression: stats.mean_compression,
+        unconverged: stats.unconverged,
+    });
     let positions = simulation.particles()?.positions;
     Ok(Row {
         device: match simulation.gpu() {
@@ -139,6 +163,8 @@ pub fn measure(scene: &Scene, arguments: &BenchArguments, roofline: Roofline) ->
         fastest: rounds[0],
         nanoseconds_per_particle: 1e9 * seconds / count as f64,
         particle_steps_per_second: count as f64 / seconds,
+        simulated_per_wall: f64::from(stats.dt) / seconds,
+        pressure,
         spacing: scene.fluid.particle_spacing,
         support_radius,
         neighbours: neighbours(&positions, support_radius),

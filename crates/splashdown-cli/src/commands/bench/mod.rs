@@ -83,7 +83,7 @@ fn one_size(
     rows: &mut Vec<Row>,
 ) -> Result<(), Failure> {
     if let Some(solver) = arguments.solver {
-        scene.solver.method = solver;
+        scene.solver.select_method(solver);
     }
     let row = measure(&scene, arguments, roofline)?;
     if arguments.json {

@@ -37,7 +37,7 @@ pub fn line(row: &Row) -> String {
 
 /// Comparisons between rows, and the passes of each row.
 pub fn closing(rows: &[Row], no_passes: bool) -> String {
-    let mut text = growth(rows) + &scaling(rows);
+    let mut text = growth(rows) + &scaling(rows) + &pressures(rows);
     if let Some(peak) = rows.last().and_then(|row| row.peak_memory) {
         text += &format!("\nPeak memory of this process: {}\n", human::bytes(peak));
     }
@@ -47,6 +47,25 @@ pub fn closing(rows: &[Row], no_passes: bool) -> String {
             human::count(row.particles),
             row.device,
             summary::passes(&row.timings, row.timed_steps)
+        );
+    }
+    text
+}
+
+/// The iterations of implicit pressures.
+fn pressures(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for (row, pressure) in rows.iter().filter_map(|row| Some((row, row.pressure?))) {
+        text += &format!(
+            "\n{} particles on {}: {:.1} iterations per step to a mean error of {:.1e} (tolerance {:.1e}), mean compression \
+             {:.3} %, {} simulated seconds per second\n",
+            human::count(row.particles),
+            row.device,
+            pressure.iterations_per_step,
+            pressure.residual,
+            pressure.tolerance,
+            100.0 * pressure.compression,
+            human::three_digits(row.simulated_per_wall)
         );
     }
     text

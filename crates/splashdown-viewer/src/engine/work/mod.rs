@@ -2,6 +2,7 @@
 
 mod meter;
 mod show;
+mod watch;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -18,6 +19,7 @@ use super::inbox::Inbox;
 use super::pace::Pace;
 use super::{Command, Grip, Message, Opened, Outbox, Purpose, Simulate, lock};
 use meter::Meter;
+use watch::Watch;
 
 /// Wall time in s of the steps submitted at once. The window can draw between two submissions.
 const BATCH: f64 = 0.008;
@@ -48,6 +50,7 @@ pub(super) struct Worker {
     grip: Option<Grip>,
     pace: Pace,
     meter: Meter,
+    watch: Watch,
 }
 
 impl Worker {
@@ -77,6 +80,7 @@ impl Worker {
             grip: None,
             pace: Pace::new(),
             meter: Meter::new(),
+            watch: Watch::default(),
         }
     }
 
@@ -222,6 +226,7 @@ impl Worker {
         let surface_differs = simulation.scene().surface != scene.surface;
         let foam_differs = simulation.scene().foam != scene.foam;
         if simulation.update_parameters(&scene)? {
+            self.watch.restart();
             if foam_differs && let Some(foam) = &self.foam {
                 // Existing foam would not match the water.
                 foam.clear(simulation.executor())?;
@@ -254,6 +259,7 @@ impl Worker {
         self.grip = None;
         self.pace.reset();
         self.meter = Meter::new();
+        self.watch = Watch::default();
         self.publish_scene(None);
         self.show().await
     }
@@ -286,6 +292,14 @@ impl Worker {
         if steps > 0 {
             let per_step = stepped.as_secs_f64() / f64::from(steps);
             simulation.set_steps_at_once((BATCH / per_step.max(1e-7)) as u32);
+        }
+        if self.mouse_force.is_some() || self.grip.is_some() {
+            self.watch.restart();
+        } else {
+            let (alarms, burst) = self.watch.examine(simulation).await?;
+            let kind = if burst { Message::Failed } else { Message::Note };
+            lock(&lock(&self.outbox).messages).extend(alarms.into_iter().map(|alarm| kind(alarm.message)));
+            self.playing &= !burst;
         }
         self.meter.count(steps, f64::from(seconds), simulation).await?;
         // A new snapshot is only needed after the window has drawn the last one.

@@ -29,8 +29,7 @@ fn boundary_density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_
         }
         rho -= state.dt * 2.0 * v.w * flow;
     } else {
-        let open = (1.0 - contacts[2u * i].density) * (1.0 - contacts[2u * i + 1u].density);
-        rho += params.rest_density * (1.0 - open);
+        rho += params.rest_density * min(contacts[2u * i].density + contacts[2u * i + 1u].density, 1.0);
     }
     densities[i] = vec2(rho, pressure_at(rho));
 }

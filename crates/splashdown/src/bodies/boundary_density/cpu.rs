@@ -44,8 +44,7 @@ pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityB
                     .sum();
                 rho -= state.dt * 2.0 * v.w * flow;
             } else {
-                let open = (1.0 - pair[0].density) * (1.0 - pair[1].density);
-                rho += params.rest_density * (1.0 - open);
+                rho += params.rest_density * (pair[0].density + pair[1].density).min(1.0);
             }
             *density = Vec2::new(rho, params.pressure_at(rho));
         }

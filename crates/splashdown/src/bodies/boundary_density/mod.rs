@@ -1,7 +1,7 @@
 //! The contribution of bodies to the density, and the resulting pressure.
 //!
-//! Summation: rho_i += rho0 (1 - (1 - delta_1)(1 - delta_2)), with the contributions delta of the two nearest bodies;
-//! the product counts their overlap once. Continuity: d rho_i / dt += -2 rho_i (n.B_i n) (v_i - v_body).slope, with the
+//! Summation: rho_i += rho0 (delta_1 + delta_2), with the contributions delta of the two nearest bodies, which the lookup
+//! has limited to their union. Continuity: d rho_i / dt += -2 rho_i (n.B_i n) (v_i - v_body).slope, with the
 //! factor 2 because the image of the fluid in the body mirrors its motion, the direction n of the slope, and the matrix
 //! B_i that corrects the gradients.
 

@@ -1,8 +1,9 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
-use super::{BoundaryForceBindings, quantum};
-use crate::bodies::types::{Body, Contact, SUM_WORDS};
+use super::BoundaryForceBindings;
+use crate::bodies::reaction::{self, Totals};
+use crate::bodies::types::{Body, Contact};
 use crate::boundary::{law, part};
 use crate::state::{Params, Symmetric};
 
@@ -24,11 +25,11 @@ pub(super) fn boundary_force<const FORCES: u32, const CORRECTED: bool>(buffers: 
     let n = state.run_count as usize;
     let (contacts, corrections) = (contacts.as_chunks::<2>().0, corrections.as_chunks::<2>().0);
     let wall_body = params.body_acceleration(state.time);
-    let totals: Vec<Vec<[i64; 6]>> = accelerations[..n]
+    let totals: Vec<Totals> = accelerations[..n]
         .par_chunks_mut(CHUNK)
         .enumerate()
         .map(|(chunk, accelerations)| {
-            let mut totals = Vec::new();
+            let mut totals = Totals::new();
             for (k, a) in accelerations.iter_mut().enumerate() {
                 let i = chunk * CHUNK + k;
                 if positions[i].w != 0.0 || contacts[i][0].body == Contact::NONE {
@@ -51,14 +52,7 @@ pub(super) fn boundary_force<const FORCES: u32, const CORRECTED: bool>(buffers: 
             totals
         })
         .collect();
-    for (b, words) in sums.chunks_exact_mut(SUM_WORDS).enumerate() {
-        for (component, pair) in words.chunks_exact_mut(2).enumerate() {
-            let before = u64::from(pair[0]) | u64::from(pair[1]) << 32;
-            let more: i64 = totals.iter().filter_map(|chunk| chunk.get(b)).map(|sum| sum[component]).sum();
-            let after = before.wrapping_add(more as u64);
-            (pair[0], pair[1]) = (after as u32, (after >> 32) as u32);
-        }
-    }
+    reaction::store(sums, &totals);
 }
 
 /// The boundary forces on one particle.
@@ -111,13 +105,7 @@ impl ParticleForces<'_> {
             let body = &self.bodies[contact.body as usize];
             let force = -self.params.particle_mass * reaction;
             let point = self.x - contact.distance * contact.normal;
-            let torque = (point - body.position).cross(force);
-            let quantum = quantum(self.params);
-            let total = &mut totals[contact.body as usize];
-            for axis in 0..3 {
-                total[axis] += fixed(force[axis] / quantum);
-                total[3 + axis] += fixed(torque[axis] / (quantum * self.params.support_radius));
-            }
+            reaction::react(&mut totals[contact.body as usize], self.params, body, point, force);
         }
     }
 
@@ -174,10 +162,4 @@ impl ParticleForces<'_> {
         let toward = (v - self.wall_velocity(contact)).dot(contact.normal);
         (slowest - toward).max(0.0) / self.dt * contact.normal
     }
-}
-
-/// Rounds to whole units of a sum; NaN becomes zero.
-fn fixed(value: f32) -> i64 {
-    // A million of the largest terms still fit into the sum.
-    value.clamp(-1e12, 1e12).round_ties_even() as i64
 }

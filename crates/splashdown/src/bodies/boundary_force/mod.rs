@@ -23,11 +23,13 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
+use super::reaction;
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, part};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
-const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, SYMMETRIC, boundary::LAW, types::WGSL];
+const IMPORTS: &[WgslModule] =
+    &[wgsl::INDEX, STATE, PARAMS, SYMMETRIC, boundary::LAW, types::WGSL, reaction::WGSL];
 
 bindings! {
     /// The buffers of `boundary_force.wgsl`.
@@ -80,9 +82,3 @@ pub static OTHER: PassDesc = PassDesc {
     cpu: |_, slots| cpu::boundary_force::<{ part::OTHER }, false>(slots.into()),
     ..ALL
 };
-
-/// The force in N of one unit of the sums: the particle mass times 1e-5 m/s^2. The unit of torques is this times the
-/// support radius.
-pub fn quantum(params: &Params) -> f32 {
-    1e-5 * params.particle_mass
-}

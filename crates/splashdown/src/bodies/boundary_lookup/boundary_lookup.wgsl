@@ -76,8 +76,33 @@ fn q_of_fraction(kernel_fraction: f32) -> f32 {
     return 0.5 * (low + high);
 }
 
+// The distances inside the nearer closed side of each axis.
+fn insides(x: vec3<f32>) -> vec3<f32> {
+    var distances = vec3(1e30);
+    for (var axis = 0u; axis < 3u; axis++) {
+        if (((params.closed >> (2u * axis)) & 1u) == 1u) {
+            distances[axis] = x[axis] - params.domain_min[axis];
+        }
+        if (((params.closed >> (2u * axis + 1u)) & 1u) == 1u) {
+            distances[axis] = min(distances[axis], params.domain_max[axis] - x[axis]);
+        }
+    }
+    return distances;
+}
+
+fn least_inside(x: vec3<f32>) -> f32 {
+    let distances = insides(x);
+    return min(distances.x, min(distances.y, distances.z));
+}
+
+// The part of a cell of one spacing around a point that lies inside the closed sides.
+fn part_inside(x: vec3<f32>) -> f32 {
+    let parts = clamp(insides(x) / params.particle_spacing + 0.5, vec3(0.0), vec3(1.0));
+    return parts.x * parts.y * parts.z;
+}
+
 // The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction
-// (xyz), and the fraction (w).
+// (xyz), and the fraction (w). What lies outside the domain does not count.
 fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
     let scale = 1.0 / params.support_radius;
     let scale3 = scale * scale * scale;
@@ -86,6 +111,10 @@ fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
     let low = max(home - vec3(1), vec3(0));
     let high = min(home + vec3(1), size - vec3(1));
     var sum = vec4(0.0);
+    let orientation = bodies[b].orientation;
+    let at = bodies[b].position + turned(orientation, y - bodies[b].center);
+    // Boundary particles within the support of this point may lie outside.
+    let is_cut = least_inside(at) <= params.support_radius + 0.5 * params.particle_spacing;
     for (var z = low.z; z <= high.z; z++) {
         for (var yy = low.y; yy <= high.y; yy++) {
             for (var x = low.x; x <= high.x; x++) {
@@ -97,7 +126,12 @@ fn sampled(b: u32, y: vec3<f32>) -> vec4<f32> {
                     let d = y - vec3(xy, zv.x);
                     let q = length(d) * scale;
                     if (q < 1.0) {
-                        sum += zv.y * scale3 * vec4(-kernel_g(q) * scale * scale * d, kernel_w(q));
+                        var volume = zv.y * scale3;
+                        if (is_cut) {
+                            let sample = vec3(xy, zv.x) - bodies[b].center;
+                            volume *= part_inside(bodies[b].position + turned(orientation, sample));
+                        }
+                        sum += volume * vec4(-kernel_g(q) * scale * scale * d, kernel_w(q));
                     }
                 }
             }
@@ -143,27 +177,98 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
     return contact;
 }
 
-// The contact with a body and its images behind walls; see cpu.rs.
+// The contact with the part of a body inside the domain, and with its images behind walls; see cpu.rs.
 fn completed(b: u32, x: vec3<f32>) -> Contact {
-    var contact = contact_with(b, x);
-    if (contact.body == NO_BODY) {
+    let contact = contact_with(b, x);
+    if (contact.body == NO_BODY || bodies[b].is_complete != 0u) {
         return contact;
     }
-    let support = params.support_radius;
-    let most = max(contact.kernel_fraction, plane_through(contact.distance / support).x);
+    if (bodies[b].way == BODY_PARTICLES) {
+        return completed_particles(contact, b, x);
+    }
+    return completed_map(contact, b, x);
+}
+
+fn completed_particles(own: Contact, b: u32, x: vec3<f32>) -> Contact {
+    var contact = own;
     for (var left = reflections_near(x) & ~1u; left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
         let image = contact_with(b, reflected_point(by, x));
-        if (image.body == NO_BODY || image.kernel_fraction <= 0.0) {
+        contact.kernel_fraction += image.kernel_fraction;
+        contact.slope += by.sign * image.slope;
+    }
+    contact.kernel_fraction = min(contact.kernel_fraction, 1.0);
+    contact.density = contact.kernel_fraction;
+    contact.effective = params.support_radius * q_of_fraction(contact.kernel_fraction);
+    return contact;
+}
+
+fn is_plane(by: Reflection) -> bool {
+    return by.sign.x + by.sign.y + by.sign.z > 0.5;
+}
+
+fn completed_map(own: Contact, b: u32, x: vec3<f32>) -> Contact {
+    var contact = own;
+    let support = params.support_radius;
+    let most = max(contact.kernel_fraction, plane_through(contact.distance / support).x);
+    let distance = contact.distance - 1e-3 * params.particle_spacing;
+    var is_outside = false;
+    for (var left = reflections_near(x) & ~1u; left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        let behind = reflected_point(by, x);
+        let through = length(x - behind);
+        let inwards = (x - behind) / max(through, 1e-20);
+        let is_behind = is_plane(by) && dot(inwards, contact.normal) > 0.9 && 2.0 * distance > through;
+        is_outside = is_outside || is_behind;
+        let image = contact_with(b, behind);
+        if (image.body == NO_BODY) {
             continue;
         }
-        let part = clamp((most - contact.kernel_fraction) / image.kernel_fraction, 0.0, 1.0);
-        if (part > 0.0) {
-            contact.kernel_fraction += part * image.kernel_fraction;
-            contact.density += part * image.density;
-            contact.slope += part * (by.sign * image.slope);
-            contact.effective = support * q_of_fraction(contact.kernel_fraction);
+        var part = 0.0;
+        if (is_plane(by) && contact.distance > 0.0 && image.distance < 0.0) {
+            let beyond = -image.distance / max(through - contact.distance, 0.1 * params.particle_spacing);
+            part = select(clamp(beyond, 0.0, 1.0), 1.0, 2.0 * contact.distance > through);
+            contact.kernel_fraction -= part;
+            contact.density -= part;
+        } else if (image.kernel_fraction > 0.0) {
+            part = clamp((most - contact.kernel_fraction) / image.kernel_fraction, 0.0, 1.0);
         }
+        contact.kernel_fraction += part * image.kernel_fraction;
+        contact.density += part * image.density;
+        contact.slope += part * (by.sign * image.slope);
+    }
+    if (is_outside || contact.kernel_fraction <= 0.0) {
+        contact.kernel_fraction = 0.0;
+        contact.density = 0.0;
+        contact.slope = vec3(0.0);
+    }
+    contact.density = max(contact.density, 0.0);
+    if (contact.kernel_fraction != own.kernel_fraction) {
+        contact.effective = support * q_of_fraction(contact.kernel_fraction);
+    }
+    return contact;
+}
+
+// The second contact, limited so that both bodies fill at most their union; see cpu.rs.
+fn limited(first: Contact, second: Contact) -> Contact {
+    var contact = second;
+    if (second.body == NO_BODY
+        || (bodies[first.body].kind == BODY_STATIC && bodies[second.body].kind == BODY_STATIC)) {
+        return contact;
+    }
+    let support = params.support_radius;
+    let one = max(plane_through(first.distance / support).x, first.kernel_fraction);
+    let two = max(plane_through(second.distance / support).x, second.kernel_fraction);
+    let cosine = dot(first.normal, second.normal);
+    let across = one * two;
+    let both = select((1.0 + cosine) * across, across + cosine * (min(one, two) - across), cosine > 0.0);
+    let room = one + two - both - first.kernel_fraction;
+    if (contact.kernel_fraction > room) {
+        let part = max(room / contact.kernel_fraction, 0.0);
+        contact.kernel_fraction *= part;
+        contact.density *= part;
+        contact.slope *= part;
+        contact.effective = support * q_of_fraction(contact.kernel_fraction);
     }
     return contact;
 }
@@ -187,6 +292,7 @@ fn boundary_lookup(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
             second = contact;
         }
     }
+    second = limited(first, second);
     contacts[2u * i] = first;
     contacts[2u * i + 1u] = second;
     let inside = min(first.distance, second.distance);

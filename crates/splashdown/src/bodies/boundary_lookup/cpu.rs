@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::BoundaryLookupBindings;
-use crate::bodies::field;
+use crate::bodies::field::{self, Interior};
 use crate::bodies::types::{Body, Contact};
 use crate::boundary::{Images, KernelPair, WallKernel};
 use crate::kernel::Kernel;
@@ -22,7 +22,8 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
         counters,
     } = buffers;
     let n = cell_start[cell_start.len() - 2] as usize;
-    let images = &Images::new(params);
+    let around =
+        &Around { params, images: Images::new(params), interior: Interior::new(params), bodies, maps };
     let corrections: u32 = positions[..n]
         .par_chunks_mut(CHUNK)
         .zip(contacts.par_chunks_mut(2 * CHUNK))
@@ -34,8 +35,9 @@ pub(super) fn boundary_lookup<K: Kernel + WallKernel>(buffers: BoundaryLookupBin
             for (p, contacts) in positions.iter_mut().zip(pairs) {
                 *contacts = [NO_CONTACT; 2];
                 for &b in near.iter() {
-                    insert(contacts, completed::<K>(params, images, bodies, maps, b, p.xyz()));
+                    insert(contacts, around.completed::<K>(b, p.xyz()));
                 }
+                around.limit::<K>(contacts);
                 corrections += u32::from(move_outside(params, p, contacts));
             }
             corrections
@@ -94,78 +96,164 @@ fn move_outside(params: &Params, p: &mut Vec4, contacts: &[Contact; 2]) -> bool 
     true
 }
 
-/// The contact with a body and its images behind walls. The image of a body that stands on a floor fills the kernel
-/// below the floor. A body that reaches through the floor fills that part itself: so the body and its images fill at most
-/// what a plane at its distance does.
-#[inline]
-fn completed<K: Kernel + WallKernel>(
-    params: &Params,
-    images: &Images,
-    bodies: &[Body],
-    maps: &[Vec2],
-    b: usize,
-    x: Vec3,
-) -> Contact {
-    let mut contact = contact_with::<K>(params, bodies, maps, b, x);
-    if contact.body == Contact::NONE {
-        return contact;
-    }
-    let support = params.support_radius;
-    let most = contact.kernel_fraction.max(plane_through(K::WALLS, contact.distance / support).0);
-    for by in images.near(x, x, support) {
-        let image = contact_with::<K>(params, bodies, maps, b, by.sign * x + by.shift);
-        if image.body == Contact::NONE || image.kernel_fraction <= 0.0 {
-            continue;
+/// The surroundings of all particles.
+struct Around<'a> {
+    params: &'a Params,
+    images: Images,
+    interior: Interior,
+    bodies: &'a [Body],
+    maps: &'a [Vec2],
+}
+
+impl Around<'_> {
+    /// The contact with the part of a body inside the domain, and with the images of this part behind walls.
+    #[inline]
+    fn completed<K: Kernel + WallKernel>(&self, b: usize, x: Vec3) -> Contact {
+        let contact = self.contact_with::<K>(b, x);
+        if contact.body == Contact::NONE || self.bodies[b].is_complete != 0 {
+            contact
+        } else if self.bodies[b].way == Body::PARTICLES {
+            self.completed_particles::<K>(contact, b, x)
+        } else {
+            self.completed_map::<K>(contact, b, x)
         }
-        let part = ((most - contact.kernel_fraction) / image.kernel_fraction).clamp(0.0, 1.0);
-        if part > 0.0 {
+    }
+
+    /// The boundary particles inside the domain and their images.
+    fn completed_particles<K: Kernel + WallKernel>(
+        &self,
+        mut contact: Contact,
+        b: usize,
+        x: Vec3,
+    ) -> Contact {
+        let support = self.params.support_radius;
+        for by in self.images.near(x, x, support) {
+            let image = self.contact_with::<K>(b, by.sign * x + by.shift);
+            contact.kernel_fraction += image.kernel_fraction;
+            contact.slope += by.sign * image.slope;
+        }
+        contact.kernel_fraction = contact.kernel_fraction.min(1.0);
+        contact.density = contact.kernel_fraction;
+        contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
+        contact
+    }
+
+    /// A map does not tell where in the support the body is. A body that stands on a floor has an image which fills the
+    /// kernel below the floor; a body that reaches through the floor fills that part itself. So the body and its images
+    /// fill at most what a plane at its distance does. If the image of the particle is inside the body, the body fills
+    /// the space of the images of the fluid: that part does not count.
+    fn completed_map<K: Kernel + WallKernel>(&self, mut contact: Contact, b: usize, x: Vec3) -> Contact {
+        let support = self.params.support_radius;
+        let spacing = self.params.particle_spacing;
+        let most = contact.kernel_fraction.max(plane_through(K::WALLS, contact.distance / support).0);
+        let before = contact.kernel_fraction;
+        for by in self.images.near(x, x, support) {
+            let behind = by.sign * x + by.shift;
+            let image = self.contact_with::<K>(b, behind);
+            if image.body == Contact::NONE {
+                continue;
+            }
+            let is_plane = by.sign.element_sum() > 0.5;
+            let part = if is_plane && contact.distance > 0.0 && image.distance < 0.0 {
+                let through = x.distance(behind);
+                let beyond = -image.distance / (through - contact.distance).max(0.1 * spacing);
+                let part = if 2.0 * contact.distance > through { 1.0 } else { beyond.clamp(0.0, 1.0) };
+                contact.kernel_fraction -= part;
+                contact.density -= part;
+                part
+            } else if image.kernel_fraction > 0.0 {
+                ((most - contact.kernel_fraction) / image.kernel_fraction).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             contact.kernel_fraction += part * image.kernel_fraction;
             contact.density += part * image.density;
             contact.slope += part * (by.sign * image.slope);
+        }
+        if self.is_outside(&contact, x) || contact.kernel_fraction <= 0.0 {
+            (contact.kernel_fraction, contact.density, contact.slope) = (0.0, 0.0, Vec3::ZERO);
+        }
+        contact.density = contact.density.max(0.0);
+        if contact.kernel_fraction != before {
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         }
+        contact
     }
-    contact
-}
 
-#[inline]
-fn contact_with<K: Kernel + WallKernel>(
-    params: &Params,
-    bodies: &[Body],
-    maps: &[Vec2],
-    b: usize,
-    x: Vec3,
-) -> Contact {
-    let body = &bodies[b];
-    let away = x - body.position;
-    if away.length_squared() >= body.radius * body.radius {
-        return NO_CONTACT;
+    /// Whether the surface of a body lies parallel to a wall and behind it.
+    fn is_outside(&self, contact: &Contact, x: Vec3) -> bool {
+        let distance = contact.distance - 1e-3 * self.params.particle_spacing;
+        self.images.near(x, x, self.params.support_radius).any(|by| {
+            let behind = by.sign * x + by.shift;
+            let inwards = (x - behind).normalize_or_zero();
+            by.sign.element_sum() > 0.5
+                && inwards.dot(contact.normal) > 0.9
+                && 2.0 * distance > x.distance(behind)
+        })
     }
-    let rotation = body.rotation();
-    let y = rotation.conjugate() * away + body.center;
-    let support = params.support_radius;
-    let Some(field) = field::at(body, maps, y, support) else { return NO_CONTACT };
-    let length = field.distance_gradient.length().max(1e-6);
-    let mut contact = Contact {
-        body: b as u32,
-        distance: field.distance,
-        normal: rotation * (field.distance_gradient / length),
-        ..NO_CONTACT
-    };
-    if body.way == Body::PARTICLES {
-        let sum = field::sampled::<K>(body, maps, y, support);
-        contact.kernel_fraction = sum.w.min(1.0);
-        contact.density = contact.kernel_fraction;
-        contact.slope = rotation * sum.xyz();
-        contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
-    } else {
-        let (kernel_fraction, slope) = plane_through(K::WALLS, field.effective / support);
-        contact.kernel_fraction = kernel_fraction;
-        contact.slope = rotation * (slope / support * field.effective_gradient);
-        contact.effective = field.effective;
-        contact.density = density_through(K::WALLS, (field.effective + params.solid_offset) / support);
+
+    /// Limits the parts of two bodies to their union, if their maps and boundary particles do not do so. The bodies fill
+    /// at most what planes at their distances fill. Planes that face the same way contain one another; those at right
+    /// angles overlap by the product of their parts; those that face one another do not overlap.
+    fn limit<K: Kernel + WallKernel>(&self, contacts: &mut [Contact; 2]) {
+        let [first, second] = contacts;
+        let is_static = |contact: &Contact| self.bodies[contact.body as usize].kind == Body::STATIC;
+        if second.body == Contact::NONE || (is_static(first) && is_static(second)) {
+            return;
+        }
+        let support = self.params.support_radius;
+        let plane = |contact: &Contact| {
+            plane_through(K::WALLS, contact.distance / support).0.max(contact.kernel_fraction)
+        };
+        let (one, two) = (plane(first), plane(second));
+        let cosine = first.normal.dot(second.normal);
+        let across = one * two;
+        let both =
+            if cosine > 0.0 { across + cosine * (one.min(two) - across) } else { (1.0 + cosine) * across };
+        let room = one + two - both - first.kernel_fraction;
+        if second.kernel_fraction > room {
+            let part = (room / second.kernel_fraction).max(0.0);
+            second.kernel_fraction *= part;
+            second.density *= part;
+            second.slope *= part;
+            second.effective = support * q_of_fraction(K::WALLS, second.kernel_fraction);
+        }
     }
-    contact
+
+    #[inline]
+    fn contact_with<K: Kernel + WallKernel>(&self, b: usize, x: Vec3) -> Contact {
+        let &Self { params, ref interior, bodies, maps, .. } = self;
+        let body = &bodies[b];
+        let away = x - body.position;
+        if away.length_squared() >= body.radius * body.radius {
+            return NO_CONTACT;
+        }
+        let rotation = body.rotation();
+        let y = rotation.conjugate() * away + body.center;
+        let support = params.support_radius;
+        let Some(field) = field::at(body, maps, y, support) else { return NO_CONTACT };
+        let length = field.distance_gradient.length().max(1e-6);
+        let mut contact = Contact {
+            body: b as u32,
+            distance: field.distance,
+            normal: rotation * (field.distance_gradient / length),
+            ..NO_CONTACT
+        };
+        if body.way == Body::PARTICLES {
+            let sum = field::sampled::<K>(body, maps, y, support, interior);
+            contact.kernel_fraction = sum.w.min(1.0);
+            contact.density = contact.kernel_fraction;
+            contact.slope = rotation * sum.xyz();
+            contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
+        } else {
+            let (kernel_fraction, slope) = plane_through(K::WALLS, field.effective / support);
+            contact.kernel_fraction = kernel_fraction;
+            contact.slope = rotation * (slope / support * field.effective_gradient);
+            contact.effective = field.effective;
+            contact.density = density_through(K::WALLS, (field.effective + params.solid_offset) / support);
+        }
+        contact
+    }
 }
 
 /// (D, A) of a plane wall; q is negative behind the wall.

@@ -9,6 +9,11 @@
 //! the slope, minus its gradient, is -sum V_b grad W. The boundary particles are sorted into cells in the frame of the
 //! body, so that a moving body needs no sort. The effective distance follows from the kernel fraction.
 //!
+//! Walls and bodies share the kernel without overlap. Only the part of a body inside the closed sides of the domain
+//! counts, and the images of this part behind them; where bodies overlap, the first one counts. For bodies that do not
+//! move this is part of their maps ([`Surroundings`](crate::solid::Surroundings)), or of the volumes of their boundary
+//! particles. For maps of other bodies the lookup estimates it from distances and normals.
+//!
 //! The two nearest bodies are stored per particle. A particle inside a body is moved along the normal towards the
 //! surface by at most a tenth of a spacing, and counted.
 

@@ -1,7 +1,7 @@
 use glam::{Quat, Vec3, Vec4};
 
 use super::MotionBindings;
-use crate::bodies::boundary_force::quantum;
+use crate::bodies::reaction;
 use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
 use crate::state::{Params, StepCounters, StepState};
 
@@ -12,47 +12,50 @@ pub(super) fn motion(buffers: MotionBindings<'_>) {
     }
     let sums = sums.chunks_exact_mut(SUM_WORDS);
     for (body, sums) in bodies.iter_mut().zip(sums) {
-        let quantum = quantum(params);
-        let [force, torque] = [0, 6].map(|first| {
-            let sums = &sums[first..first + 6];
-            Vec3::new(value(sums, 0), value(sums, 2), value(sums, 4))
-        });
+        [body.force, body.torque] = reaction::force_and_torque(params, sums);
         sums.fill(0);
-        body.force = quantum * force;
-        body.torque = quantum * params.support_radius * torque;
+        let (velocity, spin) = (body.velocity, body.angular_velocity);
         match body.kind {
             Body::DYNAMIC => by_force(params, state, body),
             Body::SCRIPTED => by_script(state, &scripts[body.script as usize * SCRIPT_SAMPLES..], body),
             _ => continue,
         }
+        // The force on the fluid is opposite; the mean of the velocities before and after the step makes the work of a
+        // dynamic body the change of its kinetic energy.
+        let power = body.force.dot(velocity + body.velocity) + body.torque.dot(spin + body.angular_velocity);
+        body.work -= 0.5 * state.dt * power;
         let speed = body.velocity.length() + body.reach * body.angular_velocity.length();
         let word = &mut counters[StepCounters::MAX_SPEED];
         *word = (*word).max(speed.to_bits());
     }
 }
 
-/// Converts a 64-bit sum to a float, with the rounding of the GPU: half by half. The sign is separated first, because
-/// the halves of a small negative number are large.
-fn value(words: &[u32], first: usize) -> f32 {
-    let sum = (u64::from(words[first]) | u64::from(words[first + 1]) << 32).cast_signed();
-    let size = sum.unsigned_abs();
-    let value = (size >> 32) as f32 * 4_294_967_296.0 + size as u32 as f32;
-    if sum < 0 { -value } else { value }
+/// The velocity and the angular velocity of a dynamic body after a step with this force and torque.
+pub(in crate::bodies) fn next_velocities(
+    params: &Params,
+    state: &StepState,
+    body: &Body,
+    [force, torque]: [Vec3; 2],
+) -> [Vec3; 2] {
+    let dt = state.dt;
+    let q = body.rotation();
+    let gravity = params.body_acceleration(state.time);
+    let mut velocity = body.velocity;
+    // A hinged body has no inverse mass, and its hinge does not move.
+    if body.inverse_mass > 0.0 {
+        velocity += dt * (force * body.inverse_mass + gravity);
+    }
+    let torque = torque + (q * body.moment).cross(gravity);
+    let spin = q.conjugate() * body.angular_velocity;
+    let moment = q.conjugate() * torque - spin.cross(body.inertia_matrix() * spin);
+    [velocity, q * (spin + dt * (body.inverse_inertia_matrix() * moment))]
 }
 
 fn by_force(params: &Params, state: &StepState, body: &mut Body) {
     let dt = state.dt;
     let q = body.rotation();
-    let gravity = params.body_acceleration(state.time);
-    // A hinged body has no inverse mass, and its hinge does not move.
-    if body.inverse_mass > 0.0 {
-        body.velocity += dt * (body.force * body.inverse_mass + gravity);
-    }
-    let torque = body.torque + (q * body.moment).cross(gravity);
-    let spin = q.conjugate() * body.angular_velocity;
-    let moment = q.conjugate() * torque - spin.cross(body.inertia_matrix() * spin);
-    let spin = q * (spin + dt * (body.inverse_inertia_matrix() * moment));
-    body.angular_velocity = spin;
+    [body.velocity, body.angular_velocity] = next_velocities(params, state, body, [body.force, body.torque]);
+    let spin = body.angular_velocity;
     body.position += dt * body.velocity;
     let turn = Quat::from_scaled_axis(spin * dt);
     body.orientation = Vec4::from((turn * q).normalize());

@@ -6,10 +6,19 @@
 
 mod cpu;
 
-use splashdown_gpu::{PassDesc, bindings};
+pub(super) use cpu::next_velocities;
+
+use splashdown_gpu::{PassDesc, WgslModule, bindings};
 
 use super::types::{self, Body, ScriptSample};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
+
+/// Sums, matrices and velocities of bodies.
+pub(super) const ALGEBRA: WgslModule =
+    WgslModule { name: "sph/body_algebra", source: include_str!("../body_algebra.wgsl") };
+/// The velocities of a dynamic body after a step; imports [`ALGEBRA`].
+pub(super) const VELOCITIES: WgslModule =
+    WgslModule { name: "sph/body_velocities", source: include_str!("../body_velocities.wgsl") };
 
 bindings! {
     /// The buffers of `motion.wgsl`.
@@ -27,7 +36,7 @@ bindings! {
 pub static MOTION: PassDesc = PassDesc {
     label: "bodies.motion",
     wgsl: include_str!("motion.wgsl"),
-    imports: &[STATE, PARAMS, STEP_COUNTERS, types::WGSL],
+    imports: &[STATE, PARAMS, STEP_COUNTERS, types::WGSL, ALGEBRA, VELOCITIES],
     entry: "motion",
     workgroup_size: [64, 1, 1],
     constants: &[],

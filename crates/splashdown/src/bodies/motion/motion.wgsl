@@ -1,27 +1,16 @@
 #import sph/params
 #import sph/step_counters
 #import sph/body
+#import sph/body_velocities
 
 #bindings
 
-// Converts a 64-bit sum to a float, and resets it. The sign is separated first, because the halves of a small negative
-// number are large.
+// Converts a 64-bit sum to a float, and resets it.
 fn taken(word: u32) -> f32 {
-    var low = sums[word];
-    var high = sums[word + 1u];
+    let value = fixed_value(sums[word], sums[word + 1u]);
     sums[word] = 0u;
     sums[word + 1u] = 0u;
-    let negative = (high >> 31u) == 1u;
-    if (negative) {
-        low = ~low + 1u;
-        high = ~high + select(0u, 1u, low == 0u);
-    }
-    let value = f32(high) * 4294967296.0 + f32(low);
-    return select(value, -value, negative);
-}
-
-fn symmetric(d: vec3<f32>, p: vec3<f32>) -> mat3x3<f32> {
-    return mat3x3(vec3(d.x, p.x, p.y), vec3(p.x, d.y, p.z), vec3(p.y, p.z, d.z));
+    return value;
 }
 
 fn product(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
@@ -31,17 +20,9 @@ fn product(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
 fn by_force(b: u32) {
     let dt = state.dt;
     let q = bodies[b].orientation;
-    let gravity = body_acceleration(state.time);
-    // A hinged body has no inverse mass, and its hinge does not move.
-    if (bodies[b].inverse_mass > 0.0) {
-        bodies[b].velocity += dt * (bodies[b].force * bodies[b].inverse_mass + gravity);
-    }
-    let torque = bodies[b].torque + cross(turned(q, bodies[b].moment), gravity);
-    let spin = turned_back(q, bodies[b].angular_velocity);
-    let moment = turned_back(q, torque)
-        - cross(spin, symmetric(bodies[b].inertia, bodies[b].inertia_products) * spin);
-    let inverse = symmetric(bodies[b].inverse_inertia, bodies[b].inverse_inertia_products);
-    let next_spin = turned(q, spin + dt * (inverse * moment));
+    let next = next_velocities(b, bodies[b].force, bodies[b].torque);
+    let next_spin = next.angular;
+    bodies[b].velocity = next.linear;
     bodies[b].angular_velocity = next_spin;
     bodies[b].position += dt * bodies[b].velocity;
     let angle = length(next_spin) * dt;
@@ -80,6 +61,8 @@ fn motion(@builtin(global_invocation_id) gid: vec3<u32>) {
     bodies[b].force = quantum * vec3(taken(word), taken(word + 2u), taken(word + 4u));
     let torque = vec3(taken(word + 6u), taken(word + 8u), taken(word + 10u));
     bodies[b].torque = quantum * params.support_radius * torque;
+    let velocity = bodies[b].velocity;
+    let spin = bodies[b].angular_velocity;
     if (bodies[b].kind == BODY_DYNAMIC) {
         by_force(b);
     } else if (bodies[b].kind == BODY_SCRIPTED) {
@@ -87,6 +70,11 @@ fn motion(@builtin(global_invocation_id) gid: vec3<u32>) {
     } else {
         return;
     }
+    // The force on the fluid is opposite; the mean of the velocities before and after the step makes the work of a dynamic
+    // body the change of its kinetic energy.
+    let power = dot(bodies[b].force, velocity + bodies[b].velocity)
+        + dot(bodies[b].torque, spin + bodies[b].angular_velocity);
+    bodies[b].work -= 0.5 * state.dt * power;
     let speed = length(bodies[b].velocity) + bodies[b].reach * length(bodies[b].angular_velocity);
     atomicMax(&counters[COUNTER_MAX_SPEED], bitcast<u32>(speed));
 }

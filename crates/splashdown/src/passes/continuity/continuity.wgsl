@@ -78,6 +78,7 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     let rate = rho * divergence - params.density_diffusion * support * params.sound_speed * diffusion;
     let next = without_tension(rho + state.dt * rate, corrected.determinant);
     densities[i] = vec2(next, pressure_at(next));
-    corrections[2u * i] = vec4(corrected.matrix.diagonal, open * shifting(strain, corrected.determinant));
-    corrections[2u * i + 1u] = vec4(corrected.matrix.others, 0.0);
+    let diagonal = open * corrected.matrix.diagonal + (1.0 - open);
+    corrections[2u * i] = vec4(diagonal, open * shifting(strain, corrected.determinant));
+    corrections[2u * i + 1u] = vec4(open * corrected.matrix.others, 0.0);
 }

@@ -133,6 +133,7 @@ impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES>
         let next = without_tension(self.params, next, determinant);
         let shifting = open * shifting(self.params, strain, determinant);
         let density = Vec2::new(next, self.params.pressure_at(next));
-        (density, [b.diagonal.extend(shifting), b.others.extend(0.0)])
+        let diagonal = open * b.diagonal + (1.0 - open);
+        (density, [diagonal.extend(shifting), (open * b.others).extend(0.0)])
     }
 }

@@ -11,7 +11,10 @@
 //! behind walls. A fragment then loses its tension (`without_tension`).
 //!
 //! Near a body, the body is a part of the sum M across its surface. Along the surface the divergence uses the fluid
-//! alone, while the matrix for the pressure counts the body there too. Bodies contribute to the density afterwards.
+//! alone. Bodies contribute to the density afterwards. The matrix for the forces fades to the unit matrix where a body
+//! fills a twentieth of the kernel: M is a sum over particles on one side and an integral on the other, which differ by a
+//! few per cent. With the inverse of M the layers next to the surface would have different pressures at rest, and the
+//! first layer would slide along a vertical surface at a twentieth of gravity.
 //!
 //! The pass writes two vectors per particle for the forces: xx, yy, zz of B and the coefficient of the shifting; then
 //! xy, xz, yz of B. The shifting fades out near bodies, whose part in its sum is not known: it is zero where a body

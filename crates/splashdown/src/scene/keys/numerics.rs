@@ -1,19 +1,20 @@
 //! Keys of `[solver]`, `[surface]` and `[foam]`.
 
-use crate::scene::spec::{Kind, Table, a_number, key, range, words};
-use crate::scene::types::{
+use crate::scene::solver::{
     Accuracy, DensityMode, KernelKind, Method, NegativePressure, Sort, SurfaceTension,
 };
+use crate::scene::spec::{Kind, Table, a_number, key, range, words};
+use crate::scene::types::SurfaceKernels;
 
 pub(super) static SOLVER: Table = Table {
     about: "Solver and its parameters.",
     keys: &[
         key("method", Kind::Word(words::<Method>), "SPH method.")
             .default("\"wcsph\"")
-            .also(&["type", "name"]),
+            .also(&["type", "name", "scheme", "solver"]),
         key("accuracy", Kind::Word(words::<Accuracy>), "Purpose; determines defaults of other keys of this section.")
             .default("\"standard\""),
-        key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph.").default("\"wendland_c2\""),
+        key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph and dfsph.").default("\"wendland_c2\""),
         key(
             "support_ratio",
             a_number(1.5, 4.0, ""),
@@ -51,7 +52,7 @@ pub(super) static SOLVER: Table = Table {
         key(
             "artificial_viscosity",
             a_number(0.0, 2.0, ""),
-            "Factor alpha of Monaghan's artificial viscosity; wcsph. Default: 0.05 with summation, 0 with continuity, which damps impacts by other means.",
+            "Factor alpha of Monaghan's artificial viscosity; wcsph and dfsph. Default: 0.05 with summation, 0 with continuity, which damps impacts by other means; 0.01 with dfsph.",
         )
         .also(&["alpha"]),
         key("density_diffusion", a_number(0.0, 1.0, ""), "Factor delta of delta-SPH; requires continuity.")
@@ -64,16 +65,29 @@ pub(super) static SOLVER: Table = Table {
         key(
             "cfl_factor",
             a_number(0.01, 1.0, ""),
-            "Time step divided by the time in which sound travels half the support radius.",
+            "Time step divided by the time in which sound travels half the support radius; with dfsph, the largest distance in spacings that a particle moves per step. Default: 0.3 with summation, 0.8 with continuity, 0.5 with dfsph.",
         )
-        .default("0.3")
         .also(&["cfl", "courant"]),
-        key("max_dt", a_number(1e-9, 1.0, "s"), "Maximum time step.").default("0.005").also(&[
+        key("max_dt", a_number(1e-9, 1.0, "s"), "Maximum time step. Default: 0.005 s; 0.05 s with dfsph.").also(&[
             "dt",
             "time_step",
             "timestep",
         ]),
         key("min_dt", a_number(1e-12, 1.0, "s"), "Minimum time step.").default("1e-7"),
+        key(
+            "tolerance",
+            a_number(1e-5, 0.01, ""),
+            "Mean error of the density, as a part of the rest density, at which the pressure iterations of dfsph stop. The iterations of an implicit viscosity stop at a residual of ten times this part of the change of the velocity by all other forces.",
+        )
+        .default("0.001")
+        .also(&["max_error", "maxError"]),
+        key(
+            "max_iterations",
+            Kind::Integer(range(2.0, 1000.0, "")),
+            "Largest number of pressure iterations per step; dfsph. An implicit viscosity takes at most five times as many.",
+        )
+        .default("40")
+        .also(&["maxIterations", "iterations"]),
         key("sort", Kind::Word(words::<Sort>), "Algorithm that sorts particles into cells.")
             .default("\"counting\""),
     ],
@@ -83,6 +97,13 @@ pub(super) static SURFACE: Table = Table {
     about: "Surface reconstruction.",
     keys: &[
         key("enabled", Kind::Boolean, "Whether the surface is reconstructed.").default("true"),
+        key(
+            "kernels",
+            Kind::Word(words::<SurfaceKernels>),
+            "Shape of the particles' kernels: balls, or ellipsoids that follow the arrangement of the neighbours.",
+        )
+        .default("\"isotropic\"")
+        .also(&["kernel"]),
         key(
             "cell_size",
             a_number(1e-6, 10.0, "m"),

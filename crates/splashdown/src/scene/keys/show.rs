@@ -2,7 +2,7 @@
 
 use super::FAR;
 use crate::scene::spec::{Kind, Table, a_number, a_vector, key, range, words};
-use crate::scene::types::{ColourBy, Format, PictureKind};
+use crate::scene::types::{ColourBy, Format, PictureKind, PictureQuality};
 
 pub(super) static CAMERA: Table = Table {
     about: "View of the pictures.",
@@ -48,6 +48,12 @@ pub(super) static OUTPUT: Table = Table {
         )
         .default("[1280, 720]")
         .also(&["resolution", "size"]),
+        key(
+            "quality",
+            Kind::Word(words::<PictureQuality>),
+            "How carefully pictures of the surface are drawn.",
+        )
+        .default("\"interactive\""),
         key("colour_by", Kind::Word(words::<ColourBy>), "Quantity that colours the particles.")
             .default("\"speed\""),
         key("film", Kind::Boolean, "Whether a film is made of the pictures.")

@@ -49,6 +49,9 @@ choices! {
         /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all fluid, or of the fluid
         /// between `min` and `max`, at the end of every frame.
         Fluid = "fluid",
+        /// The energy balance of all fluid in J at the end of every frame: kinetic, potential and elastic energy, the work of
+        /// bodies and shaking, emitted and removed energy, and what has been dissipated.
+        Energy = "energy",
     }
     /// The word for a body's motion.
     MotionWord {

@@ -54,6 +54,7 @@ fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
         QuantityWord::Force => "force",
         QuantityWord::Flow => "flow",
         QuantityWord::Fluid => "fluid",
+        QuantityWord::Energy => "energy",
     };
     let fitting: &[&str] = match quantity {
         QuantityWord::Pressure | QuantityWord::Height => &["position", "interval"],
@@ -61,6 +62,7 @@ fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
         QuantityWord::Flow => &["position", "normal", "along", "size", "interval"],
         // It has one row per frame, so there is no interval.
         QuantityWord::Fluid => &["min", "max"],
+        QuantityWord::Energy => &[],
     };
     for key in ["position", "body", "normal", "along", "size", "min", "max", "interval"] {
         if section.has(key) && !fitting.contains(&key) {
@@ -115,6 +117,7 @@ fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
             }
             Quantity::Fluid { min, max }
         }
+        QuantityWord::Energy => Quantity::Energy,
     };
     Ok(Probe { name: needed(name)?, quantity, interval: interval? })
 }

@@ -2,10 +2,9 @@
 
 use super::Part;
 use crate::scene::reader::Section;
-use crate::scene::types::{Accuracy, DensityMode, Method, NegativePressure, Solver, SurfaceTension};
+use crate::scene::solver::{Accuracy, DensityMode, Method, Solver, SurfaceTension};
 
 pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
-    let standard = Solver::default();
     let method = section.choice("method");
     let accuracy = section.choice("accuracy");
     let kernel = section.choice("kernel");
@@ -23,32 +22,26 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let max_dt = section.number("max_dt");
     let min_dt = section.number("min_dt");
     let sort = section.choice("sort");
-    let method = method?.unwrap_or(standard.method);
+    let tolerance = section.number("tolerance");
+    let max_iterations = section.integer("max_iterations");
+    let method = method?.unwrap_or(Method::Wcsph);
     let accuracy = accuracy?.unwrap_or(Accuracy::Standard);
-    let (usual_density, usual_ratio) = match accuracy {
-        Accuracy::Standard => (standard.density, standard.support_ratio),
-        Accuracy::Engineering => (DensityMode::Continuity, 3.0),
-    };
-    let density = density?.unwrap_or(usual_density);
+    let density = density?.unwrap_or(match accuracy {
+        Accuracy::Standard => DensityMode::Summation,
+        Accuracy::Engineering => DensityMode::Continuity,
+    });
+    let standard = Solver::with(method, density);
     let solver = Solver {
-        method,
         kernel: kernel?.unwrap_or(standard.kernel),
-        support_ratio: support_ratio?.unwrap_or(usual_ratio),
-        density,
-        negative_pressure: negative_pressure?.unwrap_or(match density {
-            DensityMode::Summation => NegativePressure::Clamp,
-            DensityMode::Continuity => NegativePressure::Keep,
+        support_ratio: support_ratio?.unwrap_or(match accuracy {
+            Accuracy::Standard => standard.support_ratio,
+            Accuracy::Engineering => 3.0,
         }),
+        negative_pressure: negative_pressure?.unwrap_or(standard.negative_pressure),
         sound_speed: sound_speed?,
         stiffness: stiffness?,
-        exponent: exponent?.unwrap_or(match method {
-            Method::Wcsph => 7.0,
-            Method::Mueller2003 => 1.0,
-        }),
-        artificial_viscosity: artificial_viscosity?.unwrap_or(match density {
-            DensityMode::Summation => standard.artificial_viscosity,
-            DensityMode::Continuity => 0.0,
-        }),
+        exponent: exponent?.unwrap_or(standard.exponent),
+        artificial_viscosity: artificial_viscosity?.unwrap_or(standard.artificial_viscosity),
         density_diffusion: density_diffusion?.unwrap_or(standard.density_diffusion),
         surface_tension: surface_tension?.unwrap_or(standard.surface_tension),
         wall_friction: wall_friction?.unwrap_or(standard.wall_friction),
@@ -56,6 +49,9 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         max_dt: max_dt?.unwrap_or(standard.max_dt),
         min_dt: min_dt?.unwrap_or(standard.min_dt),
         sort: sort?.unwrap_or(standard.sort),
+        tolerance: tolerance?.unwrap_or(standard.tolerance),
+        max_iterations: max_iterations?.unwrap_or(standard.max_iterations),
+        ..standard
     };
     let accurate = check_accuracy(section, accuracy, method, density);
     check_solver(section, &solver).and(accurate).map(|()| solver)
@@ -96,17 +92,29 @@ fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
         result = Err(section.complain("stiffness", message, "", "keep one of them"));
     }
     match (solver.method, solver.surface_tension) {
-        (Method::Mueller2003, SurfaceTension::Akinci2013) | (Method::Wcsph, SurfaceTension::ColourField) => {
+        (Method::Mueller2003, SurfaceTension::Akinci2013)
+        | (Method::Wcsph | Method::Dfsph, SurfaceTension::ColourField) => {
             let (method, tension) = (solver.method, solver.surface_tension);
             let message =
                 format!("solver.surface_tension = \"{tension}\" does not work with method = \"{method}\"");
             let allowed = match method {
-                Method::Wcsph => "\"none\", \"akinci2013\"",
+                Method::Wcsph | Method::Dfsph => "\"none\", \"akinci2013\"",
                 Method::Mueller2003 => "\"none\", \"mueller2003\"",
             };
             result = Err(section.complain("surface_tension", message, allowed, ""));
         }
         _ => {}
+    }
+    if solver.method == Method::Dfsph {
+        for name in Solver::NOT_IMPLICIT.into_iter().filter(|name| section.has(name)) {
+            let message = format!("solver.{name} has no effect with method = \"dfsph\"");
+            result = Err(section.complain(name, message, "", "leave it out, or use method = \"wcsph\""));
+        }
+        return result;
+    }
+    for name in ["tolerance", "max_iterations"].into_iter().filter(|name| section.has(name)) {
+        let message = format!("solver.{name} has no effect with method = \"{}\"", solver.method);
+        result = Err(section.complain(name, message, "", "leave it out, or use method = \"dfsph\""));
     }
     if solver.method == Method::Mueller2003 {
         if solver.density == DensityMode::Continuity {

@@ -12,6 +12,7 @@ use crate::scene::types::{
 
 pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part<SurfaceSettings> {
     let enabled = section.boolean("enabled");
+    let kernels = section.choice("kernels");
     let cell_size = section.number("cell_size");
     let iso_level = section.number("iso_level");
     let smoothing_iterations = section.integer("smoothing_iterations");
@@ -20,6 +21,7 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
     let standard = SurfaceSettings::for_spacing(spacing.unwrap_or(1.0));
     let surface = SurfaceSettings {
         enabled: enabled?.unwrap_or(standard.enabled),
+        kernels: kernels?.unwrap_or(standard.kernels),
         cell_size: cell_size?.unwrap_or(standard.cell_size),
         iso_level: iso_level?.unwrap_or(standard.iso_level),
         smoothing_iterations: smoothing_iterations?.unwrap_or(standard.smoothing_iterations),
@@ -144,6 +146,7 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
     let formats = section.choices("formats");
     let pictures = section.choices("pictures");
     let picture_size = section.integers("picture_size");
+    let quality = section.choice("quality");
     let colour_by = section.choice("colour_by");
     let film = section.boolean("film");
     let colour_range = section.numbers::<2>("colour_range");
@@ -162,6 +165,7 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
         film: film_wanted.unwrap_or(standard.film && !pictures.is_empty()),
         pictures,
         picture_size: picture_size?.unwrap_or(standard.picture_size),
+        quality: quality?.unwrap_or(standard.quality),
         colour_by: colour_by?.unwrap_or(standard.colour_by),
         colour_range: colour_range?,
     };

@@ -13,4 +13,11 @@ fn begin() {
     state.steps = 0u;
     state.too_small = 0u;
     state.density_error = 0.0;
+    state.iterations = 0u;
+    state.most_iterations = 0u;
+    state.residual = 0.0;
+    state.compression = 0.0;
+    state.viscous_iterations = 0u;
+    state.most_viscous_iterations = 0u;
+    state.viscous_residual = 0.0;
 }

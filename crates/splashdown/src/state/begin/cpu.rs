@@ -12,4 +12,11 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
     state.steps = 0;
     state.too_small = 0;
     state.density_error = 0.0;
+    state.iterations = 0;
+    state.most_iterations = 0;
+    state.residual = 0.0;
+    state.compression = 0.0;
+    state.viscous_iterations = 0;
+    state.most_viscous_iterations = 0;
+    state.viscous_residual = 0.0;
 }

@@ -17,12 +17,22 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
 
     let h = 0.5 * params.support_radius;
     let c = params.cfl_factor;
-    let mut stable = (1.1 * state.stable_dt)
-        .min(params.max_dt)
-        .min(c * h / (params.sound_speed + speed))
-        .min(c * (h / acceleration.max(1e-20)).sqrt())
-        .min(c * 0.4 * params.particle_spacing / speed.max(1e-20))
-        .min(0.125 * h * h / params.viscosity.max(1e-20));
+    let is_slow = std::mem::take(&mut counters[StepCounters::SHORTEN]) != 0;
+    let pressure = f32::from_bits(std::mem::take(&mut counters[StepCounters::MAX_PRESSURE]));
+    let mut stable = if params.is_implicit == 1 {
+        let most = (if is_slow { 0.7 } else { 1.5 }) * state.stable_dt;
+        most.min(params.max_dt)
+            .min(c * params.particle_spacing / speed.max(1e-20))
+            .min(0.5 * params.particle_spacing / pressure.max(1e-20).sqrt())
+    } else {
+        (1.1 * state.stable_dt)
+            .min(params.max_dt)
+            .min(c * h / (params.sound_speed + speed))
+            .min(c * (h / acceleration.max(1e-20)).sqrt())
+            .min(c * 0.4 * params.particle_spacing / speed.max(1e-20))
+            .min(0.17 * h / (params.density_diffusion * params.sound_speed).max(1e-20))
+    };
+    stable = stable.min(0.125 * h * h / params.viscosity.max(1e-20));
     if stable < params.min_dt {
         stable = params.min_dt;
         state.too_small = 1;

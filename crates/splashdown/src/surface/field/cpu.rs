@@ -2,14 +2,12 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::FieldBindings;
+use super::nodes::{LAYER, N, Nodes, ends};
 use crate::kernel::{CubicSpline, Kernel};
 use crate::pairs::{self, BoxPass, Sorted};
 use crate::simd::Register;
-use crate::surface::params::{Lattice, NODES, ROWS, SIDE};
+use crate::surface::params::{Lattice, NODES, ROWS};
 
-const N: usize = SIDE as usize;
-/// Nodes of a layer of a block.
-const LAYER: usize = N * N;
 /// Factor on the square of the support radius against rounding: rows beyond it contribute exactly
 /// zero, so that the result does not depend on the number of rows per register.
 const MARGIN: f32 = 1.0001;
@@ -21,24 +19,14 @@ pub(super) fn field(buffers: FieldBindings<'_>) {
     let values = field_values.as_chunks_mut::<NODES>().0;
     let signs = signs.as_chunks_mut::<ROWS>().0;
     let outputs = values[..blocks].par_iter_mut().zip(&mut signs[..blocks]);
-    let sorted = Sorted::new(lattice.support_radius, grid, cell_start, samples);
-    pairs::for_each_box(sorted, outputs, &Field { lattice, blocks: block_list, samples });
+    let sorted =
+        Sorted::new(lattice.support_radius, grid, cell_start, samples).with_images(lattice.walls().images());
+    pairs::for_each_box(sorted, outputs, &Field { nodes: Nodes { lattice, blocks: block_list }, samples });
 }
 
 struct Field<'a> {
-    lattice: &'a Lattice,
-    blocks: &'a [u32],
+    nodes: Nodes<'a>,
     samples: &'a [Vec4],
-}
-
-impl Field<'_> {
-    /// The coordinates of the nodes of a block along each axis.
-    fn axes(&self, i: usize) -> [[f32; N]; 3] {
-        let first = self.lattice.block_place(self.blocks[i]).map(|place| place as u32 * SIDE);
-        std::array::from_fn(|axis| {
-            std::array::from_fn(|n| self.lattice.coordinate(axis, first[axis] + n as u32))
-        })
-    }
 }
 
 impl<'a> BoxPass<4> for Field<'a> {
@@ -50,17 +38,14 @@ impl<'a> BoxPass<4> for Field<'a> {
     }
 
     fn corners(&self, i: usize) -> [Vec3; 2] {
-        let axes = self.axes(i);
-        [axes.map(|axis| axis[0]), axes.map(|axis| axis[N - 1])].map(Vec3::from)
+        self.nodes.corners(i)
     }
 
     #[inline(always)]
     fn visit<V: Register>(&self, i: usize, near: [&[f32]; 4], (values, signs): &mut Self::Output) {
         values.fill(0.0);
-        add::<V>(near, &self.axes(i), self.lattice, values);
-        for (signs, row) in signs.iter_mut().zip(values.as_chunks::<N>().0) {
-            *signs = (0..N).fold(0, |bits, n| bits | (u32::from(row[n] >= self.lattice.iso_level) << n));
-        }
+        add::<V>(near, &self.nodes.folded_axes(i), self.nodes.lattice, values);
+        self.nodes.set_signs(i, values, signs);
     }
 }
 
@@ -75,10 +60,11 @@ fn add<V: Register>(
     let support2 = MARGIN * lattice.support_radius * lattice.support_radius;
     // A register holds a part of a row of eight nodes, one row, or two rows.
     let rows = V::WIDTH.div_ceil(N);
+    let [first_x, last_x] = ends(axes[0]);
     for (((&x, &y), &z), &volume) in x.iter().zip(y).zip(z).zip(volume) {
         let square = |axis: &[f32; N], centre: f32| axis.map(|a| (a - centre) * (a - centre));
         let (dx2, dy2, dz2) = (square(&axes[0], x), square(&axes[1], y), square(&axes[2], z));
-        let outside = (axes[0][0] - x).max(x - axes[0][N - 1]).max(0.0);
+        let outside = (first_x - x).max(x - last_x).max(0.0);
         // A row at a squared distance of at least this in y and z has no node within reach.
         let limit = support2 - outside * outside;
         let nearest_dy2 = dy2.iter().copied().fold(f32::MAX, f32::min);

@@ -11,6 +11,10 @@
 //! not depend on the number of threads. The signs of each row (inside or outside, eight bits) are
 //! stored separately.
 //!
+//! At closed sides the field is symmetric. A node behind a wall has the value of its mirror image, so
+//! that only points in front of the walls are evaluated, with the particles and their images. Its
+//! sign is that of a node outside the fluid.
+//!
 //! # Why not the other way
 //!
 //! Scattering particles to nodes needs atomic additions of floats, which WebGPU lacks, and is not
@@ -18,14 +22,22 @@
 //! block read the same particles at about the same time, so the cache has the same effect.
 
 mod cpu;
+mod nodes;
+mod stretched;
+
+pub(crate) use stretched::STRETCHED_FIELD;
 
 use glam::Vec4;
-use splashdown_gpu::{PassDesc, bindings, wgsl};
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
-use super::modules::{CANDIDATES, GRID, LATTICE, STATUS};
+use super::modules::{CANDIDATES, GRID, LATTICE, STATUS, WALLS};
 use super::params::{Lattice, Status};
 use crate::cells::Grid;
 use crate::kernel::{self, CubicSpline, Kernel};
+
+/// The loop over the particles near a row of nodes, which both fields share.
+const FIELD_ROW: WgslModule =
+    WgslModule { name: "surface/field_row", source: include_str!("field_row.wgsl") };
 
 bindings! {
     /// The buffers of `field.wgsl`.
@@ -44,7 +56,7 @@ bindings! {
 pub(crate) static FIELD: PassDesc = PassDesc {
     label: "surface.field",
     wgsl: include_str!("field.wgsl"),
-    imports: &[wgsl::INDEX, GRID, STATUS, LATTICE, kernel::WGSL, CANDIDATES],
+    imports: &[wgsl::INDEX, GRID, STATUS, LATTICE, WALLS, kernel::WGSL, CANDIDATES, FIELD_ROW],
     entry: "field",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", CubicSpline::ID as f64)],

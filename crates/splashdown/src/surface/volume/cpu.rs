@@ -16,7 +16,8 @@ pub(super) fn volume(buffers: VolumeBindings<'_>) {
         inverse_support: lattice.inverse_support,
         local_density: as_atomic(local_density),
     };
-    let sorted = Sorted::new(lattice.support_radius, grid, cell_start, positions);
+    let sorted = Sorted::new(lattice.support_radius, grid, cell_start, positions)
+        .with_images(lattice.walls().images());
     pairs::for_each(sorted, samples, &pass);
 }
 

@@ -1,6 +1,7 @@
 #import gpu/index
 #import sph/grid
 #import surface/lattice
+#import surface/walls
 #import sph/kernel
 #import surface/candidates
 
@@ -18,16 +19,19 @@ fn volume(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
     let cells = cell_range(p - reach, p + reach);
     var sum = 0.0;
     var neighbours = 0.0;
-    for (var z = cells.first.z; z < cells.last.z; z++) {
-        for (var y = cells.first.y; y < cells.last.y; y++) {
-            let row = (z * grid.size_y + y) * grid.size_x;
-            let end = cell_start[row + cells.last.x];
-            for (var j = cell_start[row + cells.first.x]; j < end; j++) {
-                let d = sorted_positions[j].xyz - p;
-                let r2 = dot(d, d);
-                if r2 < support2 {
-                    sum += kernel_w(sqrt(r2) * lattice.inverse_support);
-                    neighbours += 1.0 - r2 * lattice.inverse_support * lattice.inverse_support;
+    for (var left = wall_reflections(p, p); left != 0u; left &= left - 1u) {
+        let by = wall_reflection(firstTrailingBit(left));
+        for (var z = cells.first.z; z < cells.last.z; z++) {
+            for (var y = cells.first.y; y < cells.last.y; y++) {
+                let row = (z * grid.size_y + y) * grid.size_x;
+                let end = cell_start[row + cells.last.x];
+                for (var j = cell_start[row + cells.first.x]; j < end; j++) {
+                    let d = by.sign * sorted_positions[j].xyz + by.shift - p;
+                    let r2 = dot(d, d);
+                    if r2 < support2 {
+                        sum += kernel_w(sqrt(r2) * lattice.inverse_support);
+                        neighbours += 1.0 - r2 * lattice.inverse_support * lattice.inverse_support;
+                    }
                 }
             }
         }

@@ -10,11 +10,11 @@ fn mark(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
     if i >= min(cell_start[grid.cell_count], lattice.particle_capacity) {
         return;
     }
-    let p = sorted_positions[i].xyz - lattice.origin;
+    let p = samples[i].xyz - lattice.origin;
     let blocks = vec3<u32>(lattice.blocks_x, lattice.blocks_y, lattice.blocks_z);
     let most = vec3<f32>(blocks * 8u - 1u);
-    let low = floor((p - lattice.support_radius) * lattice.inverse_cell) - 1.0;
-    let high = floor((p + lattice.support_radius) * lattice.inverse_cell);
+    let low = floor((p - lattice.reach) * lattice.inverse_cell) - 1.0;
+    let high = floor((p + lattice.reach) * lattice.inverse_cell);
     let first = vec3<u32>(clamp(low, vec3<f32>(0.0), most)) / 8u;
     let last = vec3<u32>(clamp(high, vec3<f32>(0.0), most)) / 8u;
     for (var z = first.z; z <= last.z; z++) {

@@ -15,7 +15,7 @@ bindings! {
         lattice: uniform Lattice,
         grid: uniform Grid,
         cell_start: read [u32],
-        sorted_positions: read [Vec4],
+        samples: read [Vec4],
         marks: atomic [u32],
     }
 }

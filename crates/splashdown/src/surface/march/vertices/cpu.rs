@@ -68,11 +68,26 @@ fn widen(lattice: &Lattice, slot_of: &[u32], values: &[f32], place: [i32; 3], wi
 fn vertex(lattice: &Lattice, wide: &[f32], place: [i32; 3], local: [usize; 3], axis: usize) -> (Vec3, Vec3) {
     const STEPS: [usize; 3] = [1, WIDE, WIDE * WIDE];
     let node = ((local[2] + 1) * WIDE + local[1] + 1) * WIDE + local[0] + 1;
-    let gradient = |i: usize| Vec3::from(STEPS.map(|step| wide[i + step] - wide[i - step]));
+    let own: [u32; 3] = std::array::from_fn(|axis| place[axis] as u32 * SIDE + local[axis] as u32);
+    let mut next = own;
+    next[axis] += 1;
+    // In units of the field per cell; the layers of nodes next to walls are at other distances.
+    let gradient = |i: usize, node: [u32; 3]| {
+        Vec3::from_array(std::array::from_fn(|axis| {
+            let [below, above] = [node[axis].wrapping_sub(1), node[axis] + 1];
+            let distance = lattice.coordinate(axis, above) - lattice.coordinate(axis, below);
+            (wide[i + STEPS[axis]] - wide[i - STEPS[axis]]) * (lattice.cell_size / distance)
+        }))
+    };
     let (a, b) = (wide[node], wide[node + STEPS[axis]]);
     let t = ((lattice.iso_level - a) / (b - a)).clamp(0.001, 0.999);
     let along = Vec3::AXES[axis];
-    let outwards = -gradient(node).lerp(gradient(node + STEPS[axis]), t);
+    let corner = Vec3::from_array(std::array::from_fn(|axis| lattice.coordinate(axis, own[axis])));
+    let length = lattice.coordinate(axis, next[axis]) - corner[axis];
+    if let Some(on_wall) = on_wall(lattice, corner, axis, length, [a, b], t) {
+        return on_wall;
+    }
+    let outwards = -gradient(node, own).lerp(gradient(node + STEPS[axis], next), t);
     let length2 = outwards.length_squared();
     let outwards = if length2 > 1e-20 {
         outwards / length2.sqrt()
@@ -82,7 +97,34 @@ fn vertex(lattice: &Lattice, wide: &[f32], place: [i32; 3], local: [usize; 3], a
     } else {
         -along
     };
-    let corner =
-        std::array::from_fn(|axis| lattice.coordinate(axis, place[axis] as u32 * SIDE + local[axis] as u32));
-    (Vec3::from_array(corner) + along * (t * lattice.cell_size), outwards)
+    (corner + along * (t * length), outwards)
+}
+
+/// The vertex and its normal on a wall, if the edge from `corner` along `axis` crosses a wall before the field falls to
+/// the iso level. `[a, b]`: the field at both ends; `t`: where it reaches the iso level.
+fn on_wall(
+    lattice: &Lattice,
+    corner: Vec3,
+    axis: usize,
+    length: f32,
+    [a, b]: [f32; 2],
+    t: f32,
+) -> Option<(Vec3, Vec3)> {
+    let (low, high) = (lattice.wall_low[axis], lattice.wall_high[axis]);
+    let in_front = |x: f32| (x - low).min(high - x);
+    let (front, next_front) = (in_front(corner[axis]), in_front(corner[axis] + length));
+    let is_inside = a >= lattice.iso_level && front > lattice.wall_margin;
+    let is_next_inside = b >= lattice.iso_level && next_front > lattice.wall_margin;
+    let crosses =
+        is_inside && next_front <= lattice.wall_margin || is_next_inside && front <= lattice.wall_margin;
+    // From the end that is inside: where the field reaches the iso level, and where the wall is.
+    let (outer, depth) = if is_inside { (b, front) } else { (a, next_front) };
+    let of_field = if is_inside { t } else { 1.0 - t } * length;
+    if !crosses || outer < lattice.iso_level && of_field < depth {
+        return None;
+    }
+    let mut at = corner;
+    // The wall on the side of the outer end.
+    at[axis] = if is_inside { high } else { low };
+    Some((at, if is_inside { Vec3::AXES[axis] } else { -Vec3::AXES[axis] }))
 }

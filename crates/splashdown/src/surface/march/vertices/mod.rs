@@ -2,7 +2,8 @@
 //!
 //! The position on the edge is `t = (iso - a) / (b - a)` for the values a and b at its ends,
 //! clamped to [0.001, 0.999]: at an end, the vertices of several edges would coincide and form
-//! triangles without area. The normal is the negative gradient by central differences at both ends,
+//! triangles without area. If the edge crosses a wall before, the vertex lies exactly on the wall and
+//! has its normal. Otherwise the normal is the negative gradient by central differences at both ends,
 //! interpolated by t.
 
 mod cpu;
@@ -10,7 +11,7 @@ mod cpu;
 use glam::{UVec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use crate::surface::modules::{LATTICE, SLOTS, STATUS};
+use crate::surface::modules::{LATTICE, SLOTS, STATUS, WALLS};
 use crate::surface::params::{Lattice, Status};
 
 bindings! {
@@ -31,7 +32,7 @@ bindings! {
 pub(crate) static VERTICES: PassDesc = PassDesc {
     label: "surface.vertices",
     wgsl: include_str!("vertices.wgsl"),
-    imports: &[wgsl::INDEX, STATUS, LATTICE, SLOTS],
+    imports: &[wgsl::INDEX, STATUS, LATTICE, SLOTS, WALLS],
     entry: "vertices",
     workgroup_size: [64, 1, 1],
     constants: &[],

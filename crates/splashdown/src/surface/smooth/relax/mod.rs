@@ -1,16 +1,21 @@
 //! One iteration of smoothing: every vertex moves towards the mean of its neighbours by its weight.
+//!
+//! Walls are planes of symmetry. A vertex beside a wall moves along it, the others do not reach it, and
+//! neighbours on walls do not count: the free surface is smoothed as if it continued in its mirror
+//! image, and the vertices on a wall follow it.
 
 mod cpu;
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use crate::surface::modules::STATUS;
-use crate::surface::params::Status;
+use crate::surface::modules::{LATTICE, STATUS, WALLS};
+use crate::surface::params::{Lattice, Status};
 
 bindings! {
     /// The buffers of `relax.wgsl`.
     pub(super) struct RelaxBindings {
+        lattice: uniform Lattice,
         status: read Status,
         one_ring_starts: read [u32],
         one_rings: read [UVec2],
@@ -22,7 +27,7 @@ bindings! {
 pub(crate) static RELAX: PassDesc = PassDesc {
     label: "surface.relax",
     wgsl: include_str!("relax.wgsl"),
-    imports: &[wgsl::INDEX, STATUS],
+    imports: &[wgsl::INDEX, STATUS, LATTICE, WALLS],
     entry: "relax",
     workgroup_size: [64, 1, 1],
     constants: &[],

@@ -1,5 +1,6 @@
 #import gpu/index
-#import surface/status
+#import surface/lattice
+#import surface/walls
 
 #bindings
 
@@ -13,10 +14,19 @@ fn relax(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
     let end = one_ring_starts[vertex + 1u];
     let own = before[vertex];
     var sum = vec3<f32>(0.0);
+    var neighbours = 0u;
     for (var i = start; i < end; i++) {
-        // Relative to the vertex, which avoids cancellation far from the origin.
-        sum += before[one_rings[i].x].xyz - own.xyz;
+        let at = before[one_rings[i].x].xyz;
+        if !is_on_wall(at) {
+            // Relative to the vertex, which avoids cancellation far from the origin.
+            sum += at - own.xyz;
+            neighbours++;
+        }
     }
-    let count = f32(max(end - start, 1u));
-    after[vertex] = vec4<f32>(own.xyz + sum * (own.w / count), own.w);
+    let count = f32(max(neighbours, 1u));
+    let clear = vec3<f32>((LAYER_MARGINS + 2.0) * lattice.wall_margin);
+    let moved = own.xyz + sum * (own.w / count);
+    let free = max(min(moved, lattice.wall_high - clear), lattice.wall_low + clear);
+    let beside_wall = wall_distances(own.xyz) <= vec3<f32>((LAYER_MARGINS + 1.0) * lattice.wall_margin);
+    after[vertex] = vec4<f32>(select(free, own.xyz, beside_wall), own.w);
 }

@@ -1,16 +1,19 @@
 //! Vertex normals of the smoothed mesh: the normals of the adjacent triangles, weighted by area.
+//! A vertex on a wall has the normal of the wall, and triangles in walls do not contribute to the
+//! normals of the free surface.
 
 mod cpu;
 
 use glam::{UVec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
-use crate::surface::modules::STATUS;
-use crate::surface::params::Status;
+use crate::surface::modules::{LATTICE, STATUS, WALLS};
+use crate::surface::params::{Lattice, Status};
 
 bindings! {
     /// The buffers of `vertex_normals.wgsl`.
     pub(super) struct VertexNormalsBindings {
+        lattice: uniform Lattice,
         status: read Status,
         one_ring_starts: read [u32],
         one_rings: read [UVec2],
@@ -22,7 +25,7 @@ bindings! {
 pub(crate) static VERTEX_NORMALS: PassDesc = PassDesc {
     label: "surface.vertex_normals",
     wgsl: include_str!("vertex_normals.wgsl"),
-    imports: &[wgsl::INDEX, STATUS],
+    imports: &[wgsl::INDEX, STATUS, LATTICE, WALLS],
     entry: "vertex_normals",
     workgroup_size: [64, 1, 1],
     constants: &[],

@@ -1,50 +1,12 @@
-//! NumPy arrays: views of Rust memory, and checked input.
+//! Checked input.
 
 use std::ops::Range;
 
-use numpy::ndarray::{ArrayView1, ArrayView2};
-use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
-    dtype,
-};
+use numpy::{Element, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, dtype};
 use pyo3::prelude::*;
 
-use crate::errors::{ArrayError, Result};
-
-/// A read-only array (N, 3) over memory of `owner`.
-///
-/// # Safety
-/// `owner` must keep `rows` unchanged and in place as long as it lives.
-pub unsafe fn vectors_of<'py, T: Element + bytemuck::Pod>(
-    owner: Bound<'py, PyAny>,
-    rows: &[[T; 3]],
-) -> Result<Bound<'py, PyArray2<T>>> {
-    let flat: &[T] = bytemuck::cast_slice(rows);
-    let view = ArrayView2::from_shape((rows.len(), 3), flat).map_err(|error| fail(error.to_string()))?;
-    // SAFETY: guaranteed by the caller.
-    let array = unsafe { PyArray2::borrow_from_array(&view, owner) };
-    read_only(array.as_any())?;
-    Ok(array)
-}
-
-/// A read-only array (N,) over memory of `owner`.
-///
-/// # Safety
-/// As [`vectors_of`].
-pub unsafe fn scalars_of<'py, T: Element>(
-    owner: Bound<'py, PyAny>,
-    values: &[T],
-) -> Result<Bound<'py, PyArray1<T>>> {
-    let view = ArrayView1::from(values);
-    // SAFETY: guaranteed by the caller.
-    let array = unsafe { PyArray1::borrow_from_array(&view, owner) };
-    read_only(array.as_any())?;
-    Ok(array)
-}
-
-fn read_only(array: &Bound<'_, PyAny>) -> PyResult<()> {
-    array.getattr("flags")?.setattr("writeable", false)
-}
+use super::fail;
+use crate::errors::Result;
 
 /// An array that Python has given, and where it lies in memory.
 pub struct Input<T> {
@@ -59,15 +21,7 @@ impl<T> Input<T> {
     ///
     /// # Errors
     /// `ArrayError` if they do.
-    pub fn is_apart_from<U>(&self, other: &Input<U>) -> Result<()> {
-        self.is_apart_from_memory(other.name, &other.memory)
-    }
-
-    /// As [`is_apart_from`](Self::is_apart_from).
-    ///
-    /// # Errors
-    /// `ArrayError` if they do.
-    pub fn is_apart_from_memory(&self, other: &str, memory: &Range<usize>) -> Result<()> {
+    pub fn is_apart_from(&self, other: &str, memory: &Range<usize>) -> Result<()> {
         if self.memory.start < memory.end && memory.start < self.memory.end {
             let name = self.name;
             return Err(fail(format!(
@@ -75,6 +29,50 @@ impl<T> Input<T> {
             )));
         }
         Ok(())
+    }
+}
+
+/// The arrays of one call, which must not share memory. An array that is absent has no values.
+#[derive(Default)]
+pub struct Inputs(Vec<(&'static str, Range<usize>)>);
+
+impl Inputs {
+    /// The next array, as [`vectors`].
+    ///
+    /// # Errors
+    /// As [`vectors`]; `ArrayError` if it shares memory with an earlier one.
+    pub fn vectors(&mut self, name: &'static str, value: Option<&Bound<'_, PyAny>>) -> Result<Vec<[f32; 3]>> {
+        self.add(value.map(|value| vectors(name, value)))
+    }
+
+    /// The next array: one number per particle, of shape (N,), otherwise as [`vectors`].
+    ///
+    /// # Errors
+    /// As [`Self::vectors`].
+    pub fn scalars(&mut self, name: &'static str, value: Option<&Bound<'_, PyAny>>) -> Result<Vec<f32>> {
+        self.add(value.map(|value| floats(name, value, None)))
+    }
+
+    /// The next array: integers from 0, of shape (N,) or (N, 3), C-contiguous, of uint32, int32 or int64.
+    ///
+    /// # Errors
+    /// As [`Self::vectors`].
+    pub fn integers(
+        &mut self,
+        name: &'static str,
+        value: Option<&Bound<'_, PyAny>>,
+        columns: Option<usize>,
+    ) -> Result<Vec<u32>> {
+        self.add(value.map(|value| integers(name, value, columns)))
+    }
+
+    fn add<T>(&mut self, input: Option<Result<Input<T>>>) -> Result<Vec<T>> {
+        let Some(input) = input.transpose()? else { return Ok(Vec::new()) };
+        for (other, memory) in &self.0 {
+            input.is_apart_from(other, memory)?;
+        }
+        self.0.push((input.name, input.memory));
+        Ok(input.values)
     }
 }
 
@@ -93,19 +91,7 @@ pub fn vectors(name: &'static str, value: &Bound<'_, PyAny>) -> Result<Input<[f3
     Ok(Input { values: bytemuck::pod_collect_to_vec(&values), name, memory })
 }
 
-/// One number per particle: an array of shape (N,), otherwise as [`vectors`].
-///
-/// # Errors
-/// As [`vectors`].
-pub fn scalars(name: &'static str, value: &Bound<'_, PyAny>) -> Result<Input<f32>> {
-    floats(name, value, None)
-}
-
-/// Integers from 0: an array of shape (N,) or (N, 3), C-contiguous, of uint32 or int64.
-///
-/// # Errors
-/// As [`vectors`].
-pub fn integers(name: &'static str, value: &Bound<'_, PyAny>, columns: Option<usize>) -> Result<Input<u32>> {
+fn integers(name: &'static str, value: &Bound<'_, PyAny>, columns: Option<usize>) -> Result<Input<u32>> {
     let array = checked(name, value, columns)?;
     let py = value.py();
     let memory = memory(&array)?;
@@ -213,8 +199,4 @@ fn copy<T: Element + Clone>(array: &Bound<'_, PyUntypedArray>) -> Result<Vec<T>>
 fn memory(array: &Bound<'_, PyUntypedArray>) -> Result<Range<usize>> {
     let (start, _): (usize, bool) = array.getattr("__array_interface__")?.get_item("data")?.extract()?;
     Ok(start..start + array.len() * array.dtype().itemsize())
-}
-
-fn fail(message: String) -> crate::errors::Failure {
-    ArrayError::new_err(message).into()
 }

@@ -1,0 +1,102 @@
+//! Options of `render`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use splashdown::scene::PictureQuality;
+
+use super::choice;
+
+const EXAMPLES: &str = "\
+Examples:
+  splashdown render out/dam-break
+  splashdown render out/dam-break --quality final --frames 40 -o still
+  splashdown render out/my --scene my.toml --frames 20..80 --turn 90 --size 1920x1080
+  splashdown render out/my --scene my.toml --slow 4
+
+Reads the meshes and the spray, foam and bubbles of the run, and writes numbered PNG pictures and,
+with ffmpeg and several frames, a film. Particles files make spray of single particles visible as
+droplets. Frames without a mesh are left out and reported once.";
+
+/// Options of `render`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct RenderArguments {
+    /// Output folder of a run with meshes
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Scene file or built-in scene of the run [default: the one that run.json names]
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Folder of the pictures and the film; numbered if it exists [default: RUN/render]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// A frame, or the first and the last frame [default: all]
+    #[arg(short, long, value_name = "N|A..B", value_parser = frames)]
+    pub frames: Option<(u32, u32)>,
+    /// How carefully pictures are drawn
+    #[arg(long, value_name = "QUALITY", value_parser = choice::<PictureQuality>(), default_value = "standard")]
+    pub quality: PictureQuality,
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<[u32; 2]>,
+    /// Degrees added to the camera's azimuth
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value_t = 0.0, value_parser = degrees)]
+    pub azimuth: f32,
+    /// Degrees that the camera turns around the target from the first to the last picture
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value_t = 0.0, value_parser = degrees)]
+    pub turn: f32,
+    /// Elevation of the camera in degrees [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub elevation: Option<f32>,
+    /// Factor on the camera's distance
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
+    pub distance: f32,
+    /// Factor by which the film is slower than the time between frames
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
+    pub slow: f32,
+}
+
+fn frames(text: &str) -> Result<(u32, u32), String> {
+    let number = |text: &str| text.parse::<u32>().ok();
+    let range = match text.split_once("..") {
+        Some((first, last)) => number(first).zip(number(last)),
+        None => number(text).map(|frame| (frame, frame)),
+    };
+    range.filter(|(first, last)| first <= last).ok_or_else(|| {
+        "frames are a number or two increasing numbers with two dots between them, such as 20..80".to_owned()
+    })
+}
+
+fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let side = |side: &str| side.parse().ok().filter(|side| (16..=8192).contains(side) && side % 2 == 0);
+    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+        Some((Some(width), Some(height))) => Ok([width, height]),
+        _ => Err("a size is two even integers from 16 to 8192 with an x between them, such as 1920x1080"
+            .to_owned()),
+    }
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    let number = text.parse().ok().filter(|number: &f32| number.abs() <= 36_000.0);
+    number.ok_or_else(|| "an angle is a number of degrees from -36000 to 36000".to_owned())
+}
+
+fn factor(text: &str) -> Result<f32, String> {
+    let factor = text.parse().ok().filter(|factor| (0.01..=100.0).contains(factor));
+    factor.ok_or_else(|| "a factor is a number from 0.01 to 100".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_a_number_or_an_increasing_range() {
+        assert_eq!(frames("7"), Ok((7, 7)));
+        assert_eq!(frames("20..80"), Ok((20, 80)));
+        for wrong in ["", "8..2", "a", "1..", "-1"] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
+}

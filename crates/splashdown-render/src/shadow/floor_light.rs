@@ -1,0 +1,33 @@
+//! The light on the floor, bound as group 1 of every shader that uses the environment.
+
+use crate::pipeline::{Bind, bind_group, bind_group_layout, linear_sampler};
+use wgpu::{BindGroup, BindGroupLayout, BindingResource, Device, Sampler, TextureFormat, TextureView};
+
+/// Format of the fraction of sunlight per colour.
+pub(crate) const SUNLIGHT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of the visible fraction of the sky.
+pub(crate) const SKY: TextureFormat = TextureFormat::R16Float;
+
+/// The layout of the group.
+#[derive(Debug)]
+pub(crate) struct FloorLight {
+    pub layout: BindGroupLayout,
+    sampler: Sampler,
+}
+
+impl FloorLight {
+    pub fn new(device: &Device) -> FloorLight {
+        let layout = bind_group_layout(device, "environment", &[Bind::Texture, Bind::Texture, Bind::Sampler]);
+        FloorLight { layout, sampler: linear_sampler(device) }
+    }
+
+    /// Binds the fraction of the sunlight and that of the sky.
+    pub fn bind(&self, device: &Device, sunlight: &TextureView, sky: &TextureView) -> BindGroup {
+        let resources = [
+            BindingResource::TextureView(sunlight),
+            BindingResource::TextureView(sky),
+            BindingResource::Sampler(&self.sampler),
+        ];
+        bind_group(device, "environment", &self.layout, &resources)
+    }
+}

@@ -1,0 +1,121 @@
+//! The light that reaches the floor through the liquid.
+
+use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout};
+use crate::recorder::Recorder;
+use crate::shadow::{Blur, FloorLight, SKY, SUNLIGHT};
+use crate::targets::texture;
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, RenderPipeline,
+    TextureFormat, TextureUsages, TextureView,
+};
+
+/// Texels on a side of the map of the sunlight. As many rays of the sun are followed.
+const SIDE: u32 = 512;
+/// Texels on a side of the map of the sky.
+const SKY_SIDE: u32 = 128;
+/// Standard deviations of the blurs in texels: caustics remain sharp; a texel of the sky has few
+/// rays.
+const SUNLIGHT_BLUR: f64 = 1.0;
+const SKY_BLUR: f64 = 2.0;
+
+#[derive(Debug)]
+pub(super) struct Floor {
+    photons: RenderPipeline,
+    splat: RenderPipeline,
+    sky: RenderPipeline,
+    arrivals: TextureView,
+    arrivals_group: BindGroup,
+    sunlight_maps: [TextureView; 2],
+    sky_maps: [TextureView; 2],
+    sunlight_blur: Blur,
+    sky_blur: Blur,
+    /// Group 1 of the shaders that use the environment.
+    pub environment: BindGroup,
+}
+
+impl Floor {
+    pub fn new(
+        device: &Device,
+        globals: &BindGroupLayout,
+        trees: &BindGroupLayout,
+        floor_light: &FloorLight,
+    ) -> Floor {
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let map = |label, side, format| texture(device, label, [side; 2], format, 1, usage);
+        let arrivals = map("arrivals", SIDE, TextureFormat::Rgba32Float);
+        let sunlight_maps = ["sunlight", "sunlight between blurs"].map(|label| map(label, SIDE, SUNLIGHT));
+        let sky_maps = ["sky", "sky between blurs"].map(|label| map(label, SKY_SIDE, SKY));
+        let none = bind_group_layout(device, "nothing", &[]);
+        let traced = [globals, &none, trees];
+        let side = [("SIDE", f64::from(SIDE))];
+        let photons = PipelineDesc {
+            constants: &side,
+            ..PipelineDesc::new(super::PHOTONS, &traced, TextureFormat::Rgba32Float)
+        };
+        let sky_side = [("SIDE", f64::from(SKY_SIDE))];
+        let sky = PipelineDesc { constants: &sky_side, ..PipelineDesc::new(super::FLOOR_SKY, &traced, SKY) };
+        let arrivals_layout = bind_group_layout(device, "arrivals", &[Bind::VertexTexture]);
+        let splat_layouts = [globals, &arrivals_layout];
+        let splat = PipelineDesc {
+            topology: PrimitiveTopology::PointList,
+            blend: Some(ADD),
+            ..PipelineDesc::new(super::SPLAT, &splat_layouts, SUNLIGHT)
+        };
+        let resources = [BindingResource::TextureView(&arrivals)];
+        let [sunlight, sunlight_between] = &sunlight_maps;
+        let [sky_map, sky_between] = &sky_maps;
+        Floor {
+            photons: photons.build(device),
+            splat: splat.build(device),
+            sky: sky.build(device),
+            arrivals_group: bind_group(device, "arrivals", &arrivals_layout, &resources),
+            environment: floor_light.bind(device, sunlight, sky_map),
+            sunlight_blur: Blur::new(device, [sunlight, sunlight_between], SUNLIGHT, SUNLIGHT_BLUR),
+            sky_blur: Blur::new(device, [sky_map, sky_between], SKY, SKY_BLUR),
+            arrivals,
+            sunlight_maps,
+            sky_maps,
+        }
+    }
+
+    /// Computes the sunlight; a sample with another index follows other rays.
+    pub fn record_sunlight(&self, recorder: &mut Recorder<'_>, globals: &BindGroup, trees: &BindGroup) {
+        {
+            let mut pass = recorder.cleared("rays of the sun", &self.arrivals, Color::TRANSPARENT);
+            pass.set_pipeline(&self.photons);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(2, trees, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        {
+            let mut pass =
+                recorder.cleared("sunlight on the floor", &self.sunlight_maps[0], Color::TRANSPARENT);
+            pass.set_pipeline(&self.splat);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(1, &self.arrivals_group, &[]);
+            pass.draw(0..SIDE * SIDE, 0..1);
+        }
+        self.sunlight_blur.record(recorder, [&self.sunlight_maps[0], &self.sunlight_maps[1]]);
+    }
+
+    /// Computes the visible fraction of the sky, which is 1 everywhere without bodies.
+    pub fn record_sky(
+        &self,
+        recorder: &mut Recorder<'_>,
+        globals: &BindGroup,
+        trees: &BindGroup,
+        has_bodies: bool,
+    ) {
+        {
+            let mut pass = recorder.cleared("sky above the floor", &self.sky_maps[0], Color::WHITE);
+            if !has_bodies {
+                return;
+            }
+            pass.set_pipeline(&self.sky);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(2, trees, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        self.sky_blur.record(recorder, [&self.sky_maps[0], &self.sky_maps[1]]);
+    }
+}

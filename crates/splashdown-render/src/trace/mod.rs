@@ -1,0 +1,63 @@
+//! Pictures of liquids with traced rays.
+//!
+//! # How it works
+//! Fragment shaders follow rays through the trees of liquid and bodies (module `tree`).
+//!
+//! 1. *Sunlight on the floor*: every texel of a map of the floor follows one ray of the sun through
+//!    the liquid, with refraction, absorption and total internal reflection, and stores where it
+//!    arrives. Points with additive blending then collect the light where it arrives, which makes
+//!    caustics and the shadows of bodies. A map of the visible fraction of the sky darkens the floor
+//!    around bodies.
+//! 2. *Samples*: background, bodies, liquid, foam and glass are drawn with one sample per pixel as
+//!    light without tone mapping. The depth of the liquid is drawn first, so that its shader runs
+//!    once per pixel. It follows the refracted ray from surface to surface (Fresnel equations, total
+//!    internal reflection, absorption by Beer-Lambert) until it meets a body, the floor or the sky,
+//!    and the reflected ray if it matters. Every sample shifts the place in the pixel, on the lens
+//!    and in time; the samples are averaged.
+//! 3. *Tone mapping* of the average.
+//!
+//! # Why not the other way
+//! Ray-tracing extensions are not part of WebGPU. Four hardware samples per pixel would shade a
+//! pixel once for each triangle in it, which is three to four with cells of half a spacing, and
+//! would leave refraction and highlights aliased. A path tracer that chooses every direction at
+//! random needs hundreds of samples; here nothing is random below 17 samples per pixel, so that
+//! pictures with few samples have no noise.
+//!
+//! # Things we might try
+//! Motion blur of the liquid; caustics on bodies; bubbles under water.
+
+mod floor;
+mod picture;
+
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, MATTE, OPTICS, Shader, TRACE};
+
+pub(crate) use picture::TracedPicture;
+
+pub(crate) const DEPTH: Shader =
+    Shader { label: "depth of the liquid", parts: &[GLOBALS, include_str!("depth.wgsl")] };
+pub(crate) const LIQUID: Shader = Shader {
+    label: "traced liquid",
+    parts: &[
+        GLOBALS,
+        ENVIRONMENT,
+        OPTICS,
+        TRACE,
+        MATTE,
+        include_str!("refracted.wgsl"),
+        include_str!("liquid.wgsl"),
+    ],
+};
+pub(crate) const PHOTONS: Shader = Shader {
+    label: "rays of the sun",
+    parts: &[GLOBALS, FULLSCREEN, OPTICS, TRACE, include_str!("photons.wgsl")],
+};
+pub(crate) const SPLAT: Shader =
+    Shader { label: "sunlight on the floor", parts: &[GLOBALS, include_str!("splat.wgsl")] };
+pub(crate) const FLOOR_SKY: Shader = Shader {
+    label: "sky above the floor",
+    parts: &[GLOBALS, FULLSCREEN, TRACE, include_str!("floor_sky.wgsl")],
+};
+pub(crate) const ACCUMULATE: Shader =
+    Shader { label: "sum of samples", parts: &[GLOBALS, FULLSCREEN, include_str!("accumulate.wgsl")] };
+pub(crate) const RESOLVE: Shader =
+    Shader { label: "tone mapping", parts: &[GLOBALS, FULLSCREEN, include_str!("resolve.wgsl")] };

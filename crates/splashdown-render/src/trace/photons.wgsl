@@ -1,0 +1,58 @@
+// Where sunlight meets the floor: each pixel follows one ray of the sun through liquid and stores
+
+override SIDE: u32 = 512u;
+// where it arrives. Needs globals.wgsl, fullscreen.wgsl, optics.wgsl, trace.wgsl.
+
+// Surfaces that a ray crosses before its light counts as lost.
+const CROSSINGS = 6;
+
+@fragment
+fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let side = vec2f(f32(SIDE));
+    // A different place in the texel for every sample.
+    let shift = fract(f32(globals.sample) * vec2f(0.7548777, 0.5698403));
+    let uv = (floor(position.xy) + fract(shift + 0.5)) / side;
+    let on_floor = globals.shadow_min + uv * globals.shadow_size;
+    let start_height = globals.box_max.y - globals.floor_height;
+    let up = (start_height + 1e-3 * start_height) / globals.sun.y;
+    var origin = vec3f(on_floor.x, globals.floor_height, on_floor.y) + globals.sun * up;
+    var direction = -globals.sun;
+    var inside = false;
+    var path = 0.0;
+    var light = 1.0;
+    for (var crossing = 0; crossing < CROSSINGS; crossing++) {
+        let hit = nearest_hit(origin, direction);
+        let to_floor = floor_distance(origin, direction);
+        if hit.triangle == NO_TRIANGLE || (to_floor > 0.0 && to_floor < hit.distance) {
+            if to_floor < 0.0 {
+                return vec4f(-1.0, -1.0, 0.0, 0.0);
+            }
+            let arrived = (origin + direction * to_floor).xz;
+            path += select(0.0, to_floor, inside);
+            return vec4f((arrived - globals.shadow_min) / globals.shadow_size, path, light);
+        }
+        let place = origin + direction * hit.distance;
+        let found = struck(hit);
+        if found.is_body {
+            return vec4f(-1.0, -1.0, 0.0, 0.0);
+        }
+        path += select(0.0, hit.distance, inside);
+        let leaving = dot(direction, found.face) > 0.0;
+        if leaving && place.y - globals.floor_height < globals.contact_distance && found.face.y < 0.0 {
+            return vec4f((place.xz - globals.shadow_min) / globals.shadow_size, path, light);
+        }
+        let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
+        let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);
+        let mirrored = reflectance(-dot(direction, normal), ratio);
+        if mirrored >= 1.0 {
+            direction = reflect(direction, normal);
+            inside = leaving;
+        } else {
+            light *= 1.0 - mirrored;
+            direction = refract(direction, normal, ratio);
+            inside = !leaving;
+        }
+        origin = place;
+    }
+    return vec4f(-1.0, -1.0, 0.0, 0.0);
+}

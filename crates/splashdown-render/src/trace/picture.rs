@@ -1,0 +1,203 @@
+//! The passes of a picture with traced rays.
+
+use super::floor::Floor;
+use crate::background::Background;
+use crate::bodies;
+use crate::foam::{Foam, Kinds};
+use crate::glass::{Glass, Panes};
+use crate::pipeline::{ADD, Bind, Depth, PipelineDesc, bind_group, bind_group_layout};
+use crate::recorder::{Recorder, Start};
+use crate::shadow::FloorLight;
+use crate::targets::texture;
+use crate::{DrawnSurface, Frame, TracedMeshes};
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, Color, ColorWrites, Device, Face, RenderPipeline,
+    TextureFormat, TextureUsages, TextureView,
+};
+
+/// Format of light without tone mapping.
+const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
+
+#[derive(Debug)]
+pub(crate) struct TracedPicture {
+    floor: Floor,
+    background: Background,
+    bodies: RenderPipeline,
+    depth: RenderPipeline,
+    liquid: RenderPipeline,
+    foam: Foam,
+    glass: Glass,
+    accumulate: RenderPipeline,
+    resolve: RenderPipeline,
+    trees_layout: BindGroupLayout,
+    texture_layout: BindGroupLayout,
+    targets: Option<LightTargets>,
+}
+
+/// Textures of the size of the picture.
+#[derive(Debug)]
+struct LightTargets {
+    size: [u32; 2],
+    sample: TextureView,
+    depth: TextureView,
+    sum: TextureView,
+    sample_group: BindGroup,
+    sum_group: BindGroup,
+}
+
+impl TracedPicture {
+    pub fn new(
+        device: &Device,
+        globals: &BindGroupLayout,
+        floor_light: &FloorLight,
+        format: TextureFormat,
+    ) -> TracedPicture {
+        let trees_layout = bind_group_layout(device, "trees", &[Bind::FragmentStorage; 3]);
+        let texture_layout = bind_group_layout(device, "light", &[Bind::Texels]);
+        let environment = &floor_light.layout;
+        let plain = [globals, environment];
+        let traced = [globals, environment, &trees_layout];
+        let of_texture = [globals, &texture_layout];
+        let depth_layouts = [globals];
+        let depth = PipelineDesc {
+            depth: Some(Depth::TestAndWrite),
+            cull: Some(Face::Back),
+            vertex_buffers: 1,
+            write: ColorWrites::empty(),
+            ..PipelineDesc::new(super::DEPTH, &depth_layouts, LIGHT)
+        };
+        let liquid = PipelineDesc {
+            depth: Some(Depth::Test),
+            cull: Some(Face::Back),
+            vertex_buffers: 2,
+            ..PipelineDesc::new(super::LIQUID, &traced, LIGHT)
+        };
+        let accumulate =
+            PipelineDesc { blend: Some(ADD), ..PipelineDesc::new(super::ACCUMULATE, &of_texture, LIGHT) };
+        TracedPicture {
+            floor: Floor::new(device, globals, &trees_layout, floor_light),
+            background: Background::new(device, plain, LIGHT, 1),
+            bodies: bodies::pipeline(device, bodies::TRACED, &traced, LIGHT, 1),
+            depth: depth.build(device),
+            liquid: liquid.build(device),
+            foam: Foam::new(device, plain, LIGHT, 1),
+            glass: Glass::new(device, plain, LIGHT, 1),
+            accumulate: accumulate.build(device),
+            resolve: PipelineDesc::new(super::RESOLVE, &of_texture, format).build(device),
+            trees_layout,
+            texture_layout,
+            targets: None,
+        }
+    }
+
+    /// Creates the textures for a picture of this size.
+    pub fn prepare(&mut self, device: &Device, size: [u32; 2]) {
+        if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
+            self.targets = Some(LightTargets::new(device, size, &self.texture_layout));
+        }
+    }
+
+    /// Binds the trees.
+    pub fn bind(&self, device: &Device, meshes: &TracedMeshes) -> BindGroup {
+        let resources = meshes.buffers().map(wgpu::Buffer::as_entire_binding);
+        bind_group(device, "trees", &self.trees_layout, &resources)
+    }
+
+    /// Records a sample of the picture and adds it to the sum.
+    pub fn record_sample(
+        &self,
+        device: &Device,
+        recorder: &mut Recorder<'_>,
+        globals: &BindGroup,
+        trees: &BindGroup,
+        frame: &Frame<'_>,
+        sample: u32,
+    ) {
+        let (Some(targets), Some(surface), Some((meshes, quality))) =
+            (&self.targets, &frame.surface, &frame.traced)
+        else {
+            return;
+        };
+        if sample == 0 {
+            self.floor.record_sky(recorder, globals, trees, meshes.has_bodies());
+        }
+        // With few samples the caustics of the first serve all.
+        if sample == 0 || quality.samples > 16 {
+            self.floor.record_sunlight(recorder, globals, trees);
+        }
+        self.record_scene(device, recorder, targets, [globals, trees], frame, surface);
+        let start = if sample == 0 { Start::Clear } else { Start::Load };
+        let mut pass = recorder.sum("sum of samples", &targets.sum, start);
+        pass.set_pipeline(&self.accumulate);
+        pass.set_bind_group(0, globals, &[]);
+        pass.set_bind_group(1, &targets.sample_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn record_scene(
+        &self,
+        device: &Device,
+        recorder: &mut Recorder<'_>,
+        targets: &LightTargets,
+        [globals, trees]: [&BindGroup; 2],
+        frame: &Frame<'_>,
+        surface: &DrawnSurface<'_>,
+    ) {
+        let foam = frame.foam.map(|drawn| self.foam.bind(device, &drawn)).unwrap_or_default();
+        {
+            let mut pass = recorder.light("scene", &targets.sample, &targets.depth, Start::Clear);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(1, &self.floor.environment, &[]);
+            self.background.record(&mut pass);
+            self.glass.record(&mut pass, Panes::Behind);
+            pass.set_bind_group(2, trees, &[]);
+            if let Some(buffers) = &frame.bodies {
+                bodies::record(&self.bodies, &mut pass, buffers);
+            }
+            pass.set_pipeline(&self.depth);
+            surface.buffers.draw(&mut pass);
+        }
+        {
+            let mut pass = recorder.light("traced liquid", &targets.sample, &targets.depth, Start::Load);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_bind_group(1, &self.floor.environment, &[]);
+            pass.set_bind_group(2, trees, &[]);
+            pass.set_pipeline(&self.liquid);
+            pass.set_vertex_buffer(1, surface.buffers.normals.slice(..));
+            surface.buffers.draw(&mut pass);
+        }
+        let mut pass = recorder.light("foam and glass", &targets.sample, &targets.depth, Start::Load);
+        pass.set_bind_group(0, globals, &[]);
+        pass.set_bind_group(1, &self.floor.environment, &[]);
+        self.foam.record(&mut pass, &foam, Kinds::OverWater);
+        self.glass.record(&mut pass, Panes::InFront);
+    }
+
+    /// Tone mapping of the sum into the target.
+    pub fn record_result(&self, recorder: &mut Recorder<'_>, globals: &BindGroup, target: &TextureView) {
+        let Some(targets) = &self.targets else { return };
+        let mut pass = recorder.cleared("tone mapping", target, Color::BLACK);
+        pass.set_pipeline(&self.resolve);
+        pass.set_bind_group(0, globals, &[]);
+        pass.set_bind_group(1, &targets.sum_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl LightTargets {
+    fn new(device: &Device, size: [u32; 2], layout: &BindGroupLayout) -> LightTargets {
+        let drawn = TextureUsages::RENDER_ATTACHMENT;
+        let make = |label, format, usage| texture(device, label, size, format, 1, usage);
+        let read = drawn | TextureUsages::TEXTURE_BINDING;
+        let (sample, sum) = (make("sample", LIGHT, read), make("sum", LIGHT, read));
+        let group = |view| bind_group(device, "light", layout, &[BindingResource::TextureView(view)]);
+        LightTargets {
+            size,
+            sample_group: group(&sample),
+            sum_group: group(&sum),
+            depth: make("depth", crate::pipeline::DEPTH, drawn),
+            sample,
+            sum,
+        }
+    }
+}

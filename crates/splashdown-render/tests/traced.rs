@@ -1,0 +1,259 @@
+//! Pictures with traced rays, compared with Snell's law, Beer-Lambert, and a reference picture.
+
+mod common;
+
+use common::{Harness, Picture, sample, with};
+use splashdown_render::*;
+
+const SIZE: [u32; 2] = [320, 240];
+/// The level of the water in a tank of 2 x 1 x 1 m.
+const LEVEL: f32 = 0.6;
+const RED: [f32; 3] = [0.8, 0.03, 0.03];
+
+fn domain() -> Domain {
+    Domain::closed([0.0; 3], [2.0, 1.0, 1.0])
+}
+
+/// A box with flat faces, counterclockwise as seen from outside.
+fn slab(low: [f32; 3], high: [f32; 3]) -> sample::Mesh {
+    let mut mesh = sample::Mesh { vertices: vec![], normals: vec![], triangles: vec![] };
+    for face in 0..6 {
+        let (axis, upper) = (face / 2, face % 2 == 1);
+        let (u, v) = if upper { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+        let first = mesh.vertices.len() as u32;
+        for (a, b) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
+            let mut corner = [0.0; 3];
+            corner[axis] = if upper { high[axis] } else { low[axis] };
+            corner[u] = if a == 0 { low[u] } else { high[u] };
+            corner[v] = if b == 0 { low[v] } else { high[v] };
+            let mut normal = [0.0; 3];
+            normal[axis] = if upper { 1.0 } else { -1.0 };
+            mesh.vertices.push(corner);
+            mesh.normals.push(normal);
+        }
+        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    mesh
+}
+
+/// Draws a liquid and a body with traced rays.
+fn draw(
+    harness: &mut Harness,
+    water: &sample::Mesh,
+    liquid: Liquid,
+    body: Option<&PlacedBody>,
+    camera: Camera,
+    quality: Quality,
+) -> Picture {
+    let device = &harness.device;
+    let surface = UploadedSurface::new(device, &water.vertices, &water.normals, &water.triangles).unwrap();
+    let place = ([0.0; 3], [0.0, 0.0, 0.0, 1.0]);
+    let placed = || body.map(|body| (body, place.0, place.1));
+    let meshes =
+        TracedMeshes::new(device, &water.vertices, &water.normals, &water.triangles, placed()).unwrap();
+    let bodies = UploadedBodies::new(device, placed());
+    let mut frame = Frame::new(camera, domain())
+        .with_surface(DrawnSurface::new(surface.buffers(), liquid))
+        .with_tracing(&meshes, quality);
+    frame.bodies = body.map(|_| bodies.buffers());
+    harness.draw(SIZE, &frame)
+}
+
+fn one_sample() -> Quality {
+    with(Quality::STANDARD, |q| q.samples = 1)
+}
+
+fn tank() -> sample::Mesh {
+    slab([0.0; 3], [2.0, LEVEL, 1.0])
+}
+
+fn ball(centre: [f32; 3], radius: f32, colour: [f32; 3]) -> PlacedBody {
+    let mesh = sample::ball(centre, radius, 32);
+    PlacedBody::new(&mesh.vertices, &mesh.triangles, colour).unwrap()
+}
+
+fn pixel_of(camera: Camera, point: [f32; 3]) -> [u32; 2] {
+    camera.project(point, SIZE).unwrap().unwrap().map(|x| x as u32)
+}
+
+fn is_red([r, g, b]: [u8; 3]) -> bool {
+    i32::from(r) - i32::from(g.max(b)) > 40
+}
+
+/// The zero of a function that changes its sign once.
+fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let sign = f(low).signum();
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle).signum() == sign { low = middle } else { high = middle }
+    }
+    low
+}
+
+fn sine(opposite: f64, adjacent: f64) -> f64 {
+    opposite / opposite.hypot(adjacent)
+}
+
+#[test]
+fn a_body_under_water_appears_where_snells_law_puts_it() {
+    let Some(mut harness) = common::harness() else { return };
+    let (eye, place) = ([1.0, 2.2, 2.4], [1.0, 0.15, 0.5]);
+    let camera = Camera { eye, target: [1.0, 0.4, 0.5], up: [0.0, 1.0, 0.0], field_of_view_deg: 40.0 };
+    let body = ball(place, 0.03, RED);
+    // Where the ray crosses the level: n sin(angle in water) = sin(angle in air).
+    let snell =
+        |z: f64| sine(2.4 - z, 2.2 - f64::from(LEVEL)) - 1.333 * sine(z - 0.5, f64::from(LEVEL) - 0.15);
+    let bent = pixel_of(camera, [1.0, LEVEL, root(0.5, 1.0, snell) as f32]);
+    let straight = pixel_of(camera, place);
+    assert!(bent[1].abs_diff(straight[1]) > 8, "{bent:?} {straight:?}");
+    let picture = draw(&mut harness, &tank(), Liquid::water(), Some(&body), camera, one_sample());
+    assert!(is_red(picture.pixel(bent)), "{:?} at {bent:?}", picture.pixel(bent));
+    assert!(!is_red(picture.pixel(straight)));
+    // Negative control: a liquid that does not refract.
+    let air = with(Liquid::water(), |l| l.refractive_index = 1.0);
+    let picture = draw(&mut harness, &tank(), air, Some(&body), camera, one_sample());
+    assert!(!is_red(picture.pixel(bent)) && is_red(picture.pixel(straight)));
+}
+
+#[test]
+fn the_surface_reflects_totally_from_below() {
+    let Some(mut harness) = common::harness() else { return };
+    let camera = Camera {
+        eye: [1.0, 0.05, 1.6],
+        target: [1.0, 0.5, 0.5],
+        up: [0.0, 1.0, 0.0],
+        field_of_view_deg: 60.0,
+    };
+    let body = ball([1.0, 0.3, 0.3], 0.05, RED);
+    // The mirror image of the body above the level, seen through the front of the tank at z = 1.
+    let image = 2.0 * f64::from(LEVEL) - 0.3;
+    let snell = |y: f64| sine(y - 0.05, 0.6) - 1.333 * sine(image - y, 0.7);
+    let height = root(0.05, f64::from(LEVEL), snell);
+    assert!(height < f64::from(LEVEL) - 0.02, "{height}");
+    let pixel = pixel_of(camera, [1.0, height as f32, 1.0]);
+    let picture = draw(&mut harness, &tank(), Liquid::water(), Some(&body), camera, one_sample());
+    assert!(is_red(picture.pixel(pixel)), "{:?} at {pixel:?}", picture.pixel(pixel));
+    // Negative control: without refraction there is no reflection.
+    let air = with(Liquid::water(), |l| l.refractive_index = 1.0);
+    let picture = draw(&mut harness, &tank(), air, Some(&body), camera, one_sample());
+    assert!(!is_red(picture.pixel(pixel)));
+}
+
+/// The light that a stored byte stands for: the inverse of the sRGB encoding and of the tone curve.
+fn light(byte: u8) -> f64 {
+    let stored = f64::from(byte) / 255.0;
+    let y = if stored <= 0.04045 { stored / 12.92 } else { ((stored + 0.055) / 1.055).powf(2.4) };
+    let (a, b) = (2.51 - 2.43 * y, 0.03 - 0.59 * y);
+    ((b * b + 0.56 * a * y).sqrt() - b) / (2.0 * a)
+}
+
+#[test]
+fn light_is_absorbed_along_the_path() {
+    let Some(mut harness) = common::harness() else { return };
+    // Straight down on a plate, through 0.4 m of liquid.
+    let camera = Camera {
+        eye: [1.0, 2.5, 0.5],
+        target: [1.0, 0.0, 0.5],
+        up: [0.0, 0.0, -1.0],
+        field_of_view_deg: 30.0,
+    };
+    let plate = slab([0.6, 0.1, 0.2], [1.4, 0.2, 0.8]);
+    let plate = PlacedBody::new(&plate.vertices, &plate.triangles, [0.5; 3]).unwrap();
+    let mut seen = |per_metre: f32| {
+        let liquid = with(Liquid::water(), |l| l.absorption = [per_metre; 3]);
+        let picture = draw(&mut harness, &tank(), liquid, Some(&plate), camera, one_sample());
+        light(picture.pixel([SIZE[0] / 2, SIZE[1] / 2])[1])
+    };
+    // What the surface reflects does not pass the liquid.
+    let reflected = seen(400.0);
+    let clear = seen(0.0) - reflected;
+    let measured = (seen(1.5) - reflected) / clear;
+    // One step of a byte is two percent of this light.
+    let expected = (-1.5_f64 * 0.4).exp();
+    assert!((measured - expected).abs() < 0.03, "{measured}, expected {expected}");
+    // Negative control: another path length.
+    assert!((measured - (-1.5_f64 * 0.5).exp()).abs() > 0.03);
+}
+
+#[test]
+fn a_ball_of_water_focuses_sunlight_on_the_floor() {
+    let Some(mut harness) = common::harness() else { return };
+    let mesh = sample::ball([1.0, 0.5, 0.5], 0.25, 48);
+    let camera = Camera::orbit([1.3, 0.0, 0.7], 3.0, 100.0, 55.0, 40.0);
+    // The centre of the ball, projected along the rays of the sun.
+    let [x, y, z] = Frame::SUN;
+    let spot = pixel_of(camera, [1.0 - 0.5 * x / y, 0.0, 0.5 - 0.5 * z / y]);
+    let mut brightness = |index: f32| {
+        let liquid = with(Liquid::water(), |l| l.refractive_index = index);
+        light(draw(&mut harness, &mesh, liquid, None, camera, one_sample()).pixel(spot)[1])
+    };
+    let (focused, straight) = (brightness(1.333), brightness(1.0));
+    assert!(focused > 2.0 * straight, "{focused} and {straight}");
+}
+
+#[test]
+fn more_samples_show_the_same_picture_and_a_lens_blurs_it() {
+    let Some(mut harness) = common::harness() else { return };
+    let water = sample::waves([0.0; 3], [2.0, 1.0, 1.0], 64);
+    let body = ball([1.0, 0.75, 0.5], 0.12, RED);
+    let camera = Camera::framing(&domain(), 28.0, 18.0, 35.0, 1.33);
+    let mut drawn = |quality| draw(&mut harness, &water, Liquid::water(), Some(&body), camera, quality);
+    let few = drawn(Quality::STANDARD);
+    let many = drawn(with(Quality::FINAL, |q| q.samples = 17));
+    let difference = many.difference(&few);
+    assert!(difference.mean < 4.0, "{difference:?}");
+    let lens = drawn(with(Quality::FINAL, |q| (q.samples, q.aperture, q.focus) = (17, 0.3, Some(1.0))));
+    let centre = pixel_of(camera, [1.0, 0.75, 0.5]);
+    assert!(is_red(few.pixel(centre)) && is_red(many.pixel(centre)));
+    // The sharp outline of the body becomes wide.
+    let reds = |picture: &Picture| {
+        let all = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+        all.filter(|at| is_red(picture.pixel(*at))).count()
+    };
+    assert!(many.difference(&lens).mean > 2.0 * difference.mean);
+    assert!(reds(&lens) != reds(&many));
+}
+
+#[test]
+fn waves_in_a_tank() {
+    let Some(mut harness) = common::harness() else { return };
+    let size = [160, 120];
+    let mesh = sample::waves([0.0; 3], [2.0, 1.0, 1.0], 96);
+    let Harness { device, .. } = &harness;
+    let surface = UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let meshes = TracedMeshes::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles, []).unwrap();
+    let frame = |azimuth: f32, liquid: Liquid| {
+        let camera = Camera::framing(&domain(), azimuth, 18.0, 35.0, 1.4);
+        let drawn = DrawnSurface::new(surface.buffers(), liquid);
+        Frame::new(camera, domain()).with_surface(drawn).with_tracing(&meshes, Quality::STANDARD)
+    };
+    let picture = harness.draw(size, &frame(28.0, Liquid::water()));
+    picture.expect("traced-water");
+    assert!(!harness.draw(size, &frame(30.0, Liquid::water())).difference(&picture).is_small());
+    assert!(!harness.draw(size, &frame(28.0, Liquid::oil())).difference(&picture).is_small());
+    let mut rough = frame(28.0, Liquid::water());
+    rough.traced = None;
+    assert!(!harness.draw(size, &rough).difference(&picture).is_small(), "the interactive picture");
+}
+
+#[test]
+fn invalid_meshes_and_qualities_are_refused() {
+    let Some(mut harness) = common::harness() else { return };
+    let tank = tank();
+    let wrong = [[0, 1, 999]];
+    let error = TracedMeshes::new(&harness.device, &tank.vertices, &tank.normals, &wrong, []).unwrap_err();
+    assert!(matches!(error, RenderError::Index { .. }), "{error}");
+    let error = TracedMeshes::new(&harness.device, &tank.vertices, &tank.normals[1..], &tank.triangles, [])
+        .unwrap_err();
+    assert!(matches!(error, RenderError::Length { .. }), "{error}");
+    let Harness { device, queue, renderer } = &mut harness;
+    let surface = UploadedSurface::new(device, &tank.vertices, &tank.normals, &tank.triangles).unwrap();
+    let meshes = TracedMeshes::new(device, &tank.vertices, &[], &tank.triangles, []).unwrap();
+    let camera = Camera::framing(&domain(), 28.0, 18.0, 35.0, 1.33);
+    let frame = Frame::new(camera, domain())
+        .with_surface(DrawnSurface::new(surface.buffers(), Liquid::water()))
+        .with_tracing(&meshes, with(Quality::STANDARD, |q| q.samples = 0));
+    let mut target = Offscreen::new(device, queue, SIZE).unwrap();
+    let error = target.render_to_rgba(renderer, &frame).unwrap_err();
+    assert!(error.to_string().contains("1 to 4096 samples"), "{error}");
+}

@@ -1,0 +1,231 @@
+//! The density of the fluid from the positions of its particles, whatever the solver believes.
+//!
+//! A sum over the neighbours with the Wendland kernel and their images behind closed sides. For deficits, the part of the
+//! kernel inside the nearest body is added as if its surface were plane; for excess it is not, so that the reported excess
+//! next to bodies is a lower bound. One particle in [`ONE_OF`] is evaluated per frame, others in each frame, and at least
+//! 2,048.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::boundary::{KernelPair, solid_offset};
+use crate::kernel::{Kernel, WendlandC2};
+use crate::scene::{KernelKind, Method, lattice_sum};
+use crate::state::Params;
+
+/// Of how many particles one is evaluated, and the bounds of their number: they limit the cost of a frame.
+const ONE_OF: usize = 8;
+const EVALUATED: [usize; 2] = [2048, 16_384];
+/// The support of the sum in spacings: that of the solver, at least this.
+const SUPPORT: f32 = 2.4;
+/// Particles whose kernel has a larger gradient of the filled fraction, times the support, are at a free surface.
+const OPEN: f32 = 0.3;
+/// Particles below this relative density are spray.
+const SPRAY: f32 = 0.6;
+/// The part of the particles that may exceed the reported values.
+const FRACTION: f64 = 0.01;
+
+/// The relative deviation of the density from the rest density, from the positions of the particles, walls and bodies
+/// included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct DensityError {
+    /// The excess that one particle in a hundred has.
+    pub excess: f32,
+    /// The deficit that one particle in a hundred of those that are neither at a free surface nor spray has.
+    pub deficit: f32,
+    /// The largest excess.
+    pub largest: f32,
+    /// Where it is, in m.
+    pub largest_place: [f32; 3],
+    /// Where the largest deficit is, in m.
+    pub deficit_place: [f32; 3],
+}
+
+/// The deviations of these particles. `turn` selects which of many particles are evaluated. `distance` gives the distance in m of a point from the nearest body, if any.
+pub(super) fn density_error(
+    params: &Params,
+    positions: &[[f32; 3]],
+    turn: u64,
+    distance: &(dyn Fn(Vec3) -> Option<f32> + Sync),
+) -> DensityError {
+    let spacing = params.particle_spacing;
+    let support = params.support_radius.max(SUPPORT * spacing);
+    let ratio = support / spacing;
+    let sums = Sums::new(positions, support);
+    let lattice = lattice_sum(Method::Wcsph, KernelKind::WendlandC2, ratio.into()) as f32;
+    let weight = (spacing / support).powi(3) / lattice;
+    let offset = spacing * solid_offset(KernelPair::WendlandC2, ratio);
+    let most = (positions.len() / ONE_OF).clamp(EVALUATED[0], EVALUATED[1]);
+    let stride = positions.len().div_ceil(most).max(1);
+    let first = (turn % stride as u64) as usize;
+    let chosen: Vec<usize> = (first..positions.len()).step_by(stride).collect();
+    let evaluate = |&i: &usize| {
+        let x = Vec3::from(positions[i]);
+        let (mut density, mut slope) = (0.0, Vec3::ZERO);
+        for (image, sign) in images(params, x, support) {
+            let (w, gradient) = sums.at(image);
+            density += weight * w;
+            slope += weight * sign * gradient;
+        }
+        // Without the body: a half-space is more than a thin or convex body, and must not look like compressed fluid.
+        let fluid = density;
+        let mut open = slope.length();
+        if let Some(distance) = distance(x).filter(|distance| *distance < support) {
+            let fraction = |d: f32| {
+                let q = (d / support).clamp(-1.0, 1.0);
+                let solid = KernelPair::WendlandC2.density(q.abs()).0;
+                if q < 0.0 { 1.0 - solid } else { solid }
+            };
+            density += fraction(distance + offset);
+            // Inside the fluid the body's part of the kernel cancels the slope of the fluid's part.
+            let q = (distance / support).clamp(0.0, 1.0);
+            open = (open - KernelPair::WendlandC2.density(q).1).abs();
+        }
+        (i, fluid, density, open)
+    };
+    let evaluated: Vec<(usize, f32, f32, f32)> = chosen.par_iter().map(evaluate).collect();
+    let mut all: Vec<(usize, f32)> =
+        evaluated.iter().filter(|one| one.1.is_finite()).map(|&(i, fluid, ..)| (i, fluid)).collect();
+    let is_inner = |one: &&(usize, f32, f32, f32)| one.2 > SPRAY && one.3 < OPEN;
+    let mut inner: Vec<(usize, f32)> =
+        evaluated.iter().filter(is_inner).map(|&(i, _, density, _)| (i, density)).collect();
+    // The order of equal densities is that of the particles, so that the result repeats.
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    inner.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let quantile =
+        |sorted: &[(usize, f32)]| sorted.get((FRACTION * sorted.len() as f64) as usize).map(|one| one.1);
+    let place = |sorted: &[(usize, f32)]| sorted.first().map_or([f32::NAN; 3], |one| positions[one.0]);
+    DensityError {
+        excess: quantile(&all).map_or(0.0, |density| (density - 1.0).max(0.0)),
+        deficit: quantile(&inner).map_or(0.0, |density| (1.0 - density).max(0.0)),
+        largest: all.first().map_or(0.0, |one| (one.1 - 1.0).max(0.0)),
+        largest_place: place(&all),
+        deficit_place: place(&inner),
+    }
+}
+
+/// A point and its images behind the closed sides within the support, each with the signs of the reflection.
+fn images(params: &Params, x: Vec3, support: f32) -> Vec<(Vec3, Vec3)> {
+    let mut found = vec![(x, Vec3::ONE)];
+    for axis in 0..3 {
+        for (side, plane) in [params.domain_min[axis], params.domain_max[axis]].into_iter().enumerate() {
+            let is_closed = params.closed >> (2 * axis + side) & 1 == 1;
+            if is_closed && (x[axis] - plane).abs() < support {
+                let own = found.iter().filter(|(image, sign)| sign[axis] > 0.0 && image[axis] == x[axis]);
+                let mut reflected: Vec<(Vec3, Vec3)> = own.copied().collect();
+                for (image, sign) in &mut reflected {
+                    image[axis] = 2.0 * plane - image[axis];
+                    sign[axis] = -1.0;
+                }
+                found.extend(reflected);
+            }
+        }
+    }
+    found
+}
+
+/// Sums over the particles near a point.
+struct Sums {
+    support: f32,
+    low: DVec3,
+    /// Cells along each axis.
+    cells: [u64; 3],
+    /// The cell of each particle, ascending.
+    keys: Vec<u64>,
+    /// Positions in this order.
+    positions: Vec<Vec3>,
+}
+
+impl Sums {
+    fn new(positions: &[[f32; 3]], support: f32) -> Self {
+        let finite = || positions.iter().map(|&x| Vec3::from(x)).filter(|x| x.is_finite());
+        let low = finite().fold(Vec3::INFINITY, Vec3::min);
+        let high = finite().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let mut sums =
+            Self { support, low: low.as_dvec3(), cells: [1; 3], keys: Vec::new(), positions: Vec::new() };
+        if low.cmple(high).all() {
+            // Fewer than a million cells along an axis, so that the product fits into 64 bits.
+            sums.cells = ((high - low) / support).to_array().map(|size| (size as u64).min(1_000_000) + 1);
+        }
+        let mut order: Vec<(u64, u32)> = positions
+            .par_iter()
+            .enumerate()
+            .map(|(i, &x)| (sums.key(sums.cell(x.into())), i as u32))
+            .collect();
+        order.par_sort_unstable();
+        sums.keys = order.iter().map(|one| one.0).collect();
+        sums.positions = order.iter().map(|one| Vec3::from(positions[one.1 as usize])).collect();
+        sums
+    }
+
+    fn cell(&self, x: Vec3) -> [i64; 3] {
+        ((x.as_dvec3() - self.low) / f64::from(self.support)).to_array().map(|at| at.floor() as i64)
+    }
+
+    fn key(&self, cell: [i64; 3]) -> u64 {
+        let clamped = [0, 1, 2].map(|axis| cell[axis].clamp(0, self.cells[axis] as i64 - 1) as u64);
+        (clamped[2] * self.cells[1] + clamped[1]) * self.cells[0] + clamped[0]
+    }
+
+    /// The sum of W H^3 and its gradient with respect to the point, times H^4.
+    fn at(&self, x: Vec3) -> (f32, Vec3) {
+        let [cx, cy, cz] = self.cell(x);
+        let scale = 1.0 / self.support;
+        let (mut sum, mut gradient) = (0.0, Vec3::ZERO);
+        for (dz, dy) in (-1..=1).flat_map(|dz| (-1..=1).map(move |dy| (dz, dy))) {
+            let (y, z) = (cy + dy, cz + dz);
+            let is_row = |at: i64, axis: usize| (0..self.cells[axis] as i64).contains(&at);
+            let last = self.cells[0] as i64 - 1;
+            if !is_row(y, 1) || !is_row(z, 2) || cx < -1 || cx > last + 1 {
+                continue;
+            }
+            let [from, to] = [(cx - 1).max(0), (cx + 1).min(last)].map(|x| self.key([x, y, z]));
+            let begin = self.keys.partition_point(|&key| key < from);
+            let end = begin + self.keys[begin..].partition_point(|&key| key <= to);
+            for neighbour in &self.positions[begin..end] {
+                let d = (x - *neighbour) * scale;
+                let q = d.length();
+                if q < 1.0 {
+                    sum += WendlandC2::w(q);
+                    gradient += WendlandC2::g(q) * d;
+                }
+            }
+        }
+        (sum, gradient)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box filled with a lattice, with closed sides except the lid, in units of the spacing.
+    fn error(squeeze: f32) -> DensityError {
+        let params = Params {
+            domain_min: Vec3::ZERO,
+            domain_max: Vec3::new(8.0, 20.0, 8.0),
+            particle_spacing: 1.0,
+            support_radius: 2.0,
+            closed: 0b110111,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let at = |k: usize| [k % 8, k / 64, k / 8 % 8].map(|n| n as f32 + 0.5);
+        let positions: Vec<[f32; 3]> = (0..512).map(at).map(|[x, y, z]| [x, squeeze * y, z]).collect();
+        density_error(&params, &positions, 0, &|_| None)
+    }
+
+    #[test]
+    fn a_lattice_between_walls_has_the_rest_density_everywhere() {
+        let error = error(1.0);
+        assert!(error.excess < 1e-3 && error.deficit < 1e-3, "{error:?}");
+    }
+
+    #[test]
+    fn compressed_and_stretched_fluid_is_found() {
+        let dense = error(0.8);
+        assert!((dense.excess - 0.25).abs() < 0.02 && dense.deficit < 0.01, "{dense:?}");
+        let thin = error(1.2);
+        assert!((thin.deficit - 1.0 / 6.0).abs() < 0.02 && thin.excess < 0.01, "{thin:?}");
+    }
+}

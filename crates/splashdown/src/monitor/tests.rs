@@ -1,0 +1,145 @@
+use super::*;
+use crate::run::{Event, Frame, Run, RunOptions};
+use crate::scene::OnBurst;
+use crate::{Device, SimulationError};
+
+/// The frames of a scene in a box of 1.6 m, with these sections added.
+fn frames(scene: &str, fluid: &str, rest: &str) -> Vec<Frame> {
+    let (frames, error, _) = run(scene, fluid, rest, OnBurst::Stop);
+    assert!(error.is_none(), "{error:?}");
+    frames
+}
+
+/// The frames, the error and the alarms of a run.
+fn run(
+    scene: &str,
+    fluid: &str,
+    rest: &str,
+    on_burst: OnBurst,
+) -> (Vec<Frame>, Option<SimulationError>, Vec<Alarm>) {
+    let text = format!(
+        "[scene]\nname = \"test\"\n{scene}\n[domain]\nmin = [0, 0, 0]\nmax = [1.6, 1.6, 1.6]\n[surface]\nenabled = false\n\
+         [fluid]\nparticle_spacing = 0.1\n{fluid}\n{rest}"
+    );
+    let scene = Scene::parse(&text, "test.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let options = RunOptions::new(&scene).with_device(Device::Cpu).with_on_burst(on_burst);
+    let (mut frames, mut alarms) = (Vec::new(), Vec::new());
+    for event in Run::new(&scene, options).unwrap() {
+        match event {
+            Ok(Event::Frame(frame)) => frames.push(frame),
+            Ok(Event::Alarm(alarm)) => alarms.push(alarm),
+            Ok(_) => {}
+            Err(error) => return (frames, Some(error), alarms),
+        }
+    }
+    (frames, None, alarms)
+}
+
+const BLOCK: &str = "[[fluid.block]]\nposition = [0.5, 0.8, 0.5]\nsize = [0.5, 0.5, 0.5]";
+
+/// The largest remainder of the balance in a frame, as a fraction of the energy that took part until the end.
+fn remainder(frames: &[Frame]) -> f64 {
+    let largest = frames.iter().map(|frame| frame.energy.dissipated.abs()).fold(0.0, f64::max);
+    largest / frames[frames.len() - 1].energy.available
+}
+
+#[test]
+fn the_balance_of_a_free_fall_closes() {
+    let frames = frames("duration = 0.3", BLOCK, "");
+    let (start, end) = (frames[0].energy, frames[frames.len() - 1].energy);
+    assert!(end.kinetic > 0.3 * start.potential, "it falls: {end:?}");
+    assert!(remainder(&frames) < 0.01, "{end:?}");
+}
+
+#[test]
+fn the_work_of_shaking_is_the_kinetic_energy_of_a_floating_block() {
+    let scene = "duration = 0.4\ngravity = [0, 0, 0]";
+    let rest = "[domain.oscillation]\namplitude = [0.1, 0.0, 0.05]\nperiod = 0.7";
+    let frames = frames(scene, BLOCK, rest);
+    let end = frames[frames.len() - 1].energy;
+    assert!(end.shaking > 1.0 && end.kinetic > 1.0, "{end:?}");
+    assert!(remainder(&frames) < 0.01, "{end:?}");
+}
+
+#[test]
+fn a_jet_brings_its_kinetic_energy_and_a_sink_takes_it() {
+    let scene = "duration = 0.9\ngravity = [0, 0, 0]";
+    let jet = "[[emitter]]\nname = \"jet\"\nposition = [0.5, 0.8, 0.8]\ndirection = [1, 0, 0]\nspeed = 2.0\nradius = 0.25\n\
+        [[sink]]\nname = \"drain\"\nmin = [1.2, 0.0, 0.0]\nmax = [1.6, 1.6, 1.6]";
+    let frames = frames(scene, "", jet);
+    let end = &frames[frames.len() - 1];
+    let each = 2.0 * 1000.0 * 0.001;
+    assert!((end.energy.emitted / (each * f64::from(end.stats.emitted)) - 1.0).abs() < 0.02, "{end:?}");
+    assert!((end.energy.removed / (each * f64::from(end.stats.drained)) - 1.0).abs() < 0.02, "{end:?}");
+    assert!(end.stats.drained > 50 && remainder(&frames) < 0.01, "{:?}", end.energy);
+}
+
+#[test]
+fn a_body_that_pushes_water_does_the_work_that_the_water_gains() {
+    let scene = "duration = 0.2\ngravity = [0, 0, 0]";
+    let fluid = "[[fluid.block]]\nposition = [0.0, 0.0, 0.0]\nsize = [1.6, 0.5, 1.6]";
+    let plate = "[[body]]\nname = \"plate\"\nmesh = \"cube\"\nscale = 0.3\nposition = [0.8, 0.75, 0.8]\nmove = [\"0\", \"-1.0*t\", \"0\"]";
+    let frames = frames(scene, fluid, plate);
+    let end = frames[frames.len() - 1].energy;
+    assert!(end.bodies > 1.0, "{end:?}");
+    // The water is inviscid apart from numerical damping, which takes a part and never adds.
+    assert!(end.dissipated > -0.01 * end.bodies && end.dissipated < 0.6 * end.bodies, "{end:?}");
+}
+
+#[test]
+fn collapsed_fluid_stops_the_run_after_its_frame() {
+    let soft = "[solver]\nsound_speed = 0.05";
+    let fluid =
+        "initial_pressure = \"zero\"\n[[fluid.block]]\nposition = [0.0, 0.0, 0.0]\nsize = [1.6, 1.2, 1.6]";
+    let (stopped, error, alarms) = run("duration = 1.0", fluid, soft, OnBurst::Stop);
+    let Some(SimulationError::Burst { time, message }) = error else { panic!("{error:?}") };
+    let last = stopped.last().unwrap();
+    assert!(last.level == Level::Stop && (last.time - time).abs() < 1e-9, "{time} {message}");
+    assert!(
+        message.contains("% ")
+            && message.contains(" m at the side ")
+            && message.contains("Raise solver.sound_speed"),
+        "{message}"
+    );
+    assert!(alarms.iter().any(|alarm| alarm.level == Level::Stop && alarm.message == message));
+    // Control: with another reaction it continues to the end.
+    let (all, error, alarms) = run("duration = 1.0", fluid, soft, OnBurst::Warn);
+    assert!(error.is_none() && all.len() == 51 && !alarms.is_empty(), "{error:?}");
+}
+
+#[test]
+fn a_plain_dam_break_raises_no_alarm() {
+    let fluid = "[[fluid.block]]\nposition = [0.0, 0.0, 0.0]\nsize = [0.6, 1.0, 1.6]";
+    let (frames, error, alarms) = run("duration = 0.5", fluid, "", OnBurst::Stop);
+    assert!(error.is_none() && alarms.iter().all(|alarm| alarm.level < Level::Warning), "{alarms:?}");
+    let end = frames[frames.len() - 1].energy;
+    assert!(end.dissipated > 0.0, "{end:?}");
+}
+
+#[test]
+fn a_later_rise_within_a_level_is_reported_again() {
+    let scene = Scene::builder("box", 1.0)
+        .domain([0.0; 3], [0.8, 0.8, 0.4])
+        .particle_spacing(0.05)
+        .block([0.0; 3], [0.4, 0.4, 0.4])
+        .build()
+        .unwrap();
+    let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
+    let particles = simulation.particles().unwrap();
+    let mut monitor = simulation.monitor();
+    let mut observe = |density_error: f32| {
+        let stats = Stats { density_error, ..Stats::default() };
+        let nearest = |_: Vec3| None;
+        let observed =
+            Observed { time: 0.1, stats: &stats, particles: &particles, bodies: &[], nearest: &nearest };
+        let found = monitor.observe(observed);
+        found.alarms.into_iter().map(|alarm| (alarm.level, alarm.watched)).collect::<Vec<_>>()
+    };
+    assert_eq!(observe(0.01), []);
+    assert_eq!(observe(0.44), [(Level::Warning, Watched::Compression)]);
+    assert_eq!(observe(0.46), []);
+    assert_eq!(observe(0.95), [(Level::Warning, Watched::Compression)]);
+    assert_eq!(observe(10.15), [(Level::Stop, Watched::Compression)]);
+    assert_eq!(observe(10.2), []);
+    assert_eq!(observe(f32::NAN), [] as [(Level, Watched); 0], "already at the highest level");
+}

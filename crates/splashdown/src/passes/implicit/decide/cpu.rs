@@ -1,0 +1,70 @@
+use glam::Vec4;
+
+use super::super::GROUP;
+use super::DecideBindings;
+use crate::state::{Params, StepCounters};
+
+pub(super) fn decide(buffers: DecideBindings<'_>) {
+    let DecideBindings { params, grid, cell_start, residuals, impulses, state, solve, counters } = buffers;
+    if solve.stopped != 0 || state.run_count == 0 {
+        return;
+    }
+    let n = cell_start[grid.cell_count as usize] as usize;
+    let total: Vec4 = residuals[..n.div_ceil(GROUP)].iter().sum();
+    let impulses = &impulses[..n.div_ceil(GROUP)];
+    let impulse: Vec4 = impulses.iter().sum();
+    let pressure = impulses.iter().map(|sum| sum.y).fold(0.0, f32::max);
+    let n = (n as f32).max(1.0);
+    let error = total.x / n;
+    if solve.iteration == 0 {
+        state.compression += total.z / n;
+    }
+    solve.iteration += 1;
+    // False for NaN.
+    let is_valid = error < 1e30;
+    let has_converged = is_valid && error <= params.tolerance;
+    let strictness = strictness(params, state.dt, impulse.z / n, impulse.w / n);
+    let is_enough = error <= params.tolerance * strictness;
+    if has_converged && is_enough || solve.iteration >= params.max_iterations {
+        solve.stopped = 1;
+        let scale = 1.0 + total.w / impulse.x.max(1e-30);
+        solve.scale = scale.clamp(0.5, 1.1);
+        counters[StepCounters::MAX_PRESSURE] = (solve.scale * pressure).to_bits();
+        let moved = state.max_speed * state.dt / params.particle_spacing;
+        let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
+        solve.renewal = moved.max(late).clamp(0.02, 1.0);
+        if !has_converged {
+            solve.warm_start = 0.5;
+            counters[StepCounters::UNCONVERGED] += 1;
+            counters[StepCounters::SHORTEN] = 1;
+        }
+        state.iterations += solve.iteration;
+        state.most_iterations = state.most_iterations.max(solve.iteration);
+        state.residual = state.residual.max(error);
+        return;
+    }
+    if !is_valid || error > 4.0 * solve.best {
+        solve.relaxation = (0.5 * solve.relaxation).max(0.05);
+        solve.beta = 0.0;
+        solve.best = error;
+    } else {
+        let restarts = solve.iteration == 1 || total.y > solve.change;
+        solve.beta = if restarts { 0.0 } else { total.y / solve.change.max(1e-37) };
+        solve.best = solve.best.min(error);
+    }
+    solve.change = total.y;
+}
+
+/// The part of the tolerance that deep water needs. A residual of one sign moves the surface by the depth times the
+/// residual in a step: at most by a tenth of the root mean square of the motions. `pressure2` is the mean square of the
+/// pressure over the rest density, of which the depth follows as if the fluid were at rest; `speed2` that of the speed.
+fn strictness(params: &Params, dt: f32, pressure2: f32, speed2: f32) -> f32 {
+    let layer = params.gravity.length() * params.particle_spacing;
+    if layer == 0.0 {
+        return 1.0;
+    }
+    let depth = ((3.0 * pressure2).sqrt() / layer).max(5.0);
+    let moved = speed2.sqrt() * dt / params.particle_spacing;
+    let shallow = 5.0 / depth;
+    (shallow * shallow).max(0.1 * moved / (depth * params.tolerance)).clamp(0.02, 1.0)
+}

@@ -1,0 +1,91 @@
+#import sph/params
+#import sph/solve
+#import sph/grid
+#import sph/rows
+#import sph/step_counters
+
+#bindings
+
+var<workgroup> sums: array<vec4<f32>, 256>;
+var<workgroup> impulse_sums: array<vec4<f32>, 256>;
+
+// The part of the tolerance that deep water needs; see decide/cpu.rs.
+fn strictness(pressure2: f32, speed2: f32) -> f32 {
+    let layer = length(params.gravity) * params.particle_spacing;
+    if (layer == 0.0) {
+        return 1.0;
+    }
+    let depth = max(sqrt(3.0 * pressure2) / layer, 5.0);
+    let moved = sqrt(speed2) * state.dt / params.particle_spacing;
+    let shallow = 5.0 / depth;
+    return clamp(max(shallow * shallow, 0.1 * moved / (depth * params.tolerance)), 0.02, 1.0);
+}
+
+// Adds two groups; the second component is the largest pressure.
+fn joined(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return vec4(a.x + b.x, max(a.y, b.y), a.zw + b.zw);
+}
+
+fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
+    let error = total.x / n;
+    if (solve.iteration == 0u) {
+        state.compression += total.z / n;
+    }
+    solve.iteration += 1u;
+    // False for NaN.
+    let is_valid = error < 1e30;
+    let has_converged = is_valid && error <= params.tolerance;
+    let part = strictness(impulse.z / n, impulse.w / n);
+    let is_enough = error <= params.tolerance * part;
+    if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
+        solve.stopped = 1u;
+        solve.scale = clamp(1.0 + total.w / max(impulse.x, 1e-30), 0.5, 1.1);
+        counters[COUNTER_MAX_PRESSURE] = bitcast<u32>(solve.scale * impulse.y);
+        let moved = state.max_speed * state.dt / params.particle_spacing;
+        let late = part * (f32(solve.iteration) - 3.0) / 8.0;
+        solve.renewal = clamp(max(moved, late), 0.02, 1.0);
+        solve.warm_start = select(0.5, 1.0, has_converged);
+        if (!has_converged) {
+            counters[COUNTER_UNCONVERGED] += 1u;
+            counters[COUNTER_SHORTEN] = 1u;
+        }
+        state.iterations += solve.iteration;
+        state.most_iterations = max(state.most_iterations, solve.iteration);
+        state.residual = max(state.residual, error);
+        return;
+    }
+    if (!is_valid || error > 4.0 * solve.best) {
+        solve.relaxation = max(0.5 * solve.relaxation, 0.05);
+        solve.beta = 0.0;
+        solve.best = error;
+    } else {
+        let restarts = solve.iteration == 1u || total.y > solve.change;
+        solve.beta = select(total.y / max(solve.change, 1e-37), 0.0, restarts);
+        solve.best = min(solve.best, error);
+    }
+    solve.change = total.y;
+}
+
+@compute @workgroup_size(256)
+fn implicit_decide(@builtin(local_invocation_index) local: u32) {
+    let n = active_count();
+    var own = vec4(0.0);
+    var impulse = vec4(0.0);
+    for (var g = local; g < (n + 63u) / 64u; g += 256u) {
+        own += residuals[g];
+        impulse = joined(impulse, impulses[g]);
+    }
+    sums[local] = own;
+    impulse_sums[local] = impulse;
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if (local < half) {
+            sums[local] += sums[local + half];
+            impulse_sums[local] = joined(impulse_sums[local], impulse_sums[local + half]);
+        }
+        workgroupBarrier();
+    }
+    if (local == 0u && solve.stopped == 0u && state.run_count != 0u) {
+        next_iteration(sums[0], impulse_sums[0], max(f32(n), 1.0));
+    }
+}

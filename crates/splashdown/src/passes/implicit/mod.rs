@@ -1,0 +1,82 @@
+//! The passes of the implicit pressure of `dfsph`.
+//!
+//! # The system
+//! With V = m / rho0, delta_i = sum_j V W_ij + lambda_i (fluid, images behind walls, and bodies), g_ij = V grad W_ij, the
+//! gradient b_i of the bodies' part, and the unknown k_i = p_i rho0 / rho_i^2:
+//!
+//! ```text
+//! (D u)_i  = sum_j g_ij . (u_i - u_j) + b_i . (u_i - u_body)      rate of the density
+//! (D' k)_i = sum_j (k_i + k_j) g_ij + k_i b_i                      minus the acceleration by pressure
+//! u        = v* - dt D' k                                          v*: the velocity by all other forces
+//! r        = (delta - 1) + dt D u                                  the excess of density at the end of the step
+//! ```
+//!
+//! The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
+//! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' is symmetric and
+//! positive semi-definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
+//! the one that the pressure gives it.
+//!
+//! # The solver
+//! Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe & Erleben 2010) on the projected Jacobi map
+//! k <- max(k + 0.6 r / a, 0), where a is the diagonal, started with a running mean of the old pressures:
+//!
+//! ```text
+//! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k
+//! residual   p = beta p + g;  r = (delta - 1) + dt D u;  k_J = max(k + 0.6 r / a, 0);  g = k_J - k
+//! decide     stop if mean |r| <= tolerance, where r counts if it is positive or k is;
+//!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
+//! ```
+//!
+//! The residual is two-sided: with a one-sided one and the whole old pressure, excess pressures would be accepted and
+//! energy would grow. The residual that is tested belongs to the velocity u of the same iteration, so that no further visit
+//! of the neighbours follows.
+//!
+//! A mean residual of 0.1 % allows a column of water to rise or fall by 0.1 % of its height in a step. The whole old
+//! pressure alone would repeat the correction of one step in the next, and heat a tank at rest. Two corrections keep it
+//! quiet, so that no divergence solve is needed:
+//!
+//! * the accepted pressure is scaled by theta = 1 + k.r / k.A k, so that k.r = 0: the residual then does no work. k.A k is
+//!   the sum of (dt D' k)^2, and scaling k scales dt D' k, so this needs no visit of the neighbours;
+//! * the next step starts with a running mean of the pressures. The part of the new one is |v|max dt / spacing, at least
+//!   0.02, and more if the iterations were many for the residual.
+//!
+//! In water deeper than five spacings the mean residual must be smaller: a residual of one sign lifts or lowers the
+//! surface by the depth times the residual in every step. For a depth of N spacings, which follows from the mean square of
+//! the pressure, it may be a tenth of the root mean square of the motions over N, or (5 / N)^2 times the tolerance if that
+//! is more; at least 0.02 times the tolerance and at most the tolerance.
+//!
+//! If the residual exceeds four times the best, the relaxation is halved and the directions restart. At the largest number
+//! of iterations the pressure is accepted, the next step is shorter and starts with half of the pressure.
+
+pub mod begin;
+pub mod decide;
+pub mod finish;
+pub mod predict;
+pub mod residual;
+pub mod system;
+
+use splashdown_gpu::PassDesc;
+
+/// Particles per sum.
+const GROUP: usize = 64;
+/// Sums per task on the CPU.
+const GROUPS: usize = 64;
+
+/// The passes of this module.
+pub(super) fn passes() -> [&'static PassDesc; 13] {
+    [
+        &system::WENDLAND_C2,
+        &system::CUBIC_SPLINE,
+        &begin::BEGIN,
+        &predict::WENDLAND_C2,
+        &predict::CUBIC_SPLINE,
+        &predict::WENDLAND_C2_BODIES,
+        &predict::CUBIC_SPLINE_BODIES,
+        &residual::WENDLAND_C2,
+        &residual::CUBIC_SPLINE,
+        &residual::WENDLAND_C2_BODIES,
+        &residual::CUBIC_SPLINE_BODIES,
+        &decide::DECIDE,
+        &finish::FINISH,
+    ]
+}

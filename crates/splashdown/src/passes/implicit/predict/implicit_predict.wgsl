@@ -1,0 +1,89 @@
+#import gpu/index
+#import sph/params
+#import sph/solve
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/images
+
+#bindings
+
+override BODIES: u32 = 0u; // 1: bodies act on the fluid
+
+fn pressure_of(j: u32) -> f32 {
+    return max(iterates[j].x + solve.beta * iterates[j].y, 0.0);
+}
+
+var<workgroup> sums: array<vec4<f32>, 64>;
+
+// Adds two groups; the second component is the largest pressure.
+fn joined(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return vec4(a.x + b.x, max(a.y, b.y), a.zw + b.zw);
+}
+
+// Writes the velocity of a particle by the present pressure, and returns the square of its change, the pressure and its
+// square, and the square of the velocity.
+fn update(i: u32) -> vec4<f32> {
+    let other = accelerations[i];
+    let v = sorted_velocities[i].xyz + state.dt * other.xyz;
+    if (other.w == 1.0) {
+        predicted[i] = vec4(v, -1.0);
+        return vec4(0.0, 0.0, 0.0, dot(v, v));
+    }
+    let x = sorted_positions[i].xyz;
+    let k = pressure_of(i);
+    let cell = cell_of(x);
+    let scale = 1.0 / params.support_radius;
+    let reach = params.support_radius * params.support_radius;
+    var sum = vec3(0.0);
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let r2 = dot(d, d);
+                if (r2 < reach) {
+                    sum += ((k + pressure_of(j)) * kernel_g(sqrt(r2) * scale)) * d;
+                }
+            }
+        }
+    }
+    let factor = params.summed_mass / params.rest_density * scale * scale * scale * scale * scale;
+    var q = factor * sum;
+    if (BODIES == 1u) {
+        q += k * solid_gradients[i].xyz;
+    }
+    let u = v - state.dt * q;
+    predicted[i] = vec4(u, k);
+    return vec4(state.dt * state.dt * dot(q, q), k, k * k, dot(u, u));
+}
+
+@compute @workgroup_size(64)
+fn implicit_predict(
+    @builtin(global_invocation_id) gid: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    if (solve.stopped != 0u) {
+        return;
+    }
+    let i = linear_index(gid, groups, 64u);
+    var own = vec4(0.0);
+    if (i < active_count()) {
+        own = update(i);
+    }
+    sums[local] = own;
+    workgroupBarrier();
+    for (var half = 32u; half > 0u; half /= 2u) {
+        if (local < half) {
+            sums[local] = joined(sums[local], sums[local + half]);
+        }
+        workgroupBarrier();
+    }
+    let g = linear_group(group, groups);
+    if (local == 0u && g < arrayLength(&impulses)) {
+        impulses[g] = sums[0];
+    }
+}

@@ -1,0 +1,74 @@
+//! The pressure of an iteration, and the velocity that it leads to: u = v* - dt D' k (see the [module](super)).
+//!
+//! Also computes, over each 64 particles, the sum of the squares of dt D' k, which is k A k over all, the largest k, and the
+//! sums of the squares of k and u.
+//!
+//! k = max(k_J + beta p, 0) of a neighbour is computed where it is used. Where a nozzle determines the motion there is no
+//! pressure, which the result marks with -1.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
+
+use crate::boundary;
+use crate::cells::{GRID, Grid, ROWS};
+use crate::kernel::{self, CubicSpline, Kernel};
+use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
+
+const IMPORTS: &[WgslModule] =
+    &[wgsl::INDEX, STATE, SOLVE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES];
+
+bindings! {
+    /// The buffers of `implicit_predict.wgsl`.
+    pub(super) struct PredictBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        state: uniform StepState,
+        solve: uniform SolveState,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        sorted_velocities: read [Vec4],
+        accelerations: read [Vec4],
+        solid_gradients: read [Vec4],
+        iterates: read [Vec4],
+        predicted: write [Vec4],
+        impulses: write [Vec4],
+    }
+}
+
+/// With the Wendland C2 kernel.
+pub static WENDLAND_C2: PassDesc = PassDesc {
+    label: "implicit.predict.wendland_c2",
+    wgsl: include_str!("implicit_predict.wgsl"),
+    imports: IMPORTS,
+    entry: "implicit_predict",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", 0.0)],
+    bindings: PredictBindings::LIST,
+    cpu: |_, slots| cpu::predict::<kernel::WendlandC2, false>(slots.into()),
+};
+
+/// With the cubic spline.
+pub static CUBIC_SPLINE: PassDesc = PassDesc {
+    label: "implicit.predict.cubic_spline",
+    constants: &[("KERNEL", CubicSpline::ID as f64)],
+    cpu: |_, slots| cpu::predict::<CubicSpline, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the Wendland C2 kernel and bodies.
+pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
+    label: "implicit.predict.wendland_c2.bodies",
+    constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::predict::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the cubic spline and bodies.
+pub static CUBIC_SPLINE_BODIES: PassDesc = PassDesc {
+    label: "implicit.predict.cubic_spline.bodies",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::predict::<CubicSpline, true>(slots.into()),
+    ..WENDLAND_C2
+};

@@ -1,0 +1,83 @@
+#import gpu/index
+#import sph/params
+#import sph/solve
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/images
+#import sph/group_sum
+
+#bindings
+
+override BODIES: u32 = 0u; // 1: bodies contribute to the density
+
+// The sum over the neighbours in the rate of the density.
+fn rate_of(x: vec3<f32>, u: vec3<f32>) -> f32 {
+    let cell = cell_of(x);
+    let scale = 1.0 / params.support_radius;
+    let reach = params.support_radius * params.support_radius;
+    var sum = 0.0;
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let r2 = dot(d, d);
+                if (r2 < reach) {
+                    sum += kernel_g(sqrt(r2) * scale) * dot(d, u - by.sign * predicted[j].xyz);
+                }
+            }
+        }
+    }
+    return params.summed_mass / params.rest_density * scale * scale * scale * scale * scale * sum;
+}
+
+// Updates the iterate of a particle, and returns its contributions to the sums.
+fn update(i: u32) -> vec4<f32> {
+    let excess = densities[i].x / params.rest_density - 1.0;
+    let u = predicted[i].xyz;
+    let k = predicted[i].w;
+    if (k < 0.0) {
+        iterates[i] = vec4(0.0);
+        return vec4(0.0, 0.0, max(excess, 0.0), 0.0);
+    }
+    var rate = rate_of(sorted_positions[i].xyz, u);
+    var gradient = stiffness[i].xyz;
+    if (BODIES == 1u) {
+        let solid = solid_gradients[i];
+        rate += dot(solid.xyz, u) - solid.w;
+        gradient += solid.xyz;
+    }
+    let residual = excess + state.dt * rate;
+    let scale = 1.0 / params.support_radius;
+    let diagonal = state.dt * state.dt * max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
+    let next = max(k + solve.relaxation * residual / diagonal, 0.0);
+    let change = next - k;
+    let direction = solve.beta * iterates[i].y + iterates[i].z;
+    iterates[i] = vec4(next, direction, change, residual);
+    let error = select(max(residual, 0.0), abs(residual), k > 0.0);
+    return vec4(error, diagonal * change * change, max(excess, 0.0), k * residual);
+}
+
+@compute @workgroup_size(64)
+fn implicit_residual(
+    @builtin(global_invocation_id) gid: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    if (solve.stopped != 0u) {
+        return;
+    }
+    let i = linear_index(gid, groups, 64u);
+    var own = vec4(0.0);
+    if (i < active_count()) {
+        own = update(i);
+    }
+    let sum = sum_of_group(local, own);
+    let g = linear_group(group, groups);
+    if (local == 0u && g < arrayLength(&residuals)) {
+        residuals[g] = sum;
+    }
+}

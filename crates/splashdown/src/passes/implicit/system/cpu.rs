@@ -1,0 +1,113 @@
+use std::marker::PhantomData;
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use super::SystemBindings;
+use crate::boundary::{Images, Reflection, WallKernel, wall_friction};
+use crate::kernel::Kernel;
+use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
+use crate::simd::Register;
+use crate::state::{Params, StepState};
+
+pub(super) fn system<K: Kernel + WallKernel>(buffers: SystemBindings<'_>) {
+    let SystemBindings {
+        params,
+        grid,
+        state,
+        cell_start,
+        sorted_positions: positions,
+        sorted_velocities: velocities,
+        sorted_pressures: pressures,
+        densities,
+        accelerations,
+        stiffness,
+        iterates,
+    } = buffers;
+    let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
+    let volume = params.summed_mass / params.rest_density;
+    let laminar = 10.0 * params.viscosity * volume;
+    let images = Images::new(params);
+    let pass = System::<K> {
+        params,
+        state,
+        images,
+        positions,
+        velocities,
+        pressures,
+        scale,
+        scale5: (scale * scale) * (scale * scale) * scale,
+        soft: 0.01 * support * support,
+        separating: laminar,
+        approaching: laminar + params.artificial_viscosity * params.sound_speed * 0.5 * support * volume,
+        kernel: PhantomData,
+    };
+    let sorted = Sorted::new(support, grid, cell_start, positions).with_images(images);
+    pairs::for_each(sorted, ((densities, accelerations), (stiffness, iterates)), &pass);
+}
+
+struct System<'a, K> {
+    params: &'a Params,
+    state: &'a StepState,
+    images: Images,
+    positions: &'a [Vec4],
+    velocities: &'a [Vec4],
+    pressures: &'a [f32],
+    scale: f32,
+    scale5: f32,
+    soft: f32,
+    /// Viscosity factors of a pair that separates, and of one that approaches.
+    separating: f32,
+    approaching: f32,
+    kernel: PhantomData<K>,
+}
+
+/// The sums: kernel, gradient, squares of the gradients, viscous acceleration.
+impl<K: Kernel + WallKernel> PairSum<6, 8> for System<'_, K> {
+    type Output = ((Vec2, Vec4), (Vec4, Vec4));
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 6] {
+        let (p, v) = (self.positions[j], self.velocities[j]);
+        [p.x, p.y, p.z, v.x, v.y, v.z]
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 6]) -> [V; 8] {
+        let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
+        let (zero, separating, approaching) =
+            (V::splat(0.0), V::splat(self.separating), V::splat(self.approaching));
+        #[inline(always)]
+        move |[x_j, y_j, z_j, u_j, v_j, w_j]| {
+            let d = difference(x, [x_j, y_j, z_j]);
+            let r2 = dot(d, d);
+            let q = r2.sqrt() * self.scale;
+            let g = scaled(K::g(q), d);
+            let vx = dot(difference(v, [u_j, v_j, w_j]), d);
+            let a = scaled(vx * vx.if_less(zero, approaching, separating) / (r2 + self.soft), g);
+            [K::w(q), g[0], g[1], g[2], dot(g, g), a[0], a[1], a[2]]
+        }
+    }
+
+    #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 6]) -> [V; 6] {
+        let [x, y, z, u, v, w] = values;
+        let [x, y, z] = reflected_point(by, [x, y, z]);
+        let [u, v, w] = reflected(by, [u, v, w]);
+        [x, y, z, u, v, w]
+    }
+
+    #[inline(always)]
+    fn finish(&self, i: usize, sums: [f32; 8]) -> Self::Output {
+        let Self { params, state, scale, scale5, .. } = self;
+        let [w, gx, gy, gz, squares, ax, ay, az] = sums;
+        let (x, v) = (self.positions[i].xyz(), self.velocities[i].xyz());
+        let factor = params.summed_mass / params.rest_density * scale5;
+        let images = 1.0 + self.images.sides_near(x, params.support_radius) as f32 / 3.0;
+        let density = Vec2::new(params.summed_mass * scale * scale * scale * w, 0.0);
+        let other = params.body_acceleration(state.time) + wall_friction(params, K::WALLS, x, v, state.dt);
+        let acceleration = scale5 * Vec3::new(ax, ay, az) + other;
+        let stiffness = (factor * Vec3::new(gx, gy, gz)).extend(images * factor * factor * squares);
+        let start = Vec4::new(self.pressures[i].max(0.0), 0.0, 0.0, 0.0);
+        ((density, acceleration.extend(0.0)), (stiffness, start))
+    }
+}

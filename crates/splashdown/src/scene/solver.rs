@@ -1,0 +1,171 @@
+//! The solver of a scene: its method, its parameters, and their defaults.
+
+use super::choice::choices;
+
+choices! {
+    /// The solver of the fluid's equations.
+    Method {
+        /// Forces of Mueller, Charypar and Gross 2003, the method of the thesis of Figueroa 2012: fast, and more
+        /// compressible.
+        Mueller2003 = "mueller2003",
+        /// Weakly compressible SPH with Tait's equation of state.
+        Wcsph = "wcsph",
+        /// Implicit pressure that keeps the density: few large steps.
+        Dfsph = "dfsph",
+    }
+    /// The smoothing kernel of `wcsph` and `dfsph` (`mueller2003` brings its own three).
+    KernelKind {
+        /// Wendland's C2 function, without pairing instability.
+        WendlandC2 = "wendland_c2",
+        /// The cubic spline of Monaghan and Lattanzio.
+        CubicSpline = "cubic_spline",
+    }
+    /// The purpose that determines the defaults of the other keys of the solver.
+    Accuracy {
+        /// Fast: fronts, water heights and draughts are right, pressures are noisy.
+        Standard = "standard",
+        /// For pressures, forces and waves: density = "continuity" and support_ratio = 3.
+        Engineering = "engineering",
+    }
+    /// The computation of the density.
+    DensityMode {
+        /// Sum over the neighbours in every step: robust.
+        Summation = "summation",
+        /// Continuity equation with diffusion (delta-SPH), corrected gradients and particle shifting: smooth pressure, and
+        /// waves of the right period and height.
+        Continuity = "continuity",
+    }
+    /// The treatment of negative pressures.
+    NegativePressure {
+        /// They are set to zero: no clumping at the surface.
+        Clamp = "clamp",
+        /// They are kept: needed to compare pressures with measurements.
+        Keep = "keep",
+    }
+    /// The model of surface tension.
+    SurfaceTension {
+        /// None.
+        None = "none",
+        /// Cohesion and area forces of Akinci, Akinci and Teschner 2013; for `wcsph` and `dfsph`.
+        Akinci2013 = "akinci2013",
+        /// Curvature of the colour field, Mueller et al. 2003; for `mueller2003`.
+        ColourField = "mueller2003",
+    }
+    /// The algorithm that sorts particles into cells.
+    Sort {
+        /// Counting sort: a histogram, a scan, a scatter.
+        Counting = "counting",
+        /// Bitonic sort, the method of the thesis; a baseline for comparison.
+        Bitonic = "bitonic",
+    }
+}
+
+/// The solver and its parameters. [`Solver::default`] gives the defaults of the scene file.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Solver {
+    /// The method.
+    pub method: Method,
+    /// The kernel of `wcsph`.
+    pub kernel: KernelKind,
+    /// Support radius divided by the particle spacing.
+    pub support_ratio: f32,
+    /// The computation of the density.
+    pub density: DensityMode,
+    /// The treatment of negative pressures.
+    pub negative_pressure: NegativePressure,
+    /// Speed of sound in m/s; `None`: ten times the reference speed (see [`crate::scene::Derived::sound_speed`]).
+    pub sound_speed: Option<f32>,
+    /// Stiffness of the equation of state; `None`: computed from the speed of sound. It is the Tait constant
+    /// B = c^2 rho0 / exponent in Pa for `wcsph`, and k = c^2 in m^2/s^2 for `mueller2003`, where p = k (rho
+    /// - rho0).
+    pub stiffness: Option<f32>,
+    /// Exponent of the equation of state.
+    pub exponent: f32,
+    /// Factor alpha of Monaghan's artificial viscosity.
+    pub artificial_viscosity: f32,
+    /// Factor delta of the density diffusion; requires `continuity`.
+    pub density_diffusion: f32,
+    /// The model of surface tension.
+    pub surface_tension: SurfaceTension,
+    /// Friction at closed sides: 0 for free slip, 1 for no slip.
+    pub wall_friction: f32,
+    /// Time step divided by the time in which sound travels half the support radius; with `dfsph`, largest distance in
+    /// spacings that a particle moves per step.
+    pub cfl_factor: f32,
+    /// Maximum time step in s.
+    pub max_dt: f32,
+    /// Minimum time step in s.
+    pub min_dt: f32,
+    /// The algorithm that sorts particles into cells.
+    pub sort: Sort,
+    /// Largest mean error of the density that the implicit pressure of `dfsph` may have, as a part of the rest density.
+    pub tolerance: f32,
+    /// Largest number of iterations of the implicit pressure in a step.
+    pub max_iterations: u32,
+}
+
+impl Solver {
+    /// Support radius in m for this particle spacing (m).
+    pub fn support_radius(&self, particle_spacing: f32) -> f32 {
+        self.support_ratio * particle_spacing
+    }
+
+    /// The defaults of a method and a computation of the density.
+    pub fn with(method: Method, density: DensityMode) -> Self {
+        // The continuity form damps impacts by a limited dissipation, and its time step is bounded by the stability of
+        // sound waves alone. The walls of the summation form are damped per step, so that longer steps are noisier.
+        let (negative_pressure, artificial_viscosity, cfl_factor) = match (method, density) {
+            (Method::Dfsph, _) => (NegativePressure::Clamp, 0.01, 0.5),
+            (_, DensityMode::Summation) => (NegativePressure::Clamp, 0.05, 0.3),
+            (_, DensityMode::Continuity) => (NegativePressure::Keep, 0.0, 0.8),
+        };
+        Self {
+            method,
+            kernel: KernelKind::WendlandC2,
+            support_ratio: 2.0,
+            density,
+            negative_pressure,
+            sound_speed: None,
+            stiffness: None,
+            exponent: if method == Method::Mueller2003 { 1.0 } else { 7.0 },
+            artificial_viscosity,
+            density_diffusion: 0.1,
+            surface_tension: SurfaceTension::None,
+            wall_friction: 0.0,
+            cfl_factor,
+            max_dt: if method == Method::Dfsph { 0.05 } else { 0.005 },
+            min_dt: 1e-7,
+            sort: Sort::Counting,
+            tolerance: 0.001,
+            max_iterations: 40,
+        }
+    }
+
+    /// Selects another method with its defaults. The support ratio, the friction at walls, `min_dt`, the sort and the use
+    /// of surface tension are kept, and the speed of sound unless the method is `dfsph`.
+    pub fn select_method(&mut self, method: Method) {
+        if method == self.method {
+            return;
+        }
+        let surface_tension = match (self.surface_tension, method) {
+            (SurfaceTension::None, _) => SurfaceTension::None,
+            (_, Method::Wcsph | Method::Dfsph) => SurfaceTension::Akinci2013,
+            (_, Method::Mueller2003) => SurfaceTension::ColourField,
+        };
+        let sound_speed = self.sound_speed.filter(|_| method != Method::Dfsph);
+        let Self { support_ratio, wall_friction, min_dt, sort, .. } = *self;
+        let standard = Self::with(method, DensityMode::Summation);
+        *self = Self { support_ratio, sound_speed, surface_tension, wall_friction, min_dt, sort, ..standard };
+    }
+
+    /// The keys of the scene file that have no effect with `dfsph`.
+    pub const NOT_IMPLICIT: [&str; 6] =
+        ["density", "negative_pressure", "sound_speed", "stiffness", "exponent", "density_diffusion"];
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self::with(Method::Wcsph, DensityMode::Summation)
+    }
+}

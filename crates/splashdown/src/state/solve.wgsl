@@ -1,0 +1,15 @@
+// Mirrors SolveState in solve.rs.
+struct SolveState {
+    stopped: u32,
+    iteration: u32,
+    beta: f32,
+    relaxation: f32,
+    change: f32,
+    best: f32,
+    warm_start: f32,
+    scale: f32,
+    renewal: f32,
+    unused: f32,
+    unused_2: f32,
+    unused_3: f32,
+}

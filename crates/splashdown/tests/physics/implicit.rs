@@ -1,0 +1,164 @@
+//! `dfsph`: a block that collapses in a closed box, and a tank at rest.
+
+use splashdown::{Simulation, Stats};
+use splashdown_gpu::{CpuExecutor, Executor};
+
+use super::figures::Figures;
+use super::scene;
+
+fn cpu() -> Executor {
+    CpuExecutor::new().into()
+}
+
+/// The block of the study of the solver, at a quarter of its lengths.
+fn collapse(keys: &str) -> Simulation {
+    let scene = scene(&format!(
+        r#"
+        [scene]
+        name = "collapse"
+        duration = 1.0
+        [domain]
+        min = [0, 0, 0]
+        max = [1.6, 1.0, 0.5]
+        [fluid]
+        particle_spacing = 0.05
+        [[fluid.block]]
+        position = [0, 0, 0]
+        size = [0.5, 0.5, 0.5]
+        [solver]
+        method = "dfsph"
+        {keys}
+        "#
+    ));
+    Simulation::with_executor(&scene, cpu()).unwrap()
+}
+
+/// Kinetic and potential energy over the mass, in m^2/s^2.
+fn energy(simulation: &mut Simulation) -> f64 {
+    let particles = simulation.particles().unwrap();
+    let one = |(x, v): (&[f32; 3], &[f32; 3])| {
+        0.5 * v.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>() + 9.81 * f64::from(x[1])
+    };
+    particles.positions.iter().zip(&particles.velocities).map(one).sum::<f64>()
+        / particles.positions.len() as f64
+}
+
+/// The final statistics of a second, the largest rise of the energy above its smallest earlier value over the initial
+/// potential energy, and what is left of it.
+fn run(keys: &str) -> (Stats, f64, f64) {
+    let mut simulation = collapse(keys);
+    let start = energy(&mut simulation);
+    let (mut least, mut rise) = (start, 0.0_f64);
+    let mut stats = simulation.stats();
+    for _ in 0..50 {
+        stats = simulation.advance(0.02).unwrap();
+        let now = energy(&mut simulation);
+        rise = rise.max((now - least) / start);
+        least = least.min(now);
+    }
+    (stats, rise, least / start)
+}
+
+#[test]
+fn a_collapse_keeps_its_density_and_gains_no_energy() {
+    for cfl in [0.4, 1.0] {
+        let (stats, rise, left) = run(&format!("cfl_factor = {cfl}"));
+        let mut figures = Figures::new(format!("implicit pressure, collapse, CFL factor {cfl}"));
+        figures.at_most("mean compression", stats.mean_compression, 0.003);
+        figures.at_most("rise of the energy over the initial energy", rise, 0.01);
+        figures.at_most("energy left", left, 0.9);
+        figures.at_most("steps that did not converge", f64::from(stats.unconverged), 0.0);
+        figures.at_most("particles lost", f64::from(1000 - stats.particles), 0.0);
+        figures.at_most("particles moved out of walls", f64::from(stats.wall_corrections), 0.0);
+        // Control: a larger tolerance compresses the fluid more.
+        let (loose, ..) = run(&format!("cfl_factor = {cfl}\ntolerance = 0.01"));
+        let ratio = loose.mean_compression / stats.mean_compression;
+        figures.control("compression with a tolerance of 0.01 over that with 0.001", ratio, 1.0);
+        figures.close();
+    }
+}
+
+/// Water whose surface starts with a step. Without the limit of the time step by the pressure, this case bursts within
+/// 0.3 s.
+#[test]
+fn deep_water_gains_no_energy() {
+    let scene = scene(
+        r#"
+        [scene]
+        name = "column"
+        duration = 1.0
+        [domain]
+        min = [0, 0, 0]
+        max = [0.1, 1.0, 0.075]
+        open = ["y_max"]
+        [fluid]
+        particle_spacing = 0.0125
+        [[fluid.block]]
+        position = [0, 0, 0]
+        size = [0.05, 0.65, 0.075]
+        [[fluid.block]]
+        position = [0.05, 0, 0]
+        size = [0.05, 0.55, 0.075]
+        [solver]
+        method = "dfsph"
+        "#,
+    );
+    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    let start = energy(&mut simulation);
+    let mut rise = 0.0_f64;
+    let mut stats = simulation.stats();
+    for _ in 0..20 {
+        stats = simulation.advance(0.05).unwrap();
+        rise = rise.max(energy(&mut simulation) / start - 1.0);
+    }
+    let mut figures = Figures::new("implicit pressure, column 48 spacings deep");
+    figures.at_most("rise of the energy over the initial energy", rise, 0.001);
+    figures.at_most("particles lost", stats.escaped as f64, 0.0);
+    figures.close();
+}
+
+#[test]
+fn a_tank_rests_at_hydrostatic_pressure() {
+    let scene = scene(
+        r#"
+        [scene]
+        name = "tank"
+        duration = 2.0
+        [domain]
+        min = [0, 0, 0]
+        max = [0.5, 1.0, 0.5]
+        [fluid]
+        particle_spacing = 0.05
+        [[fluid.block]]
+        position = [0, 0, 0]
+        size = [0.5, 0.5, 0.5]
+        [solver]
+        method = "dfsph"
+        "#,
+    );
+    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    simulation.advance(2.0).unwrap();
+    let particles = simulation.particles().unwrap();
+    let n = particles.positions.len() as f64;
+    let speed2: f64 = particles.velocities.iter().flatten().map(|&v| f64::from(v).powi(2)).sum::<f64>() / n;
+    let expected = |y: f32| 1000.0 * 9.81 * (0.5 - f64::from(y));
+    let error2: f64 = particles
+        .positions
+        .iter()
+        .zip(&particles.pressures)
+        .map(|(x, &p)| (f64::from(p) - expected(x[1])).powi(2))
+        .sum::<f64>();
+    let size2: f64 = particles.positions.iter().map(|x| expected(x[1]).powi(2)).sum();
+    let mut figures = Figures::new("implicit pressure, tank at rest");
+    figures.at_most("speed over sqrt(g depth)", (speed2 / (9.81 * 0.5)).sqrt(), 0.01);
+    figures.at_most("pressure, L2", (error2 / size2).sqrt(), 0.05);
+    // Control: the pressure of a tank that is a spacing deeper.
+    let deeper: f64 = particles
+        .positions
+        .iter()
+        .zip(&particles.pressures)
+        .map(|(x, &p)| (f64::from(p) - expected(x[1] - 0.05)).powi(2))
+        .sum::<f64>();
+    figures.control("pressure against a deeper tank", (deeper / size2).sqrt(), 0.05);
+    figures.close();
+}

@@ -1,0 +1,90 @@
+//! Still water around a fixed cube, without artificial viscosity: rms speed within 1 % of sqrt(g depth) after a second,
+//! pressures within 3 % of rho g depth at the middle of the faces and near an edge.
+//!
+//! The other cases with bodies use `artificial_viscosity = 0.1`, which hides false motion next to bodies. At eight
+//! spacings across, only the lift has a gate: speed and pressures miss theirs.
+
+use glam::Vec3;
+use splashdown::scene::{MeshShape, Motion};
+
+use super::figures::{Figures, full};
+use super::shapes::body;
+use super::{rms_speed, scene};
+
+const GRAVITY: f64 = 9.81;
+/// The water depth and the edge of the cube in m.
+const DEPTH: f64 = 0.4;
+const EDGE: f64 = 0.16;
+/// The height of the centre of the cube in m.
+const CENTRE: f64 = 0.18;
+/// Gate for the rms speed over sqrt(g depth).
+const SPEED: f64 = 0.01;
+/// Gate for a pressure over rho g depth.
+const PRESSURE: f64 = 0.03;
+
+/// The rms speed over sqrt(g depth), the lift over the weight of the displaced water, and the pressures of the gauges over
+/// rho g depth, after a second.
+fn simulate() -> (f64, f64, Vec<(&'static str, f64)>) {
+    let spacing = if full() { 0.01 } else { 0.02 };
+    let side = 0.5 * (EDGE + spacing);
+    let gauges = [
+        ("side", [side, 0.0, 0.0]),
+        ("side-near-edge", [side, 0.07, 0.0]),
+        ("top", [0.0, side, 0.0]),
+        ("bottom", [0.0, -side, 0.0]),
+    ];
+    let probes: String = gauges
+        .iter()
+        .map(|(name, [x, y, z])| {
+            let position = [0.2 + x, CENTRE + y, 0.2 + z];
+            format!("[[probe]]\nname = \"{name}\"\nquantity = \"pressure\"\nposition = {position:?}\ninterval = 0.005\n")
+        })
+        .collect();
+    let mut scene = scene(&format!(
+        "[scene]\nname = \"still\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [0.4, 0.6, 0.4]\nopen = [\"y_max\"]\n\
+         [fluid]\nparticle_spacing = {spacing}\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.4, {DEPTH}, 0.4]\n\
+         {probes}[solver]\ndensity = \"continuity\"\n"
+    ));
+    let centre = Vec3::new(0.2, CENTRE as f32, 0.2);
+    scene.bodies.push(body("cube", MeshShape::Model("cube".into()), EDGE as f32, centre, Motion::Static));
+    let mut simulation = splashdown::Simulation::new(&scene, &splashdown::Device::Cpu).unwrap();
+    let (mut lift, frames) = (0.0, 20);
+    let mut rows: Vec<Vec<f64>> = vec![Vec::new(); gauges.len()];
+    for frame in 0..frames {
+        let stats = simulation.advance(1.0 / frames as f32).unwrap();
+        assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
+        let more = simulation.take_probe_rows();
+        if frame >= frames / 2 {
+            lift += 2.0 / f64::from(frames) * f64::from(simulation.body_states().unwrap()[0].force.y);
+            rows.iter_mut().zip(more).for_each(|(rows, more)| rows.extend(more.iter().map(|row| row[1])));
+        }
+    }
+    let speed = rms_speed(&simulation.particles().unwrap()) / (GRAVITY * DEPTH).sqrt();
+    let weight = f64::from(scene.fluid.material.rest_density) * GRAVITY;
+    let pressures = gauges.iter().zip(&rows).map(|((name, [_, y, _]), rows)| {
+        let depth = DEPTH - CENTRE - y;
+        (*name, rows.iter().sum::<f64>() / rows.len() as f64 / (weight * depth))
+    });
+    (speed, lift / (weight * EDGE.powi(3)), pressures.collect())
+}
+
+#[test]
+fn water_around_a_cube_stays_still() {
+    let (speed, lift, pressures) = simulate();
+    let mut figures = Figures::new("still water around a cube, CPU");
+    if full() {
+        figures.at_most("rms speed over sqrt(g depth)", speed, SPEED);
+    } else {
+        figures.report("rms speed over sqrt(g depth)", speed);
+    }
+    figures.within("lift over the weight of the displaced water", lift, 0.95, 1.05);
+    for (name, pressure) in pressures {
+        let name = format!("pressure over rho g depth, {name}");
+        if full() {
+            figures.within(name, pressure, 1.0 - PRESSURE, 1.0 + PRESSURE);
+        } else {
+            figures.report(name, pressure);
+        }
+    }
+    figures.close();
+}

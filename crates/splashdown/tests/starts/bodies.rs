@@ -1,0 +1,127 @@
+//! Walls and bodies combined: flush, overlapping, or with gaps of up to two spacings.
+
+use glam::{Quat, Vec3};
+use splashdown::boundary::KernelPair;
+use splashdown::scene::BoundaryKind;
+use splashdown::solid::{Solid, SolidSettings, Surroundings};
+use splashdown_io::Mesh;
+
+use crate::meshes::{cuboid, tub};
+use crate::pool::{self, FORMS, SIZE, SPACING};
+
+/// Gaps in spacings.
+const GAPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
+
+/// The bodies of a case, with a gap in m.
+type Bodies = fn(f32) -> Vec<Mesh>;
+
+const CASES: [(&str, Bodies); 9] = [
+    ("none", |_| vec![]),
+    ("floor", |gap| vec![cube(Vec3::new(0.2, gap, 0.15))]),
+    ("wall", |gap| vec![cube(Vec3::new(gap, 0.1, 0.15))]),
+    ("corner", |gap| vec![cube(Vec3::splat(gap))]),
+    ("touching", |gap| vec![cube(Vec3::new(0.1, 0.1, 0.15)), cube(Vec3::new(0.3 + gap, 0.1, 0.15))]),
+    // Two bodies on the floor that overlap by a half, apart from the gap.
+    ("overlapping", |gap| vec![cube(Vec3::new(0.1, 0.0, 0.15)), cube(Vec3::new(0.2 + gap, 0.05, 0.2))]),
+    ("tub", |gap| vec![tub(Vec3::splat(gap), (SIZE - gap).with_y(SIZE.y - 0.1), 0.1)]),
+    ("piston", |gap| {
+        let low = Vec3::new(0.4, gap, gap);
+        vec![cuboid(low, Vec3::new(0.5, 0.7, SIZE.z - gap))]
+    }),
+    ("slab", |gap| vec![cuboid(Vec3::new(0.0, gap, 0.0), Vec3::new(SIZE.x, gap + 0.1, SIZE.z))]),
+];
+
+fn cube(low: Vec3) -> Mesh {
+    cuboid(low, low + 4.0 * SPACING)
+}
+
+/// The largest density error of a sound start.
+const SOUND: f32 = 0.02;
+
+/// Runs the selected cases. In all of them the fluid must start at rest density, and no particle may be lost or enter a
+/// body. Where the bodies leave the fluid a box, it must also be still after a second. Other submerged bodies cause
+/// currents at their edges, at walls and away from them (docs/validation.md), which are reported.
+fn check(selected: impl Fn(&str, f32, usize, BoundaryKind) -> bool) {
+    let word = std::env::var("STARTS").unwrap_or_default();
+    let (mut count, mut moving, mut failures) = (0, 0, Vec::new());
+    for (case, bodies) in CASES {
+        if !case.contains(&word) {
+            continue;
+        }
+        for gap in GAPS {
+            for (form, text) in FORMS.iter().enumerate() {
+                for boundary in [BoundaryKind::Map, BoundaryKind::Particles] {
+                    let is_repeated = case == "none" && (gap > 0.0 || boundary == BoundaryKind::Particles);
+                    if is_repeated || !selected(case, gap, form, boundary) {
+                        continue;
+                    }
+                    let mut scene = pool::pool(text);
+                    for (k, mesh) in bodies(gap * SPACING).iter().enumerate() {
+                        scene.bodies.push(pool::body(&format!("{case}{k}"), mesh, boundary));
+                    }
+                    let outcome = pool::run(&scene);
+                    count += 1;
+                    let kind = ["summation", "continuity", "mueller2003"][form];
+                    let mut line = format!("{case:11} gap {gap:.2} {kind:11} {boundary:9?} {outcome}");
+                    if outcome.rms > 0.01 {
+                        moving += 1;
+                        line += "  MOVES";
+                    }
+                    eprintln!("{line}");
+                    // An integrated density starts at the rest density, whatever the packing.
+                    let is_dense = form != 1 && outcome.start.0 > SOUND;
+                    let is_box = case == "none" || case == "tub" && gap == 0.0;
+                    let is_moving = form == 0 && is_box && outcome.rms > 0.01;
+                    if is_dense || is_moving || outcome.lost > 0 || outcome.inside > 0 {
+                        failures.push(line);
+                    }
+                }
+            }
+        }
+    }
+    eprintln!("{moving} of {count} move");
+    assert!(failures.is_empty(), "{} of {count}:\n{}", failures.len(), failures.join("\n"));
+}
+
+#[test]
+fn a_pool_with_bodies_at_walls_starts_at_rest_density() {
+    let full = std::env::var_os("SPLASHDOWN_FULL").is_some();
+    // The test command runs bodies that are flush, and one with a gap that holds no fluid.
+    check(|case, gap, form, boundary| {
+        let is_small = form == 0 && (gap == 0.0 || case == "floor" && gap == 0.5);
+        full || is_small && (boundary == BoundaryKind::Map || case == "tub")
+    });
+}
+
+#[test]
+fn a_tank_mesh_at_the_sides_of_the_domain_does_not_count_twice() {
+    let settings = SolidSettings {
+        cell_size: 0.5 * SPACING,
+        support_radius: 2.0 * SPACING,
+        kernels: KernelPair::WendlandC2,
+        half_thickness: 0.5 * SPACING,
+        shell: None,
+        region: None,
+        cache: None,
+    };
+    let tub = tub(Vec3::ZERO, SIZE, 0.1);
+    let surroundings = Surroundings {
+        position: Vec3::ZERO,
+        rotation: Quat::IDENTITY,
+        closed: [Vec3::ZERO, SIZE.with_y(f32::INFINITY)],
+        others: Vec::new(),
+    };
+    let alone = Solid::build(&tub, &settings, &|_| {}).unwrap();
+    let within = Solid::build_within(&tub, &settings, Some(&surroundings), &|_| {}).unwrap();
+    // The fraction of the kernel at the node nearest to a point half a spacing above the floor.
+    let fraction = |solid: &Solid| {
+        let field = &solid.field;
+        let at = ((Vec3::new(0.3, 0.5 * SPACING, 0.25) - field.min) / field.cell_size).round().as_uvec3();
+        let [nx, ny, _] = field.nodes;
+        let effective = field.values[((at.z * ny + at.y) * nx + at.x) as usize].y;
+        settings.kernels.density((effective / settings.support_radius).clamp(0.0, 1.0)).0
+    };
+    assert!(fraction(&within) < 1e-4, "{}", fraction(&within));
+    // Control: without the sides the floor of the tub fills the kernel below.
+    assert!(fraction(&alone) > 0.1, "{}", fraction(&alone));
+}

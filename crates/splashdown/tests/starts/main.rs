@@ -1,0 +1,11 @@
+//! Sound starts: a pool at rest stays at rest, wherever bodies touch walls, floors and one another, and however the
+//! fluid is put together.
+//!
+//! The tests run a part of the matrix. `SPLASHDOWN_FULL=1` runs all of it; `STARTS=case` restricts it to cases whose
+//! name contains the word.
+
+mod bodies;
+#[path = "../meshes/mod.rs"]
+mod meshes;
+mod pieces;
+mod pool;
