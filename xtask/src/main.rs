@@ -38,9 +38,9 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     ARGUMENTS are passed to `splashdown run` (for example --frames 20)
   test [--fast|--all] [--only LAYER]
                     check format, lints, tests, documentation, the web page and other systems (--fast: the first
-                    three only; --all or CI=true: also Blender, the optimized page, all code for other systems,
-                    and the public API even if its tool has to be installed; --only: the layers with this text in
-                    their name, for example `--only page`)
+                    three only; CI=true: also Blender, the optimized page, the command line without features and the
+                    Python package; --all: also all code for other systems, and the public API even if its tool has
+                    to be installed; --only: the layers with this text in their name, for example `--only page`)
   bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)
   bench --peers [--quick] [--particles FILE SPACING]
                     compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
@@ -72,7 +72,7 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   setup             check the requirements of demo and test, and install them where possible
   help              print this text
 
-Environment: CI=true makes a missing Vulkan driver an error and implies --all for `test`.
+Environment: CI=true makes a missing Vulkan driver an error and adds tests to `test`.
 ";
 
 fn main() -> ExitCode {

@@ -45,8 +45,8 @@ pub fn test(published: bool) -> Result<Outcome> {
     test.args(["web/test/page.mjs", &address, &which(browser)?]).arg(&picture).arg(&checkpoint);
     process::run(&mut test)?;
     // The command line resumes from the checkpoint that the page exported.
-    let mut run = command("cargo");
-    run.args(["run", "--quiet", "--package", "splashdown-cli", "--", "run", "--resume"]).arg(&checkpoint);
+    let mut run = command(process::build_tested()?);
+    run.args(["run", "--resume"]).arg(&checkpoint);
     run.args(["--frames", "20", "--no-pictures", "--quiet", "--out"]).arg(folder.join("out"));
     process::run(&mut run)?;
     say(format!("The screenshot of the page is {}.", picture.display()));

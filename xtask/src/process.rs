@@ -68,6 +68,14 @@ pub fn build_release_with(arguments: &[&str]) -> Result<PathBuf> {
     Ok(binary)
 }
 
+/// Builds the command line as the tests do, so that nothing is compiled again after them, and returns the path of the
+/// binary. The features of the dependencies are those of the whole workspace.
+pub fn build_tested() -> Result<PathBuf> {
+    let extent = ["--workspace", "--exclude", "splashdown-py", "--bin", "splashdown"];
+    run(cargo(["build", "--quiet", "--profile", "test"]).args(extent).stdout(std::process::Stdio::null()))?;
+    Ok(target().join("debug").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX)))
+}
+
 /// Runs a command to its end; an error if it cannot start or fails.
 pub fn run(command: &mut Command) -> Result<()> {
     let words = line(command);

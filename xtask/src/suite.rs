@@ -18,14 +18,15 @@ const OTHER_SYSTEMS: [(&str, &str); 2] =
 const PYTHON_PACKAGE: &str = "splashdown-py";
 
 /// The extent of a test run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Extent {
     /// Format, lints and tests.
     Fast,
     /// Also documentation, the web page and other systems, with quick builds.
     Usual,
-    /// Also Blender, the optimized page, all code for other systems, the tests of the command line without features,
-    /// the Python package, and the public API even if its tool has to be installed.
+    /// Also Blender, the optimized page, the tests of the command line without features, and the Python package.
+    Integration,
+    /// Also all code for other systems, and the public API even if its tool has to be installed.
     All,
 }
 
@@ -36,7 +37,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
         all => (all, None),
     };
     let extent = match arguments {
-        [] if process::is_ci() || only.is_some() => Extent::All,
+        [] if only.is_some() => Extent::All,
+        [] if process::is_ci() => Extent::Integration,
         [] => Extent::Usual,
         [flag] if flag == "--fast" => Extent::Fast,
         [flag] if flag == "--all" => Extent::All,
@@ -44,7 +46,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     };
     setup::ensure_requirements()?;
     setup::ensure_screen();
-    python::ensure(extent == Extent::All);
+    python::ensure(extent >= Extent::Integration);
     let mut report = Report::only(only);
     report.layer("format", |_| succeeds(&mut cargo(["fmt", "--all", "--", "--check"])));
     report.layer("lints", |_| {
@@ -86,14 +88,14 @@ pub fn run(arguments: &[String]) -> Result<()> {
         });
         report.layer("public API", |_| api::layer(extent == Extent::All));
         report.layer("dependencies", |_| supply::layer(true));
-        report.layer("guide", |_| guide::test(extent == Extent::All));
-        report.layer("web page", |_| page::test(extent == Extent::All));
+        report.layer("guide", |_| guide::test(extent >= Extent::Integration));
+        report.layer("web page", |_| page::test(extent >= Extent::Integration));
         for (name, target) in OTHER_SYSTEMS {
             report.layer(&format!("{name} ({target})"), |_| check_for(target, extent == Extent::All));
         }
         // Other features of the dependencies are needed, so that 40 crates are built again, in five minutes on two
         // cores.
-        if extent == Extent::All {
+        if extent >= Extent::Integration {
             report.layer("command line without features", without_features);
             report.layer("Python package", wheel::layer);
         }

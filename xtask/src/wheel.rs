@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail, ensure};
 use crate::layers::{self, Outcome, succeeds};
 use crate::process::{self, cargo, command, root, say, target};
 use crate::test_output::Filter;
-use crate::{python, report};
+use crate::{python, report, setup};
 
 /// Particles for the comparison beside the repository, and their spacing in m.
 const SHARED: (&str, &str) = ("../shared/data/particles/mid64k.npy", "0.05");
@@ -34,6 +34,8 @@ struct Wheel {
 /// # Errors
 /// If the wheel cannot be built, or a test fails.
 pub fn run(arguments: &[String]) -> Result<()> {
+    // The tests of pictures need a Vulkan driver.
+    setup::ensure_requirements()?;
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let outcome = match words[..] {
         [] => test(Build::Release, &mut Filter::default())?,

@@ -24,7 +24,8 @@ pub fn bench_scene(particles: u32) -> Result<Scene, SceneErrors> {
         "[scene]\nname = \"bench\"\nduration = 1.0\n\
          [domain]\nmin = [0, 0, 0]\nmax = [{}, {}, {}]\nopen = [\"y_max\"]\n\
          [fluid]\nparticle_spacing = {SPACING}\n\
-         [[fluid.block]]\nposition = [0, 0, 0]\nsize = [{width}, {height}, {depth}]\n",
+         [[fluid.block]]\nposition = [0, 0, 0]\nsize = [{width}, {height}, {depth}]\n\
+         [solver]\nmethod = \"wcsph\"\n",
         (3.0 * width).max(minimum),
         (2.0 * height).max(minimum),
         depth.max(minimum),

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          [domain]\nmin = [{0}, {0}, {0}]\nmax = [{half}, {half}, {half}]\n\
          [fluid]\nparticle_spacing = {spacing}\nmaterial = \"water\"\n\
          [[fluid.block]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = {radius}\n\
-         [solver]\nsurface_tension = \"akinci2013\"\nartificial_viscosity = 0.05\n",
+         [solver]\nmethod = \"wcsph\"\nsurface_tension = \"akinci2013\"\nartificial_viscosity = 0.05\n",
         -half
     );
     let scene = Scene::parse(&text, "droplet").map_err(|errors| errors.to_string())?;

@@ -233,7 +233,7 @@ mod tests {
         let text = format!(
             "[scene]\nname = \"block\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [3, 2, 2]\n\
              [fluid]\nparticle_spacing = {spacing}\n\
-             [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, {depth}]\n"
+             [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, {depth}]\n[solver]\nmethod = \"wcsph\"\n"
         );
         Scene::parse(&text, "block").unwrap()
     }

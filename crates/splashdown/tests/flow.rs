@@ -1,7 +1,7 @@
 //! Emitters and sinks in whole scenes.
 
 use glam::Vec3;
-use splashdown::scene::{Emitter, Outlet, Scene, Sink, SinkRegion};
+use splashdown::scene::{Emitter, Method, Outlet, Scene, Sink, SinkRegion};
 use splashdown::{Event, Run, RunOptions, Simulation, Stats};
 use splashdown_gpu::{CpuExecutor, Executor, testing};
 use splashdown_io::Particles;
@@ -93,6 +93,7 @@ fn a_submerged_inlet_is_stable() {
     // In the wall, below the water level.
     scene.emitters[0].position = Vec3::new(0.0, 0.2, 0.2);
     scene.emitters[0].outlet = Outlet::Rectangle { size: [0.12, 0.12] };
+    scene.solver.select_method(Method::Wcsph);
     let executor = Executor::from(CpuExecutor::new());
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
     let before = simulation.stats();

@@ -42,7 +42,7 @@ fn scene(fluid: &str) -> Scene {
 
 /// The column with three times the rates of generation.
 fn foaming_column() -> Scene {
-    let mut scene = scene(COLUMN);
+    let mut scene = scene(&format!("{COLUMN}[solver]\nmethod = \"wcsph\"\n"));
     (scene.foam.trapped_air, scene.foam.wave_crest) = (600.0, 3000.0);
     scene
 }
@@ -110,7 +110,7 @@ fn a_collapsing_column_generates_foam_and_water_at_rest_does_not() {
 #[test]
 fn foam_is_reproducible() {
     // Coarse, because a software driver takes milliseconds for each step.
-    let mut scene = scene(COLUMN);
+    let mut scene = scene(&format!("{COLUMN}[solver]\nmethod = \"wcsph\"\n"));
     scene.fluid.particle_spacing = 0.04;
     (scene.foam.trapped_air, scene.foam.wave_crest) = (2000.0, 10_000.0);
     let run = |executor: Executor, pause: bool| -> DiffuseParticles {

@@ -26,7 +26,8 @@ fn scene(divisor: f64) -> String {
         "[scene]\nname = \"peer\"\nduration = 1.0\n\
          [domain]\nmin = [0, 0, 0]\nmax = [{width}, {height}, {depth}]\n\
          [fluid]\nparticle_spacing = 0.05\n\
-         [[fluid.block]]\nposition = [0, 0, {z}]\nsize = [{side}, {side}, {side}]\n"
+         [[fluid.block]]\nposition = [0, 0, {z}]\nsize = [{side}, {side}, {side}]\n\
+         [solver]\nmethod = \"wcsph\"\n"
     )
 }
 

@@ -111,8 +111,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
 
 /// A few scenes, as a layer of the tests, with the binary that they have built.
 pub fn layer() -> Result<Outcome> {
-    process::run(process::cargo(["build", "--quiet", "--package", "splashdown-cli"]).stdout(Stdio::null()))?;
-    let binary = process::target().join("debug").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
+    let binary = process::build_tested()?;
     let settings = Settings { scenes: FEW, ..settings(&[])? };
     let (judged, _) = search(&settings, &binary)?;
     let is_bad = |one: &Judged| one.is_silent_failure() || matches!(one.end, End::Crashed(_));

@@ -288,7 +288,8 @@ fn each_probe_has_a_table_with_units() -> Outcome {
     let probe = "[[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.1, 0.02, 0.1]\n\
                  [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n";
     // Without initial pressure there is no elastic energy.
-    let scene = scene.replace("[fluid]", "[fluid]\ninitial_pressure = \"zero\"");
+    let scene =
+        scene.replace("[fluid]", "[solver]\nmethod = \"wcsph\"\n[fluid]\ninitial_pressure = \"zero\"");
     fs::write(place.path("small.toml"), format!("{scene}\n{probe}"))?;
     // A table of an earlier run, which is removed, and an unrelated file, which is not.
     fs::create_dir_all(place.path("out/probes"))?;

@@ -37,6 +37,8 @@ fn run(
 
 const BLOCK: &str = "[[fluid.block]]\nposition = [0.5, 0.8, 0.5]\nsize = [0.5, 0.5, 0.5]";
 
+const WCSPH: &str = "[solver]\nmethod = \"wcsph\"";
+
 /// The largest remainder of the balance in a frame, as a fraction of the energy that took part until the end.
 fn remainder(frames: &[Frame]) -> f64 {
     let largest = frames.iter().map(|frame| frame.energy.dissipated.abs()).fold(0.0, f64::max);
@@ -45,7 +47,8 @@ fn remainder(frames: &[Frame]) -> f64 {
 
 #[test]
 fn the_balance_of_a_free_fall_closes() {
-    let frames = frames("duration = 0.3", BLOCK, "");
+    // The steps of the default are so long that a fall is first-order accurate.
+    let frames = frames("duration = 0.3", BLOCK, WCSPH);
     let (start, end) = (frames[0].energy, frames[frames.len() - 1].energy);
     assert!(end.kinetic > 0.3 * start.potential, "it falls: {end:?}");
     assert!(remainder(&frames) < 0.01, "{end:?}");
@@ -54,7 +57,8 @@ fn the_balance_of_a_free_fall_closes() {
 #[test]
 fn the_work_of_shaking_is_the_kinetic_energy_of_a_floating_block() {
     let scene = "duration = 0.4\ngravity = [0, 0, 0]";
-    let rest = "[domain.oscillation]\namplitude = [0.1, 0.0, 0.05]\nperiod = 0.7";
+    let rest =
+        "[solver]\nmethod = \"wcsph\"\n[domain.oscillation]\namplitude = [0.1, 0.0, 0.05]\nperiod = 0.7";
     let frames = frames(scene, BLOCK, rest);
     let end = frames[frames.len() - 1].energy;
     assert!(end.shaking > 1.0 && end.kinetic > 1.0, "{end:?}");
@@ -122,6 +126,7 @@ fn a_later_rise_within_a_level_is_reported_again() {
         .domain([0.0; 3], [0.8, 0.8, 0.4])
         .particle_spacing(0.05)
         .block([0.0; 3], [0.4, 0.4, 0.4])
+        .set("solver.method", "wcsph")
         .build()
         .unwrap();
     let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();

@@ -8,9 +8,9 @@ choices! {
         /// Forces of Mueller, Charypar and Gross 2003, the method of the thesis of Figueroa 2012: fast, and more
         /// compressible.
         Mueller2003 = "mueller2003",
-        /// Weakly compressible SPH with Tait's equation of state.
+        /// Weakly compressible SPH with Tait's equation of state: short explicit steps.
         Wcsph = "wcsph",
-        /// Implicit pressure that keeps the density: few large steps.
+        /// Implicit pressure that keeps the density: few large steps, and the least time per simulated second.
         Dfsph = "dfsph",
     }
     /// The smoothing kernel of `wcsph` and `dfsph` (`mueller2003` brings its own three).
@@ -165,7 +165,8 @@ impl Solver {
 }
 
 impl Default for Solver {
+    /// Those of `dfsph`.
     fn default() -> Self {
-        Self::with(Method::Wcsph, DensityMode::Summation)
+        Self::with(Method::Dfsph, DensityMode::Summation)
     }
 }

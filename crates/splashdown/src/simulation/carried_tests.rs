@@ -56,6 +56,7 @@ fn scene() -> Scene {
         .domain([0.0; 3], [0.8, 0.5, 0.4])
         .particle_spacing(0.05)
         .block([0.0; 3], [0.3, 0.4, 0.4])
+        .set("solver.method", "wcsph")
         .build()
         .unwrap()
 }
@@ -151,7 +152,7 @@ fn emitted_particles_do_not_inherit_the_quantities_of_removed_ones() {
                 [[fluid.block]]\nposition = [0.2, 0.1, 0.1]\nsize = [0.1, 0.2, 0.2]\nvelocity = [1, 0, 0]\n\
                 [[emitter]]\nname = \"inlet\"\nradius = 0.05\nposition = [0.05, 0.2, 0.2]\ndirection = [1, 0, 0]\nspeed = 1.0\n\
                 [[sink]]\nname = \"outlet\"\nmin = [0.4, 0, 0]\nmax = [0.6, 0.4, 0.4]\n\
-                [surface]\nenabled = false\n";
+                [surface]\nenabled = false\n[solver]\nmethod = \"wcsph\"\n";
     let scene = Scene::parse(text, "channel.toml").unwrap();
     for (name, executor) in
         testing::executors("emitted_particles_do_not_inherit_the_quantities_of_removed_ones")

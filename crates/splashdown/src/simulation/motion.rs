@@ -174,6 +174,7 @@ mod tests {
             .domain([0.0; 3], [0.8, 0.8, 0.4])
             .particle_spacing(0.05)
             .block([0.0; 3], [0.4, 0.4, 0.4])
+            .set("solver.method", "wcsph")
             .build()
             .unwrap();
         Simulation::new(&scene, &Device::Cpu).unwrap()

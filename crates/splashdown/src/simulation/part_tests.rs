@@ -41,6 +41,8 @@ const SCENE: &str = r#"
     density = 500
     [surface]
     enabled = false
+    [solver]
+    method = "wcsph"
 "#;
 
 /// Accelerations of the particles in m/s^2, and forces and torques on the bodies in the unit of their sums.
@@ -54,7 +56,7 @@ fn checkpoint(kernel: KernelKind) -> Checkpoint {
     scene.solver.kernel = kernel;
     let mut simulation = Simulation::new(&scene, &crate::Device::Cpu).unwrap();
     simulation.advance(0.02).unwrap();
-    let text = SCENE.replace("[surface]", &format!("[solver]\nkernel = \"{kernel}\"\n[surface]"));
+    let text = SCENE.replace("[solver]", &format!("[solver]\nkernel = \"{kernel}\""));
     simulation.checkpoint(&text).unwrap()
 }
 

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use splashdown::scene::{Formula, Hinge, Keyframe, Motion, Scene, Script};
+use splashdown::scene::{Formula, Hinge, Keyframe, Method, Motion, Scene, Script};
 use splashdown::{Device, Simulation};
 
 use crate::{body, free, tank};
@@ -36,6 +36,8 @@ fn a_scripted_body_follows_its_script() {
 #[test]
 fn a_free_body_falls_and_collides_with_the_floor_and_other_bodies() {
     let mut scene = tank(0.025, [0.8, 1.0, 0.8], 0.1);
+    // Without fluid in motion the steps of the default are too long for the gate of the fall.
+    scene.solver.select_method(Method::Wcsph);
     dry(&mut scene);
     scene.bodies = vec![
         body("one", "cube", 0.1, Vec3::new(0.4, 0.6, 0.4), free(500.0)),

@@ -56,8 +56,8 @@ fn presets_have_the_promised_sizes() {
     assert_eq!(count("double-dam-break"), (42_500, Method::Wcsph));
     assert_eq!(count("falling-drop"), (25_000 + 2_176, Method::Wcsph));
     assert_eq!(count("sloshing-tank"), (15_600, Method::Wcsph));
-    assert_eq!(count("lighthouse"), (63_000, Method::Wcsph));
-    assert_eq!(count("floating"), (54_400, Method::Wcsph));
+    assert_eq!(count("lighthouse"), (63_000, Method::Dfsph));
+    assert_eq!(count("floating"), (54_400, Method::Dfsph));
     assert_eq!(count("honey"), (7_168 + 2_176, Method::Dfsph));
 }
 

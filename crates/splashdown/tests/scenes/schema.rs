@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 use splashdown::check::reference;
-use splashdown::scene::{Solver, SurfaceSettings, presets, schema};
+use splashdown::scene::{DensityMode, Method, Solver, SurfaceSettings, presets, schema};
 
 use crate::{CUBE, parse, presets::folder};
 
@@ -173,7 +173,7 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
         }
     }
     assert!(seen > 20, "only {seen} defaults were compared");
-    assert_eq!(plain.solver, Solver::default());
+    assert_eq!(plain.solver, Solver::with(Method::Wcsph, DensityMode::Summation));
     assert_eq!(plain.surface, SurfaceSettings::for_spacing(0.05));
     for (name, standard) in
         [("density_diffusion", plain.solver.density_diffusion), ("tolerance", plain.solver.tolerance)]
@@ -181,4 +181,24 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
         let default = &schema["properties"]["solver"]["properties"][name]["default"];
         assert_eq!(default.as_f64().map(|x| x as f32), Some(standard), "{name}");
     }
+}
+
+#[test]
+fn a_scene_without_a_method_uses_the_default_that_its_keys_allow() {
+    let solver = |keys: &str| parse(&CUBE.replace("method = \"wcsph\"", keys)).map(|scene| scene.solver);
+    assert_eq!(solver("").unwrap(), Solver::default());
+    assert_eq!(solver("").unwrap().method, Method::Dfsph);
+    for (keys, method) in [
+        ("tolerance = 0.002", Method::Dfsph),
+        ("support_ratio = 3", Method::Dfsph),
+        ("density = \"continuity\"", Method::Wcsph),
+        ("sound_speed = 20", Method::Wcsph),
+        ("accuracy = \"engineering\"", Method::Wcsph),
+        ("accuracy = \"standard\"", Method::Dfsph),
+    ] {
+        assert_eq!(solver(keys).unwrap().method, method, "{keys}");
+    }
+    // Keys of both.
+    let errors = solver("tolerance = 0.002\nsound_speed = 20").unwrap_err().to_string();
+    assert!(errors.contains("solver.tolerance has no effect with method = \"wcsph\""), "{errors}");
 }

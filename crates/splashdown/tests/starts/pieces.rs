@@ -162,7 +162,7 @@ fn imported_clouds_are_relaxed_or_reported() {
 #[test]
 fn an_emitter_inside_the_pool_starts_without_overlap() {
     let scene = scene(&format!(
-        "{}[[emitter]]\nname = \"jet\"\nposition = [0.31, 0.17, 0.23]\ndirection = [1, 0, 0]\nspeed = 0.5\nradius = 0.07\n",
+        "{}[[emitter]]\nname = \"jet\"\nposition = [0.31, 0.17, 0.23]\ndirection = [1, 0, 0]\nspeed = 0.5\nradius = 0.07\n[solver]\nmethod = \"wcsph\"\n",
         block([0.0; 3], [0.6, 0.4, 0.48])
     ));
     let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();

@@ -9,9 +9,12 @@ use crate::scene::types::SurfaceKernels;
 pub(super) static SOLVER: Table = Table {
     about: "Solver and its parameters.",
     keys: &[
-        key("method", Kind::Word(words::<Method>), "SPH method.")
-            .default("\"wcsph\"")
-            .also(&["type", "name", "scheme", "solver"]),
+        key(
+            "method",
+            Kind::Word(words::<Method>),
+            "SPH method. Default: dfsph; wcsph if a key of this section has no effect with dfsph, such as density, or with accuracy = \"engineering\".",
+        )
+        .also(&["type", "name", "scheme", "solver"]),
         key("accuracy", Kind::Word(words::<Accuracy>), "Purpose; determines defaults of other keys of this section.")
             .default("\"standard\""),
         key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph and dfsph.").default("\"wendland_c2\""),

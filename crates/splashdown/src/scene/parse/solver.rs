@@ -24,8 +24,8 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let sort = section.choice("sort");
     let tolerance = section.number("tolerance");
     let max_iterations = section.integer("max_iterations");
-    let method = method?.unwrap_or(Method::Wcsph);
     let accuracy = accuracy?.unwrap_or(Accuracy::Standard);
+    let method = method?.unwrap_or_else(|| fitting_method(section, accuracy));
     let density = density?.unwrap_or(match accuracy {
         Accuracy::Standard => DensityMode::Summation,
         Accuracy::Engineering => DensityMode::Continuity,
@@ -55,6 +55,12 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     };
     let accurate = check_accuracy(section, accuracy, method, density);
     check_solver(section, &solver).and(accurate).map(|()| solver)
+}
+
+/// The method of a scene that names none: the default, or `wcsph` for keys that have no effect with the default.
+fn fitting_method(section: &Section<'_>, accuracy: Accuracy) -> Method {
+    let is_explicit = Solver::NOT_IMPLICIT.into_iter().any(|name| section.has(name));
+    if is_explicit || accuracy == Accuracy::Engineering { Method::Wcsph } else { Solver::default().method }
 }
 
 /// Reports choices that are not accurate although accuracy is asked for.
