@@ -286,8 +286,8 @@ pub struct Frame {
     /// The rows of each probe since the previous frame.
     ///
     /// >>> first, second = splashdown.Run(scene, device="cpu", frames=1)
-    /// >>> scene.probe_columns["gauge"], second.probes["gauge"].shape  # 10 rows per frame
-    /// (['time (s)', 'height (m)'], (10, 2))
+    /// >>> scene.probe_columns["gauge"], second.probes["gauge"].shape[1]
+    /// (['time (s)', 'height (m)'], 2)
     probes: Py<PyDict>,
     /// Statistics.
     ///

@@ -393,7 +393,7 @@ impl Simulation {
 
     /// The last stable time step in s.
     ///
-    /// >>> bool(0 < simulation.dt < 0.01)  # s
+    /// >>> bool(0 < simulation.dt <= 0.05)  # s
     /// True
     #[getter]
     fn dt(&self) -> Result<f32> {

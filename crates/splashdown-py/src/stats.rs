@@ -61,7 +61,7 @@ stats! {
     steps_in_frame: u32,
     /// The last time step in s.
     ///
-    /// >>> bool(0 < simulation.advance(0.01).dt <= 0.01)  # s
+    /// >>> bool(0 < simulation.advance(0.01).dt <= 0.05)  # s
     /// True
     dt: f32,
     /// Particles inside the domain.
@@ -127,29 +127,29 @@ stats! {
     max_speed: f32,
     /// Pressure iterations since the start; zero with an explicit pressure, as all of the following.
     ///
-    /// >>> simulation.advance(0.01).iterations
-    /// 0
+    /// >>> simulation.advance(0.01).iterations > 0
+    /// True
     iterations: u64,
     /// The most pressure iterations of a step of this call.
     ///
-    /// >>> simulation.advance(0.01).most_iterations
-    /// 0
+    /// >>> 0 < simulation.advance(0.01).most_iterations <= 40
+    /// True
     most_iterations: u32,
     /// The largest mean error of the density at which the iterations of a step of this call stopped, as a part of the rest
     /// density.
     ///
-    /// >>> simulation.advance(0.01).residual
-    /// 0.0
+    /// >>> bool(0 <= simulation.advance(0.01).residual <= 0.001)
+    /// True
     residual: f32,
     /// The mean relative compression over the particles and the steps of this call, computed from the positions.
     ///
-    /// >>> simulation.advance(0.01).compression
-    /// 0.0
+    /// >>> bool(0 <= simulation.advance(0.01).compression < 0.01)
+    /// True
     compression: f32,
     /// The same since the start.
     ///
-    /// >>> simulation.advance(0.01).mean_compression
-    /// 0.0
+    /// >>> bool(0 <= simulation.advance(0.01).mean_compression < 0.01)
+    /// True
     mean_compression: f64,
     /// Steps since the start whose iterations reached `max_iterations` before the tolerance.
     ///

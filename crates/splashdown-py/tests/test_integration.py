@@ -71,7 +71,8 @@ def test_pandas(scene: splashdown.Scene) -> None:
 
 def test_tqdm(scene: splashdown.Scene, capfd: pytest.CaptureFixture[str]) -> None:
     optional("tqdm")
-    fine = scene.replace({"fluid.particle_spacing": 0.05})
+    # Long enough that the progress is shown.
+    fine = scene.replace({"fluid.particle_spacing": 0.025, "solver.method": "wcsph"})
     with splashdown.Simulation(fine, device="cpu") as simulation:
         simulation.advance(0.1, progress=True)
     assert "0.100/0.100 s" in capfd.readouterr().err
