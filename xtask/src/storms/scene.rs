@@ -139,6 +139,7 @@ impl Maker {
         let mut text = String::from("[solver]\n");
         let is_thesis = !only.continuity && rng.chance(0.12);
         let is_continuity = !is_thesis && (only.continuity || rng.chance(0.42));
+        let is_implicit = !is_thesis && !is_continuity && rng.chance(0.6);
         if is_thesis {
             text += "method = \"mueller2003\"\n";
             self.traits.push("mueller2003");
@@ -153,7 +154,11 @@ impl Maker {
             if rng.chance(0.2) {
                 let _ = writeln!(text, "density_diffusion = {:.3}", rng.between(0.0, 0.5));
             }
+        } else if is_implicit {
+            text += "method = \"dfsph\"\n";
+            self.traits.push("dfsph");
         } else {
+            text += "method = \"wcsph\"\n";
             self.traits.push("summation");
         }
         if rng.chance(0.35) {
@@ -168,11 +173,11 @@ impl Maker {
                 let _ =
                     writeln!(text, "artificial_viscosity = {:.3}", rng.pick(&[0.0, 0.01, 0.05, 0.1, 0.3]));
             }
-            if rng.chance(0.15) {
+            if !is_implicit && rng.chance(0.15) {
                 let _ = writeln!(text, "exponent = {:?}", rng.pick(&[1.0, 4.0, 7.0]));
             }
         }
-        if rng.chance(0.2) {
+        if !is_implicit && rng.chance(0.2) {
             let _ = writeln!(text, "negative_pressure = {:?}", rng.pick(&["clamp", "keep"]));
         }
         if rng.chance(0.2) {
