@@ -24,7 +24,7 @@ use crate::process::{self, say};
 /// The seed of the published report.
 const SEED: u64 = 1;
 /// Scenes in the tests.
-const FEW: u64 = 10;
+const FEW: u64 = 20;
 /// A run that takes longer is a failure.
 const LIMIT: Duration = Duration::from_secs(600);
 /// The report of a full search.
