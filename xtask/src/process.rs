@@ -68,12 +68,14 @@ pub fn build_release_with(arguments: &[&str]) -> Result<PathBuf> {
     Ok(binary)
 }
 
-/// Builds the command line as the tests do, so that nothing is compiled again after them, and returns the path of the
-/// binary. The features of the dependencies are those of the whole workspace.
+/// Builds the tests, and with them the command line that they run; returns its path. After the tests nothing is left to
+/// compile. `cargo build --profile test` would compile everything again, with the features of other dependencies.
 pub fn build_tested() -> Result<PathBuf> {
-    let extent = ["--workspace", "--exclude", "splashdown-py", "--bin", "splashdown"];
-    run(cargo(["build", "--quiet", "--profile", "test"]).args(extent).stdout(std::process::Stdio::null()))?;
-    Ok(target().join("debug").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX)))
+    let extent = ["--workspace", "--exclude", "splashdown-py", "--no-run"];
+    run(cargo(["test", "--quiet"]).args(extent).stdout(std::process::Stdio::null()))?;
+    let binary = target().join("debug").join(format!("splashdown{}", std::env::consts::EXE_SUFFIX));
+    ensure!(binary.exists(), "the tests were built, but {} does not exist", binary.display());
+    Ok(binary)
 }
 
 /// Runs a command to its end; an error if it cannot start or fails.
