@@ -4,7 +4,9 @@
 use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
-use splashdown::scene::{Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Scene, UpAxis};
+use splashdown::scene::{
+    Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Scene, SolidContact, UpAxis,
+};
 
 /// Density of added bodies over the fluid's.
 const DENSITY_RATIO: f32 = 0.5;
@@ -101,7 +103,7 @@ fn add_body(
         name: format!("{name}-{number}"),
         mesh: MeshSource {
             shape,
-            scale,
+            scale: Vec3::splat(scale),
             up: UpAxis::Y,
             position: position - middle,
             rotation: Quat::IDENTITY,
@@ -114,6 +116,7 @@ fn add_body(
         },
         friction: 0.2,
         adhesion: 0.0,
+        contact: SolidContact::default(),
         boundary: BoundaryKind::Map,
         half_thickness: None,
         shell: None,

@@ -112,7 +112,9 @@ fn body_table(body: &Body) -> Result<Table, String> {
         MeshShape::File(path) => path.to_str().ok_or("the path of a mesh is not valid text")?.to_owned(),
     };
     table.insert("mesh", value(mesh));
-    table.insert("scale", number(body.mesh.scale));
+    let scale = body.mesh.scale;
+    let uniform = scale == Vec3::splat(scale.x);
+    table.insert("scale", if uniform { number(scale.x) } else { vector(scale) });
     table.insert("position", vector(body.mesh.position));
     let Motion::Dynamic { density, .. } = body.motion else {
         return Err("only dynamic bodies can be added to a scene file".to_owned());

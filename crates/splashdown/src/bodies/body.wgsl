@@ -41,6 +41,8 @@ struct Body {
     work: f32,
     moment: vec3<f32>,
     coupling: f32,
+    motor: vec3<f32>,
+    motor_torque: f32,
 }
 
 struct Contact {

@@ -10,7 +10,7 @@ use super::BodyMesh;
 use super::types::{Body, Contact};
 use crate::boundary::{KernelPair, closed_bounds, solid_offset};
 use crate::models;
-use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, UpAxis};
+use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, SolidContact, UpAxis};
 use crate::solid::{self, Placed, Solid, SolidError, SolidKind, SolidSettings, Surroundings};
 use crate::state::Params;
 
@@ -115,6 +115,8 @@ pub struct LoadedBody {
     pub script: Option<Script>,
     /// Linear RGB.
     pub colour: Option<[f32; 3]>,
+    /// Contact with other solids.
+    pub contact: SolidContact,
     /// Density of a dynamic body in kg/m^3; 0 for other bodies.
     density: f32,
 }
@@ -146,7 +148,7 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
             .map_err(|source| BodyError::File { owner: owner.into(), source })?,
     };
     for v in &mut mesh.vertices {
-        let [x, y, z] = v.map(|c| c * source.scale);
+        let [x, y, z] = (Vec3::from(*v) * source.scale).to_array();
         *v = match source.up {
             UpAxis::Y => [x, y, z],
             UpAxis::Z => [x, z, -y],
@@ -292,7 +294,8 @@ fn load_one(
         }
     };
     let density = if let Motion::Dynamic { density, .. } = body.motion { density } else { 0.0 };
-    Ok(LoadedBody { name: body.name.clone(), solid, state, samples, script, colour: body.colour, density })
+    let (name, contact) = (body.name.clone(), body.contact);
+    Ok(LoadedBody { name, solid, state, samples, script, colour: body.colour, contact, density })
 }
 
 /// The solids of the static bodies.
@@ -322,6 +325,10 @@ fn attach_hinge(state: &mut Body, hinge: &Hinge, inertia: Mat3) {
     (state.inverse_inertia, state.inverse_inertia_products) = parts(along * about_axis.recip());
     state.velocity = Vec3::ZERO;
     state.angular_velocity = state.angular_velocity.dot(hinge.axis) * hinge.axis;
+    if let Some(motor) = hinge.motor {
+        state.motor = motor.speed * hinge.axis;
+        state.motor_torque = motor.torque.unwrap_or(f32::MAX);
+    }
 }
 
 /// The diagonal of a symmetric matrix, and its elements xy, xz, yz.
@@ -393,7 +400,7 @@ pub(crate) fn check_scale(
 ) -> Result<(), BodyError> {
     let (low, high) = solid::bounds(mesh);
     let (size, domain) = ((high - low).max_element(), domain.size().max_element());
-    let scale = source.scale;
+    let scale = source.scale.max_element();
     let advice = match size / domain {
         ratio if ratio > 100.0 && scale == 1.0 => {
             "its mesh is probably in millimetres; give it scale = \"mm\"".to_owned()

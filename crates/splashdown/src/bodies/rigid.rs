@@ -9,13 +9,13 @@
 //! *Why not* rapier for all motion: the force of the fluid changes in every step, and a round trip to the host in
 //! every step is too slow.
 //!
-//! A dynamic body collides as its convex hull if their volumes are nearly equal, and as a convex decomposition
-//! otherwise. Static and scripted bodies collide as triangle meshes.
+//! A dynamic body collides as a ball if it is one, as its convex hull if their volumes are nearly equal, and as a
+//! convex decomposition otherwise. Static and scripted bodies collide as triangle meshes.
 
 use glam::{Quat, Vec3, Vec4};
 use rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, Pose, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle, Rotation,
-    SharedShape, Vector,
+    CoefficientCombineRule, ColliderBuilder, PhysicsWorld, Pose, RevoluteJointBuilder, RigidBodyBuilder,
+    RigidBodyHandle, Rotation, SharedShape, Vector,
 };
 use serde::{Deserialize, Serialize};
 
@@ -23,10 +23,11 @@ use super::load::LoadedBody;
 use super::types::Body;
 use crate::scene::Domain;
 
-/// Coefficient of friction between solids: roughly that of wood on wood.
-const FRICTION: f32 = 0.4;
-/// Coefficient of restitution.
-const RESTITUTION: f32 = 0.2;
+/// The coefficient of friction of the domain's sides. It is larger than that of any body, so that the smaller one is that
+/// of the body.
+const WALL_FRICTION: f32 = 1e3;
+/// The coefficient of restitution of the domain's sides, chosen likewise.
+const WALL_RESTITUTION: f32 = 1.0;
 /// The ratio of volumes above which a convex hull does not represent a body, because the body has a cavity.
 const HOLLOW: f32 = 1.1;
 
@@ -145,7 +146,8 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
     let points: Vec<Vector> =
         body.solid.mesh.vertices.iter().map(|&v| to_rapier(Vec3::from(v) - state.center)).collect();
     let shape = if state.kind == Body::DYNAMIC {
-        convex(&points, &body.solid.mesh.triangles, body.solid.mass.volume)
+        let round = ball(&points, body.solid.mass.volume);
+        round.or_else(|| convex(&points, &body.solid.mesh.triangles, body.solid.mass.volume))
     } else {
         SharedShape::trimesh(points.clone(), body.solid.mesh.triangles.clone()).ok()
     };
@@ -155,9 +157,22 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
     let volume = shape.mass_properties(1.0).mass();
     let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { body.mass() };
     let density = if volume > 0.0 { mass / volume } else { 1.0 };
-    let collider = ColliderBuilder::new(shape).density(density).friction(FRICTION).restitution(RESTITUTION);
+    let collider = ColliderBuilder::new(shape).density(density);
+    let collider = collider.friction(body.contact.friction).restitution(body.contact.restitution);
     world.insert_collider(collider, Some(handle));
     handle
+}
+
+/// A ball, if the mesh is a sphere. A hull would collide with its facets, whose normals miss the centre.
+fn ball(points: &[Vector], volume: f32) -> Option<SharedShape> {
+    /// The largest deviation from the volume and, of any point, from the radius.
+    const DEVIATION: f32 = 0.02;
+    let middle = points.iter().copied().sum::<Vector>() / points.len().max(1) as f32;
+    let radius = (0.75 / std::f32::consts::PI * volume).cbrt();
+    let near = |x: f32, y: f32| (x - y).abs() <= DEVIATION * y;
+    let is_sphere = points.len() > 100 && points.iter().all(|&x| near(x.distance(middle), radius));
+    let place = Pose::from_parts(middle, Rotation::IDENTITY);
+    is_sphere.then(|| SharedShape::compound(vec![(place, SharedShape::ball(radius))]))
 }
 
 fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<SharedShape> {
@@ -209,7 +224,12 @@ fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {
                 let shape = SharedShape::halfspace(to_rapier(normal));
                 let place = pose(corner, Quat::IDENTITY);
                 let collider = ColliderBuilder::new(shape).position(place);
-                world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
+                let collider = collider
+                    .friction(WALL_FRICTION)
+                    .friction_combine_rule(CoefficientCombineRule::Min)
+                    .restitution(WALL_RESTITUTION)
+                    .restitution_combine_rule(CoefficientCombineRule::Min);
+                world.insert_collider(collider, None);
             }
         }
     }

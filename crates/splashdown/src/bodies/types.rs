@@ -78,6 +78,10 @@ gpu_struct! {
         /// What it adds to the diagonal of the implicit pressure, in m^2/kg: half the area of its mesh times the larger of
         /// its inverse mass and a twelfth of that at its farthest point by rotation; 0 if forces do not move it.
         coupling: f32,
+        /// The angular velocity in rad/s towards which a motor turns a hinged body.
+        motor: Vec3,
+        /// The largest torque of the motor in N m; 0 if there is none.
+        motor_torque: f32,
     }
 }
 

@@ -103,7 +103,10 @@ fn check_bodies<'a>(
                 let body = Placed::new(body, &mesh);
                 warn_outside(scene, &body, &mesh, section);
                 let reach = mesh.vertices.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
-                motion::check(scene, body.body, (body.low, body.high), reach, section);
+                if let Err(reported) = motion::check(scene, body.body, (body.low, body.high), reach, section)
+                {
+                    result = Err(reported);
+                }
                 placed.push(body);
                 meshes.push(mesh);
             }

@@ -1,11 +1,14 @@
 //! Warnings about bodies that move: jumps, large steps, bodies that do not fit between the walls, and volumes that a piston
 //! closes.
 
+use std::f32::consts::TAU;
+
 use glam::Vec3;
 
 use super::shapes::{Closing, closings};
+use crate::bodies::SCRIPT_SAMPLES;
 use crate::sample;
-use crate::scene::{Body, Derived, Domain, Motion, Scene, Script, Section};
+use crate::scene::{Body, Derived, Domain, Motion, Reported, Scene, Script, Section};
 
 /// Intervals in which a motion is searched for jumps.
 const INTERVALS: u32 = 2000;
@@ -15,6 +18,8 @@ const HALVINGS: u32 = 24;
 const JUMP: f32 = 0.05;
 /// The largest motion per step, in spacings, that is not reported.
 const STEP: f32 = 1.0;
+/// The largest rotation between two samples of a script, in rad. The device interpolates between the samples.
+const TURN: f32 = std::f32::consts::FRAC_PI_4;
 /// A body may overlap a wall by this many spacings.
 const OVERLAP: f32 = 0.05;
 /// A piston may compress the fluid by this fraction without a warning, which is within the error of counting particles.
@@ -23,17 +28,28 @@ const COMPRESSION: f32 = 0.03;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Warns of problems of a body whose mesh has these corners at the start, and this distance from its origin.
-pub(super) fn check(scene: &Scene, body: &Body, corners: (Vec3, Vec3), reach: f32, section: &Section<'_>) {
+///
+/// # Errors
+/// If the body turns too fast for the samples of its motion.
+pub(super) fn check(
+    scene: &Scene,
+    body: &Body,
+    corners: (Vec3, Vec3),
+    reach: f32,
+    section: &Section<'_>,
+) -> Result<(), Reported> {
     match &body.motion {
         Motion::Static => {}
         Motion::Scripted(script) => {
             if !warn_of_jump(scene, body, script, reach, section) {
+                refuse_of_turn(scene, body, script, section)?;
                 warn_of_speed(scene, body, script, reach, section);
             }
             warn_of_pistons(scene, body, script, corners, section);
         }
         Motion::Dynamic { .. } => warn_of_walls(scene, body, corners, section),
     }
+    Ok(())
 }
 
 /// Returns whether there is a jump.
@@ -67,6 +83,35 @@ fn jump(script: &Script, duration: f64, reach: f32, least: f32) -> Option<(f64, 
         }
         (length >= least).then_some((end, length))
     })
+}
+
+/// Refuses a rotation that the samples of a frame do not resolve: the body would turn slower, or backwards.
+fn refuse_of_turn(
+    scene: &Scene,
+    body: &Body,
+    script: &Script,
+    section: &Section<'_>,
+) -> Result<(), Reported> {
+    let duration = f64::from(scene.duration);
+    let spin = |k: u32| script.pose(duration * f64::from(k) / f64::from(INTERVALS)).angular_velocity.length();
+    let fastest = (0..=INTERVALS).map(spin).fold(0.0, f32::max);
+    let samples = (SCRIPT_SAMPLES - 1) as f32;
+    let angle = fastest * scene.frame_duration() / samples;
+    if angle <= TURN {
+        return Ok(());
+    }
+    let message = format!(
+        "body {:?} turns at up to {:.1} revolutions per second, {:.0} degrees in a {samples}th of a frame",
+        body.name,
+        fastest / TAU,
+        angle.to_degrees()
+    );
+    let allowed = format!("at most {:.0} degrees in a {samples}th of a frame", TURN.to_degrees());
+    let hint = format!(
+        "set scene.frame_rate to at least {:.0}, or turn it slower",
+        (fastest / (TURN * samples)).ceil()
+    );
+    Err(section.complain("turn", message, &allowed, &hint))
 }
 
 fn warn_of_speed(scene: &Scene, body: &Body, script: &Script, reach: f32, section: &Section<'_>) {

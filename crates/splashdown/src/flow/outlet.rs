@@ -176,7 +176,7 @@ mod tests {
     fn an_outlet_of_a_mesh_is_its_cross_section_for_any_thickness() {
         let source = |scale: f32| MeshSource {
             shape: MeshShape::Model("cube".into()),
-            scale,
+            scale: Vec3::splat(scale),
             up: UpAxis::Y,
             position: Vec3::ZERO,
             rotation: Quat::IDENTITY,

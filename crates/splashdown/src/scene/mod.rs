@@ -72,8 +72,8 @@ pub use schema::schema;
 pub use script::{Keyframe, Pose, Script};
 pub use solver::{DensityMode, KernelKind, Method, NegativePressure, Solver, Sort, SurfaceTension};
 pub use things::{
-    Body, BoundaryKind, Emitter, Hinge, MeshShape, MeshSource, Motion, Outlet, Probe, Quantity, Sink,
-    SinkRegion, UpAxis,
+    Body, BoundaryKind, Emitter, Hinge, MeshShape, MeshSource, Motion, Motor, Outlet, Probe, Quantity, Sink,
+    SinkRegion, SolidContact, UpAxis,
 };
 pub use types::{
     Block, Camera, ColourBy, Domain, Fluid, FluidFile, FluidMesh, FoamSettings, Format, InitialPressure,

@@ -17,7 +17,7 @@ use super::spec::{Key, Kind, Table};
 use super::suggest;
 use super::values::{
     Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_scale, one_word, several,
-    wrong_type,
+    three_scales, wrong_type,
 };
 
 /// Maximum number of problems that are collected. It bounds time and memory for files that are no scenes.
@@ -262,6 +262,16 @@ impl<'r> Section<'r> {
         self.read(name, |value, kind| match kind {
             Kind::Scale(range) => one_scale(value, range).map(|x| x as f32),
             _ => Err(undeclared(kind)),
+        })
+    }
+
+    /// Such a scale for each axis of a file.
+    pub fn scales(&self, name: &str) -> Read<[f32; 3]> {
+        self.read(name, |value, kind| match kind {
+            Kind::Scales(range) => {
+                three_scales(value, range).map(|list| std::array::from_fn(|i| list[i] as f32))
+            }
+            _ => Err(undeclared(kind).into()),
         })
     }
 

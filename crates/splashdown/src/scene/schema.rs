@@ -37,9 +37,10 @@ fn property(key: &Key) -> Value {
     let mut value = match key.kind {
         Kind::Number(range) => number("number", range),
         Kind::Numbers(count, range) => list(count, number("number", range)),
-        Kind::Scale(range) => {
-            let units: Vec<_> = UNITS.iter().map(|(word, _)| *word).collect();
-            json!({ "anyOf": [number("number", range), { "type": "string", "enum": units }] })
+        Kind::Scale(range) => json!({ "anyOf": [number("number", range), unit()] }),
+        Kind::Scales(range) => {
+            let axes = list(3, json!({ "anyOf": [number("number", range), unit()] }));
+            json!({ "anyOf": [number("number", range), unit(), axes] })
         }
         Kind::Integer(range) => number("integer", range),
         Kind::Integers(count, range) => list(count, number("integer", range)),
@@ -64,6 +65,12 @@ fn property(key: &Key) -> Value {
 fn number(kind: &str, range: Range) -> Value {
     let end = |x: f64| if kind == "integer" { json!(x as i64) } else { json!(x) };
     json!({ "type": kind, "minimum": end(range.least), "maximum": end(range.most) })
+}
+
+/// The name of a unit of length.
+fn unit() -> Value {
+    let names: Vec<_> = UNITS.iter().map(|(word, _)| *word).collect();
+    json!({ "type": "string", "enum": names })
 }
 
 fn list(count: usize, items: Value) -> Value {

@@ -14,6 +14,8 @@ pub(crate) enum Kind {
     Numbers(usize, Range),
     /// A number, or the name of a unit of length ([`UNITS`]).
     Scale(Range),
+    /// As [`Kind::Scale`], or three of them: one for each axis of the file.
+    Scales(Range),
     /// An integer.
     Integer(Range),
     /// A list of this length of integers, each in the range.

@@ -20,6 +20,8 @@ pub struct Body {
     pub friction: f32,
     /// Akinci's adhesion coefficient in units like m/s^2; 0 for no adhesion.
     pub adhesion: f32,
+    /// Contact with other bodies and with the sides of the domain.
+    pub contact: SolidContact,
     /// The boundary method.
     pub boundary: BoundaryKind,
     /// Half the thickness of a shell in m; `None`: half a particle spacing.
@@ -36,8 +38,8 @@ pub struct Body {
 pub struct MeshSource {
     /// The source of the triangles.
     pub shape: MeshShape,
-    /// Metres per unit of the file.
-    pub scale: f32,
+    /// Metres per unit of the file, along each axis of the file.
+    pub scale: Vec3,
     /// The axis of the file that points up.
     pub up: UpAxis,
     /// Position of the mesh's origin at t = 0, in m.
@@ -82,6 +84,33 @@ pub struct Hinge {
     pub point: Vec3,
     /// Unit vector along it.
     pub axis: Vec3,
+    /// The motor that turns the body.
+    pub motor: Option<Motor>,
+}
+
+/// A motor on a hinge. It keeps a body at a speed as long as its torque suffices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motor {
+    /// Angular velocity about the axis of the hinge in rad/s.
+    pub speed: f32,
+    /// Maximum torque in N m; `None`: no limit.
+    pub torque: Option<f32>,
+}
+
+/// What decides how a body slides on other solids and bounces off them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolidContact {
+    /// Coefficient of friction (Coulomb).
+    pub friction: f32,
+    /// Coefficient of restitution: the ratio of the speeds after and before a collision.
+    pub restitution: f32,
+}
+
+impl Default for SolidContact {
+    /// Roughly wood on wood.
+    fn default() -> Self {
+        Self { friction: 0.4, restitution: 0.2 }
+    }
 }
 
 choices! {

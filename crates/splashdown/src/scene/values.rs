@@ -104,6 +104,14 @@ pub(crate) fn one_scale(value: &DeValue<'_>, range: Range) -> Result<f64, Wrong>
     Err(Wrong { message: format!("cannot be {shown:?}"), allowed: scales(range), hint, item: None })
 }
 
+/// The scale of each axis: a list of three, or one for all.
+pub(crate) fn three_scales(value: &DeValue<'_>, range: Range) -> Result<Vec<f64>, Wrongs> {
+    match value {
+        DeValue::Array(_) => several(value, 3, range, one_scale),
+        _ => Ok(vec![one_scale(value, range)?; 3]),
+    }
+}
+
 fn scales(range: Range) -> String {
     let words: Vec<_> = UNITS.iter().map(|(word, _)| format!("{word:?}")).collect();
     format!("{range}, or the file's unit: {}", words.join(", "))
@@ -190,6 +198,7 @@ pub(crate) fn describe(key: &Key) -> String {
         Kind::Number(range) => range.to_string(),
         Kind::Numbers(count, range) => format!("{count} numbers, each {range}"),
         Kind::Scale(range) => scales(range),
+        Kind::Scales(range) => format!("{}; or three of them, one for each axis of the file", scales(range)),
         Kind::Integer(range) => format!("whole, {range}"),
         Kind::Integers(count, range) => format!("{count} whole numbers, each {range}"),
         Kind::Boolean => "true, false".to_owned(),

@@ -16,6 +16,9 @@ pub(super) const MOST_IMPLICIT_STEPS: u32 = 8;
 /// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
 /// CPU executor tests for the end of the frame before each step.
 pub(super) const HOST_STEPS: u32 = 16;
+/// The same between collisions with an implicit pressure. In one of its long steps a body moves by a good part of a
+/// spacing: later, bodies would have passed into one another, and moving them apart would burst the fluid between them.
+pub(super) const HOST_IMPLICIT_STEPS: u32 = 1;
 
 /// A frame in progress.
 pub(super) struct FrameInProgress {
@@ -94,8 +97,9 @@ impl Simulation {
             frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
         let to_come = (remaining / self.stable_dt).ceil() as u32;
         let expected = steps.saturating_add(to_come).saturating_add(1);
-        let most = if self.executor.gpu().is_some() { self.schedule.most_steps() } else { HOST_STEPS };
-        let most = most.min(self.most_steps);
+        let most =
+            if self.executor.gpu().is_some() { self.most_steps } else { self.most_steps.min(HOST_STEPS) };
+        let most = most.min(self.schedule.most_steps());
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
         let steps = 1 << left.ilog2();
         let (mut state_before, mut action) = (remaining, None);

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
-use super::frame::{HOST_STEPS, MOST_IMPLICIT_STEPS, MOST_STEPS};
+use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_IMPLICIT_STEPS, MOST_STEPS};
 use super::phases::{HostAction, Phase, Schedule};
 use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
@@ -212,7 +212,8 @@ impl Simulation {
         let step = scheme.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
         let mut phases = vec![Phase::Device(step)];
         if self.bodies.as_ref().is_some_and(Bodies::collide) {
-            phases.push(Phase::Host { action: HostAction::ResolveCollisions, steps: HOST_STEPS });
+            let steps = if scheme.is_implicit() { HOST_IMPLICIT_STEPS } else { HOST_STEPS };
+            phases.push(Phase::Host { action: HostAction::ResolveCollisions, steps });
         }
         let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);

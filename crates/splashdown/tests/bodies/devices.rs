@@ -50,7 +50,7 @@ fn run(
     let mut hung = body("hung", "cube", 0.07, Vec3::new(0.3217, 0.2093, 0.2179), free(700.0));
     let axis = Vec3::new(0.48, -0.36, 0.8);
     if let Motion::Dynamic { hinge, .. } = &mut hung.motion {
-        *hinge = Some(Hinge { point: Vec3::new(0.3, 0.21, 0.22), axis });
+        *hinge = Some(Hinge { point: Vec3::new(0.3, 0.21, 0.22), axis, motor: None });
     }
     scene.bodies = vec![standing, scripted, carried, hung];
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();

@@ -87,7 +87,7 @@ fn a_water_jet_turns_a_paddle_wheel() {
     scene.fluid.blocks[0].velocity = Vec3::new(1.0, 0.0, 0.0);
     let mut wheel = body("wheel", "paddle-wheel", 1.0, Vec3::new(0.6, 0.32, 0.15), free(600.0));
     if let Motion::Dynamic { hinge, .. } = &mut wheel.motion {
-        *hinge = Some(Hinge { point: Vec3::new(0.6, 0.32, 0.15), axis: Vec3::Z });
+        *hinge = Some(Hinge { point: Vec3::new(0.6, 0.32, 0.15), axis: Vec3::Z, motor: None });
     }
     scene.bodies.push(wheel);
     let mut simulation = run_tight(&scene, 3);

@@ -1,15 +1,8 @@
 use glam::Vec3;
-use splashdown::scene::{Formula, Hinge, Keyframe, Method, Motion, Scene, Script};
+use splashdown::scene::{Formula, Hinge, Keyframe, Method, Motion, Motor, Script};
 use splashdown::{Device, Simulation};
 
-use crate::{body, free, tank};
-
-fn dry(scene: &mut Scene) {
-    // A small block far from the bodies: a scene needs some fluid.
-    if let splashdown::scene::Shape::Box { min, size } = &mut scene.fluid.blocks[0].shape {
-        (*min, *size) = (Vec3::ZERO, Vec3::splat(0.05));
-    }
-}
+use crate::{body, dry, free, tank};
 
 #[test]
 fn a_scripted_body_follows_its_script() {
@@ -89,7 +82,7 @@ fn a_hinged_body_swings_like_a_physical_pendulum_in_one_plane() {
     let mut swing = body("swing", "cube", edge, Vec3::new(0.5 + arm * 0.1, 0.7 - arm, 0.5), free(800.0));
     let hinge_point = Vec3::new(0.5, 0.7, 0.5);
     if let Motion::Dynamic { hinge, .. } = &mut swing.motion {
-        *hinge = Some(Hinge { point: hinge_point, axis: Vec3::Z });
+        *hinge = Some(Hinge { point: hinge_point, axis: Vec3::Z, motor: None });
     }
     let length = swing.mesh.position.distance(hinge_point);
     scene.bodies.push(swing);
@@ -111,4 +104,80 @@ fn a_hinged_body_swings_like_a_physical_pendulum_in_one_plane() {
     }
     let period = 2.0 * (passes[1] - passes[0]);
     assert!((period / exact - 1.0).abs() < 0.01, "{period} of {exact} s: {passes:?}");
+}
+
+#[test]
+fn a_body_that_tumbles_at_fifty_revolutions_per_second_keeps_its_energy() {
+    for method in [Method::Dfsph, Method::Wcsph] {
+        let mut scene = tank(0.025, [0.6, 0.6, 0.6], 0.1);
+        scene.solver.select_method(method);
+        scene.gravity = Vec3::ZERO;
+        dry(&mut scene);
+        let edges = Vec3::new(0.2, 0.1, 0.05);
+        // Near the axis of the middle moment of inertia, about which the rotation is unstable.
+        let spin = 50.0 * std::f32::consts::TAU * Vec3::new(0.02, 1.0, 0.05).normalize();
+        let motion =
+            Motion::Dynamic { density: 700.0, velocity: Vec3::ZERO, angular_velocity: spin, hinge: None };
+        let mut plate = body("plate", "cube", 1.0, Vec3::splat(0.3), motion);
+        plate.mesh.scale = edges;
+        scene.bodies.push(plate);
+        let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+        let squares = edges * edges;
+        let inertia = Vec3::new(squares.y + squares.z, squares.x + squares.z, squares.x + squares.y);
+        // Twice the energy, and the angular momentum, of a mass of 12 kg.
+        let of = |state: &splashdown::BodyState| {
+            let spin = state.orientation.conjugate() * state.angular_velocity;
+            (spin.dot(inertia * spin), state.orientation * (inertia * spin))
+        };
+        let (energy, momentum) = of(&simulation.body_states().unwrap()[0]);
+        let mut least = 1.0f32;
+        for _ in 0..25 {
+            simulation.advance(0.02).unwrap();
+            let state = simulation.body_states().unwrap()[0];
+            let now = of(&state);
+            assert!((now.0 / energy - 1.0).abs() < 0.01, "{method:?}: {} of {energy}", now.0);
+            assert!(now.1.distance(momentum) < 1e-3 * momentum.length(), "{method:?}: {}", now.1);
+            least = least.min((state.orientation * Vec3::Y).dot(momentum.normalize()));
+        }
+        // Control: the body has turned over.
+        assert!(least < -0.5, "{method:?}: {least}");
+    }
+}
+
+/// A cube that hangs from a horizontal hinge, with a motor. Returns its angular velocity and angle after some time.
+fn driven(motor: Motor, seconds: f32) -> (f32, f32) {
+    let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
+    dry(&mut scene);
+    let mut arm = body("arm", "cube", 0.1, Vec3::new(0.5, 0.5, 0.5), free(1000.0));
+    let point = Vec3::new(0.5, 0.7, 0.5);
+    if let Motion::Dynamic { hinge, .. } = &mut arm.motion {
+        *hinge = Some(Hinge { point, axis: Vec3::Z, motor: Some(motor) });
+    }
+    scene.bodies.push(arm);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(seconds).unwrap();
+    let state = simulation.body_states().unwrap()[0];
+    let hangs = state.position - point;
+    (state.angular_velocity.z, hangs.x.atan2(-hangs.y))
+}
+
+#[test]
+fn a_motor_turns_a_hinged_body_at_its_speed_within_its_torque() {
+    // 1 kg at 0.2 m: an inertia of 0.1^2 / 6 + 0.2^2 kg m^2 and at most 1.962 N m by gravity.
+    let (inertia, gravity) = (0.01 / 6.0 + 0.04, 9.81 * 0.2);
+    for torque in [None, Some(3.0)] {
+        let (spin, _) = driven(Motor { speed: 12.0, torque }, 0.6);
+        assert!((spin - 12.0).abs() < 0.01, "{torque:?}: {spin} rad/s");
+    }
+    // A weak motor lifts the body to the angle at which gravity has the same torque, about which it swings: the work of
+    // the motor is that of gravity at twice the angle, if that is small.
+    let angles: Vec<f32> =
+        (1..=40).map(|k| driven(Motor { speed: 12.0, torque: Some(0.2) }, 0.025 * k as f32).1).collect();
+    let highest = angles.iter().copied().fold(0.0, f32::max);
+    let expected = 2.0 * 0.2 / gravity;
+    assert!((highest / expected - 1.0).abs() < 0.03, "{highest} of {expected} rad");
+    // From rest its torque accelerates the inertia.
+    let (spin, _) = driven(Motor { speed: 12.0, torque: Some(0.2) }, 0.02);
+    let expected = 0.2 / inertia * 0.02;
+    assert!((spin / expected - 1.0).abs() < 0.02, "{spin} of {expected} rad/s");
 }

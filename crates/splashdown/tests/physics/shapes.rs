@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
-use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, UpAxis};
+use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, SolidContact, UpAxis};
 use splashdown::{Device, Simulation};
 use splashdown_io::Mesh;
 
@@ -11,10 +11,17 @@ use splashdown_io::Mesh;
 pub fn body(name: &str, shape: MeshShape, scale: f32, position: Vec3, motion: Motion) -> Body {
     Body {
         name: name.into(),
-        mesh: MeshSource { shape, scale, up: UpAxis::Y, position, rotation: Quat::IDENTITY },
+        mesh: MeshSource {
+            shape,
+            scale: Vec3::splat(scale),
+            up: UpAxis::Y,
+            position,
+            rotation: Quat::IDENTITY,
+        },
         motion,
         friction: 0.0,
         adhesion: 0.0,
+        contact: SolidContact::default(),
         boundary: BoundaryKind::Map,
         half_thickness: None,
         shell: None,

@@ -1,5 +1,5 @@
 use glam::{Quat, Vec3};
-use splashdown::scene::{Body, BoundaryKind, Hinge, MeshShape, Motion, Scene, UpAxis};
+use splashdown::scene::{Body, BoundaryKind, Hinge, MeshShape, Motion, Motor, Scene, UpAxis};
 
 use crate::{CUBE, parse};
 
@@ -48,7 +48,7 @@ fn a_hinge_is_read_and_its_default_point_is_the_position_of_the_body() {
         "name = \"wheel\"\nmesh = \"gear\"\nmotion = \"dynamic\"\nposition = [0.1, 0.2, 0.3]\nhinge = [0, 0, 2]",
     );
     let Motion::Dynamic { hinge: Some(hinge), .. } = wheel.motion else { panic!("{wheel:?}") };
-    assert_eq!(hinge, Hinge { point: Vec3::new(0.1, 0.2, 0.3), axis: Vec3::Z });
+    assert_eq!(hinge, Hinge { point: Vec3::new(0.1, 0.2, 0.3), axis: Vec3::Z, motor: None });
     let door = body(
         "name = \"door\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nhinge = [0, 1, 0]\nhinge_point = [1, 0, 0]",
     );
@@ -66,7 +66,7 @@ fn every_key_of_a_body_is_read() {
     assert_eq!(full.mesh.shape, MeshShape::File("parts/boat.stl".into()));
     assert_eq!(
         (full.mesh.scale, full.mesh.up, full.mesh.position),
-        (0.001, UpAxis::Z, Vec3::new(1.0, 2.0, 3.0))
+        (Vec3::splat(0.001), UpAxis::Z, Vec3::new(1.0, 2.0, 3.0))
     );
     assert!((full.mesh.rotation * Vec3::Z).distance(Vec3::X) < 1e-6);
     let velocity = Vec3::new(1.0, 0.0, 0.0);
@@ -89,7 +89,8 @@ fn scales_are_numbers_or_units() {
         ("\"in\"", 0.0254),
         ("\"ft\"", 0.3048),
     ] {
-        assert_eq!(body(&format!("{PLAIN}\nscale = {written}")).mesh.scale, expected, "{written}");
+        let scale = body(&format!("{PLAIN}\nscale = {written}")).mesh.scale;
+        assert_eq!(scale, Vec3::splat(expected), "{written}");
     }
 }
 
@@ -221,6 +222,48 @@ fn motion_that_jumps_or_is_too_fast_is_reported() {
     );
     // Control: a smooth motion.
     assert!(!scripted("\"0.2*sin(t)\"").iter().any(|text| text.contains("jumps")));
+}
+
+#[test]
+fn a_rotation_is_resolved_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let load = |rate: u32| {
+        let text = with_body(&format!(
+            "{PLAIN}\nscale = 0.1\nposition = [0.5, 0.8, 0.5]\nturn = [\"0\", \"0\", \"360*50*t\"]"
+        ));
+        std::fs::write(&path, text.replace("[scene]", &format!("[scene]\nframe_rate = {rate}"))).unwrap();
+        Scene::load(&path).map(drop).map_err(|errors| errors.to_string())
+    };
+    // 50 revolutions per second turn by 9.4 degrees in a 64th of a frame, or by 56.
+    assert_eq!(load(30), Ok(()));
+    let refused = load(5).unwrap_err();
+    assert!(refused.contains("50.0 revolutions per second, 56 degrees"), "{refused}");
+    assert!(refused.contains("frame_rate to at least 7"), "{refused}");
+    assert_eq!(load(7), Ok(()));
+}
+
+#[test]
+fn the_contact_of_solids_motors_and_scales_per_axis_are_read() {
+    let full = body(&format!(
+        "{PLAIN}\nmotion = \"dynamic\"\nscale = [1, \"cm\", 0.5]\ncontact_friction = 0.7\nrestitution = 0.9\n\
+         hinge = [0, 0, 1]\nmotor_speed = -6\nmotor_torque = 40"
+    ));
+    assert_eq!(full.mesh.scale, Vec3::new(1.0, 0.01, 0.5));
+    assert_eq!((full.contact.friction, full.contact.restitution), (0.7, 0.9));
+    let Motion::Dynamic { hinge: Some(hinge), .. } = full.motion else { panic!("{full:?}") };
+    assert_eq!(hinge.motor, Some(Motor { speed: -6.0, torque: Some(40.0) }));
+    let dynamic = format!("{PLAIN}\nmotion = \"dynamic\"");
+    for (keys, part) in [
+        ("motor_speed = 3", "motor_speed is given without a hinge"),
+        ("hinge = [0, 0, 1]\nmotor_torque = 3", "motor_torque is given without a speed"),
+        ("scale = [1, 2]", "has 2 numbers"),
+        ("scale = [1, 0, 2]", "scale[1]"),
+        ("restitution = 1.5", "restitution"),
+    ] {
+        let refused = refusal(&format!("{dynamic}\n{keys}"));
+        assert!(refused.contains(part), "{keys}: {refused}");
+    }
 }
 
 #[test]

@@ -36,10 +36,10 @@ fn outlets_and_sinks_may_be_meshes() {
          [[sink]]\nname = \"ball\"\nshape = \"mesh\"\nmesh = \"sphere\"\nscale = \"cm\"\nposition = [0.9, 0.1, 0.9]",
     );
     let Outlet::Mesh(outlet) = &scene.emitters[0].outlet else { panic!("{:?}", scene.emitters[0]) };
-    assert_eq!((outlet.scale, outlet.up, outlet.position), (0.5, UpAxis::Z, Vec3::splat(0.5)));
+    assert_eq!((outlet.scale, outlet.up, outlet.position), (Vec3::splat(0.5), UpAxis::Z, Vec3::splat(0.5)));
     assert!((outlet.rotation * Vec3::X).distance(Vec3::Y) < 1e-6);
     let SinkRegion::Mesh(sink) = &scene.sinks[0].region else { panic!("{:?}", scene.sinks[0]) };
-    assert_eq!((sink.scale, sink.position), (0.01, Vec3::new(0.9, 0.1, 0.9)));
+    assert_eq!((sink.scale, sink.position), (Vec3::splat(0.01), Vec3::new(0.9, 0.1, 0.9)));
 }
 
 #[test]

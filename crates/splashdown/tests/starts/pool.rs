@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
-use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, UpAxis};
+use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, SolidContact, UpAxis};
 use splashdown::{Device, Simulation};
 use splashdown_io::Mesh;
 
@@ -37,7 +37,7 @@ pub fn body(name: &str, mesh: &Mesh, boundary: BoundaryKind) -> Body {
         name: name.into(),
         mesh: MeshSource {
             shape: MeshShape::File(file(name, mesh)),
-            scale: 1.0,
+            scale: Vec3::ONE,
             up: UpAxis::Y,
             position: Vec3::ZERO,
             rotation: Quat::IDENTITY,
@@ -45,6 +45,7 @@ pub fn body(name: &str, mesh: &Mesh, boundary: BoundaryKind) -> Body {
         motion: Motion::Static,
         friction: 0.0,
         adhesion: 0.0,
+        contact: SolidContact::default(),
         boundary,
         half_thickness: None,
         shell: None,

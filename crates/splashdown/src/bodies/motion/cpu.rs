@@ -35,8 +35,20 @@ pub(in crate::bodies) fn next_velocities(
     params: &Params,
     state: &StepState,
     body: &Body,
-    [force, torque]: [Vec3; 2],
+    force_and_torque: [Vec3; 2],
 ) -> [Vec3; 2] {
+    let next = after(params, state, body, force_and_torque);
+    [next.velocity, next.angular_velocity]
+}
+
+/// The motion of a dynamic body after a step.
+struct Next {
+    velocity: Vec3,
+    angular_velocity: Vec3,
+    orientation: Quat,
+}
+
+fn after(params: &Params, state: &StepState, body: &Body, [force, torque]: [Vec3; 2]) -> Next {
     let dt = state.dt;
     let q = body.rotation();
     let gravity = params.body_acceleration(state.time);
@@ -46,19 +58,31 @@ pub(in crate::bodies) fn next_velocities(
         velocity += dt * (force * body.inverse_mass + gravity);
     }
     let torque = torque + (q * body.moment).cross(gravity);
-    let spin = q.conjugate() * body.angular_velocity;
-    let moment = q.conjugate() * torque - spin.cross(body.inertia_matrix() * spin);
-    [velocity, q * (spin + dt * (body.inverse_inertia_matrix() * moment))]
+    let inertia = |w: Vec3| q * (body.inertia_matrix() * (q.conjugate() * w));
+    let spin_of = |q: Quat, l: Vec3| q * (body.inverse_inertia_matrix() * (q.conjugate() * l));
+    let before = inertia(body.angular_velocity);
+    let angular_momentum = by_motor(body, dt, before + dt * torque, inertia(body.motor));
+    let turned = |dt: f32, spin: Vec3| (Quat::from_scaled_axis(dt * spin) * q).normalize();
+    let spin = spin_of(q, angular_momentum);
+    let middle = turned(0.5 * dt, spin);
+    let orientation = turned(dt, spin_of(middle, angular_momentum));
+    // Sums of changes, so that rounding errors of the products do not add up over many steps.
+    let by_torque = spin_of(q, angular_momentum - before);
+    let by_rotation = spin_of(orientation, angular_momentum) - spin;
+    Next { velocity, angular_velocity: body.angular_velocity + by_torque + by_rotation, orientation }
+}
+
+/// The angular momentum after the motor of a hinge has changed it towards `wanted`, with at most its torque.
+fn by_motor(body: &Body, dt: f32, angular_momentum: Vec3, wanted: Vec3) -> Vec3 {
+    angular_momentum + (wanted - angular_momentum).clamp_length_max(body.motor_torque * dt)
 }
 
 fn by_force(params: &Params, state: &StepState, body: &mut Body) {
-    let dt = state.dt;
-    let q = body.rotation();
-    [body.velocity, body.angular_velocity] = next_velocities(params, state, body, [body.force, body.torque]);
-    let spin = body.angular_velocity;
-    body.position += dt * body.velocity;
-    let turn = Quat::from_scaled_axis(spin * dt);
-    body.orientation = Vec4::from((turn * q).normalize());
+    let next = after(params, state, body, [body.force, body.torque]);
+    body.velocity = next.velocity;
+    body.angular_velocity = next.angular_velocity;
+    body.position += state.dt * body.velocity;
+    body.orientation = Vec4::from(next.orientation);
 }
 
 fn by_script(state: &StepState, samples: &[ScriptSample], body: &mut Body) {

@@ -1,8 +1,13 @@
 //! Moves the bodies by a step: dynamic bodies by the force of the fluid and gravity, scripted bodies by their scripts.
 //!
-//! Rigid body motion by symplectic Euler: v += dt (F/M + g); omega += dt I^-1 (torque - omega x I omega). The
-//! orientation changes by the exponential of the rotation vector omega dt, so that it remains a unit quaternion. A
-//! scripted body follows a cubic between the samples that the host has written for the frame.
+//! Rigid body motion by symplectic Euler: v += dt (F/M + g). The rotation keeps the angular momentum L, which a torque
+//! changes by dt times the torque: the orientation q changes by the exponential of the rotation vector omega dt, with
+//! omega = I^-1 L at the middle of the step, and afterwards omega = I^-1 L for the new orientation. An explicit
+//! gyroscopic term, omega x I omega, would add energy to a body that tumbles fast.
+//!
+//! The motor of a hinge changes L towards that of its speed, with at most its torque.
+//!
+//! A scripted body follows a cubic between the samples that the host has written for the frame.
 
 mod cpu;
 

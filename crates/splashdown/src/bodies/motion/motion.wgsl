@@ -13,22 +13,12 @@ fn taken(word: u32) -> f32 {
     return value;
 }
 
-fn product(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-    return vec4(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
-}
-
 fn by_force(b: u32) {
-    let dt = state.dt;
-    let q = bodies[b].orientation;
-    let next = next_velocities(b, bodies[b].force, bodies[b].torque);
-    let next_spin = next.angular;
-    bodies[b].velocity = next.linear;
-    bodies[b].angular_velocity = next_spin;
-    bodies[b].position += dt * bodies[b].velocity;
-    let angle = length(next_spin) * dt;
-    let axis = next_spin / max(length(next_spin), 1e-20);
-    let turn = vec4(sin(0.5 * angle) * axis, cos(0.5 * angle));
-    bodies[b].orientation = normalize(product(turn, q));
+    let next = next_motion(b, bodies[b].force, bodies[b].torque);
+    bodies[b].velocity = next.velocities.linear;
+    bodies[b].angular_velocity = next.velocities.angular;
+    bodies[b].position += state.dt * bodies[b].velocity;
+    bodies[b].orientation = next.orientation;
 }
 
 fn by_script(b: u32) {

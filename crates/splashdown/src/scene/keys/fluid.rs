@@ -1,7 +1,7 @@
 //! Keys of `[fluid]`.
 
 use super::FAR;
-use super::mesh::{MESH, POSITION, ROTATION, SCALE, UP};
+use super::mesh::{MESH, POSITION, ROTATION, SCALE, UNIFORM_SCALE, UP};
 use super::words::ShapeWord;
 use crate::scene::materials::MATERIALS;
 use crate::scene::spec::{Kind, Table, Word, a_number, a_vector, key, range, words};
@@ -95,7 +95,7 @@ static FLUID_FILE: Table = Table {
         )
         .required()
         .also(&["path", "name", "particles"]),
-        SCALE,
+        UNIFORM_SCALE,
         key("position", a_vector(FAR, "m"), "Position of the file's origin.")
             .default("[0.0, 0.0, 0.0]")
             .also(&["translation", "offset"]),

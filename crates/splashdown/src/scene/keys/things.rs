@@ -44,6 +44,12 @@ pub(super) static BODY: Table = Table {
         .also(&["axis", "axle"]),
         key("hinge_point", a_vector(FAR, "m"), "A point on the hinge axis. Default: the position of the body."),
         key(
+            "motor_speed",
+            a_number(-1000.0, 1000.0, "rad/s"),
+            "Angular velocity about the hinge axis at which a motor turns the body; 0 brakes it. Default: no motor.",
+        ),
+        key("motor_torque", a_number(1e-9, 1e9, "N m"), "Maximum torque of the motor. Default: no limit."),
+        key(
             "move",
             Kind::Texts(3, formula::ALLOWED),
             "Formulas of the time t in s for a displacement in m, for example [\"0.1*sin(2*pi*t)\", \"0\", \"0\"].",
@@ -58,6 +64,19 @@ pub(super) static BODY: Table = Table {
         key("friction", a_number(0.0, 1.0, ""), "0: the fluid slips along the body; 1: it sticks to it.").default("0.0"),
         key("adhesion", a_number(0.0, 100.0, "m/s^2"), "Attraction of the fluid next to the body.")
             .default("0.0"),
+        key(
+            "contact_friction",
+            a_number(0.0, 10.0, ""),
+            "Coefficient of friction on solids. Two bodies have the mean of theirs; on a wall that of the body counts.",
+        )
+        .default("0.4"),
+        key(
+            "restitution",
+            a_number(0.0, 1.0, ""),
+            "Coefficient of restitution in collisions with solids: 0 does not bounce, 1 loses no energy. Combined as contact_friction.",
+        )
+        .default("0.2")
+        .also(&["bounce", "bounciness", "elasticity"]),
         key("boundary", Kind::Word(words::<BoundaryKind>), "Boundary method.").default("\"map\""),
         key(
             "shell",

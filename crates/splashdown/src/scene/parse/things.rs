@@ -11,7 +11,9 @@ use crate::scene::keys::MotionWord;
 use crate::scene::reader::{Reported, Section};
 use crate::scene::script::{Keyframe, Script};
 use crate::scene::suggest;
-use crate::scene::things::{Body, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, UpAxis};
+use crate::scene::things::{
+    Body, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Motor, SolidContact, UpAxis,
+};
 
 /// Maximum displacement by a formula in m; larger values indicate a mistake.
 const MAX_DISPLACEMENT: f64 = 1e6;
@@ -52,6 +54,7 @@ fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
     let hinge = mesh.as_ref().map_err(|r| *r).and_then(|mesh| read_hinge(section, mesh));
     let friction = section.number("friction");
     let adhesion = section.number("adhesion");
+    let contact = read_contact(section);
     let boundary = section.choice::<BoundaryKind>("boundary");
     let shell = section.boolean("shell");
     let half_thickness = section.number("half_thickness");
@@ -74,6 +77,7 @@ fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
         motion,
         friction: friction?.unwrap_or(0.0),
         adhesion: adhesion?.unwrap_or(0.0),
+        contact: contact?,
         boundary: boundary?.unwrap_or(BoundaryKind::Map),
         half_thickness: half_thickness?,
         shell: shell?,
@@ -81,15 +85,29 @@ fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
     })
 }
 
-/// The keys `hinge` and `hinge_point`.
+/// The keys `contact_friction` and `restitution`.
+fn read_contact(section: &Section<'_>) -> Part<SolidContact> {
+    let (friction, restitution) = (section.number("contact_friction"), section.number("restitution"));
+    let default = SolidContact::default();
+    Ok(SolidContact {
+        friction: friction?.unwrap_or(default.friction),
+        restitution: restitution?.unwrap_or(default.restitution),
+    })
+}
+
+/// The keys `hinge` and `hinge_point`, and those of the motor.
 fn read_hinge(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Hinge>> {
     let axis = section.numbers::<3>("hinge");
-    let point = section.numbers::<3>("hinge_point")?.map_or(mesh.position, Vec3::from);
+    let point = section.numbers::<3>("hinge_point");
+    let motor = read_motor(section);
+    let (point, motor) = (point?.map_or(mesh.position, Vec3::from), motor?);
     let Some(axis) = axis? else {
-        if section.has("hinge_point") {
-            let message = format!("{} is given without a hinge", section.key_path("hinge_point"));
-            let hint = "add the axis, for example hinge = [0, 0, 1]";
-            return Err(section.complain("hinge_point", message, "", hint));
+        for name in ["hinge_point", "motor_speed"] {
+            if section.has(name) {
+                let message = format!("{} is given without a hinge", section.key_path(name));
+                let hint = "add the axis, for example hinge = [0, 0, 1]";
+                return Err(section.complain(name, message, "", hint));
+            }
         }
         return Ok(None);
     };
@@ -97,13 +115,28 @@ fn read_hinge(section: &Section<'_>, mesh: &MeshSource) -> Part<Option<Hinge>> {
         let message = format!("{} is the zero vector", section.key_path("hinge"));
         section.complain("hinge", message, "any vector except zero", "")
     })?;
-    Ok(Some(Hinge { point, axis }))
+    Ok(Some(Hinge { point, axis, motor }))
+}
+
+/// The keys `motor_speed` and `motor_torque`.
+fn read_motor(section: &Section<'_>) -> Part<Option<Motor>> {
+    let (speed, torque) = (section.number("motor_speed"), section.number("motor_torque"));
+    let torque = torque?;
+    let Some(speed) = speed? else {
+        if torque.is_some() {
+            let message = format!("{} is given without a speed", section.key_path("motor_torque"));
+            let hint = "add motor_speed, in rad/s: one revolution per second is 6.283";
+            return Err(section.complain("motor_torque", message, "", hint));
+        }
+        return Ok(None);
+    };
+    Ok(Some(Motor { speed, torque }))
 }
 
 /// The mesh and its pose: the keys `mesh`, `scale`, `up`, `position` and `rotation`.
 pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
     let shape = section.text("mesh");
-    let scale = section.scale("scale");
+    let scale = section.scales("scale");
     let up = section.choice::<UpAxis>("up");
     let position = section.numbers("position");
     let rotation = read_rotation(section);
@@ -124,7 +157,7 @@ pub(super) fn read_mesh(section: &Section<'_>) -> Part<MeshSource> {
     };
     Ok(MeshSource {
         shape,
-        scale: scale?.unwrap_or(1.0),
+        scale: scale?.map_or(Vec3::ONE, Vec3::from),
         up: up?.unwrap_or(UpAxis::Y),
         position: position?.map_or(Vec3::ZERO, Vec3::from),
         rotation: rotation?,
@@ -146,7 +179,9 @@ fn read_motion(section: &Section<'_>, script: Part<Option<Script>>) -> Part<Moti
     let script = script?;
     let scripted = script.is_some();
     let word = word?.unwrap_or(if scripted { MotionWord::Scripted } else { MotionWord::Static });
-    for name in ["density", "velocity", "angular_velocity", "hinge"] {
+    for name in
+        ["density", "velocity", "angular_velocity", "hinge", "hinge_point", "motor_speed", "motor_torque"]
+    {
         if section.has(name) && word != MotionWord::Dynamic {
             let message = format!("{} has an effect only on a dynamic body", section.key_path(name));
             section.warn(name, message, "set motion = \"dynamic\", or remove the key");
