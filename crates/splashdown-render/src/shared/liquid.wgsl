@@ -88,9 +88,7 @@ fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
     let transmittance = exp(-EMPHASIS * globals.liquid_absorption * seen.path);
-    let turbidity = 1.0 - exp(-globals.liquid_scattering * seen.path);
-    let glow = globals.liquid_colour * (SKY_LIGHT + 0.5 * SUN_LIGHT);
-    let transmitted = mix(behind * transmittance, glow, turbidity);
+    let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(seen.path));
     let sun = sun_highlight(normal, to_eye, facing);
-    return present(mix(transmitted, reflection, mirrored) + SUN_LIGHT * min(2.2 * sun, 12.0));
+    return present(mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0));
 }
