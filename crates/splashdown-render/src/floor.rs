@@ -52,7 +52,8 @@ impl Floor {
                 allowed: "three numbers from 0 to 1",
             });
         }
-        globals.floor_tint = self.colour.map(|part| part / TONE);
+        // Exactly the tint of concrete for its colour.
+        globals.floor_tint = (self.relative() * Vec3::from(CONCRETE)).into();
         // As in environment.wgsl; 0 is no floor.
         globals.floor_pattern = match self.pattern {
             FloorPattern::Tiles => 1,
@@ -71,7 +72,7 @@ mod tests {
     fn the_default_is_concrete() {
         let mut globals = Globals::default();
         Floor::default().fill(&mut globals).unwrap();
-        assert!(Vec3::from(globals.floor_tint).abs_diff_eq(CONCRETE.into(), 1e-6));
+        assert_eq!(globals.floor_tint, CONCRETE);
         assert_eq!(Floor::default().relative(), Vec3::ONE);
     }
 

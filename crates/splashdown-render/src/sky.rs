@@ -90,8 +90,8 @@ impl Sky {
         Sky {
             zenith: [0.80, 0.82, 0.84],
             horizon: [1.15, 1.15, 1.15],
-            sun_light: [1.70, 1.68, 1.64],
-            sky_light: [0.95, 0.95, 0.96],
+            sun_light: [1.15, 1.13, 1.10],
+            sky_light: [0.60, 0.60, 0.61],
             haze: [1.15, 1.15, 1.15],
             hills: [1.15, 1.15, 1.15],
             hill_height: 0.0,
@@ -100,17 +100,21 @@ impl Sky {
         }
     }
 
-    /// The same sky with other colours at the zenith and at the horizon. Its light, and the colours of
-    /// the distant ground and of the hills, change with them.
+    /// The same sky with other colours at the zenith and at the horizon. Its light, its clouds, the
+    /// distant ground and the hills change with them.
     #[must_use]
     pub fn with_gradient(self, zenith: [f32; 3], horizon: [f32; 3]) -> Sky {
         let changed = Sky { zenith, horizon, ..self };
-        let ratio = |new: Vec3, old: Vec3| new / old.max(Vec3::splat(1e-3));
-        let overhead = ratio(changed.mean(), self.mean());
+        let (old, new) = (self.mean(), changed.mean());
+        let ratio = |new: Vec3, old: Vec3| luminance(new) / luminance(old).max(1e-3);
         let far = ratio(horizon.into(), self.horizon.into());
-        let scaled = |colour: [f32; 3], factor: Vec3| (Vec3::from(colour) * factor).into();
+        let near = ratio(new, old);
+        let scaled = |colour: [f32; 3], factor: f32| colour.map(|part| part * factor);
+        // What the gradient does not explain is light from the clouds.
+        let from_clouds = Vec3::from(self.sky_light) - old;
         Sky {
-            sky_light: scaled(self.sky_light, overhead),
+            sky_light: (new + near * from_clouds).max(Vec3::ZERO).into(),
+            clouds: scaled(self.clouds, near),
             haze: scaled(self.haze, far),
             hills: scaled(self.hills, far),
             ..changed
@@ -158,6 +162,11 @@ impl Sky {
     }
 }
 
+/// The luminance of a linear colour (Rec. 709).
+fn luminance(colour: Vec3) -> f32 {
+    colour.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -184,6 +193,9 @@ mod tests {
         let red = day.with_gradient([0.66, 0.05, 0.05], day.horizon);
         assert!(red.sky_light[0] > day.sky_light[0] && red.sky_light[2] < day.sky_light[2]);
         assert_eq!(red.haze, day.haze, "the horizon is the same");
+        let night = day.with_gradient([0.02, 0.02, 0.06], [0.1, 0.12, 0.2]);
+        let [r, g, b] = night.sky_light;
+        assert!(b > r && b > g && b < 0.1, "{:?}", night.sky_light);
     }
 
     #[test]

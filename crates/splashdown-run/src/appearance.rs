@@ -1,7 +1,26 @@
-//! How a scene is drawn: camera, domain, liquid and colours, for the pictures of a run and for the window.
+//! How a scene is drawn: camera, domain, sky, floor, liquid and colours, for the pictures of a run and for the
+//! window.
 
-use splashdown::scene::{ColourBy, Derived, PictureQuality, Scene};
-use splashdown_render::{Camera, Colouring, Domain, Liquid, Quality, Quantity};
+use splashdown::scene::{
+    Choice, ColourBy, Derived, FloorKind, PictureQuality, PictureSettings, Scene, SkyKind, TankKind,
+};
+use splashdown_render::{
+    Camera, Colouring, Domain, Floor, FloorPattern, Frame, Liquid, Quality, Quantity, Sky, Tank,
+};
+
+/// The empty picture of the scene: its domain, its sky and its floor.
+pub fn empty_frame(scene: &Scene, camera: Camera) -> Frame<'static> {
+    let mut frame = Frame::new(camera, domain(scene));
+    frame.sky = sky(&scene.picture);
+    frame.sun = sun(&scene.picture);
+    frame.floor = floor(&scene.picture);
+    frame.tank = match scene.picture.tank {
+        TankKind::Glass => Tank::Glass,
+        TankKind::Edges => Tank::Edges,
+        TankKind::None => Tank::Hidden,
+    };
+    frame
+}
 
 /// The scene's camera at a simulated time in s.
 pub fn camera(scene: &Scene, time: f64) -> Camera {
@@ -24,7 +43,85 @@ pub fn domain(scene: &Scene) -> Domain {
 
 /// The optical properties of the scene's fluid; those of water for an unknown material.
 pub fn liquid(scene: &Scene) -> Liquid {
-    Liquid::from_name(&scene.fluid.material.name).unwrap_or_else(Liquid::water)
+    let picture = &scene.picture;
+    let name = picture.liquid.map_or(scene.fluid.material.name.as_str(), |liquid| liquid.name());
+    let mut liquid = Liquid::from_name(name).unwrap_or_else(Liquid::water);
+    liquid.absorption = picture.absorption.unwrap_or(liquid.absorption);
+    liquid.scattering = picture.scattering.unwrap_or(liquid.scattering);
+    // A clear liquid has no colour of its own. Grey shows the scattering if no colour is given.
+    let own = if liquid.colour == [0.0; 3] { GREY } else { liquid.colour };
+    liquid.colour = picture.liquid_colour.unwrap_or(own);
+    liquid
+}
+
+/// Reflectance of a liquid that scatters light and has no colour.
+const GREY: [f32; 3] = [0.2; 3];
+
+/// Light of a weak sun under a sky that usually has none.
+const WEAK_SUN: [f32; 3] = [1.0, 0.92, 0.80];
+
+fn sky(picture: &PictureSettings) -> Sky {
+    let sky = match picture.sky {
+        SkyKind::Day => Sky::day(),
+        SkyKind::Overcast => Sky::overcast(),
+        SkyKind::Sunset => Sky::sunset(),
+        SkyKind::Studio => Sky::studio(),
+    };
+    let mut sky = match (picture.zenith_colour, picture.horizon_colour) {
+        (None, None) => sky,
+        (zenith, horizon) => sky.with_gradient(zenith.unwrap_or(sky.zenith), horizon.unwrap_or(sky.horizon)),
+    };
+    if !picture.has_sun() {
+        (sky.sun_light, sky.glow) = ([0.0; 3], [0.0; 3]);
+    } else if sky.sun_light == [0.0; 3] {
+        sky.sun_light = WEAK_SUN;
+    }
+    sky
+}
+
+/// The direction to the sun.
+fn sun(picture: &PictureSettings) -> [f32; 3] {
+    let [x, y, z] = match picture.sky {
+        SkyKind::Day | SkyKind::Overcast => Frame::SUN,
+        SkyKind::Sunset => direction(8.0, -150.0),
+        // The light is in front of the tank, as in a photograph.
+        SkyKind::Studio => direction(55.0, -25.0),
+    };
+    if picture.sun_elevation.is_none() && picture.sun_azimuth.is_none() {
+        return [x, y, z];
+    }
+    let elevation = picture.sun_elevation.unwrap_or_else(|| y.atan2(x.hypot(z)).to_degrees());
+    let azimuth = picture.sun_azimuth.unwrap_or_else(|| x.atan2(z).to_degrees());
+    direction(elevation, azimuth)
+}
+
+/// A unit vector, with the azimuth of a camera: 0 is +z, 90 is +x.
+fn direction(elevation: f32, azimuth: f32) -> [f32; 3] {
+    let (sin, cos) = elevation.to_radians().sin_cos();
+    let (x, z) = azimuth.to_radians().sin_cos();
+    [cos * x, sin, cos * z]
+}
+
+fn floor(picture: &PictureSettings) -> Option<Floor> {
+    let pattern = match picture.floor {
+        FloorKind::Tiles => FloorPattern::Tiles,
+        FloorKind::Checkerboard => FloorPattern::Checkerboard,
+        FloorKind::Plain => FloorPattern::Plain,
+        FloorKind::None => return None,
+    };
+    let colour = picture.floor_colour.unwrap_or(Floor::default().colour);
+    Some(Floor { pattern, colour })
+}
+
+/// The caption of the scene at a simulated time in s; `None` if it sets none.
+pub fn own_caption(scene: &Scene, time: f64) -> Option<String> {
+    let caption = scene.picture.caption.as_ref()?;
+    Some(caption.replace("{name}", &scene.name).replace("{time}", &format!("{time:.3}")))
+}
+
+/// The caption of a picture at a simulated time in s; empty for none.
+pub fn caption(scene: &Scene, time: f64) -> String {
+    own_caption(scene, time).unwrap_or_else(|| format!("{}   t = {time:.3} s", scene.name))
 }
 
 /// How rays are traced for pictures of this quality; `None` without rays.

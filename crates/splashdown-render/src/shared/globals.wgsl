@@ -92,10 +92,15 @@ fn has_floor() -> bool {
     return globals.floor_pattern != 0u;
 }
 
+// Distance along a ray to the bottom of the tank, or -1 if the ray does not reach it.
+fn bottom_distance(origin: vec3f, direction: vec3f) -> f32 {
+    let distance = (globals.floor_height - origin.y) / direction.y;
+    return select(-1.0, distance, direction.y < -1e-5 && distance > 0.0);
+}
+
 // Distance along a ray to the floor, or -1 if the ray does not hit it.
 fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
-    let distance = (globals.floor_height - origin.y) / direction.y;
-    return select(-1.0, distance, has_floor() && direction.y < -1e-5 && distance > 0.0);
+    return select(-1.0, bottom_distance(origin, direction), has_floor());
 }
 
 // Depth buffer value at a distance along `forward`. Reversed depth: 1 at the near plane, 0 at

@@ -35,7 +35,7 @@ fn turbidity(path: f32) -> f32 {
 // Light that a turbid liquid scatters towards the eye below a point of its surface. Light also enters
 // beside that point, so that the sides away from the sun are not black.
 fn scattered_light(normal: vec3f) -> vec3f {
-    let from_sky = 0.7 + 0.3 * normal.y;
+    let from_sky = 0.6 + 0.4 * normal.y;
     let from_sun = 0.5 + 0.5 * dot(normal, globals.sun);
     return globals.liquid_colour * (globals.sky_light * from_sky + globals.sun_light * from_sun);
 }

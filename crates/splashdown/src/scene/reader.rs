@@ -329,6 +329,17 @@ impl<'r> Section<'r> {
         })
     }
 
+    /// A text that may be empty, of one line.
+    pub fn line(&self, name: &str) -> Read<String> {
+        self.read(name, |value, kind| match (kind, value) {
+            (Kind::Line(_), DeValue::String(text)) if is_line(text) => Ok(text.to_string()),
+            (Kind::Line(what), other) => {
+                Err(wrong_type(other, "a text of one line with at most 200 characters", what.to_owned()))
+            }
+            _ => Err(undeclared(kind)),
+        })
+    }
+
     /// A list of texts.
     pub fn texts<const N: usize>(&self, name: &str) -> Read<[String; N]> {
         self.read(name, |value, kind| match kind {
@@ -479,6 +490,10 @@ fn one_text(value: &DeValue<'_>, what: &str) -> Result<String, Wrong> {
         DeValue::String(text) if !text.trim().is_empty() => Ok(text.to_string()),
         other => Err(wrong_type(other, "a text in quotes", what.to_owned())),
     }
+}
+
+fn is_line(text: &str) -> bool {
+    text.chars().count() <= 200 && !text.contains(['\r', '\n'])
 }
 
 fn describe_texts(count: usize, what: &str) -> String {

@@ -46,6 +46,7 @@ fn property(key: &Key) -> Value {
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$" }),
         Kind::Text(_) => json!({ "type": "string", "minLength": 1 }),
+        Kind::Line(_) => json!({ "type": "string", "pattern": "^[^\\r\\n]{0,200}$" }),
         Kind::Texts(count, _) => list(count, json!({ "type": "string", "minLength": 1 })),
         Kind::Word(words) => one_of(&words()),
         Kind::Words(words) => json!({ "type": "array", "items": one_of(&words()), "uniqueItems": true }),

@@ -24,6 +24,8 @@ pub(crate) enum Kind {
     Name,
     /// A text; the string describes the allowed texts.
     Text(&'static str),
+    /// A text that may be empty, without line breaks; the string describes it.
+    Line(&'static str),
     /// A list of this length of texts.
     Texts(usize, &'static str),
     /// One of some words.
