@@ -153,3 +153,69 @@ pub fn colouring(scene: &Scene, colour_by: ColourBy) -> Colouring {
     let own = scene.output.colour_range.filter(|_| scene.output.colour_by == colour_by);
     Colouring::new(quantity, own.unwrap_or(expected))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(picture: &str) -> Scene {
+        let text = format!(
+            "[scene]\nname = \"cube\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\
+             [fluid]\nparticle_spacing = 0.1\nmaterial = \"honey\"\n\
+             [[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n[picture]\n{picture}\n"
+        );
+        Scene::parse(&text, "cube.toml").unwrap_or_else(|errors| panic!("{errors}"))
+    }
+
+    #[test]
+    fn a_scene_without_settings_looks_as_an_empty_frame() {
+        let scene = scene("");
+        let camera = camera(&scene, 0.0);
+        let frame = empty_frame(&scene, camera);
+        let plain = Frame::new(camera, domain(&scene));
+        assert_eq!((frame.sky, frame.sun, frame.floor), (plain.sky, plain.sun, plain.floor));
+        assert_eq!((frame.tank, frame.caption), (plain.tank, plain.caption));
+        assert_eq!(liquid(&scene).absorption, Liquid::honey().absorption);
+        assert_eq!(caption(&scene, 0.5), "cube   t = 0.500 s");
+        assert_eq!(own_caption(&scene, 0.5), None);
+    }
+
+    #[test]
+    fn the_sun_has_the_azimuth_of_a_camera() {
+        let at = |keys: &str| sun(&scene(keys).picture);
+        let [x, y, z] = at("sun_elevation = 30\nsun_azimuth = 90");
+        assert!(
+            (x - 0.75_f32.sqrt()).abs() < 1e-6 && (y - 0.5).abs() < 1e-6 && z.abs() < 1e-6,
+            "{x} {y} {z}"
+        );
+        // The other angle is that of the default sun.
+        let [dx, _, dz] = Frame::SUN;
+        let [x, _, z] = at("sun_elevation = 30");
+        assert!((x * dz - z * dx).abs() < 1e-6 && x * dx > 0.0, "{x} {z}");
+    }
+
+    #[test]
+    fn single_values_override_those_of_the_liquid() {
+        let sea = liquid(&scene("liquid = \"sea\"\nabsorption = [3, 2, 1]"));
+        assert_eq!((sea.absorption, sea.scattering), ([3.0, 2.0, 1.0], Liquid::sea().scattering));
+        let turbid = liquid(&scene("scattering = 5"));
+        assert!(turbid.scattering == 5.0 && turbid.colour == GREY);
+        for (kind, name, _) in splashdown::scene::LiquidKind::ALL {
+            assert!(Liquid::from_name(name).is_some(), "{kind}");
+        }
+    }
+
+    #[test]
+    fn a_sky_without_a_sun_gets_a_weak_one() {
+        let light = |keys: &str| sky(&scene(keys).picture).sun_light;
+        assert_eq!(light("sky = \"overcast\""), [0.0; 3]);
+        assert_eq!(light("sky = \"overcast\"\nsun = true"), WEAK_SUN);
+        assert_eq!(light("sun = false"), [0.0; 3]);
+    }
+
+    #[test]
+    fn captions_contain_name_and_time() {
+        assert_eq!(caption(&scene("caption = \"{name} at {time} s\""), 0.25), "cube at 0.250 s");
+        assert_eq!(caption(&scene("caption = \"\""), 0.25), "");
+    }
+}

@@ -38,6 +38,9 @@ pub(crate) enum Kind {
     Tables(&'static Table, usize),
 }
 
+/// Maximum number of characters of a [`Kind::Line`].
+pub(crate) const LONGEST_LINE: usize = 80;
+
 /// Units of length that a scale can name, in m.
 pub(crate) const UNITS: &[(&str, f64)] =
     &[("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254), ("ft", 0.3048)];

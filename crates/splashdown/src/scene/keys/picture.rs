@@ -26,7 +26,7 @@ pub(super) static PICTURE: Table = Table {
             "Light from the horizon: linear red, green, blue. Default: that of the sky.",
         )
         .also(&["horizon", "horizon_color"]),
-        key("sun", Kind::Boolean, "Whether the sun shines. Default: except under an overcast sky."),
+        key("sun", Kind::Boolean, "Whether the sun shines. Default: yes, except under an overcast sky."),
         key(
             "sun_elevation",
             a_number(6.0, 90.0, "degrees"),
