@@ -153,7 +153,8 @@ impl<'a> Frame<'a> {
     /// Writes the uniforms of sky and floor.
     fn light(&self, sun: Vec3, globals: &mut Globals) -> Result<(), RenderError> {
         self.sky.fill(globals)?;
-        let daylight = self.sky.on_floor(sun) / Sky::day().on_floor(Vec3::from(Frame::SUN).normalize());
+        let usual = Sky::day().on_floor(Vec3::from(Frame::SUN).normalize_or_zero());
+        let daylight = self.sky.on_floor(sun) / usual;
         globals.daylight = daylight.into();
         globals.bounced = (BOUNCED * daylight).into();
         if let Some(floor) = &self.floor {
