@@ -15,6 +15,18 @@ pub struct Domain {
     pub closed: [bool; 6],
 }
 
+/// How a domain is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Tank {
+    /// With a liquid as panes of glass at its closed upright sides, otherwise as lines at its edges.
+    Glass,
+    /// As lines at its edges.
+    Edges,
+    /// Not at all.
+    Hidden,
+}
+
 /// One edge of the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxEdge {
@@ -56,6 +68,11 @@ impl Domain {
                 _ => self.max[axis],
             }))
         })
+    }
+
+    /// The number of edges that fluid in the box can hide.
+    pub(crate) fn edges_behind(&self, eye: Vec3) -> u32 {
+        self.edges(eye).iter().filter(|edge| edge.behind).count() as u32
     }
 
     /// The twelve edges; those that fluid in the box can hide come first.

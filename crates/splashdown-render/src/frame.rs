@@ -4,7 +4,7 @@ use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
 use crate::{
     BodyBuffers, Camera, Domain, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
-    Quality, RenderError, SurfaceStyle, TracedMeshes,
+    Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
 };
 use glam::{Vec2, Vec3};
 
@@ -22,6 +22,12 @@ pub struct Frame<'a> {
     /// Direction towards the sun, of any length, above the horizon. [`Frame::SUN`] suits a camera
     /// on the +z side.
     pub sun: [f32; 3],
+    /// The sky and the light of sun and sky.
+    pub sky: Sky,
+    /// The floor below the domain, if any.
+    pub floor: Option<Floor>,
+    /// How the domain is drawn.
+    pub tank: Tank,
     /// Particles as spheres.
     pub particles: Option<DrawnParticles<'a>>,
     /// The surface of the liquid as a mesh.
@@ -76,12 +82,15 @@ setters! {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of an empty domain, lit from [`Frame::SUN`].
+    /// A frame of an empty domain on a sunny day, lit from [`Frame::SUN`].
     pub fn new(camera: Camera, domain: Domain) -> Frame<'a> {
         Frame {
             camera,
             domain,
             sun: Frame::SUN,
+            sky: Sky::day(),
+            floor: Some(Floor::default()),
+            tank: Tank::Glass,
             particles: None,
             surface: None,
             liquid_particles: None,
@@ -97,6 +106,16 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn with_tracing(self, meshes: &'a TracedMeshes, quality: Quality) -> Frame<'a> {
         Frame { traced: Some((meshes, quality)), ..self }
+    }
+
+    /// Whether panes of glass, and whether the edges of the domain are drawn, in a picture with or
+    /// without a liquid.
+    pub(crate) fn sides(&self, has_liquid: bool) -> (bool, bool) {
+        match self.tank {
+            Tank::Glass => (has_liquid, !has_liquid),
+            Tank::Edges => (false, true),
+            Tank::Hidden => (false, false),
+        }
     }
 
     /// The number of samples if rays are traced.
@@ -129,6 +148,20 @@ impl<'a> Frame<'a> {
         globals.shutter_time = time * quality.shutter;
         (globals.water_root, globals.body_root) = meshes.roots();
         Ok(globals)
+    }
+
+    /// Writes the uniforms of sky and floor.
+    fn light(&self, sun: Vec3, globals: &mut Globals) -> Result<(), RenderError> {
+        self.sky.fill(globals)?;
+        let usual = Sky::day().on_floor(Vec3::from(Frame::SUN).normalize_or_zero());
+        let daylight = self.sky.on_floor(sun) / usual;
+        globals.daylight = daylight.into();
+        globals.bounced = (BOUNCED * daylight).into();
+        if let Some(floor) = &self.floor {
+            floor.fill(globals)?;
+            globals.bounced = (BOUNCED * daylight * floor.relative()).into();
+        }
+        Ok(())
     }
 
     /// The default sun: high, to the left and behind the box as seen from the +z side, so that the
@@ -174,6 +207,7 @@ impl<'a> Frame<'a> {
             line_width: (1.5 * scale).clamp(1.0, 8.0),
             ..Globals::default()
         };
+        self.light(sun, &mut globals)?;
         for (edge, uniform) in self.domain.edges(view.eye).into_iter().zip(&mut globals.edges) {
             *uniform = EdgeGlobals {
                 start: edge.start.into(),
@@ -209,6 +243,9 @@ impl<'a> Frame<'a> {
         Ok(globals)
     }
 }
+
+/// Light from the default floor under the default sky and sun on surfaces that face it.
+const BOUNCED: Vec3 = Vec3::new(0.42, 0.41, 0.38);
 
 fn check_sun(sun: [f32; 3]) -> Result<Vec3, RenderError> {
     match Vec3::from(sun).try_normalize() {

@@ -26,7 +26,7 @@ pub(crate) struct Globals {
     pub up: [f32; 3],
     pub encode_srgb: u32,
     pub forward: [f32; 3],
-    pub padding: f32,
+    pub hill_height: f32,
     pub sun: [f32; 3],
     pub floor_height: f32,
     pub box_min: [f32; 3],
@@ -62,15 +62,29 @@ pub(crate) struct Globals {
     pub foam_radius: f32,
     pub ray_shift: [f32; 3],
     pub linear_output: u32,
-    pub water_root: u32,
-    pub body_root: u32,
-    pub ray_offset: f32,
-    pub contact_distance: f32,
-    pub sample: u32,
-    pub sample_count: u32,
-    pub shutter_time: f32,
-    pub glass_thickness: f32,
     pub glass: [u32; 4],
+    pub zenith: [f32; 3],
+    pub floor_pattern: u32,
+    pub horizon: [f32; 3],
+    pub cloud_cover: f32,
+    pub clouds: [f32; 3],
+    pub cloud_opacity: f32,
+    pub sun_light: [f32; 3],
+    pub ray_offset: f32,
+    pub sky_light: [f32; 3],
+    pub contact_distance: f32,
+    pub glow: [f32; 3],
+    pub sample: u32,
+    pub haze: [f32; 3],
+    pub sample_count: u32,
+    pub hills: [f32; 3],
+    pub shutter_time: f32,
+    pub floor_tint: [f32; 3],
+    pub glass_thickness: f32,
+    pub daylight: [f32; 3],
+    pub water_root: u32,
+    pub bounced: [f32; 3],
+    pub body_root: u32,
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -104,12 +118,14 @@ mod tests {
 
     fn same(source: &str) -> bool {
         let globals = layout!(Globals: clip_from_world eye near right pixel_angle up encode_srgb forward
-            padding sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
+            hill_height sun floor_height box_min tile_size box_max fade_distance shadow_min shadow_size
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin foam_radius ray_shift linear_output water_root body_root
-            ray_offset contact_distance sample sample_count shutter_time glass_thickness glass edges);
+            slice_full slice_low slice_scale splat_margin foam_radius ray_shift linear_output glass
+            zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
+            contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness daylight
+            water_root bounced body_root edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

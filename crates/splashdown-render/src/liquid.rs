@@ -44,13 +44,32 @@ impl Liquid {
         Liquid::clear([2.5, 14.0, 80.0], 1.49)
     }
 
-    /// The liquid with a name: `water`, `oil`, `glycerin` or `honey`.
+    /// Turbid green-blue water near a coast. The values are estimates.
+    pub fn sea() -> Liquid {
+        Liquid { scattering: 0.35, colour: [0.012, 0.11, 0.13], ..Liquid::clear([0.55, 0.10, 0.09], 1.339) }
+    }
+
+    /// Brown water with silt, as in a river after rain. The values are estimates.
+    pub fn murky() -> Liquid {
+        Liquid { scattering: 4.0, colour: [0.13, 0.095, 0.045], ..Liquid::clear([1.2, 1.6, 3.2], 1.333) }
+    }
+
+    /// Whole milk: absorption, reduced scattering of green light, and diffuse reflectance as measured
+    /// by Jensen et al. (2001), "A practical model for subsurface light transport".
+    pub fn milk() -> Liquid {
+        Liquid { scattering: 3210.0, colour: [0.91, 0.88, 0.76], ..Liquid::clear([1.1, 2.4, 14.0], 1.35) }
+    }
+
+    /// The liquid with a name: `water`, `oil`, `glycerin`, `honey`, `sea`, `murky` or `milk`.
     pub fn from_name(name: &str) -> Option<Liquid> {
         match name {
             "water" => Some(Liquid::water()),
             "oil" => Some(Liquid::oil()),
             "glycerin" => Some(Liquid::glycerin()),
             "honey" => Some(Liquid::honey()),
+            "sea" => Some(Liquid::sea()),
+            "murky" => Some(Liquid::murky()),
+            "milk" => Some(Liquid::milk()),
             _ => None,
         }
     }

@@ -177,7 +177,7 @@ impl Renderer {
         if let Some(surface) = &frame.surface {
             surface.buffers.check_style(&self.device, surface.style)?;
         }
-        let behind = frame.domain.edges(globals.eye.into()).iter().filter(|edge| edge.behind).count() as u32;
+        let behind = frame.domain.edges_behind(globals.eye.into());
         let globals = self.bind_globals(bytemuck::bytes_of(&globals));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
             self.targets = Some(Targets::new(&self.device, size, self.format, self.sample_count));
@@ -197,13 +197,15 @@ impl Renderer {
         let foam = frame.foam.map(|drawn| self.foam.bind(&self.device, &drawn)).unwrap_or_default();
         let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
         let has_liquid = surface.is_some() || frame.liquid_particles.is_some();
+        let (has_panes, has_edges) = frame.sides(has_liquid);
         let scene = |pass: &mut RenderPass<'_>| {
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
             self.background.record(pass);
-            if has_liquid {
+            if has_panes {
                 self.glass.record(pass, Panes::Behind);
-            } else {
+            }
+            if has_edges {
                 self.edges.record(pass, 0..behind);
             }
             if let Some(bodies) = &frame.bodies {
@@ -267,9 +269,10 @@ impl Renderer {
             }
             let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
             self.foam.record(&mut pass, &foam, kinds);
-            if has_liquid {
+            if has_panes {
                 self.glass.record(&mut pass, Panes::InFront);
-            } else {
+            }
+            if has_edges {
                 self.edges.record(&mut pass, behind..12);
             }
         }

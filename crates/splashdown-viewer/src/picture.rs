@@ -5,7 +5,7 @@ use std::sync::Arc;
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_render::{
-    Axis, Camera, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, Frame, PassTime,
+    Axis, Camera, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, PassTime,
     PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 use splashdown_run::appearance;
@@ -80,7 +80,9 @@ impl Picture {
         let colouring = appearance::colouring(scene, look.colour_by).with_map(look.map);
         let drawn = &snapshot.drawn;
         let radius = scene.fluid.particle_radius();
-        let mut frame = Frame::new(camera, appearance::domain(scene));
+        let caption = appearance::own_caption(scene, snapshot.stats.time);
+        let mut frame = appearance::empty_frame(scene, camera);
+        frame.caption = caption.as_deref();
         frame.bodies = self.placed.as_ref().map(|placed| placed.uploaded.buffers());
         frame.foam = drawn.foam().map(|buffers| DrawnFoam::new(buffers, radius));
         match (look.mode, drawn.mesh()) {

@@ -1,7 +1,7 @@
 //! Changes of a running simulation.
 
 use glam::Vec3;
-use splashdown::scene::{Body, BoundaryKind, InitialPressure, MeshSource, Motion, Scene};
+use splashdown::scene::{Body, BoundaryKind, InitialPressure, MeshSource, Motion, Scene, SkyKind};
 use splashdown::{Device, MouseForce, Simulation};
 use splashdown_gpu::block_on;
 
@@ -45,6 +45,7 @@ fn update_parameters_accepts_constants_and_rejects_structural_changes() {
     scene.gravity = Vec3::new(3.0, 0.0, 0.0);
     scene.fluid.material.viscosity = 0.01;
     scene.solver.artificial_viscosity = 0.2;
+    scene.picture.sky = SkyKind::Sunset;
     assert!(simulation.update_parameters(&scene).unwrap());
     simulation.advance(0.01).unwrap();
     let v = mean_velocity(&mut simulation);

@@ -81,6 +81,6 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     } else if u32(in.appearance.z + 0.5) == BUBBLE {
         shape = smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
     }
-    let light = 0.86 * (SKY_LIGHT + 0.72 * SUN_LIGHT * max(globals.sun.y, 0.0));
+    let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
     return vec4f(present(in.appearance.y * light), in.appearance.x * shape);
 }

@@ -78,7 +78,7 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     if in.is_edge == 1u {
         let light = mix(EDGE_COLOUR, vec3f(0.75, 0.88, 0.84), 0.35 * max(in.normal.y, 0.0));
         let opacity = 0.55;
-        let colour = mix(light * (0.55 + 0.35 * max(dot(in.normal, globals.sun), 0.0)), reflection, one);
+        let colour = mix(light * globals.daylight * (0.55 + 0.35 * max(dot(in.normal, globals.sun), 0.0)), reflection, one);
         return vec4f(present(colour) * opacity, opacity);
     }
     return vec4f(present(reflection) * mirrored, mirrored + (1.0 - mirrored) * 0.012);

@@ -6,15 +6,6 @@
 @group(1) @binding(1) var sky_map: texture_2d<f32>;        // fraction of the sky that a point of the floor sees
 @group(1) @binding(2) var map_sampler: sampler;
 
-// Light of the sun on a surface that faces it, of the sky on a horizontal surface, and of the
-// horizon. A white diffuse surface in a light of 1 has the colour 1.
-const SUN_LIGHT = vec3f(2.50, 2.26, 1.88);
-const SKY_LIGHT = vec3f(0.42, 0.54, 0.74);
-const HORIZON = vec3f(0.86, 1.02, 1.20);
-const ZENITH = vec3f(0.10, 0.27, 0.66);
-// The distant ground in the haze, where floor and hills meet.
-const HAZE = vec3f(0.46, 0.56, 0.66);
-
 fn hash(p: vec2f) -> f32 {
     let q = fract(p * vec2f(0.1031, 0.1030));
     let r = q + dot(q, q.yx + 33.33);
@@ -33,27 +24,32 @@ fn value_noise(p: vec2f) -> f32 {
 fn clouds(direction: vec3f) -> f32 {
     let p = direction.xz / (direction.y + 0.15) * 1.4 + vec2f(3.7, 1.9);
     let density = 0.55 * value_noise(p) + 0.30 * value_noise(2.3 * p) + 0.15 * value_noise(5.1 * p);
-    return smoothstep(0.46, 0.82, density) * smoothstep(0.05, 0.35, direction.y);
+    let covered = smoothstep(0.46 - globals.cloud_cover, 0.82 - globals.cloud_cover, density);
+    return covered * smoothstep(0.05, 0.35, direction.y);
 }
 
 // Height of the distant hills above the horizon, as the sine of the angle.
 fn hills(direction: vec3f) -> f32 {
     let around = atan2(direction.z, direction.x);
-    return 0.030 + 0.014 * sin(3.0 * around + 1.0) + 0.009 * sin(7.0 * around + 4.0) + 0.004 * sin(17.0 * around);
+    let height = 0.030 + 0.014 * sin(3.0 * around + 1.0) + 0.009 * sin(7.0 * around + 4.0) + 0.004 * sin(17.0 * around);
+    return globals.hill_height * height;
 }
 
 // Light from the sky in a unit direction, with hills at the horizon; below it, the haze of the
 // horizon. The disc of the sun is not included: surfaces add its reflection as a highlight.
 fn sky(direction: vec3f) -> vec3f {
     let height = max(direction.y, 0.0);
-    var colour = mix(HORIZON, ZENITH, 1.0 - exp(-4.2 * height));
+    var colour = mix(globals.horizon, globals.zenith, 1.0 - exp(-4.2 * height));
     if direction.y > 0.05 {
-        colour = mix(colour, vec3f(1.30, 1.28, 1.25), 0.75 * clouds(direction));
+        colour = mix(colour, globals.clouds, globals.cloud_opacity * clouds(direction));
     }
-    let glow = max(dot(direction, globals.sun), 0.0);
-    colour += SUN_LIGHT * (0.16 * pow(glow, 10.0) + 0.8 * pow(glow, 120.0) + 5.0 * pow(glow, 2400.0));
+    let from_sun = dot(direction, globals.sun);
+    let half_way = 0.5 + 0.5 * from_sun;
+    colour += globals.glow * half_way * half_way * half_way * exp(-5.0 * height);
+    let glow = max(from_sun, 0.0);
+    colour += globals.sun_light * (0.16 * pow(glow, 10.0) + 0.8 * pow(glow, 120.0) + 5.0 * pow(glow, 2400.0));
     let above_hills = direction.y - hills(direction);
-    let hill = mix(HAZE, vec3f(0.24, 0.32, 0.40), smoothstep(0.0, 0.03, height));
+    let hill = mix(globals.haze, globals.hills, smoothstep(0.0, 0.03, height));
     return mix(hill, colour, smoothstep(-0.002, 0.002, above_hills));
 }
 
@@ -86,10 +82,24 @@ fn sky_on_floor(p: vec2f) -> f32 {
     return select(1.0, textureSampleLevel(sky_map, map_sampler, uv, 0.0).r, inside);
 }
 
-// Reflectance of the floor at a point: slabs of concrete of the size of a tile with joints. `width`:
-// width of the ray in tiles.
+// Fraction of dark squares in a checkerboard of unit squares, averaged over a square of the given
+// width.
+fn dark_squares(p: vec2f, width: f32) -> f32 {
+    let w = vec2f(max(width, 1e-3));
+    let sign_integral = 2.0 * (abs(fract(0.5 * (p - 0.5 * w)) - 0.5) - abs(fract(0.5 * (p + 0.5 * w)) - 0.5)) / w;
+    return 0.5 - 0.5 * sign_integral.x * sign_integral.y;
+}
+
+// Reflectance of the floor at a point. Tiles are slabs of concrete with joints. `width`: width of the
+// ray in tiles.
 fn floor_albedo(p: vec2f, width: f32) -> vec3f {
     let q = p / globals.tile_size;
+    if globals.floor_pattern == 3u {
+        return globals.floor_tint * 0.165;
+    }
+    if globals.floor_pattern == 2u {
+        return globals.floor_tint * mix(0.2475, 0.0825, dark_squares(q, width));
+    }
     let slab = hash(floor(q) + vec2f(0.5, 0.5));
     // Octaves of noise, each fading before it aliases.
     let coarse = value_noise(2.3 * q) - 0.5;
@@ -97,7 +107,7 @@ fn floor_albedo(p: vec2f, width: f32) -> vec3f {
     let fine = (value_noise(47.0 * q + 11.0) - 0.5) * clamp(1.6 - 47.0 * width, 0.0, 1.0);
     let tone = 0.165 + 0.022 * (slab - 0.5) + 0.018 * coarse + 0.014 * medium + 0.018 * fine;
     let joint = grid_lines(q, 0.010, width);
-    return vec3f(0.97, 0.98, 1.0) * tone * (1.0 - 0.55 * joint);
+    return globals.floor_tint * tone * (1.0 - 0.55 * joint);
 }
 
 // Light from a point of the floor that a ray hits after `distance`. `spread`: angular width of the
@@ -105,11 +115,11 @@ fn floor_albedo(p: vec2f, width: f32) -> vec3f {
 fn floor_colour(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> vec3f {
     let p = (origin + direction * distance).xz;
     let width = distance * spread / (max(-direction.y, 0.02) * globals.tile_size);
-    let light = SUN_LIGHT * globals.sun.y * sunlight_on_floor(p) + SKY_LIGHT * sky_on_floor(p);
+    let light = globals.sun_light * globals.sun.y * sunlight_on_floor(p) + globals.sky_light * sky_on_floor(p);
     let centre = 0.5 * (globals.box_min + globals.box_max).xz;
     let away = length(p - centre) / globals.fade_distance;
     let haze = 1.0 - exp(-away * away);
-    return mix(floor_albedo(p, width) * light, HAZE, haze);
+    return mix(floor_albedo(p, width) * light, globals.haze, haze);
 }
 
 // Light from the environment in the unit direction of a ray, without fluid and bodies.

@@ -17,7 +17,7 @@ struct Globals {
     up: vec3f,              // half the picture's height at unit distance
     encode_srgb: u32,       // 1: the target format does not encode sRGB, so the shader does
     forward: vec3f,         // unit vector
-    padding: f32,
+    hill_height: f32,       // factor on the height of the distant hills
     sun: vec3f,             // unit vector towards the sun
     floor_height: f32,
     box_min: vec3f,
@@ -53,15 +53,29 @@ struct Globals {
     foam_radius: f32,       // radius of the fluid's particles
     ray_shift: vec3f,       // moves every view ray: place in the pixel, and on the lens
     linear_output: u32,     // 1: the target stores linear light, without tone mapping
-    water_root: u32,        // root of the tree of the liquid's triangles
-    body_root: u32,         // root of the tree of the bodies' triangles
-    ray_offset: f32,        // m; rays ignore triangles nearer than this
-    contact_distance: f32,  // m; liquid within this distance of the floor touches it
-    sample: u32,            // index of the sample of a picture with many samples
-    sample_count: u32,
-    shutter_time: f32,      // s; time of the sample relative to the frame
-    glass_thickness: f32,   // m
     glass: vec4u,           // per axis: bit 0: the lower side is a pane of glass, bit 1: the upper one
+    zenith: vec3f,          // light of the sky; module sky.rs describes these members
+    floor_pattern: u32,     // 0: no floor, 1: tiles, 2: checkerboard, 3: plain
+    horizon: vec3f,
+    cloud_cover: f32,
+    clouds: vec3f,
+    cloud_opacity: f32,
+    sun_light: vec3f,       // on a surface that faces the sun
+    ray_offset: f32,        // m; rays ignore triangles nearer than this
+    sky_light: vec3f,       // on a horizontal surface
+    contact_distance: f32,  // m; liquid within this distance of the floor touches it
+    glow: vec3f,            // near the horizon on the side of the sun
+    sample: u32,            // index of the sample of a picture with many samples
+    haze: vec3f,            // the distant ground, where floor and hills meet
+    sample_count: u32,
+    hills: vec3f,
+    shutter_time: f32,      // s; time of the sample relative to the frame
+    floor_tint: vec3f,      // factor on the reflectance of the floor
+    glass_thickness: f32,   // m
+    daylight: vec3f,        // light on the floor relative to that of the default sky and sun
+    water_root: u32,        // root of the tree of the liquid's triangles
+    bounced: vec3f,         // light from the floor on surfaces that face it
+    body_root: u32,         // root of the tree of the bodies' triangles
     edges: array<Edge, 12>,
 }
 
@@ -74,10 +88,19 @@ fn view_ray(pixel: vec2f) -> vec3f {
     return globals.forward + globals.ray_shift + x * globals.right + y * globals.up;
 }
 
-// Distance along a ray to the floor, or -1 if the ray does not hit it.
-fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
+fn has_floor() -> bool {
+    return globals.floor_pattern != 0u;
+}
+
+// Distance along a ray to the bottom of the tank, or -1 if the ray does not reach it.
+fn bottom_distance(origin: vec3f, direction: vec3f) -> f32 {
     let distance = (globals.floor_height - origin.y) / direction.y;
     return select(-1.0, distance, direction.y < -1e-5 && distance > 0.0);
+}
+
+// Distance along a ray to the floor, or -1 if the ray does not hit it.
+fn floor_distance(origin: vec3f, direction: vec3f) -> f32 {
+    return select(-1.0, bottom_distance(origin, direction), has_floor());
 }
 
 // Depth buffer value at a distance along `forward`. Reversed depth: 1 at the near plane, 0 at

@@ -35,7 +35,7 @@ struct Seen {
 
 // The light at the end of a ray that has entered the liquid. The exit through a free surface is not known: the ray
 // goes straight on to the picture behind. At a wall of the tank it is refracted, or reflected totally up to three
-// times; the floor ends it.
+// times; the bottom of the tank ends it.
 fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
     var origin = world;
     var direction = bent;
@@ -43,11 +43,11 @@ fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
     var is_reflected = false;
     for (var turn = 0; turn < 3; turn++) {
         let wall = wall_ahead(origin, direction);
-        let down = floor_distance(origin, direction);
-        let reaches_floor = down > 0.0 && down < wall.x;
+        let down = bottom_distance(origin, direction);
+        let reaches_bottom = down > 0.0 && down < wall.x;
         // On the first segment the length of the view ray tells whether the liquid extends to the wall.
         let in_liquid = turn > 0 || wall.x < 1.2 * path;
-        if reaches_floor || !in_liquid || wall.y < 0.0 {
+        if reaches_bottom || !in_liquid || wall.y < 0.0 {
             break;
         }
         origin += direction * wall.x;
@@ -62,7 +62,7 @@ fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
         direction -= 2.0 * direction * sideways;
         is_reflected = true;
     }
-    let down = floor_distance(origin, direction);
+    let down = bottom_distance(origin, direction);
     let left = max(path - travelled, 0.0);
     let rest = select(left, min(left, down), down > 0.0);
     if is_reflected {
@@ -88,9 +88,7 @@ fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
     let transmittance = exp(-EMPHASIS * globals.liquid_absorption * seen.path);
-    let turbidity = 1.0 - exp(-globals.liquid_scattering * seen.path);
-    let glow = globals.liquid_colour * (SKY_LIGHT + 0.5 * SUN_LIGHT);
-    let transmitted = mix(behind * transmittance, glow, turbidity);
+    let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(seen.path));
     let sun = sun_highlight(normal, to_eye, facing);
-    return present(mix(transmitted, reflection, mirrored) + SUN_LIGHT * min(2.2 * sun, 12.0));
+    return present(mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0));
 }

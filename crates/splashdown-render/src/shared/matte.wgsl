@@ -9,11 +9,11 @@ fn matte(world: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f) -> vec3f {
     let above = 0.5 + 0.5 * normal.y;
     // The floor hides part of the sky from points near it.
     let height = max(world.y - globals.floor_height, 0.0) / globals.tile_size;
-    let open = mix(0.45 + 0.55 * smoothstep(0.0, 1.0, height), 1.0, above);
-    let bounced = vec3f(0.42, 0.41, 0.38) * (1.0 - above);
-    let light = SUN_LIGHT * sun + (SKY_LIGHT * above + bounced) * open;
+    let open = select(1.0, mix(0.45 + 0.55 * smoothstep(0.0, 1.0, height), 1.0, above), has_floor());
+    let bounced = globals.bounced * (1.0 - above);
+    let light = globals.sun_light * sun + (globals.sky_light * above + bounced) * open;
     let half_way = normalize(globals.sun + to_eye);
     let shine = 0.12 * pow(max(dot(normal, half_way), 0.0), 60.0) * sun;
     let rim = 0.05 * pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0);
-    return colour * light + SUN_LIGHT * shine + SKY_LIGHT * rim;
+    return colour * light + globals.sun_light * shine + globals.sky_light * rim;
 }

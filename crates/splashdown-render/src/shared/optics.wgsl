@@ -26,6 +26,20 @@ fn sun_highlight(normal: vec3f, to_eye: vec3f, facing: f32) -> f32 {
     return spread * visibility * nl * reflectance(max(dot(half_way, to_eye), 0.0), 1.0 / globals.refractive_index);
 }
 
+// Fraction of a path of this length in metres over which the own colour of a turbid liquid replaces what
+// is behind it.
+fn turbidity(path: f32) -> f32 {
+    return 1.0 - exp(-globals.liquid_scattering * path);
+}
+
+// Light that a turbid liquid scatters towards the eye below a point of its surface. Light also enters
+// beside that point, so that the sides away from the sun are not black.
+fn scattered_light(normal: vec3f) -> vec3f {
+    let from_sky = 0.6 + 0.4 * normal.y;
+    let from_sun = 0.5 + 0.5 * dot(normal, globals.sun);
+    return globals.liquid_colour * (globals.sky_light * from_sky + globals.sun_light * from_sun);
+}
+
 // A unit normal on the side of the eye. Interpolated normals may face away from it near the outline;
 // they are clamped to a grazing angle. A zero normal is replaced by the direction to the eye.
 fn facing_normal(outward: vec3f, to_eye: vec3f) -> vec3f {

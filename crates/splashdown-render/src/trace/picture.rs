@@ -3,6 +3,7 @@
 use super::floor::Floor;
 use crate::background::Background;
 use crate::bodies;
+use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
 use crate::glass::{Glass, Panes};
 use crate::pipeline::{ADD, Bind, Depth, PipelineDesc, bind_group, bind_group_layout};
@@ -27,6 +28,7 @@ pub(crate) struct TracedPicture {
     liquid: RenderPipeline,
     foam: Foam,
     glass: Glass,
+    edges: Edges,
     accumulate: RenderPipeline,
     resolve: RenderPipeline,
     trees_layout: BindGroupLayout,
@@ -82,6 +84,7 @@ impl TracedPicture {
             liquid: liquid.build(device),
             foam: Foam::new(device, plain, LIGHT, 1),
             glass: Glass::new(device, plain, LIGHT, 1),
+            edges: Edges::new(device, [globals], LIGHT, 1),
             accumulate: accumulate.build(device),
             resolve: PipelineDesc::new(super::RESOLVE, &of_texture, format).build(device),
             trees_layout,
@@ -143,13 +146,20 @@ impl TracedPicture {
         frame: &Frame<'_>,
         surface: &DrawnSurface<'_>,
     ) {
+        let (has_panes, has_edges) = frame.sides(true);
+        let behind = frame.domain.edges_behind(frame.camera.eye.into());
         let foam = frame.foam.map(|drawn| self.foam.bind(device, &drawn)).unwrap_or_default();
         {
             let mut pass = recorder.light("scene", &targets.sample, &targets.depth, Start::Clear);
             pass.set_bind_group(0, globals, &[]);
             pass.set_bind_group(1, &self.floor.environment, &[]);
             self.background.record(&mut pass);
-            self.glass.record(&mut pass, Panes::Behind);
+            if has_panes {
+                self.glass.record(&mut pass, Panes::Behind);
+            }
+            if has_edges {
+                self.edges.record(&mut pass, 0..behind);
+            }
             pass.set_bind_group(2, trees, &[]);
             if let Some(buffers) = &frame.bodies {
                 bodies::record(&self.bodies, &mut pass, buffers);
@@ -170,7 +180,12 @@ impl TracedPicture {
         pass.set_bind_group(0, globals, &[]);
         pass.set_bind_group(1, &self.floor.environment, &[]);
         self.foam.record(&mut pass, &foam, Kinds::OverWater);
-        self.glass.record(&mut pass, Panes::InFront);
+        if has_panes {
+            self.glass.record(&mut pass, Panes::InFront);
+        }
+        if has_edges {
+            self.edges.record(&mut pass, behind..12);
+        }
     }
 
     /// Tone mapping of the sum into the target.

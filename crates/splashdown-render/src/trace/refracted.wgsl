@@ -12,11 +12,18 @@ fn random_of(pixel: vec2u, salt: u32) -> f32 {
     return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
 }
 
-// Light along a ray that starts at the surface of the liquid. A part of the light is reflected at
+// Fraction of the light that passes through this length of liquid in metres (Beer-Lambert).
+fn passed(path: f32) -> vec3f {
+    return exp(-globals.liquid_absorption * path) * (1.0 - turbidity(path));
+}
+
+// Light along a ray that starts at the surface of the liquid, which has this normal there. A part of the light is reflected at
 // every surface: a picture of few samples follows the stronger part, one of many samples chooses.
-fn followed_light(start: vec3f, towards: vec3f, spread: f32, pixel: vec2u) -> vec3f {
+fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pixel: vec2u) -> vec3f {
     var origin = start;
     var direction = towards;
+    let glow = scattered_light(outward);
+    var scattered = vec3f(0.0);
     var weight = vec3f(1.0);
     var inside = true;
     for (var bounce = 0; bounce < BOUNCES; bounce++) {
@@ -24,22 +31,25 @@ fn followed_light(start: vec3f, towards: vec3f, spread: f32, pixel: vec2u) -> ve
         let to_floor = floor_distance(origin, direction);
         if hit.triangle == NO_TRIANGLE || (to_floor > 0.0 && to_floor < hit.distance) {
             if inside && to_floor > 0.0 {
-                weight *= exp(-globals.liquid_absorption * to_floor);
+                scattered += weight * turbidity(to_floor) * glow;
+                weight *= passed(to_floor);
             }
             break;
         }
         let place = origin + direction * hit.distance;
         let found = struck(hit);
         if inside {
-            weight *= exp(-globals.liquid_absorption * hit.distance);
+            scattered += weight * turbidity(hit.distance) * glow;
+            weight *= passed(hit.distance);
         }
         if found.is_body {
-            return weight * matte(place, found.normal, found.colour, -direction);
+            return scattered + weight * matte(place, found.normal, found.colour, -direction);
         }
         let leaving = dot(direction, found.face) > 0.0;
-        if leaving && place.y - globals.floor_height < globals.contact_distance && found.face.y < 0.0 {
+        let is_on_floor = has_floor() && place.y - globals.floor_height < globals.contact_distance;
+        if leaving && is_on_floor && found.face.y < 0.0 {
             // The liquid touches the floor without air between them.
-            return weight * floor_colour(place, direction, 0.0, spread);
+            return scattered + weight * floor_colour(place, direction, 0.0, spread);
         }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
         let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);
@@ -57,7 +67,7 @@ fn followed_light(start: vec3f, towards: vec3f, spread: f32, pixel: vec2u) -> ve
         }
         origin = place;
     }
-    return weight * environment(origin, direction, spread);
+    return scattered + weight * environment(origin, direction, spread);
 }
 
 // Light that arrives from outside the liquid: from bodies, from other parts of the liquid, and from
@@ -89,7 +99,7 @@ fn traced_liquid(world: vec3f, outward: vec3f, pixel: vec2u) -> vec3f {
     let mirrored = reflectance(facing, 1.0 / globals.refractive_index);
     let spread = 2.0 * globals.pixel_angle;
     let bent = refract(-to_eye, normal, 1.0 / globals.refractive_index);
-    let transmitted = followed_light(world, bent, spread, pixel);
+    let transmitted = followed_light(world, bent, normal, spread, pixel);
     let back = reflect(-to_eye, normal);
     var reflection: vec3f;
     if mirrored > 0.05 {
@@ -98,5 +108,5 @@ fn traced_liquid(world: vec3f, outward: vec3f, pixel: vec2u) -> vec3f {
         reflection = environment(world, back, spread);
     }
     let sun = sun_highlight(normal, to_eye, facing);
-    return mix(transmitted, reflection, mirrored) + SUN_LIGHT * min(2.2 * sun, 12.0);
+    return mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0);
 }

@@ -17,7 +17,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     if !(all(uv > vec2f(0.0)) && all(uv < vec2f(1.0))) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     }
-    out.light = arrival.w * exp(-globals.liquid_absorption * arrival.z);
+    out.light = arrival.w * exp(-globals.shadow_absorption * arrival.z);
     return out;
 }
 

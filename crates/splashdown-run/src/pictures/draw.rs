@@ -7,8 +7,8 @@ use splashdown::scene::{Camera, PictureKind, Scene};
 use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
 use splashdown_render::{
-    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, RenderError,
-    Renderer, TracedMeshes, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
+    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
+    TracedMeshes, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 
 use super::FrameData;
@@ -106,10 +106,10 @@ impl FrameRenderer {
             }
             _ => None,
         };
-        let caption = format!("{}   t = {:.3} s", self.scene.name, data.time);
+        let caption = appearance::caption(&self.scene, data.time);
         let radius = self.scene.fluid.particle_radius();
-        let (camera, domain) = (appearance::camera(&self.scene, data.time), appearance::domain(&self.scene));
-        let mut empty = Frame::new(camera, domain).with_caption(&caption);
+        let camera = appearance::camera(&self.scene, data.time);
+        let mut empty = appearance::empty_frame(&self.scene, camera).with_caption(&caption);
         empty.bodies = bodies.as_ref().map(UploadedBodies::buffers);
         empty.foam = foam.as_ref().map(|foam| DrawnFoam::new(foam.buffers(), radius));
         let mut tickets = Vec::new();

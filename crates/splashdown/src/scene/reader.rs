@@ -13,7 +13,7 @@ use toml::de::{DeTable, DeValue};
 use super::choice::Choice;
 use super::errors::SceneProblem;
 use super::source::Source;
-use super::spec::{Key, Kind, Table};
+use super::spec::{Key, Kind, LONGEST_LINE, Table};
 use super::suggest;
 use super::values::{
     Wrong, Wrongs, describe, kind_of, list_words, one_integer, one_number, one_scale, one_word, several,
@@ -339,6 +339,21 @@ impl<'r> Section<'r> {
         })
     }
 
+    /// A text that may be empty, of one line.
+    pub fn line(&self, name: &str) -> Read<String> {
+        self.read(name, |value, kind| match (kind, value) {
+            (Kind::Line(_), DeValue::String(text)) if is_line(text) => Ok(text.to_string()),
+            (Kind::Line(what), DeValue::String(_)) => Err(Wrong {
+                message: format!("must be one line of at most {LONGEST_LINE} characters"),
+                allowed: what.to_owned(),
+                hint: None,
+                item: None,
+            }),
+            (Kind::Line(what), other) => Err(wrong_type(other, "a text in quotes", what.to_owned())),
+            _ => Err(undeclared(kind)),
+        })
+    }
+
     /// A list of texts.
     pub fn texts<const N: usize>(&self, name: &str) -> Read<[String; N]> {
         self.read(name, |value, kind| match kind {
@@ -489,6 +504,10 @@ fn one_text(value: &DeValue<'_>, what: &str) -> Result<String, Wrong> {
         DeValue::String(text) if !text.trim().is_empty() => Ok(text.to_string()),
         other => Err(wrong_type(other, "a text in quotes", what.to_owned())),
     }
+}
+
+fn is_line(text: &str) -> bool {
+    text.chars().count() <= LONGEST_LINE && !text.contains(['\r', '\n'])
 }
 
 fn describe_texts(count: usize, what: &str) -> String {

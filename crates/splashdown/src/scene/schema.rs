@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::keys::ROOT;
-use super::spec::{Key, Kind, Range, Table, UNITS, Word};
+use super::spec::{Key, Kind, LONGEST_LINE, Range, Table, UNITS, Word};
 use super::values::describe;
 
 /// The JSON schema (draft 2020-12) of scene files, for editors: types, ranges, values and required keys; other keys are
@@ -47,6 +47,7 @@ fn property(key: &Key) -> Value {
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$" }),
         Kind::Text(_) => json!({ "type": "string", "minLength": 1 }),
+        Kind::Line(_) => json!({ "type": "string", "pattern": format!("^[^\\r\\n]{{0,{LONGEST_LINE}}}$") }),
         Kind::Texts(count, _) => list(count, json!({ "type": "string", "minLength": 1 })),
         Kind::Word(words) => one_of(&words()),
         Kind::Words(words) => json!({ "type": "array", "items": one_of(&words()), "uniqueItems": true }),

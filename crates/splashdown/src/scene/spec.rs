@@ -26,6 +26,8 @@ pub(crate) enum Kind {
     Name,
     /// A text; the string describes the allowed texts.
     Text(&'static str),
+    /// A text that may be empty, without line breaks; the string describes it.
+    Line(&'static str),
     /// A list of this length of texts.
     Texts(usize, &'static str),
     /// One of some words.
@@ -37,6 +39,9 @@ pub(crate) enum Kind {
     /// A list of tables with at most this many items.
     Tables(&'static Table, usize),
 }
+
+/// Maximum number of characters of a [`Kind::Line`].
+pub(crate) const LONGEST_LINE: usize = 80;
 
 /// Units of length that a scale can name, in m.
 pub(crate) const UNITS: &[(&str, f64)] =

@@ -10,6 +10,7 @@ use glam::{Quat, Vec3};
 
 use super::choice::{Choice, choices};
 use super::errors::SceneWarning;
+use super::picture::PictureSettings;
 use super::slot::BuiltSlot;
 use super::solver::Solver;
 use super::things::{Body, Emitter, MeshSource, Probe, Sink};
@@ -46,6 +47,8 @@ pub struct Scene {
     pub foam: FoamSettings,
     /// The view of the pictures.
     pub camera: Camera,
+    /// The appearance of the pictures.
+    pub picture: PictureSettings,
     /// The output files.
     pub output: Output,
     /// Values that were corrected or are probably unintended.

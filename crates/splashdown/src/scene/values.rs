@@ -203,7 +203,7 @@ pub(crate) fn describe(key: &Key) -> String {
         Kind::Integers(count, range) => format!("{count} whole numbers, each {range}"),
         Kind::Boolean => "true, false".to_owned(),
         Kind::Name => "1 to 64 letters, digits, `-` and `_`".to_owned(),
-        Kind::Text(what) => what.to_owned(),
+        Kind::Text(what) | Kind::Line(what) => what.to_owned(),
         Kind::Texts(count, what) => format!("{count} texts of {what}"),
         Kind::Word(words) => list_words(&words()),
         Kind::Words(words) => format!("a list of {}", list_words(&words())),

@@ -61,7 +61,7 @@ impl Simulation {
     }
 
     /// Continues with another scene that differs in parameters only: gravity, the material of the fluid, the
-    /// coefficients of the solver, and settings that do not affect motion (camera, output, surface, foam). Returns
+    /// coefficients of the solver, and settings that do not affect motion (camera, picture, output, surface, foam). Returns
     /// false, and changes nothing, if the scene differs in more; use [`rebuild_with`](Self::rebuild_with) then.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Simulation {
         twin.text = old.text.clone();
         (twin.duration, twin.frame_rate, twin.gravity) = (old.duration, old.frame_rate, old.gravity);
         (twin.surface, twin.camera, twin.output) = (old.surface.clone(), old.camera, old.output.clone());
-        twin.foam = old.foam;
+        (twin.foam, twin.picture) = (old.foam, old.picture.clone());
         // It has had its effect.
         twin.fluid.initial_pressure = old.fluid.initial_pressure;
         twin.domain.oscillation = old.domain.oscillation;

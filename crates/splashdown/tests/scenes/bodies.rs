@@ -232,7 +232,7 @@ fn a_rotation_is_resolved_or_refused() {
         let text = with_body(&format!(
             "{PLAIN}\nscale = 0.1\nposition = [0.5, 0.8, 0.5]\nturn = [\"0\", \"0\", \"360*50*t\"]"
         ));
-        std::fs::write(&path, text.replace("[scene]", &format!("[scene]\nframe_rate = {rate}"))).unwrap();
+        std::fs::write(&path, text.replace("frame_rate = 25", &format!("frame_rate = {rate}"))).unwrap();
         Scene::load(&path).map(drop).map_err(|errors| errors.to_string())
     };
     // 50 revolutions per second turn by 9.4 degrees in a 64th of a frame, or by 56.

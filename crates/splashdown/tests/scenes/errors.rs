@@ -100,6 +100,20 @@ snapshot!(
 );
 snapshot!(coarse_surface, format!("{CUBE}[surface]\ncell_size = 0.5\n"));
 snapshot!(coarse_surface_warning, format!("{CUBE}[surface]\ncell_size = 0.08\n"));
+snapshot!(
+    picture_values,
+    format!(
+        "{CUBE}[picture]\nsky = \"sunrise\"\nsun = \"no\"\nsun_elevation = 2\nfloor_color = [1, 1, 1]\nfloor_colour = [255, 255, 255]\n\
+         absorption = 0.3\nscattering = -1\ncaption = \"two\\nlines\"\n"
+    )
+);
+snapshot!(
+    picture_warnings,
+    format!(
+        "{CUBE}[picture]\nsky = \"overcast\"\nsun_azimuth = 90\nfloor = \"none\"\nfloor_colour = [0, 0, 0]\nliquid = \"oil\"\n\
+         liquid_colour = [0, 1, 0]\n"
+    )
+);
 snapshot!(unusable_name, changed("\"cube\"", "\"../cube\""));
 snapshot!(
     overlap_warning,

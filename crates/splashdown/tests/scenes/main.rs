@@ -9,6 +9,7 @@ mod flow;
 mod formats;
 mod guide;
 mod hostile;
+mod picture;
 mod presets;
 mod probes;
 mod sampling;

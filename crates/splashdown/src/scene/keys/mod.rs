@@ -6,6 +6,7 @@
 mod fluid;
 mod mesh;
 mod numerics;
+mod picture;
 mod show;
 mod things;
 mod words;
@@ -15,6 +16,7 @@ pub(crate) use words::{MotionWord, OutletWord, QuantityWord, ShapeWord, SinkWord
 
 use fluid::FLUID;
 use numerics::{FOAM, SOLVER, SURFACE};
+use picture::PICTURE;
 use show::{CAMERA, OUTPUT};
 use things::{BODY, EMITTER, PROBE, SINK};
 
@@ -53,6 +55,12 @@ pub(crate) static ROOT: Table = Table {
             "whitewater",
         ]),
         key("camera", Kind::Table(&CAMERA), "View of the pictures; without it the whole domain is visible."),
+        key(
+            "picture",
+            Kind::Table(&PICTURE),
+            "Sky, floor, tank, colour of the liquid and caption in pictures.",
+        )
+        .also(&["appearance", "look", "render", "rendering"]),
         key("output", Kind::Table(&OUTPUT), "Output files."),
     ],
 };

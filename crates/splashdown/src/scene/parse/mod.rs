@@ -3,6 +3,7 @@
 
 mod flow;
 mod fluid;
+mod picture;
 mod probes;
 mod solver;
 mod things;
@@ -128,6 +129,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
     let foam = root.section("foam").and_then(|section| view::read_foam(&section));
     let output =
         root.section("output").and_then(|section| view::read_output(&section, surface.as_ref().ok()));
+    let picture = root.section("picture").and_then(|section| picture::read_picture(&section));
     let camera = root.section("camera").and_then(|section| {
         let picture = output.as_ref().map_or([16, 9], |output| output.picture_size);
         let duration = header.as_ref().map_or(0.0, |header| header.duration);
@@ -150,6 +152,7 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
         surface: surface?,
         foam: foam?,
         camera: camera?,
+        picture: picture?,
         output: output?,
         warnings: Vec::new(),
         source: None,
