@@ -137,7 +137,11 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
         Body::SCRIPTED => RigidBodyBuilder::kinematic_position_based(),
         _ => RigidBodyBuilder::fixed(),
     };
-    let builder = builder.pose(pose(state.position, state.rotation())).can_sleep(false);
+    // Contacts are found before bodies overlap, so that the motion of a step ends at the surface.
+    let builder = builder
+        .pose(pose(state.position, state.rotation()))
+        .can_sleep(false)
+        .soft_ccd_prediction(0.5 * state.reach);
     let handle = world.insert_body(builder);
     if let Some(axis) = axis(state) {
         let fixed = world.insert_body(RigidBodyBuilder::fixed().pose(pose(state.position, state.rotation())));
@@ -170,7 +174,7 @@ fn ball(points: &[Vector], volume: f32) -> Option<SharedShape> {
     let middle = points.iter().copied().sum::<Vector>() / points.len().max(1) as f32;
     let radius = (0.75 / std::f32::consts::PI * volume).cbrt();
     let near = |x: f32, y: f32| (x - y).abs() <= DEVIATION * y;
-    let is_sphere = points.len() > 100 && points.iter().all(|&x| near(x.distance(middle), radius));
+    let is_sphere = points.iter().all(|&x| near(x.distance(middle), radius));
     let place = Pose::from_parts(middle, Rotation::IDENTITY);
     is_sphere.then(|| SharedShape::compound(vec![(place, SharedShape::ball(radius))]))
 }

@@ -35,6 +35,51 @@ fn sixty_four_bodies_float_at_once() {
     assert!(states.iter().all(|state| inside(state.position)), "{states:?}");
 }
 
+/// Balls of four spacings fall into water, onto one another and onto the floor: 8, or 64 with `SPLASHDOWN_FULL=1`.
+#[test]
+fn balls_that_fall_into_a_tank_do_not_burst_the_water() {
+    let (side, seconds) = if std::env::var_os("SPLASHDOWN_FULL").is_some() { (4, 2.0) } else { (2, 0.6) };
+    let (spacing, radius, pitch, depth) = (0.025, 0.05, 0.24, 0.35);
+    let edge = pitch * side as f32 + 0.04;
+    let height = depth + 0.2 * side as f32 + 0.1;
+    let mut scene = tank(spacing, [edge, height, edge], depth);
+    for k in 0..side * side * side {
+        let [i, j, l] = [k % side, k / side % side, k / side / side].map(|n| n as f32);
+        // The columns lean, so that balls meet.
+        let place = Vec3::new(0.14 + pitch * i - 0.03 * j, depth + 0.12 + 0.2 * j, 0.14 + pitch * l);
+        let density = [200.0, 500.0, 900.0, 2000.0][k % 4];
+        scene.bodies.push(body(&format!("ball-{k}"), "sphere", radius / 0.1, place, free(density)));
+    }
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let fastest = (2.0 * 9.81 * height).sqrt();
+    let (mut corrections, mut speed, mut inside, mut nearest) = (0, 0.0f32, 0, f32::MAX);
+    let rounds = (20.0 * seconds) as u32;
+    for round in 1..=rounds {
+        let stats = simulation.advance(0.05).unwrap();
+        let particles = simulation.particles().unwrap();
+        (corrections, speed) = (stats.wall_corrections, speed.max(stats.max_speed));
+        inside = inside.max(simulation.inside_bodies(&particles).unwrap());
+        // Balls that hit one another overlap by what they move in a step, a fifth of a spacing, until the next one.
+        let overlap = if round < rounds { 0.2 * spacing } else { 0.04 * radius };
+        let places: Vec<Vec3> =
+            simulation.body_states().unwrap().iter().map(|state| state.position).collect();
+        for (k, a) in places.iter().enumerate() {
+            let wall = a.min(Vec3::new(edge, height, edge) - *a).min_element();
+            assert!(wall > radius - overlap, "ball {k} is {wall} m from a wall at {} s", stats.time);
+            for b in &places[..k] {
+                let apart = a.distance(*b);
+                assert!(apart > 2.0 * radius - overlap, "{a} {b}: {apart} m at {} s", stats.time);
+                nearest = nearest.min(apart);
+            }
+        }
+    }
+    eprintln!("{corrections} wall corrections, at most {inside} particles inside, at most {speed} m/s");
+    assert!(speed < 3.0 * fastest, "{speed} of {fastest} m/s");
+    assert!(inside <= 2, "{inside} particles are inside a body");
+    // Control: balls meet.
+    assert!(nearest < 2.1 * radius, "{nearest}");
+}
+
 #[test]
 fn overlapping_bodies_are_watertight() {
     // A dam of two rotated, intersecting cubes across the tank, with water on one side.

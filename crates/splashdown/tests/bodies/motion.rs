@@ -1,6 +1,7 @@
 use glam::Vec3;
 use splashdown::scene::{Formula, Hinge, Keyframe, Method, Motion, Motor, Script};
 use splashdown::{Device, Simulation};
+use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, testing};
 
 use crate::{body, dry, free, tank};
 
@@ -180,4 +181,43 @@ fn a_motor_turns_a_hinged_body_at_its_speed_within_its_torque() {
     let (spin, _) = driven(Motor { speed: 12.0, torque: Some(0.2) }, 0.02);
     let expected = 0.2 / inertia * 0.02;
     assert!((spin / expected - 1.0).abs() < 0.02, "{spin} of {expected} rad/s");
+}
+
+#[test]
+fn tumbling_bodies_and_motors_agree_on_both_executors() {
+    let Some(gpu) = testing::gpu_or_skip("tumbling_bodies_and_motors_agree_on_both_executors") else {
+        return;
+    };
+    let mut scene = tank(0.025, [1.0, 1.0, 1.0], 0.1);
+    dry(&mut scene);
+    let spin = Vec3::new(20.0, 60.0, -30.0);
+    let tumbling =
+        Motion::Dynamic { density: 700.0, velocity: Vec3::ZERO, angular_velocity: spin, hinge: None };
+    scene.bodies.push(body("plate", "cube", 1.0, Vec3::new(0.2, 0.8, 0.7), tumbling));
+    scene.bodies[0].mesh.scale = Vec3::new(0.2, 0.1, 0.05);
+    // Motors that reach their speed, are limited by their torque, and brake.
+    let motors = [(8.0, None), (8.0, Some(0.3)), (0.0, Some(0.5))];
+    for (k, (speed, torque)) in motors.into_iter().enumerate() {
+        let x = 0.3 + 0.25 * k as f32;
+        let mut arm = body(&format!("arm-{k}"), "cube", 0.1, Vec3::new(x + 0.1, 0.4, 0.3), free(1000.0));
+        if let Motion::Dynamic { hinge, .. } = &mut arm.motion {
+            let motor = Some(Motor { speed, torque });
+            *hinge = Some(Hinge { point: Vec3::new(x, 0.5, 0.3), axis: Vec3::Z, motor });
+        }
+        scene.bodies.push(arm);
+    }
+    let run = |executor: Executor| {
+        let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
+        simulation.advance(0.05).unwrap();
+        simulation.body_states().unwrap()
+    };
+    let (one, two) = (run(CpuExecutor::new().into()), run(GpuExecutor::new(gpu).into()));
+    for (a, b) in one.iter().zip(&two) {
+        assert!(a.angular_velocity.distance(b.angular_velocity) < 0.01, "{a:?} {b:?}");
+        assert!(a.orientation.dot(b.orientation).abs() > 1.0 - 1e-5, "{a:?} {b:?}");
+    }
+    // Controls: the plate precesses; the motors differ.
+    assert!(one[0].angular_velocity.distance(spin) > 5.0, "{:?}", one[0]);
+    assert!((two[1].angular_velocity.z - 8.0).abs() < 0.01, "{:?}", two[1]);
+    assert!(two[2].angular_velocity.z < 7.0 && two[3].angular_velocity.z.abs() < 7.0, "{two:?}");
 }
