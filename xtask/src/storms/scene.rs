@@ -347,18 +347,27 @@ impl Maker {
         for number in 0..self.rng.pick(&[1, 1, 1, 2, 2, 3]) {
             let (model, extent) = self.rng.pick(&MODELS);
             let (scale, mut position) = self.placed(extent, 0.25, 0.7);
+            let stretch =
+                if self.rng.chance(0.2) { [0; 3].map(|_| self.rng.between(0.4, 1.0)) } else { [1.0; 3] };
             let is_flush = self.rng.chance(0.35);
             if is_flush {
                 // The centred models stand on the floor or touch a wall.
                 let axis = if self.rng.chance(0.6) { 1 } else { self.rng.whole(0, 2) as usize };
                 let gap = self.rng.pick(&[0.0, 0.0, 0.25, 0.5, 1.0]) * self.spacing;
-                let half =
-                    if matches!(model, "sphere" | "block" | "cube") { 0.5 * extent * scale } else { 0.0 };
+                let edge = extent * scale * stretch[axis];
+                let half = if matches!(model, "sphere" | "block" | "cube") { 0.5 * edge } else { 0.0 };
                 position[axis] = half + gap;
                 self.traits.push("flush body");
             }
+            let is_stretched = stretch != [1.0; 3];
+            let scales = if is_stretched {
+                self.traits.push("stretched body");
+                format!("{:.4?}", stretch.map(|part| part * scale))
+            } else {
+                format!("{scale:.4}")
+            };
             let mut text = format!(
-                "[[body]]\nname = \"body{number}\"\nmesh = {model:?}\nscale = {scale:.4}\nposition = {position:.4?}\n"
+                "[[body]]\nname = \"body{number}\"\nmesh = {model:?}\nscale = {scales}\nposition = {position:.4?}\n"
             );
             let turned = self.rng.chance(0.4) && !is_flush;
             if turned {
@@ -369,7 +378,7 @@ impl Maker {
             match self.rng.whole(0, 9) {
                 0..4 => {
                     self.traits.push("static body");
-                    if model == "sphere" {
+                    if model == "sphere" && !is_stretched {
                         self.balls.push((position, 0.5 * size));
                     }
                 }
@@ -404,6 +413,23 @@ impl Maker {
         }
         if self.rng.chance(0.15) {
             let _ = writeln!(text, "hinge = {:?}", self.rng.pick(&[[0, 0, 1], [0, 1, 0], [1, 0, 0]]));
+            if self.rng.chance(0.5) {
+                self.traits.push("motor");
+                let rate = self.rng.between(-20.0, 20.0);
+                let _ = writeln!(text, "motor_speed = {rate:.2}");
+                if self.rng.chance(0.5) {
+                    let weight = density * size.powi(3) * 9.81;
+                    let torque = self.rng.between(0.05, 2.0) * weight * size;
+                    let _ = writeln!(text, "motor_torque = {torque:.5}");
+                }
+                spin += rate.abs();
+            }
+        }
+        if self.rng.chance(0.25) {
+            let _ = writeln!(text, "restitution = {:.2}", self.rng.unit());
+        }
+        if self.rng.chance(0.25) {
+            let _ = writeln!(text, "contact_friction = {:.2}", self.rng.between(0.0, 1.5));
         }
         let speed = length(velocity) + 0.9 * spin * size;
         self.speeds[1] = self.speeds[1].max(speed);

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use splashdown::check::{Interpretation, interpretations};
+use splashdown::check::{BodyWidths, Interpretation, Resolution, interpretations, resolution};
 use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Method, Scene, SceneWarning};
 use splashdown::{Device, Packing, Simulation, check_particles, memory_forecast_of};
@@ -40,6 +40,8 @@ struct Report<'a> {
     speed: &'a Speed,
     /// How the meshes of bodies and fluid are interpreted.
     meshes: &'a [Interpretation],
+    /// Lengths of the scene in particle spacings, and the nearest validated cases.
+    resolution: &'a Resolution,
     warnings: &'a [SceneWarning],
 }
 
@@ -66,6 +68,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let inventory = splashdown::inventory(&scene)?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let meshes = interpretations(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
+    let resolution = resolution(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
     let packing = splashdown::initial_packing(&scene)?;
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
@@ -85,6 +88,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             memory_forecast: memory,
             speed: &speed,
             meshes: &meshes,
+            resolution: &resolution,
             warnings: &scene.warnings,
         });
         return Ok(fits?);
@@ -98,6 +102,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         print_packing(packing);
     }
     print_meshes(&meshes);
+    print_resolution(&resolution);
     Ok(fits?)
 }
 
@@ -188,6 +193,32 @@ fn print_meshes(meshes: &[Interpretation]) {
                 human::volume(closing.least.into())
             ));
         }
+    }
+}
+
+/// The scene's lengths in spacings, the nearest validated cases, and what is too coarse.
+fn print_resolution(resolution: &Resolution) {
+    let thinnest = resolution.fluid.iter().min_by(|a, b| a.spacings.total_cmp(&b.spacings));
+    let depth = resolution.depth.map(|depth| format!("fluid {depth:.0} spacings deep"));
+    let film = thinnest.map(|piece| format!("{} {:.1} across", piece.owner, piece.spacings));
+    let wave = resolution.wave.map(|wave| format!("waves {:.0} spacings long", wave.length));
+    let bodies = resolution.bodies.iter().map(|BodyWidths { owner, thickness, gap, .. }| {
+        let or_more = |width: &Option<f32>| width.map_or("over 16".to_owned(), |width| format!("{width:.1}"));
+        format!("{owner} {} thick, gap {}", or_more(thickness), or_more(gap))
+    });
+    let parts: Vec<String> = depth.into_iter().chain(film).chain(wave).chain(bodies).collect();
+    if !parts.is_empty() {
+        console::print(format!("  resolution, in spacings: {}", parts.join("; ")));
+    }
+    for case in &resolution.validated {
+        let here = case.here.map_or(String::new(), |here| format!(" (here {here:.0})"));
+        console::print(format!(
+            "  validated: {}, {} {} spacings{here}: {}",
+            case.case, case.across, case.spacings, case.error
+        ));
+    }
+    for sentence in resolution.too_coarse() {
+        console::note(format!("coarse: {sentence}; use a finer particle_spacing if it matters\n"));
     }
 }
 

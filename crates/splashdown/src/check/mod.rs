@@ -10,12 +10,16 @@ mod files;
 mod load;
 mod motion;
 mod reference;
+mod resolution;
 mod shapes;
 #[cfg(test)]
 mod tests;
+mod validated;
 mod warnings;
 
 pub(crate) use built::Built;
 pub use built::count;
 pub use reference::reference;
+pub use resolution::{BodyWidths, Extent, Resolution, Wave, resolution};
 pub use shapes::{Closing, Interpretation, interpretations};
+pub use validated::Validated;

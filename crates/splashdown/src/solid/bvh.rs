@@ -86,6 +86,32 @@ impl Bvh {
         best.sqrt()
     }
 
+    /// The distance along a ray to the nearest triangle within `most` that it leaves through the back (`leaving`) or
+    /// meets from the front. `direction` is a unit vector.
+    pub fn ray(&self, origin: Vec3, direction: Vec3, most: f32, leaving: bool) -> Option<f32> {
+        let mut best = most;
+        let mut stack = vec![0u32];
+        while let Some(n) = stack.pop() {
+            let node = &self.nodes[n as usize];
+            if !meets_box(node, origin, direction, best) {
+                continue;
+            }
+            if node.count == 0 {
+                stack.extend([node.first, node.first + 1]);
+                continue;
+            }
+            for t in &self.triangles[node.first as usize..(node.first + node.count) as usize] {
+                let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+                if (normal.dot(direction) > 0.0) == leaving
+                    && let Some(distance) = ray_distance(origin, direction, t)
+                {
+                    best = best.min(distance);
+                }
+            }
+        }
+        (best < most).then_some(best)
+    }
+
     /// The generalised winding number (Jacobson et al. 2013; far clusters as dipoles: Barill et al. 2018).
     pub fn winding(&self, x: Vec3) -> f32 {
         self.winding_to(x, FAR)
@@ -138,6 +164,34 @@ fn summary(triangles: &[[Vec3; 3]], first: usize, count: usize) -> Node {
 
 fn box_distance(node: &Node, x: Vec3) -> f32 {
     x.clamp(node.low, node.high).distance_squared(x)
+}
+
+/// True if a ray meets the box of a node within the distance `most`.
+fn meets_box(node: &Node, origin: Vec3, direction: Vec3, most: f32) -> bool {
+    // A component of zero gives infinities of both signs, or NaN on a face, which min and max ignore.
+    let (a, b) = ((node.low - origin) / direction, (node.high - origin) / direction);
+    let mut range = (0.0_f32, most);
+    for axis in 0..3 {
+        range.0 = range.0.max(a[axis].min(b[axis]));
+        range.1 = range.1.min(a[axis].max(b[axis]));
+    }
+    range.0 <= range.1
+}
+
+/// The distance along a ray to a triangle (Moeller & Trumbore 1997).
+fn ray_distance(origin: Vec3, direction: Vec3, &[a, b, c]: &[Vec3; 3]) -> Option<f32> {
+    let (ab, ac) = (b - a, c - a);
+    let across = direction.cross(ac);
+    let determinant = ab.dot(across);
+    if determinant == 0.0 {
+        return None;
+    }
+    let from = origin - a;
+    let u = from.dot(across) / determinant;
+    let other = from.cross(ab);
+    let v = direction.dot(other) / determinant;
+    let distance = ac.dot(other) / determinant;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
 }
 
 /// The solid angle of a triangle seen from `x` (van Oosterom & Strackee 1983).

@@ -20,12 +20,14 @@ mod openness;
 mod repair;
 mod sample;
 mod surroundings;
+mod widths;
 
 pub use cache::default_cache_folder;
 pub use field::DistanceField;
 pub use mass::MassProperties;
 pub use repair::{RepairReport, repair};
 pub use surroundings::{Placed, Surroundings};
+pub(crate) use widths::{Triangles, widths};
 
 use std::path::PathBuf;
 

@@ -1,0 +1,169 @@
+//! The validated cases nearest to a scene, with their errors from `docs/validation.md`.
+
+use serde::Serialize;
+
+use crate::scene::{DensityMode, Method, Motion, Quantity, Scene};
+
+/// A support ratio from which a scene counts as one of the wider support.
+const WIDE: f32 = 2.5;
+/// A kinematic viscosity in m^2/s from which the flow of a scene counts as viscous: that of oil.
+const VISCOUS: f32 = 1e-5;
+
+/// A validated case and its error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Validated {
+    /// The case.
+    pub case: &'static str,
+    /// Its length of reference.
+    pub across: &'static str,
+    /// That length in spacings.
+    pub spacings: u32,
+    /// Its error.
+    pub error: &'static str,
+    /// The same length of the scene in spacings, if it has one.
+    pub here: Option<f32>,
+}
+
+/// The solvers that the report distinguishes.
+#[derive(Clone, Copy, PartialEq)]
+enum Solver {
+    Continuity,
+    Engineering,
+    Summation,
+    Dfsph,
+}
+
+impl Solver {
+    fn of(scene: &Scene) -> Option<Self> {
+        let solver = &scene.solver;
+        match (solver.method, solver.density) {
+            (Method::Mueller2003, _) => None,
+            (Method::Dfsph, _) => Some(Self::Dfsph),
+            (_, DensityMode::Summation) => Some(Self::Summation),
+            (_, DensityMode::Continuity) if solver.support_ratio >= WIDE => Some(Self::Engineering),
+            (_, DensityMode::Continuity) => Some(Self::Continuity),
+        }
+    }
+}
+
+/// The cases nearest to a scene; none for `mueller2003`, which is not made for measurements.
+pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
+    let Some(solver) = Solver::of(scene) else { return Vec::new() };
+    let mut cases = Vec::new();
+    let has_gravity = depth.is_some();
+    if has_gravity && scene.fluid.material.viscosity < VISCOUS {
+        cases.push(Validated {
+            case: "collapsing column",
+            across: "width",
+            spacings: 20,
+            error: match solver {
+                Solver::Continuity | Solver::Engineering => "front 3.0 %, height 3.2 %",
+                Solver::Summation => "front 3.0 %, height 2.0 %",
+                Solver::Dfsph => "front 2.9 %, height 1.7 %",
+            },
+            here: depth,
+        });
+        cases.push(Validated {
+            case: "standing wave",
+            across: "depth",
+            spacings: 20,
+            error: match solver {
+                Solver::Continuity => "period -0.9 %, 0.5 % of the height lost per period",
+                Solver::Engineering => "period 0.1 %, 0.7 % of the height lost per period",
+                Solver::Summation => "period -12.2 %, 9.8 % of the height lost per period",
+                Solver::Dfsph => "period -11.9 %, 7.6 % of the height lost per period",
+            },
+            here: depth,
+        });
+    }
+    let floats = scene.bodies.iter().any(|body| matches!(body.motion, Motion::Dynamic { hinge: None, .. }));
+    if has_gravity && floats {
+        cases.push(match solver {
+            Solver::Continuity | Solver::Engineering => Validated {
+                case: "floating ball",
+                across: "diameter",
+                spacings: 12,
+                error: "height 0.6 % of the diameter, period of heave -6.3 %",
+                here: None,
+            },
+            Solver::Summation | Solver::Dfsph => Validated {
+                case: "floating cube",
+                across: "edge",
+                spacings: 10,
+                error: "height within 8 % of the edge",
+                here: None,
+            },
+        });
+    }
+    let measures_pressure = scene.probes.iter().any(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
+    if measures_pressure {
+        let error = match solver {
+            Solver::Continuity | Solver::Engineering => {
+                Some(("impulses of four gauges 1.43, 1.03, 0.79 and 0.16 times the measured ones", 6))
+            }
+            Solver::Dfsph => {
+                Some(("impulses of four gauges 0.98, 0.84, 0.58 and 0.20 times the measured ones", 6))
+            }
+            // The program warns that it measures a fifth of an impact.
+            Solver::Summation => None,
+        };
+        cases.extend(error.map(|(error, spacings)| Validated {
+            case: "impact on a box (SPHERIC test 2)",
+            across: "height of the box",
+            spacings,
+            error,
+            here: None,
+        }));
+    }
+    if scene.fluid.material.viscosity >= VISCOUS && solver == Solver::Dfsph {
+        cases.push(Validated {
+            case: "viscous flow in a duct",
+            across: "width",
+            spacings: 20,
+            error: "velocity 2.7 %",
+            here: None,
+        });
+    }
+    cases
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The figures of the cases are those of the report.
+    #[test]
+    fn the_report_contains_the_figures() {
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/validation.md");
+        let report = std::fs::read_to_string(page).unwrap();
+        let words = report.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+        let known: Vec<&str> = words.map(|word| word.trim_end_matches('.')).collect();
+        for (method, more) in [
+            ("method = \"dfsph\"", ""),
+            ("method = \"wcsph\"", ""),
+            ("accuracy = \"engineering\"", ""),
+            ("density = \"continuity\"", ""),
+            ("method = \"dfsph\"", "material = \"honey\""),
+        ] {
+            let text = format!(
+                "[scene]\nname = \"x\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.02\n{more}\n\
+                 [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n[solver]\n{method}\n\
+                 [[body]]\nname = \"ball\"\nmesh = \"sphere\"\nmotion = \"dynamic\"\ndensity = 500\nposition = [0.5, 0.8, 0.5]\n\
+                 [[probe]]\nname = \"gauge\"\nquantity = \"pressure\"\nposition = [0.0, 0.1, 0.5]\n"
+            );
+            let scene = Scene::parse(&text, "validated").unwrap();
+            let cases = validated(&scene, Some(25.0));
+            assert!(cases.len() > 1, "{cases:?}");
+            for case in cases {
+                let figures = case.error.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+                for figure in figures.map(|word| word.trim_end_matches('.')).filter(|word| word.contains('.'))
+                {
+                    // The period of heave is a ratio in the report.
+                    let expected = if figure == "-6.3" { "0.937" } else { figure };
+                    assert!(known.contains(&expected), "{figure} of {case:?}");
+                }
+            }
+        }
+    }
+}
