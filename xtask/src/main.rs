@@ -20,6 +20,7 @@ mod python;
 mod report;
 mod serve;
 mod setup;
+mod shaders;
 mod storms;
 mod suite;
 mod supply;
@@ -59,6 +60,9 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     run random scenes, 1,000 by default, and judge their particles by an independent check; a full search
                     writes docs/storms.md (--continuity: only that form of the density; --ignore: with --on-burst ignore; --shipped:
                     the scenes that come with the program, with their spacing multiplied by a factor)
+  shaders [--assembly PASS]
+                    compile the compute passes for AMD GPUs, which need not be present, and write docs/shaders.md:
+                    registers, spills, instructions and predicted times (--assembly: print the machine code of a pass)
   api               check the public API of the library crates and compare it with that of an earlier commit
   deny              check licences, duplicates, sources and known vulnerabilities of the dependencies
   sbom [--out FILE] list the packages in the program as CycloneDX JSON [default: target/splashdown.cdx.json]
@@ -98,6 +102,7 @@ fn main() -> ExitCode {
         "package" => package::run(rest),
         "dist" => package::dist(rest),
         "release" => package::release(rest),
+        "shaders" => shaders::run(rest),
         "setup" => setup::run(rest),
         "guide" => guide::run(rest),
         "deny" => supply::run(rest),

@@ -8,7 +8,7 @@ use crate::layers::{self, Outcome, Report, succeeds};
 use crate::process::{self, cargo, command, say};
 use crate::test_output::Filter;
 use crate::watch::Watch;
-use crate::{api, guide, page, python, setup, storms, supply, wheel};
+use crate::{api, guide, page, python, setup, shaders, storms, supply, wheel};
 
 /// Systems for which the code is type-checked without running it.
 const OTHER_SYSTEMS: [(&str, &str); 2] =
@@ -75,6 +75,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         layers::tests(&mut tests, filter, Some(Watch::new(Instant::now())))
     });
     report.layer("random scenes", |_| storms::layer());
+    report.layer("shaders", |_| shaders::layer());
     if extent == Extent::Fast {
         say("\n--fast: documentation, the web page and other systems were not checked.");
     } else {

@@ -92,7 +92,8 @@ pub fn verdict(facts: &Facts, start: &Measures, now: &Measures) -> Vec<String> {
 /// The gain of mechanical energy over what was there and what the scene can bring in, relative to it; `None` where
 /// particles come and go, so that their energy has no reference.
 pub fn gain(facts: &Facts, start: &Measures, now: &Measures) -> Option<f64> {
-    if now.count != start.count || start.count == 0 {
+    // With an emitter the count can be that of the start by chance.
+    if now.count != start.count || start.count == 0 || facts.has_emitters {
         return None;
     }
     let floor = -facts.mass * facts.lowest * now.count as f64;

@@ -27,6 +27,7 @@ pub struct Facts {
     /// Energy in J per particle that bodies, shaking and surface forces can bring in.
     pub brought: f64,
     pub has_sinks: bool,
+    pub has_emitters: bool,
     /// Static balls: centre and radius in m.
     pub balls: Vec<([f64; 3], f64)>,
 }
@@ -528,6 +529,7 @@ impl Maker {
             lowest: dot(gravity, corner),
             brought,
             has_sinks: self.has_sinks,
+            has_emitters: self.traits.contains(&"emitter"),
             balls: self.balls,
         };
         Storm { name, text, facts, traits: self.traits }

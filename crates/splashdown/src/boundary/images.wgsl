@@ -43,6 +43,9 @@ fn extrapolated(pressure: f32, more: f32) -> f32 {
     return max(pressure + more, min(pressure, 0.0));
 }
 
+// A reflection is its own inverse, so a loop over neighbours can reflect the particle once instead of every neighbour:
+// reflected_point(by, x) - p is by.sign times the distance of x from the image of p. Scalars of the pair are the same in
+// both frames. Loops keep their sums in the frame of the image, by a product with by.sign before and after.
 fn reflected_point(by: Reflection, x: vec3<f32>) -> vec3<f32> {
-    return by.sign * x + by.shift;
+    return select(x, by.shift - x, by.sign < vec3(0.0));
 }

@@ -23,12 +23,17 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     var a = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own_x = reflected_point(by, x);
+        let own_v = by.sign * v;
+        // The hydrostatic difference between an image and its particle is linear in the particle's position.
+        let slope = (by.sign - 1.0) * body / params.rest_density;
+        let offset = dot(by.shift, body) / params.rest_density;
+        a *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
                 let p = sorted_positions[j].xyz;
-                let image = reflected_point(by, p);
-                let d = x - image;
+                let d = own_x - p;
                 let r2 = dot(d, d);
                 if (r2 >= reach) {
                     continue;
@@ -36,18 +41,19 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
                 let q = sqrt(r2) * scale;
                 let g = kernel_g(q) * scale5;
                 let other = densities[j];
-                let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
+                let vx = dot(own_v - sorted_velocities[j].xyz, d);
                 let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
                 let own = other.y / (other.x * other.x);
-                let more = dot(body, image - p) / params.rest_density;
+                let more = offset + dot(slope, p);
                 let pressure_sum = mass * (specific + extrapolated(own, more));
                 a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
                     - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
                 if (tension) {
-                    a += tension_between(i, j, by.sign, d, q, rho, other.x);
+                    a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
                 }
             }
         }
+        a *= by.sign;
     }
 
     if ((FORCES & OTHER_FORCES) != 0u) {

@@ -32,15 +32,20 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     var diffusion = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own_x = reflected_point(by, x);
+        let own_v = by.sign * v;
+        let mixed = by.sign.xxy * by.sign.yzz;
+        moment.others *= mixed;
+        strain.others *= mixed;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
                 let p = sorted_positions[j].xyz;
-                let d = x - reflected_point(by, p);
+                let d = own_x - p;
                 let r2 = dot(d, d);
                 if (r2 < reach) {
                     let other = sorted_velocities[j];
-                    let u = v - by.sign * other.xyz;
+                    let u = own_v - other.xyz;
                     // The density of an image continues hydrostatically.
                     let psi = other.w - rho + dot(hydrostatic, x - p);
                     let g = kernel_g(sqrt(r2) * scale) * factor / other.w;
@@ -53,6 +58,8 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
                 }
             }
         }
+        moment.others *= mixed;
+        strain.others *= mixed;
     }
     var whole = Symmetric(-moment.diagonal, -moment.others);
     var open = 1.0;

@@ -47,12 +47,19 @@ fn corrected_acceleration(
     var concentration = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own_x = reflected_point(by, x);
+        let own_v = by.sign * v;
+        // The hydrostatic difference between an image and its particle is linear in the particle's position.
+        let slope = (by.sign - 1.0) * body / params.rest_density;
+        let offset = dot(by.shift, body) / params.rest_density;
+        let own_stress = Symmetric(own.diagonal, by.sign.xxy * by.sign.yzz * own.others);
+        a *= by.sign;
+        concentration *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
                 let p = sorted_positions[j].xyz;
-                let image = reflected_point(by, p);
-                let d = x - image;
+                let d = own_x - p;
                 let r2 = dot(d, d);
                 if (r2 >= reach) {
                     continue;
@@ -61,25 +68,26 @@ fn corrected_acceleration(
                 let q = r * scale;
                 let g = kernel_g(q) * scale5;
                 let other = densities[j];
-                let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
+                let vx = dot(own_v - sorted_velocities[j].xyz, d);
                 let approach = min(-3.0 * vx * r / (r2 + soft), params.sound_speed);
                 let speed = select(0.0, approach + artificial_speed, vx < 0.0);
                 let viscous = vx * (laminar + artificial * speed) / (r2 + soft);
-                let more = dot(body, image - p) / params.rest_density;
+                let more = offset + dot(slope, p);
                 let pressure = extrapolated(other.y / (other.x * other.x), more);
-                let sign = by.sign.xxy * by.sign.yzz;
                 let stress = Symmetric(
-                    own.diagonal + pressure * corrections[2u * j].xyz,
-                    own.others + pressure * sign * corrections[2u * j + 1u].xyz,
+                    own_stress.diagonal + pressure * corrections[2u * j].xyz,
+                    own_stress.others + pressure * corrections[2u * j + 1u].xyz,
                 );
                 a += g * (viscous * d - mass * applied(stress, d));
                 let near = kernel_w(q) * params.inverse_kernel_at_spacing;
                 concentration += g * (1.0 + 0.2 * near * near * near * near) * d;
                 if (has_tension) {
-                    a += tension_between(i, j, by.sign, d, q, rho, other.x);
+                    a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
                 }
             }
         }
+        a *= by.sign;
+        concentration *= by.sign;
     }
     a += body + wall_friction(x, v, state.dt);
     accelerations[i] = vec4(a, 0.0);

@@ -20,10 +20,11 @@ fn density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     var sum = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own = reflected_point(by, x);
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);
                 if (r2 < reach) {
                     sum += kernel_w(sqrt(r2) * scale);

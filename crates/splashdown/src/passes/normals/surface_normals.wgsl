@@ -20,16 +20,19 @@ fn surface_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     var sum = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own = reflected_point(by, x);
+        sum *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);
                 if (r2 < reach) {
                     sum += d * (kernel_g(sqrt(r2) * scale) / densities[j].x);
                 }
             }
         }
+        sum *= by.sign;
     }
     let s2 = scale * scale;
     normals[i] = vec4(params.summed_mass * s2 * s2 * sum, 0.0);

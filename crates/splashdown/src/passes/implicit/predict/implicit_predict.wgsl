@@ -38,16 +38,19 @@ fn update(i: u32) -> vec4<f32> {
     var sum = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own = reflected_point(by, x);
+        sum *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);
                 if (r2 < reach) {
                     sum += ((k + pressure_of(j)) * kernel_g(sqrt(r2) * scale)) * d;
                 }
             }
         }
+        sum *= by.sign;
     }
     let factor = params.summed_mass / params.rest_density * scale * scale * scale * scale * scale;
     var q = factor * sum;

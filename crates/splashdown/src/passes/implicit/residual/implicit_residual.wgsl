@@ -19,13 +19,15 @@ fn rate_of(x: vec3<f32>, u: vec3<f32>) -> f32 {
     var sum = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own = reflected_point(by, x);
+        let own_u = by.sign * u;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);
                 if (r2 < reach) {
-                    sum += kernel_g(sqrt(r2) * scale) * dot(d, u - by.sign * predicted[j].xyz);
+                    sum += kernel_g(sqrt(r2) * scale) * dot(d, own_u - predicted[j].xyz);
                 }
             }
         }

@@ -43,10 +43,14 @@ fn implicit_system(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     var a = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let own = reflected_point(by, x);
+        let own_v = by.sign * v;
+        gradient *= by.sign;
+        a *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
             for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
+                let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);
                 if (r2 >= reach) {
                     continue;
@@ -57,10 +61,12 @@ fn implicit_system(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
                 sum += kernel_w(q);
                 gradient += gd;
                 squares += dot(gd, gd);
-                let vx = dot(v - by.sign * sorted_velocities[j].xyz, d);
+                let vx = dot(own_v - sorted_velocities[j].xyz, d);
                 a += (vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0))) * gd;
             }
         }
+        gradient *= by.sign;
+        a *= by.sign;
     }
     let factor = volume * scale5;
     let images = 1.0 + f32(near_sides(x)) / 3.0;
