@@ -158,10 +158,18 @@ impl Context {
                 "Likely cause: body {name:?} presses water against a wall or another body, or moves too fast for the \
                  resolution. Leave a gap of more than two spacings, slow it down, or lower particle_spacing"
             ),
-            Neighbour::Body(name) => format!(
-                "Likely cause: body {name:?} has parts or gaps thinner than two spacings, or overlaps a wall or another body. \
-                 Lower particle_spacing, move it, or set its boundary to \"particles\""
-            ),
+            Neighbour::Body(name) => {
+                // A long step carries a fast, thin stream into a curved surface before pressure acts on it.
+                let shorter = if self.is_implicit {
+                    format!("; for fast streams lower solver.cfl_factor (now {}), or use method = \"wcsph\"", self.cfl_factor)
+                } else {
+                    String::new()
+                };
+                format!(
+                    "Likely cause: body {name:?} has parts or gaps thinner than two spacings, or overlaps a wall or another \
+                     body. Lower particle_spacing, move it, or set its boundary to \"particles\"{shorter}"
+                )
+            }
             Neighbour::Emitter(name) => format!(
                 "Likely cause: emitter {name:?} adds water where there is no room. Lower its speed, move it, or open a side"
             ),
