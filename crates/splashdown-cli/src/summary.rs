@@ -102,19 +102,31 @@ fn unconverged(steps: u32) -> String {
 }
 
 fn volume(summary: &Summary) -> String {
-    let particles = human::volume(summary.particle_volume);
+    let first = summary.particle_volume;
+    let last = first * grown(&summary.stats);
+    let particles = if last == first {
+        format!("{} (particles)", human::volume(first))
+    } else {
+        format!("{} at the start, {} at the end (particles)", human::volume(first), human::volume(last))
+    };
     match summary.volume {
-        None => format!("{particles} (particles)"),
-        Some([first, last]) => {
-            let first_share = change(first, summary.particle_volume);
-            format!(
-                "{particles} (particles); inside the surface initially {} ({first_share}), finally {} ({})",
-                human::volume(first),
-                human::volume(last),
-                change(last, summary.particle_volume)
-            )
-        }
+        None => particles,
+        Some([inside_first, inside_last]) => format!(
+            "{particles}; inside the surface initially {} ({}), finally {} ({})",
+            human::volume(inside_first),
+            change(inside_first, first),
+            human::volume(inside_last),
+            change(inside_last, last)
+        ),
     }
+}
+
+/// The number of particles at the end over that at the start, which emitters, sinks and open sides change.
+fn grown(stats: &Stats) -> f64 {
+    let gone = f64::from(stats.drained) + f64::from(stats.escaped) + f64::from(stats.non_finite);
+    let last = f64::from(stats.particles);
+    let first = last + gone - f64::from(stats.emitted);
+    if first > 0.0 { last / first } else { 1.0 }
 }
 
 fn change(value: f64, reference: f64) -> String {

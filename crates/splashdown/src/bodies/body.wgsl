@@ -62,6 +62,13 @@ fn direction(contact: Contact, scale: f32) -> vec3<f32> {
     return select(contact.normal, contact.slope / max(steep, 1e-20), steep > 1e-3 * scale);
 }
 
+// The acceleration that continues `a` into a body; see Contact in types.rs.
+fn continued(contact: Contact, a: vec3<f32>, scale: f32) -> vec3<f32> {
+    let n = direction(contact, scale);
+    let fraction = clamp(contact.kernel_fraction, 0.0, 0.6);
+    return fraction / (1.0 - fraction) * (a - dot(a, n) * n);
+}
+
 // The gradient of the contribution to the density with which a body acts on the implicit pressure; see solid_gradient.
 fn solid_gradient_of(contact: Contact) -> vec3<f32> {
     return -2.0 * contact.slope;

@@ -215,6 +215,15 @@ impl Contact {
         -2.0 * self.slope
     }
 
+    /// The acceleration by the part of the body that the support radius contains, for an acceleration `a` of the particle
+    /// by its neighbours: along the surface, their force continues unchanged into the solid.
+    #[inline]
+    pub fn continued(&self, a: Vec3, scale: f32) -> Vec3 {
+        let n = self.direction(scale);
+        let fraction = self.kernel_fraction.clamp(0.0, 0.6);
+        fraction / (1.0 - fraction) * (a - a.dot(n) * n)
+    }
+
     /// The unit vector along which the body's pressure acts: that of the slope, or the normal where the slope vanishes.
     /// `scale` is one over the support radius.
     #[inline]

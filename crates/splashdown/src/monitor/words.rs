@@ -171,7 +171,8 @@ impl Context {
                 )
             }
             Neighbour::Emitter(name) => format!(
-                "Likely cause: emitter {name:?} adds water where there is no room. Lower its speed, move it, or open a side"
+                "Likely cause: emitter {name:?} adds water where there is no room, under water or in a full place. Move it above \
+                 the water, or open a side"
             ),
             _ if watched == Watched::WallCorrections => {
                 "Likely cause: bodies or gaps thinner than two spacings, a body that moves too fast for the resolution, or fluid \

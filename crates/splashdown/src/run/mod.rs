@@ -14,6 +14,7 @@ use splashdown_gpu::Gpu;
 use splashdown_io::Mesh;
 use web_time::Instant;
 
+use crate::check::Built;
 use crate::foam::Foam;
 use crate::monitor::{EnergyBalance, Monitor};
 use crate::probes::FluidProbes;
@@ -77,6 +78,10 @@ pub struct Run {
     watched: Vec<bool>,
     /// Particles that had left through open sides at the last note.
     escaped: u32,
+    /// The particles that the emitters would add during the whole scene with nothing in their way.
+    planned_emission: u64,
+    /// The frames of the whole scene.
+    scene_frames: u32,
     /// The statistics of the last frame.
     last: Stats,
     /// Simulated time at the start in seconds.
@@ -162,6 +167,8 @@ impl Run {
             domain: scene.domain.clone(),
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             escaped: simulation.stats().escaped,
+            scene_frames: scene.frame_count(),
+            planned_emission: Built::of(scene).emitted(scene).map_or(0, |(count, _)| count),
             last: simulation.stats(),
             start_time: simulation.stats().time,
             simulation,
@@ -228,6 +235,9 @@ impl Run {
             self.note_escaped(&stats);
             self.warn_of_pressure(&stats);
             self.warn_of_viscosity(&stats);
+            if frame == self.frames {
+                self.warn_of_blocked_emitters(&stats);
+            }
             self.stage = Stage::Fetch(frame);
             return Ok(None);
         }

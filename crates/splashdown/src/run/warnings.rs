@@ -8,6 +8,11 @@ use crate::{BodyState, SimulationError, Stats};
 /// The mean of an implicit pressure above which a run warns.
 const MAX_MEAN_EXCESS: f32 = 0.02;
 
+/// Emitters that would add fewer particles than this are not compared with their flow.
+const MANY_EMITTED: f64 = 100.0;
+/// The part of its flow below which an emitter counts as blocked.
+const MOST_BLOCKED: f64 = 0.8;
+
 impl Run {
     /// Notes particles that left through open sides since the last report: the first ones, and every doubling.
     pub(super) fn note_escaped(&mut self, stats: &Stats) {
@@ -50,6 +55,23 @@ impl Run {
             );
             self.pending_events.push_back(Event::Warning(text));
         }
+    }
+
+    /// Warns at the end of a scene of emitters that have added less than their flow.
+    pub(super) fn warn_of_blocked_emitters(&mut self, stats: &Stats) {
+        let planned = self.planned_emission as f64;
+        let share = f64::from(stats.emitted) / planned.max(1.0);
+        // A run of a part of the scene is not compared.
+        if planned < MANY_EMITTED || share > MOST_BLOCKED || self.frames < self.scene_frames {
+            return;
+        }
+        let text = format!(
+            "the emitters have added {} particles, {:.0} % of the {planned} of their flow: there was no room in front of a \
+             nozzle. Move nozzles out of the water, or make room in front of them",
+            stats.emitted,
+            100.0 * share
+        );
+        self.pending_events.push_back(Event::Warning(text));
     }
 
     /// Warns of an implicit viscosity that did not converge.

@@ -469,7 +469,9 @@ fn finish() -> Case {
         let scale = f64::from(0.9_f32);
         let u = free + scale * (predicted[i].xyz().as_dvec3() - free);
         let k = scale * f64::from(predicted[i].w.max(0.0));
-        (0..3).for_each(|axis| after.push(u[axis], 2.0));
+        // The acceleration by the pressure alone, which bodies continue along their surface.
+        let by_pressure = (u - free) / dt;
+        (0..3).for_each(|axis| after.push(by_pressure[axis], 2.0 / dt));
         after.push(k, 1.0);
         let a = (u - speed(&world, i)) / dt;
         (0..3).for_each(|k| accelerations.push(a[k], 2.0 / dt));

@@ -22,6 +22,7 @@ pub(super) fn pressure_force(buffers: PressureForceBindings<'_>) {
         sums,
     } = buffers;
     let n = state.run_count as usize;
+    let scale = 1.0 / params.support_radius;
     let contacts = contacts.as_chunks::<2>().0;
     let totals: Vec<Totals> = accelerations[..n]
         .par_chunks_mut(CHUNK)
@@ -35,14 +36,17 @@ pub(super) fn pressure_force(buffers: PressureForceBindings<'_>) {
                 }
                 totals.resize(bodies.len(), [0; 6]);
                 let (x, pressure) = (positions[i].xyz(), predicted[i].w.max(0.0));
+                let by_pressure = predicted[i].xyz();
                 let mut a = whole.xyz();
                 for contact in contacts[i].iter().filter(|contact| contact.body != Contact::NONE) {
                     let body = &bodies[contact.body as usize];
+                    let missing = contact.continued(by_pressure, scale);
+                    a += missing;
                     let v = velocities[i].xyz() + state.dt * a - body.velocity_at(x);
                     let slowest = -law::contact_speed(params, contact.distance, state.dt);
                     let stop = (slowest - v.dot(contact.normal)).max(0.0) / state.dt * contact.normal;
                     a += stop;
-                    let force = params.particle_mass * (pressure * contact.solid_gradient() - stop);
+                    let force = params.particle_mass * (pressure * contact.solid_gradient() - stop - missing);
                     let point = x - contact.distance * contact.normal;
                     reaction::react(&mut totals[contact.body as usize], params, body, point, force);
                 }

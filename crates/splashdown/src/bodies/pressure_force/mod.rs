@@ -1,5 +1,6 @@
-//! The reaction to the implicit pressure, and the contact condition, which stops particles that the pressure has not: see
-//! [`boundary_force`](super::boundary_force).
+//! The reaction to the implicit pressure, its continuation along the surface of bodies
+//! ([`Contact::continued`](super::types::Contact::continued)), and the contact condition, which stops particles that the
+//! pressure has not: see [`boundary_force`](super::boundary_force).
 
 mod cpu;
 

@@ -18,17 +18,21 @@ fn pressure_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     }
     let x = sorted_positions[i].xyz;
     let pressure = max(predicted[i].w, 0.0);
+    let by_pressure = predicted[i].xyz;
+    let scale = 1.0 / params.support_radius;
     var a = whole.xyz;
     for (var c = 0u; c < 2u; c++) {
         let contact = contacts[2u * i + c];
         let b = contact.body;
         if (b != NO_BODY) {
+            let missing = continued(contact, by_pressure, scale);
+            a += missing;
             let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
             let v = sorted_velocities[i].xyz + state.dt * a - wall;
             let slowest = -contact_speed(contact.distance, state.dt);
             let stop = max(slowest - dot(v, contact.normal), 0.0) / state.dt * contact.normal;
             a += stop;
-            let force = params.particle_mass * (pressure * solid_gradient_of(contact) - stop);
+            let force = params.particle_mass * (pressure * solid_gradient_of(contact) - stop - missing);
             react(b, x - contact.distance * contact.normal, force);
         }
     }

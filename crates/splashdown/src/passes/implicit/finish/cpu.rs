@@ -36,7 +36,7 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
                 let u = free + solve.scale * (predicted[k].xyz() - free);
                 let pressure = solve.scale * predicted[k].w.max(0.0);
                 let rho = densities[k].x;
-                predicted[k] = u.extend(pressure);
+                predicted[k] = ((u - free) / state.dt).extend(pressure);
                 *a = ((u - before) / state.dt).extend(a.w);
                 densities[k].y = params.pressure_factor * pressure * rho * rho / params.rest_density;
                 let old = sorted_pressures[i].max(0.0);

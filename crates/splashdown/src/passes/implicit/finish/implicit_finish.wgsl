@@ -22,7 +22,7 @@ fn implicit_finish(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
     let u = free + solve.scale * (predicted[i].xyz - free);
     let k = solve.scale * max(predicted[i].w, 0.0);
     let rho = densities[i].x;
-    predicted[i] = vec4(u, k);
+    predicted[i] = vec4((u - free) / state.dt, k);
     accelerations[i] = vec4((u - before) / state.dt, other.w);
     densities[i] = vec2(rho, params.pressure_factor * k * rho * rho / params.rest_density);
     pressures[i] = solve.warm_start * mix(max(sorted_pressures[i], 0.0), k, solve.renewal);

@@ -1,5 +1,5 @@
-//! The results of the iterations, scaled so that the residual does no work: the whole acceleration, the pressure, and the
-//! pressure with which the next step starts.
+//! The results of the iterations, scaled so that the residual does no work: the whole acceleration, that by the pressure
+//! (in `predicted`), the pressure, and the pressure with which the next step starts.
 
 mod cpu;
 
