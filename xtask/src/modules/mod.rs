@@ -75,7 +75,7 @@ mod tests {
     use crate::process::root;
 
     /// The crates of the workspace from bottom to top. A crate may depend only on those before it.
-    const CRATES: [&str; 14] = [
+    const CRATES: [&str; 15] = [
         "splashdown-gpu",
         "splashdown-io",
         "splashdown",
@@ -88,6 +88,7 @@ mod tests {
         "splashdown-docs",
         "splashdown-bindgen",
         "splashdown-packaging",
+        "splashdown-shaders",
         "fuzz",
         "xtask",
     ];
