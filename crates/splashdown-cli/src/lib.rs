@@ -25,8 +25,6 @@ mod summary;
 
 use std::ffi::OsString;
 
-use clap::Parser;
-
 use args::{Arguments, Command};
 use exit::{Exit, Failure};
 
@@ -39,7 +37,7 @@ use exit::{Exit, Failure};
 /// ```
 #[must_use]
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match Arguments::read(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // This also prints help and version. A closed pipe is not a failure.

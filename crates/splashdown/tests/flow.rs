@@ -180,3 +180,21 @@ fn the_particle_limit_is_respected_and_a_full_buffer_is_reported_once() {
     let Some(Event::Finished(summary)) = events.last() else { panic!("no final event") };
     assert!(summary.stats.refused > 0);
 }
+
+/// A nozzle under water waits for room. In air, the control, it emits its flow.
+#[test]
+fn a_nozzle_under_water_is_reported() {
+    for (height, is_blocked) in [(0.15, true), (0.7, false)] {
+        let mut scene = tank([0.6, 0.9, 0.6], [0.6, 0.3, 0.6]);
+        scene.fluid.particle_spacing = 0.025;
+        scene.duration = 0.5;
+        let position = Vec3::new(0.3, height, 0.3);
+        let direction = if is_blocked { Vec3::Y } else { Vec3::NEG_Y };
+        let outlet = Outlet::Disc { radius: 0.06 };
+        scene.emitters = vec![Emitter { outlet, position, direction, speed: 0.5, ..emitter() }];
+        let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu);
+        let events = Run::new(&scene, options).unwrap().map(Result::unwrap);
+        let warns = |event: &Event| matches!(event, Event::Warning(text) if text.contains("of their flow"));
+        assert_eq!(events.filter(warns).count(), usize::from(is_blocked), "at {height} m");
+    }
+}

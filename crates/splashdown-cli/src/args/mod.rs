@@ -8,10 +8,11 @@ mod scenes;
 mod surface;
 mod view;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{ArgAction, Args, Parser, Subcommand};
+use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use splashdown::Device;
 use splashdown::scene::Choice;
@@ -39,6 +40,20 @@ pub struct Arguments {
     /// [default: 64 times the size of the file, and at least 0.25]
     #[arg(long, global = true, value_name = "GIB", value_parser = gibibytes)]
     pub input_limit: Option<u64>,
+}
+
+impl Arguments {
+    /// Reads a command line.
+    ///
+    /// # Errors
+    /// An invalid command line, and requests for help or the version.
+    pub fn read(
+        arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    ) -> Result<Self, clap::Error> {
+        // A negative number is a value out of range and not an unknown option.
+        let command = Self::command().mut_subcommands(|command| command.allow_negative_numbers(true));
+        Self::from_arg_matches_mut(&mut command.try_get_matches_from(arguments)?)
+    }
 }
 
 /// A size in GiB, as bytes.

@@ -36,6 +36,9 @@ fn invalid_command_lines_exit_with_two_and_a_hint() -> Outcome {
         let output = splashdown(arguments).output()?;
         crate::place::assert_refused(&output, 2, &[]);
     }
+    let negative = splashdown(&["run", "x.toml", "--frames", "-3"]).output()?;
+    crate::place::assert_refused(&negative, 2, &["'-3'", "--frames"]);
+    assert!(!stderr(&negative).contains("unexpected"), "{}", stderr(&negative));
     let formats = splashdown(&["run", "x.toml", "--formats", "abc"]).output()?;
     assert!(stderr(&formats).contains("ply") && stderr(&formats).contains("vtu"), "{}", stderr(&formats));
     Ok(())

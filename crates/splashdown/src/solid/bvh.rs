@@ -90,14 +90,17 @@ impl Bvh {
     /// meets from the front. `direction` is a unit vector.
     pub fn ray(&self, origin: Vec3, direction: Vec3, most: f32, leaving: bool) -> Option<f32> {
         let mut best = most;
-        let mut stack = vec![0u32];
-        while let Some(n) = stack.pop() {
-            let node = &self.nodes[n as usize];
+        let mut stack = [0u32; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = &self.nodes[stack[depth] as usize];
             if !meets_box(node, origin, direction, best) {
                 continue;
             }
             if node.count == 0 {
-                stack.extend([node.first, node.first + 1]);
+                stack[depth..depth + 2].copy_from_slice(&[node.first, node.first + 1]);
+                depth += 2;
                 continue;
             }
             for t in &self.triangles[node.first as usize..(node.first + node.count) as usize] {
@@ -178,12 +181,12 @@ fn meets_box(node: &Node, origin: Vec3, direction: Vec3, most: f32) -> bool {
     range.0 <= range.1
 }
 
-/// The distance along a ray to a triangle (Moeller & Trumbore 1997).
-fn ray_distance(origin: Vec3, direction: Vec3, &[a, b, c]: &[Vec3; 3]) -> Option<f32> {
+/// The distance along a ray to a triangle, in lengths of `direction`, if it hits the triangle (Moeller & Trumbore 1997).
+pub fn ray_distance(origin: Vec3, direction: Vec3, &[a, b, c]: &[Vec3; 3]) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
     let determinant = ab.dot(across);
-    if determinant == 0.0 {
+    if determinant.abs() < f32::MIN_POSITIVE {
         return None;
     }
     let from = origin - a;
@@ -239,6 +242,15 @@ fn triangle_distance(p: Vec3, &[a, b, c]: &[Vec3; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_triangle_is_hit_inside_and_missed_outside() {
+        let corners = [Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0)];
+        let at = |x: f32, y: f32| ray_distance(Vec3::new(x, y, -1.0), Vec3::Z, &corners);
+        assert_eq!(at(0.2, 0.3), Some(2.0));
+        assert_eq!(at(0.6, 0.6), None);
+        assert_eq!(ray_distance(Vec3::new(0.2, 0.3, 2.0), Vec3::Z, &corners), None);
+    }
 
     fn cube() -> Vec<[Vec3; 3]> {
         let mesh = crate::models::build("cube").unwrap();

@@ -22,6 +22,7 @@ mod sample;
 mod surroundings;
 mod widths;
 
+pub use bvh::ray_distance;
 pub use cache::default_cache_folder;
 pub use field::DistanceField;
 pub use mass::MassProperties;

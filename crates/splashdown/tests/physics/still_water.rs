@@ -91,7 +91,7 @@ fn water_around_a_cube_stays_still() {
 }
 
 /// Without the force that continues the pressure along the surface into the body, the first layer slid down vertical faces
-/// at a sixth of gravity, and the water kept moving at 3 % of sqrt(g depth).
+/// at a sixth of gravity, and the water never came to rest.
 #[test]
 fn water_around_a_cube_comes_to_rest_with_dfsph() {
     let (speed, lift, _) = simulate("method = \"dfsph\"", 2.0);

@@ -9,13 +9,8 @@
 
 override CORRECTED: u32 = 0u; // 1: with corrected gradients
 
-struct Effect {
-    // The acceleration by the body.
-    direct: vec3<f32>,
-    normal: vec3<f32>,
-}
-
-fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: vec3<f32>) -> Effect {
+// The acceleration by a body.
+fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: vec3<f32>) -> vec3<f32> {
     let contact = contacts[2u * i + k];
     let b = contact.body;
     let x = sorted_positions[i].xyz;
@@ -42,7 +37,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
         }
     }
     if ((FORCES & OTHER_FORCES) == 0u) {
-        return Effect(a, n);
+        return a;
     }
 
     let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
@@ -59,7 +54,7 @@ fn effect(i: u32, k: u32, other_fraction: f32, other_normal: vec3<f32>, body: ve
         let spline = max(-4.0 * q * q + 6.0 * q - 2.0, 0.0);
         a -= bodies[b].adhesion * sqrt(sqrt(4.0 * spline)) * n;
     }
-    return Effect(a, n);
+    return a;
 }
 
 // The contact acceleration that prevents a particle from entering the body, if `v` is its velocity after this step.
@@ -84,24 +79,19 @@ fn boundary_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
     let unchanged = select(vec3(0.0), body, (FORCES & OTHER_FORCES) != 0u);
     var a = accelerations[i].xyz - unchanged;
     var reaction: array<vec3<f32>, 2>;
-    var normals: array<vec3<f32>, 2>;
     for (var k = 0u; k < 2u; k++) {
         if (k == 1u && !both) {
             continue;
         }
         let other_fraction = select(0.0, contacts[2u * i + 1u - k].kernel_fraction, both);
         let other_normal = contacts[2u * i + 1u - k].normal;
-        let one = effect(i, k, other_fraction, other_normal, body);
-        reaction[k] = one.direct;
-        normals[k] = one.normal;
+        reaction[k] = effect(i, k, other_fraction, other_normal, body);
     }
     var whole = a;
     for (var k = 0u; k < 2u; k++) {
         if (k == 0u || both) {
             // The tangential acceleration continues unchanged into the solid, which exerts the missing part.
-            let kernel_fraction = clamp(contacts[2u * i + k].kernel_fraction, 0.0, 0.6);
-            let tangential = whole - dot(whole, normals[k]) * normals[k];
-            let missing = kernel_fraction / (1.0 - kernel_fraction) * tangential;
+            let missing = continued(contacts[2u * i + k], whole, 1.0 / params.support_radius);
             whole += missing;
             reaction[k] += missing;
         }

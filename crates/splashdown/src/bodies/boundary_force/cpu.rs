@@ -77,17 +77,13 @@ impl ParticleForces<'_> {
         let unchanged = if FORCES & part::OTHER != 0 { self.wall_body } else { Vec3::ZERO };
         let mut a = acceleration.xyz() - unchanged;
         let both = used == 2;
-        let second = if both { self.effect::<FORCES>(1, both) } else { (Vec3::ZERO, Vec3::ZERO) };
-        let (mut reaction, normals): ([Vec3; 2], [Vec3; 2]) = {
-            let first = self.effect::<FORCES>(0, both);
-            ([first.0, second.0], [first.1, second.1])
-        };
+        let second = if both { self.effect::<FORCES>(1, both) } else { Vec3::ZERO };
+        let mut reaction = [self.effect::<FORCES>(0, both), second];
+        let scale = 1.0 / self.params.support_radius;
         let mut whole = a;
         for (k, contact) in self.contacts.iter().enumerate().take(used) {
             // The tangential acceleration continues unchanged into the solid, which exerts the missing part.
-            let kernel_fraction = contact.kernel_fraction.clamp(0.0, 0.6);
-            let tangential = whole - whole.dot(normals[k]) * normals[k];
-            let missing = kernel_fraction / (1.0 - kernel_fraction) * tangential;
+            let missing = contact.continued(whole, scale);
             whole += missing;
             reaction[k] += missing;
         }
@@ -113,8 +109,8 @@ impl ParticleForces<'_> {
         self.bodies[contact.body as usize].velocity_at(self.x)
     }
 
-    /// The acceleration by a body, and the direction of its pressure force.
-    fn effect<const FORCES: u32>(&self, k: usize, both: bool) -> (Vec3, Vec3) {
+    /// The acceleration by a body.
+    fn effect<const FORCES: u32>(&self, k: usize, both: bool) -> Vec3 {
         let (params, contact) = (self.params, &self.contacts[k]);
         let other = &self.contacts[1 - k];
         let body = &self.bodies[contact.body as usize];
@@ -136,7 +132,7 @@ impl ParticleForces<'_> {
             a *= self.correction.map_or(1.0 / open.max(0.1), |matrix| matrix.along(n));
         }
         if FORCES & part::OTHER == 0 {
-            return (a, n);
+            return a;
         }
 
         let v = self.v - self.wall_velocity(contact);
@@ -152,7 +148,7 @@ impl ParticleForces<'_> {
             let spline = (-4.0 * q * q + 6.0 * q - 2.0).max(0.0);
             a -= body.adhesion * (4.0 * spline).sqrt().sqrt() * n;
         }
-        (a, n)
+        a
     }
 
     /// The contact acceleration that prevents a particle from entering a body, if `v` is its velocity after this step.
