@@ -65,9 +65,18 @@ pub fn replay(target: &Target, input: Vec<u8>) -> Result<Outcome> {
 }
 
 fn attempt(target: &Target, folder: &std::path::Path, input: Vec<u8>, outcome: &mut Outcome) {
-    let begun = Instant::now();
-    let (result, memory) = peak_of(|| catch_unwind(AssertUnwindSafe(|| (target.run)(&input, folder))));
-    let time = begun.elapsed();
+    let run = || {
+        let begun = Instant::now();
+        let outcome = peak_of(|| catch_unwind(AssertUnwindSafe(|| (target.run)(&input, folder))));
+        (outcome, begun.elapsed())
+    };
+    let ((result, memory), mut time) = run();
+    // The machine may have paused: only an input that is slow every time counts.
+    for _ in 0..2 {
+        if time > SLOW {
+            time = time.min(run().1);
+        }
+    }
     outcome.inputs += 1;
     outcome.memory = outcome.memory.max(memory);
     let reason = match result {

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use crate::sample;
 use crate::scene::{
     DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, Shape,
-    SinkRegion, outlet,
+    SinkRegion, SurfaceTension, outlet,
 };
 
 /// A scene with more steps than this takes days and gives a warning.
@@ -32,6 +32,12 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         }
     }
     check_viscosity(scene, solver, derived);
+    if scene.solver.surface_tension == SurfaceTension::Csf && !scene.bodies.is_empty() {
+        let message =
+            "with surface_tension = \"csf\" bodies are not wetted: the contact angle is 180 degrees"
+                .to_owned();
+        solver.warn("surface_tension", message, "at the sides of the domain it is 90 degrees");
+    }
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",

@@ -40,7 +40,7 @@ use glam::Vec4;
 use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
-pub(crate) use particles::{Outputs, PairSum, for_each};
+pub(crate) use particles::{Added, Outputs, PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
 pub(crate) use vector::{
     difference, dot, extrapolated, reflected, reflected_matrix, reflected_point, scaled, splat,

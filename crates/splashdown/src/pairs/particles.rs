@@ -1,6 +1,6 @@
 //! Sums over the neighbours of every particle.
 
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 use rayon::prelude::*;
 
@@ -59,6 +59,21 @@ impl<T: Send> Outputs<T> for &mut [T] {
     #[inline(always)]
     fn put(&mut self, i: usize, value: T) {
         self[i] = value;
+    }
+}
+
+/// Adds results to values.
+pub(crate) struct Added<'a, T>(pub &'a mut [T]);
+
+impl<T: Send + Copy + AddAssign> Outputs<T> for Added<'_, T> {
+    fn split_at(self, middle: usize) -> (Self, Self) {
+        let (first, second) = self.0.split_at_mut(middle);
+        (Self(first), Self(second))
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, value: T) {
+        self.0[i] += value;
     }
 }
 

@@ -16,7 +16,9 @@ pub mod integrate;
 pub mod mueller;
 pub mod normals;
 pub mod shifted_integrate;
+pub mod smooth_normals;
 pub mod state_equation;
+pub mod tension_force;
 pub mod viscous;
 
 pub(crate) mod advance;
@@ -57,6 +59,12 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &force_integrate::WENDLAND_C2,
         &force_integrate::CUBIC_SPLINE,
         &mueller::MUELLER,
+        &smooth_normals::WENDLAND_C2,
+        &smooth_normals::CUBIC_SPLINE,
+        &tension_force::WENDLAND_C2,
+        &tension_force::CUBIC_SPLINE,
+        &tension_force::WENDLAND_C2_CORRECTED,
+        &tension_force::CUBIC_SPLINE_CORRECTED,
         &normals::WENDLAND_C2,
         &normals::CUBIC_SPLINE,
         &state_equation::STATE_EQUATION,

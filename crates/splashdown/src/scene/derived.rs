@@ -132,6 +132,10 @@ impl Derived {
                     "diffusion",
                 ),
             },
+            match solver.method {
+                Method::Dfsph => (Self::capillary_dt(scene), "surface tension"),
+                _ => (f32::INFINITY, "surface tension"),
+            },
             (solver.max_dt, "max_dt"),
         ];
         let (dt_estimate, dt_limit) =
@@ -163,6 +167,31 @@ impl Derived {
     pub(crate) fn viscous_dt(scene: &Scene) -> f32 {
         let half = 0.5 * scene.solver.support_radius(scene.fluid.particle_spacing);
         0.125 * half * half / scene.fluid.material.viscosity
+    }
+
+    /// The numerical viscosity in m^2/s of the continuum surface force: 0.12 c H with the capillary speed
+    /// c = sqrt(sigma / (rho0 H)). It damps waves of a few spacings, which the force does not resolve.
+    pub fn capillary_viscosity(scene: &Scene) -> f32 {
+        let material = &scene.fluid.material;
+        let support_radius = scene.solver.support_radius(scene.fluid.particle_spacing);
+        match scene.solver.surface_tension {
+            SurfaceTension::Csf => {
+                0.12 * (material.surface_tension * support_radius / material.rest_density).sqrt()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The largest time step in s for the continuum surface force (Brackbill, Kothe & Zemach 1992).
+    pub(crate) fn capillary_dt(scene: &Scene) -> f32 {
+        let (material, spacing) = (&scene.fluid.material, scene.fluid.particle_spacing);
+        match scene.solver.surface_tension {
+            SurfaceTension::Csf if material.surface_tension > 0.0 => {
+                let tension = 4.0 * std::f32::consts::PI * material.surface_tension;
+                (material.rest_density * spacing * spacing * spacing / tension).sqrt()
+            }
+            _ => f32::INFINITY,
+        }
     }
 
     /// True if the viscosity is integrated implicitly: with `dfsph`, where it would otherwise determine the time step. The

@@ -48,6 +48,9 @@ choices! {
         None = "none",
         /// Cohesion and area forces of Akinci, Akinci and Teschner 2013; for `wcsph` and `dfsph`.
         Akinci2013 = "akinci2013",
+        /// Continuum surface force in N/m, Brackbill, Kothe and Zemach 1992 and Morris 2000: for measurements, with
+        /// accuracy = "engineering"; for `wcsph` and `dfsph`.
+        Csf = "csf",
         /// Curvature of the colour field, Mueller et al. 2003; for `mueller2003`.
         ColourField = "mueller2003",
     }
@@ -111,6 +114,9 @@ impl Solver {
         self.support_ratio * particle_spacing
     }
 
+    /// The support ratio of `accuracy = "engineering"`, and the smallest for the continuum surface force.
+    pub const WIDE_SUPPORT: f32 = 3.0;
+
     /// The defaults of a method and a computation of the density.
     pub fn with(method: Method, density: DensityMode) -> Self {
         // The continuity form damps impacts by a limited dissipation, and its time step is bounded by the stability of
@@ -150,6 +156,7 @@ impl Solver {
         }
         let surface_tension = match (self.surface_tension, method) {
             (SurfaceTension::None, _) => SurfaceTension::None,
+            (SurfaceTension::Csf, Method::Wcsph | Method::Dfsph) => SurfaceTension::Csf,
             (_, Method::Wcsph | Method::Dfsph) => SurfaceTension::Akinci2013,
             (_, Method::Mueller2003) => SurfaceTension::ColourField,
         };

@@ -40,6 +40,8 @@ pub(crate) const REPEATABLE: &[&str] = &[
     "cells.reorder",
     "density.",
     "normals.",
+    "smooth_normals.",
+    "tension_force.",
     "bodies.boundary_lookup.",
     "bodies.boundary_matrix",
     "flow.emit",
@@ -51,7 +53,7 @@ pub struct Scheme {
     method: Method,
     kernel: KernelKind,
     is_density_integrated: bool,
-    has_tension: bool,
+    surface_tension: SurfaceTension,
     max_iterations: u32,
     has_implicit_viscosity: bool,
 }
@@ -64,7 +66,7 @@ impl Scheme {
             kernel: scene.solver.kernel,
             is_density_integrated: scene.solver.method == Method::Wcsph
                 && scene.solver.density == DensityMode::Continuity,
-            has_tension: scene.solver.surface_tension == SurfaceTension::Akinci2013,
+            surface_tension: scene.solver.surface_tension,
             max_iterations: scene.solver.max_iterations,
             has_implicit_viscosity: Derived::has_implicit_viscosity(scene),
         }
@@ -82,13 +84,24 @@ impl Scheme {
     /// The arrays that it needs for each particle, for a scene with or without bodies.
     pub fn extras(&self, bodies: bool) -> Extras {
         Extras {
-            normals: self.has_tension,
+            normals: self.has_normals(),
+            smooth_normals: self.has_tension_force(),
             corrections: self.is_density_integrated,
             boundary_matrices: self.is_density_integrated && bodies,
             implicit: self.is_implicit(),
             solid_gradients: self.is_implicit() && bodies,
             viscous: self.has_implicit_viscosity,
         }
+    }
+
+    /// True if surface tension needs normals.
+    fn has_normals(&self) -> bool {
+        matches!(self.surface_tension, SurfaceTension::Akinci2013 | SurfaceTension::Csf)
+    }
+
+    /// True if surface tension is a force on each particle of the surface.
+    fn has_tension_force(&self) -> bool {
+        self.surface_tension == SurfaceTension::Csf
     }
 
     /// True if the pressure is implicit.
@@ -113,7 +126,7 @@ impl Scheme {
 
     /// True if the forces and integration of a step without [`Couplings`] are one pass, which stores no accelerations.
     pub fn is_fused(&self) -> bool {
-        self.method == Method::Wcsph && !self.has_tension && !self.is_density_integrated
+        self.method == Method::Wcsph && !self.has_normals() && !self.is_density_integrated
     }
 
     /// Records one step. [`begin_frame`] precedes the first step of a frame, and

@@ -9,6 +9,12 @@ use crate::state::Params;
 /// The smallest alpha for the friction at bodies.
 const SMALLEST_BOUNDARY_ALPHA: f32 = 0.05;
 
+/// Mean depth in spacings of the particles on which the continuum surface force acts: mostly the first layer, half a
+/// spacing below the surface.
+const INTERFACE_DEPTH: f32 = 0.7;
+/// The length of a normal is about 1.3 in the first layer, and 0.1 to 0.2 inside by the irregular order of the particles.
+const WEAKEST_NORMAL: f32 = 0.2;
+
 /// The constants of a scene with this number of particles.
 pub fn params(scene: &Scene, particles: u32) -> Params {
     let (solver, material) = (&scene.solver, &scene.fluid.material);
@@ -23,7 +29,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     let closed = scene.domain.closed.as_flattened();
     let scheme = Scheme::new(scene);
     let numerical_viscosity = match solver.method {
-        Method::Wcsph | Method::Dfsph => 0.0,
+        Method::Wcsph | Method::Dfsph => Derived::capillary_viscosity(scene),
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
     };
     // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero.
@@ -39,9 +45,9 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     let max_dt = if scheme.is_implicit() {
         let artificial = solver.artificial_viscosity * derived.sound_speed * support_radius / 20.0;
         let half = 0.5 * support_radius;
-        let explicit = if is_viscous { 0.0 } else { material.viscosity };
+        let explicit = numerical_viscosity + if is_viscous { 0.0 } else { material.viscosity };
         let by_viscosity = 0.125 * half * half / (explicit + artificial).max(1e-20);
-        solver.max_dt.min(Derived::body_force_dt(scene)).min(by_viscosity)
+        solver.max_dt.min(Derived::body_force_dt(scene)).min(Derived::capillary_dt(scene)).min(by_viscosity)
     } else {
         solver.max_dt
     };
@@ -62,7 +68,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         artificial_viscosity: solver.artificial_viscosity,
         density_diffusion: solver.density_diffusion,
         surface_tension: match solver.surface_tension {
-            SurfaceTension::None => 0.0,
+            SurfaceTension::None | SurfaceTension::Csf => 0.0,
             SurfaceTension::ColourField => material.surface_tension,
             SurfaceTension::Akinci2013 => {
                 wcsph::AKINCI_PER_SIGMA * material.surface_tension / (rest_density * support_radius).powi(2)
@@ -93,5 +99,15 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
             / viscous::pair::lattice_factor(f64::from(solver.support_ratio)) as f32,
         viscous_tolerance: dfsph::viscous_tolerance(solver.tolerance),
         most_viscous_iterations: scheme.most_viscous_iterations(),
+        tension_factor: match solver.surface_tension {
+            SurfaceTension::Csf => {
+                let scale = 1.0 / support_radius;
+                material.surface_tension / rest_density * volume * (scale * scale) * (scale * scale) * scale
+            }
+            _ => 0.0,
+        },
+        largest_curvature: 2.0 / scene.fluid.particle_spacing,
+        interface_depth: INTERFACE_DEPTH * scene.fluid.particle_spacing,
+        weakest_normal: WEAKEST_NORMAL,
     }
 }

@@ -13,10 +13,10 @@ use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
     acceleration, continuity, corrected_acceleration, density, force_integrate, implicit, integrate, mueller,
-    normals, shifted_integrate, state_equation, viscous,
+    normals, shifted_integrate, smooth_normals, state_equation, tension_force, viscous,
 };
 use crate::probes::Probes;
-use crate::scene::{KernelKind, Method};
+use crate::scene::{KernelKind, Method, SurfaceTension};
 use crate::state::{CarriedArrays, Fields, Reordered, SolveState, ViscousState};
 
 /// The couplings of a simulation.
@@ -130,11 +130,25 @@ impl<'a> Step<'a> {
 
     /// The normals that surface tension needs.
     pub(super) fn surface_normals(&mut self) {
-        if !self.scheme.has_tension {
+        if !self.scheme.has_normals() {
             return;
         }
         let pass = self.by_kernel(&normals::WENDLAND_C2, &normals::CUBIC_SPLINE);
         self.recorder.dispatch_particles(pass);
+    }
+
+    /// Adds the continuum surface force to the accelerations.
+    pub(super) fn tension_force(&mut self) {
+        if self.scheme.has_tension_force() {
+            let smooth = self.by_kernel(&smooth_normals::WENDLAND_C2, &smooth_normals::CUBIC_SPLINE);
+            self.recorder.dispatch_particles(smooth);
+            let force = if self.scheme.is_density_integrated {
+                self.by_kernel(&tension_force::WENDLAND_C2_CORRECTED, &tension_force::CUBIC_SPLINE_CORRECTED)
+            } else {
+                self.by_kernel(&tension_force::WENDLAND_C2, &tension_force::CUBIC_SPLINE)
+            };
+            self.recorder.dispatch_particles(force);
+        }
     }
 
     /// Accelerations by a part of the forces of fluid, walls and body forces, in one loop over the neighbours. They
@@ -171,11 +185,12 @@ impl<'a> Step<'a> {
         self.recorder.dispatch_particles(pass);
     }
 
-    /// All forces but pressure, if they include surface tension, which needs the densities.
+    /// Surface tension, which needs the densities. Akinci's is part of all forces but pressure.
     pub(super) fn surface_tension(&mut self) {
-        if self.scheme.has_tension {
-            self.surface_normals();
-            self.acceleration(Part::Other);
+        self.surface_normals();
+        match self.scheme.surface_tension {
+            SurfaceTension::Akinci2013 => self.acceleration(Part::Other),
+            _ => self.tension_force(),
         }
     }
 

@@ -20,6 +20,7 @@ pub(super) fn wcsph(step: &mut Step<'_>) {
     }
     step.surface_normals();
     step.acceleration(Part::All);
+    step.tension_force();
     step.couple(Stage::BoundaryForces(Part::All));
     step.couple(Stage::BodyMotion);
     step.couple(Stage::ExternalForces);

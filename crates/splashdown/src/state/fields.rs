@@ -13,6 +13,8 @@ use super::{
 pub struct Extras {
     /// Normals for surface tension.
     pub normals: bool,
+    /// Smooth normals for the continuum surface force.
+    pub smooth_normals: bool,
     /// Corrections and shifting velocities.
     pub corrections: bool,
     /// The contributions of bodies to the corrections.
@@ -56,6 +58,8 @@ pub struct Fields {
     pub accelerations: Buffer<Vec4>,
     /// Normals for surface tension; order as `densities`. A single entry without surface tension.
     pub normals: Buffer<Vec4>,
+    /// Their means over the neighbours; order as `densities`. A single entry without the continuum surface force.
+    pub smooth_normals: Buffer<Vec4>,
     /// The matrices that correct kernel gradients, and the coefficients of the shifting: two vectors per particle, as
     /// `passes::continuity` describes. Order as `densities`. A single entry where the density is summed.
     pub corrections: Buffer<Vec4>,
@@ -151,6 +155,7 @@ impl Fields {
             densities,
             accelerations: executor.create("accelerations", 1)?,
             normals: executor.create("normals", some(extras.normals, n))?,
+            smooth_normals: executor.create("smooth_normals", some(extras.smooth_normals, n))?,
             corrections: executor.create("corrections", some(extras.corrections, 2 * n))?,
             shifts: executor.create("shifts", some(extras.corrections, n))?,
             boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
@@ -181,7 +186,7 @@ impl Fields {
         // The names of the fields are compared with the labels in the table.
         let mut set = buffer_set!(self =>
             params, state, duration, counters, positions, velocities, ids, sorted_positions,
-            sorted_velocities, sorted_ids, densities, accelerations, normals, corrections, shifts,
+            sorted_velocities, sorted_ids, densities, accelerations, normals, smooth_normals, corrections, shifts,
             boundary_matrices, solve, stiffness, iterates, predicted, solid_gradients, residuals, impulses,
             viscous, viscous_residuals, viscous_products, viscous_directions, viscous_images,
         );

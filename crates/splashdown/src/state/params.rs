@@ -83,6 +83,15 @@ gpu_struct! {
         viscous_tolerance: f32,
         /// Largest number of iterations of the implicit viscosity.
         most_viscous_iterations: u32,
+        /// Factor of the continuum surface force: surface tension times the volume of a particle over rho0 and H^5, in
+        /// 1/s^2; 0 without.
+        tension_factor: f32,
+        /// Largest absolute curvature of the surface in 1/m.
+        largest_curvature: f32,
+        /// Mean depth below the surface at which the curvature is computed, in metres.
+        interface_depth: f32,
+        /// Length of a normal without unit below which it has no direction.
+        weakest_normal: f32,
     }
 }
 

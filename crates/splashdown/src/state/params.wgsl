@@ -37,6 +37,10 @@ struct Params {
     viscous_factor: f32,
     viscous_tolerance: f32,
     most_viscous_iterations: u32,
+    tension_factor: f32,
+    largest_curvature: f32,
+    interface_depth: f32,
+    weakest_normal: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

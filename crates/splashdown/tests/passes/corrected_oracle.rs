@@ -31,7 +31,7 @@ fn correction(matrix: DMat3) -> DMat3 {
 }
 
 /// The first three components of a particle's two vectors as a symmetric matrix.
-fn symmetric(vectors: &[glam::Vec4], i: usize) -> DMat3 {
+pub(super) fn symmetric(vectors: &[glam::Vec4], i: usize) -> DMat3 {
     let (d, o) = (vectors[2 * i].xyz().as_dvec3(), vectors[2 * i + 1].xyz().as_dvec3());
     DMat3::from_cols(DVec3::new(d.x, o.x, o.y), DVec3::new(o.x, d.y, o.z), DVec3::new(o.y, o.z, d.z))
 }

@@ -16,6 +16,7 @@ mod neighbour_cases;
 mod oracle;
 mod probe_cases;
 mod sort_cases;
+mod tension_force_cases;
 mod viscous_cases;
 mod viscous_solve;
 mod walls;
@@ -33,6 +34,7 @@ fn all_cases() -> Vec<Case> {
         carried_cases::cases(),
         cases::cases(),
         neighbour_cases::cases(),
+        tension_force_cases::cases(),
         implicit_cases::cases(),
         viscous_cases::cases(),
         flow_cases::cases(),

@@ -17,16 +17,16 @@ use super::world::{World, params};
 const ROUNDING: f64 = 2e-5;
 /// The kernels of the density and of the gradient.
 #[derive(Clone, Copy)]
-struct Kernels {
-    density: Kernel,
-    gradient: Kernel,
+pub struct Kernels {
+    pub density: Kernel,
+    pub gradient: Kernel,
 }
 
-const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
-const CUBIC: Kernels = Kernels { density: Kernel::CubicSpline, gradient: Kernel::CubicSpline };
+pub const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
+pub const CUBIC: Kernels = Kernels { density: Kernel::CubicSpline, gradient: Kernel::CubicSpline };
 const MUELLER: Kernels = Kernels { density: Kernel::Poly6, gradient: Kernel::Spiky };
 
-fn word(kernels: Kernels) -> &'static str {
+pub fn word(kernels: Kernels) -> &'static str {
     if kernels.density == Kernel::WendlandC2 { "wendland_c2" } else { "cubic_spline" }
 }
 
@@ -82,49 +82,63 @@ fn tension_open() -> Params {
     Params { surface_tension: 0.4, closed: 0b110111, ..params(2.0) }
 }
 
-fn world(params: Params) -> World {
+pub fn world(params: Params) -> World {
     World::new(params, 1500)
 }
 
 /// Expected values with tolerances.
-struct Expected {
+pub struct Expected {
     values: Vec<f64>,
     rounding: Vec<f64>,
 }
 
 impl Expected {
     /// The `poison` entries after the active particles stay unchanged.
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self { values: Vec::new(), rounding: Vec::new() }
     }
 
     /// One component: its value and the magnitude of its terms.
-    fn push(&mut self, value: f64, size: f64) {
+    pub fn push(&mut self, value: f64, size: f64) {
         self.values.push(value);
         self.rounding.push(ROUNDING * size);
     }
 
-    fn vector(&mut self, sum: &Sum) {
+    pub fn vector(&mut self, sum: &Sum) {
         for k in 0..3 {
             self.push(sum.value[k], sum.size);
         }
         self.push(0.0, 0.0);
     }
 
-    fn case(
+    /// A case whose output is poisoned before the pass.
+    pub fn case(
+        self,
+        label: String,
+        name: &str,
+        world: &World,
+        input: Vec<Data>,
+        output: Data,
+        control: fn(&mut [Data]),
+    ) -> Case {
+        self.case_over(label, name, world, input, output.poison(), control)
+    }
+
+    /// A case whose output has these values before the pass.
+    pub fn case_over(
         mut self,
         label: String,
         name: &str,
         world: &World,
         mut input: Vec<Data>,
-        output: Data,
+        before: Data,
         control: fn(&mut [Data]),
     ) -> Case {
-        let total = output.words().len();
+        let total = before.words().len();
         for list in [&mut self.values, &mut self.rounding] {
             list.resize(total, f64::NAN);
         }
-        input.push(output.poison());
+        input.push(before);
         let Self { values, rounding } = self;
         let same = rounding.clone();
         Case {
@@ -140,11 +154,11 @@ impl Expected {
 }
 
 /// A mass that is wrong by 1/500.
-fn heavier(input: &mut [Data]) {
+pub fn heavier(input: &mut [Data]) {
     input[0].params().summed_mass *= 1.002;
 }
 
-fn base(world: &World) -> Vec<Data> {
+pub fn base(world: &World) -> Vec<Data> {
     vec![Data::Params(world.params), Data::Grid(world.grid)]
 }
 
@@ -221,7 +235,7 @@ fn boundary_matrices(world: &World) -> Vec<Vec4> {
 }
 
 /// Symmetric matrices near the unit matrix, with coefficients of the shifting.
-fn corrections(world: &World) -> Vec<Vec4> {
+pub fn corrections(world: &World) -> Vec<Vec4> {
     let vectors = |i: usize| {
         let (a, b) = (world.normals[i], world.normals[(i + 7) % world.len()]);
         [(1.0 + 0.2 * a).truncate().extend(0.01 * (1.0 + a.x)), (0.2 * b).truncate().extend(1000.0)]

@@ -31,11 +31,13 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         Accuracy::Engineering => DensityMode::Continuity,
     });
     let standard = Solver::with(method, density);
+    let surface_tension = surface_tension?.unwrap_or(standard.surface_tension);
+    let has_tension_force = surface_tension == SurfaceTension::Csf;
     let solver = Solver {
         kernel: kernel?.unwrap_or(standard.kernel),
         support_ratio: support_ratio?.unwrap_or(match accuracy {
-            Accuracy::Standard => standard.support_ratio,
-            Accuracy::Engineering => 3.0,
+            Accuracy::Standard if !has_tension_force => standard.support_ratio,
+            _ => Solver::WIDE_SUPPORT,
         }),
         negative_pressure: negative_pressure?.unwrap_or(standard.negative_pressure),
         sound_speed: sound_speed?,
@@ -43,13 +45,13 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         exponent: exponent?.unwrap_or(standard.exponent),
         artificial_viscosity: artificial_viscosity?.unwrap_or(standard.artificial_viscosity),
         density_diffusion: density_diffusion?.unwrap_or(standard.density_diffusion),
-        surface_tension: surface_tension?.unwrap_or(standard.surface_tension),
+        surface_tension,
         wall_friction: wall_friction?.unwrap_or(standard.wall_friction),
         cfl_factor: cfl_factor?.unwrap_or(standard.cfl_factor),
         max_dt: max_dt?.unwrap_or(standard.max_dt),
         min_dt: min_dt?.unwrap_or(standard.min_dt),
         sort: sort?.unwrap_or(standard.sort),
-        tolerance: tolerance?.unwrap_or(standard.tolerance),
+        tolerance: tolerance?.unwrap_or(if has_tension_force { 1e-4 } else { standard.tolerance }),
         max_iterations: max_iterations?.unwrap_or(standard.max_iterations),
         ..standard
     };
@@ -98,18 +100,26 @@ fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
         result = Err(section.complain("stiffness", message, "", "keep one of them"));
     }
     match (solver.method, solver.surface_tension) {
-        (Method::Mueller2003, SurfaceTension::Akinci2013)
+        (Method::Mueller2003, SurfaceTension::Akinci2013 | SurfaceTension::Csf)
         | (Method::Wcsph | Method::Dfsph, SurfaceTension::ColourField) => {
             let (method, tension) = (solver.method, solver.surface_tension);
             let message =
                 format!("solver.surface_tension = \"{tension}\" does not work with method = \"{method}\"");
             let allowed = match method {
-                Method::Wcsph | Method::Dfsph => "\"none\", \"akinci2013\"",
+                Method::Wcsph | Method::Dfsph => "\"none\", \"akinci2013\", \"csf\"",
                 Method::Mueller2003 => "\"none\", \"mueller2003\"",
             };
             result = Err(section.complain("surface_tension", message, allowed, ""));
         }
         _ => {}
+    }
+    if solver.surface_tension == SurfaceTension::Csf && solver.support_ratio < Solver::WIDE_SUPPORT {
+        let message = format!(
+            "solver.surface_tension = \"csf\" does not work with support_ratio = {}: it cannot resolve the curvature",
+            solver.support_ratio
+        );
+        let allowed = format!("at least {}", Solver::WIDE_SUPPORT);
+        result = Err(section.complain("support_ratio", message, &allowed, "leave it out"));
     }
     if solver.method == Method::Dfsph {
         for name in Solver::NOT_IMPLICIT.into_iter().filter(|name| section.has(name)) {

@@ -1,0 +1,78 @@
+//! The continuum surface force for a liquid with a free surface (Brackbill, Kothe & Zemach 1992; Morris 2000), balanced
+//! with the pressure force (Francois et al. 2006).
+//!
+//! a_i = w_i sigma kappa_i / rho0 sum_j V (B_i + B_j) grad W: minus the pressure force by a uniform pressure sigma kappa,
+//! with the matrices B of `passes::correction` where the pressure force has them. A drop of any shape with a uniform
+//! curvature is therefore in equilibrium with the pressure of Laplace, whatever the arrangement of its particles.
+//! w_i fades out where the normal is short, inside the fluid.
+//!
+//! The curvature, the sum of both principal ones (2 / R for a ball), is that of the unit vectors u = n / |n| of
+//! `passes::smooth_normals`, which point into the fluid:
+//!
+//! kappa_i = 2 sum_j w_j g (u_j - u_i) . d / sum_j w_j g (d^2 - (d . u_i)^2), grad W = g d, d = x_i - x_j.
+//!
+//! The denominator is the numerator of a surface with the curvature 2 at the same neighbours, so that missing neighbours do not
+//! reduce the curvature. The particles that count lie at a mean depth z below the surface. There a ball has the curvature
+//! kappa, and 1 / (1 / kappa + z / 2) at its surface.
+//!
+//! Images have reflected normals, so that the surface meets walls at a right angle.
+
+mod cpu;
+
+use glam::Vec4;
+use splashdown_gpu::{PassDesc, bindings, wgsl};
+
+use crate::boundary;
+use crate::cells::{GRID, Grid, ROWS};
+use crate::kernel::{self, CubicSpline, Kernel};
+use crate::state::{PARAMS, Params, STATE, SYMMETRIC};
+
+bindings! {
+    /// The buffers of `tension_force.wgsl`.
+    pub(super) struct TensionForceBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        normals: read [Vec4],
+        smooth_normals: read [Vec4],
+        corrections: read [Vec4],
+        accelerations: write [Vec4],
+    }
+}
+
+/// With the Wendland C2 kernel.
+pub static WENDLAND_C2: PassDesc = PassDesc {
+    label: "tension_force.wendland_c2",
+    wgsl: include_str!("tension_force.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES, SYMMETRIC],
+    entry: "tension_force",
+    workgroup_size: [64, 1, 1],
+    constants: &[("KERNEL", 0.0), ("CORRECTED", 0.0)],
+    bindings: TensionForceBindings::LIST,
+    cpu: |_, slots| cpu::tension_force::<kernel::WendlandC2, false>(slots.into()),
+};
+
+/// With the cubic spline.
+pub static CUBIC_SPLINE: PassDesc = PassDesc {
+    label: "tension_force.cubic_spline",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("CORRECTED", 0.0)],
+    cpu: |_, slots| cpu::tension_force::<CubicSpline, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the Wendland C2 kernel and corrected gradients.
+pub static WENDLAND_C2_CORRECTED: PassDesc = PassDesc {
+    label: "tension_force.wendland_c2_corrected",
+    constants: &[("KERNEL", 0.0), ("CORRECTED", 1.0)],
+    cpu: |_, slots| cpu::tension_force::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the cubic spline and corrected gradients.
+pub static CUBIC_SPLINE_CORRECTED: PassDesc = PassDesc {
+    label: "tension_force.cubic_spline_corrected",
+    constants: &[("KERNEL", CubicSpline::ID as f64), ("CORRECTED", 1.0)],
+    cpu: |_, slots| cpu::tension_force::<CubicSpline, true>(slots.into()),
+    ..WENDLAND_C2
+};

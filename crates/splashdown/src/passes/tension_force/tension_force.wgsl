@@ -1,0 +1,82 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/kernel
+#import sph/images
+#import sph/symmetric
+
+#bindings
+
+override CORRECTED: u32 = 0u;
+
+// The weight of a normal: 0 where it is too short to have a direction, 1 at the surface.
+fn normal_weight(normal: vec3<f32>) -> f32 {
+    return clamp((length(normal) - params.weakest_normal) / (1.5 * params.weakest_normal), 0.0, 1.0);
+}
+
+fn direction(normal: vec3<f32>) -> vec3<f32> {
+    return normal / max(length(normal), 1e-12);
+}
+
+fn correction_of(j: u32) -> Symmetric {
+    if (CORRECTED == 1u) {
+        return Symmetric(corrections[2u * j].xyz, corrections[2u * j + 1u].xyz);
+    }
+    return Symmetric(vec3(1.0), vec3(0.0));
+}
+
+@compute @workgroup_size(64)
+fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i >= active_count()) {
+        return;
+    }
+    let own_weight = normal_weight(normals[i].xyz);
+    if (own_weight == 0.0) {
+        return;
+    }
+    let u = direction(smooth_normals[i].xyz);
+    let own = correction_of(i);
+    let x = sorted_positions[i].xyz;
+    let cell = cell_of(x);
+    let scale = 1.0 / params.support_radius;
+    let reach = params.support_radius * params.support_radius;
+    var turn = 0.0;
+    var extent = 0.0;
+    var gradient = vec3(0.0);
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let by = reflection(firstTrailingBit(left));
+        let own_x = reflected_point(by, x);
+        let own_u = by.sign * u;
+        let own_correction = Symmetric(own.diagonal, by.sign.xxy * by.sign.yzz * own.others);
+        gradient *= by.sign;
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var j = range.x; j < range.y; j++) {
+                let d = own_x - sorted_positions[j].xyz;
+                let r2 = dot(d, d);
+                if (r2 >= reach) {
+                    continue;
+                }
+                let g = kernel_g(sqrt(r2) * scale);
+                let other = correction_of(j);
+                let both = Symmetric(
+                    own_correction.diagonal + other.diagonal,
+                    own_correction.others + other.others,
+                );
+                gradient += g * applied(both, d);
+                let n = smooth_normals[j].xyz;
+                let weighted = g * normal_weight(n);
+                let along = dot(d, own_u);
+                turn += weighted * dot(direction(n) - own_u, d);
+                extent += weighted * (r2 - along * along);
+            }
+        }
+        gradient *= by.sign;
+    }
+    let limit = params.largest_curvature;
+    let inner = clamp(2.0 * turn / min(extent, -1e-3 * reach), -limit, limit);
+    let curvature = inner / max(1.0 + 0.5 * params.interface_depth * inner, 0.25);
+    accelerations[i] += vec4(params.tension_factor * own_weight * curvature * gradient, 0.0);
+}
