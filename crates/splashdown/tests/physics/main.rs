@@ -4,17 +4,22 @@
 //! of up to three resolutions. With `SPLASHDOWN_FULL=quick` two of them run, with `SPLASHDOWN_FULL=1` all; with
 //! `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
 
+mod accelerated;
 mod cases;
 mod conservation;
 mod dam_break;
+mod disorder;
 mod figures;
 mod floating;
 mod free_fall;
 mod gates;
 mod hydrostatics;
 mod implicit;
+mod jet;
 #[path = "../meshes/mod.rs"]
 mod meshes;
+mod patch;
+mod ritter;
 mod shapes;
 mod spheric2;
 mod still_water;
@@ -23,6 +28,7 @@ mod submerged;
 mod tilted;
 mod torricelli;
 mod viscosity;
+mod vortex;
 mod waves;
 
 use glam::DVec3;
@@ -32,12 +38,16 @@ use splashdown_io::Particles;
 
 /// All cases, module by module.
 const CASES: &[&[&cases::Case]] = &[
+    accelerated::CASES,
     conservation::CASES,
     dam_break::CASES,
     floating::CASES,
     free_fall::CASES,
     hydrostatics::CASES,
     implicit::CASES,
+    jet::CASES,
+    patch::CASES,
+    ritter::CASES,
     spheric2::CASES,
     still_water::CASES,
     stretching::CASES,
@@ -45,6 +55,7 @@ const CASES: &[&[&cases::Case]] = &[
     tilted::CASES,
     torricelli::CASES,
     viscosity::CASES,
+    vortex::CASES,
     waves::CASES,
 ];
 
