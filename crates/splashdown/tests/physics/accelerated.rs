@@ -28,7 +28,7 @@ const STOPPED: f64 = 0.1;
 
 const VARIANTS: &[Variant] = &[
     Variant::new("continuity", "density = \"continuity\""),
-    Variant::extra("engineering", "accuracy = \"engineering\""),
+    Variant::new("engineering", "accuracy = \"engineering\""),
     Variant::extra("summation", "density = \"summation\""),
     Variant::extra("dfsph", "method = \"dfsph\""),
 ];

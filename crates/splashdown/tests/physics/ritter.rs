@@ -21,7 +21,7 @@ static CASE: Case = Case {
     variants: &[
         Variant::new("continuity", "density = \"continuity\""),
         Variant::extra("engineering", "accuracy = \"engineering\""),
-        Variant::new("summation", "density = \"summation\""),
+        Variant::extra("summation", "density = \"summation\""),
         Variant::extra("dfsph", "method = \"dfsph\""),
     ],
 };
