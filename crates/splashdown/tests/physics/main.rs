@@ -30,6 +30,7 @@ mod torricelli;
 mod viscosity;
 mod vortex;
 mod waves;
+mod wedge;
 
 use glam::DVec3;
 use splashdown::scene::Scene;
@@ -57,6 +58,7 @@ const CASES: &[&[&cases::Case]] = &[
     viscosity::CASES,
     vortex::CASES,
     waves::CASES,
+    wedge::CASES,
 ];
 
 fn cpu() -> Executor {
