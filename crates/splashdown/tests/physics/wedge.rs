@@ -3,7 +3,7 @@
 //! (1993) 593-612, table 1, give k = 14.139 for a deadrise angle of 30 degrees; Wagner's theory, for small angles, gives
 //! pi^3 / (4 tan^2 a) = 23.3.
 //!
-//! The slope of the force over time does not depend on the moment of the first contact. A slab six spacings thick represents
+//! The slope of the force over time does not depend on the moment of the first contact. A slab four spacings thick represents
 //! two dimensions; the resolution is the number of spacings of the final depth of the apex.
 
 use glam::Vec3;
@@ -58,13 +58,13 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 fn the_force_on_a_wedge_grows_with_time() {
     CASE.run(|variant, across, figures| {
         let spacing = DEPTH / f64::from(across);
-        let thick = 6.0 * spacing;
+        let thick = 4.0 * spacing;
         let folder = tempfile::tempdir().unwrap();
-        let level = 0.4;
+        let level = 0.35;
         let mut scene = scene(&format!(
-            "[scene]\nname = \"wedge\"\nduration = 1\ngravity = [0, 0, 0]\n[domain]\nmin = [-0.8, 0, 0]\n\
-             max = [0.8, 0.8, {thick}]\nopen = [\"y_max\"]\n[fluid]\nparticle_spacing = {spacing}\n\
-             [[fluid.block]]\nposition = [-0.8, 0, 0]\nsize = [1.6, {level}, {thick}]\n\
+            "[scene]\nname = \"wedge\"\nduration = 1\ngravity = [0, 0, 0]\n[domain]\nmin = [-0.7, 0, 0]\n\
+             max = [0.7, 0.7, {thick}]\nopen = [\"y_max\"]\n[fluid]\nparticle_spacing = {spacing}\n\
+             [[fluid.block]]\nposition = [-0.7, 0, 0]\nsize = [1.4, {level}, {thick}]\n\
              [[body]]\nname = \"wedge\"\nmesh = \"cube\"\nposition = [0, {level}, 0]\n\
              move = [\"0\", \"-{SPEED}*t\", \"0\"]\n\
              [[probe]]\nname = \"force\"\nquantity = \"force\"\nbody = \"wedge\"\n[solver]\n{}\n",
