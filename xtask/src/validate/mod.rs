@@ -31,7 +31,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     if let Some(option) = options.iter().find(|option| !["--quick", "--page"].contains(&option.as_str())) {
         bail!(
             "validate takes names of tests, for example `waves`, or nothing for all; --quick leaves out the finest \
-             resolution, --page only writes the page; got {option}"
+             resolution, --page only adds the figures of the last call to the page; got {option}"
         );
     }
     let has = |name: &str| options.iter().any(|option| *option == name);
@@ -52,8 +52,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
             // Without a limit: a single case takes long at full resolution.
             layers::tests(&mut command, filter, None)
         });
-        record::merge(&folder, &process::root().join(RECORDS))?;
     }
+    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS))?;
     write_page(process::root())?;
     say(format!("Written: {PAGE}. `cargo xtask guide` builds it as HTML."));
     if has("--page") { Ok(()) } else { report.close() }
