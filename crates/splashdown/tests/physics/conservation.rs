@@ -6,17 +6,46 @@ use splashdown::{Simulation, sample};
 use splashdown_gpu::{Executor, testing};
 use splashdown_io::Particles;
 
+use super::cases::{CONTROL, Case, Variant};
 use super::figures::Figures;
 use super::{angular_sum, cpu, rms_speed, scene, square_sum, velocity_sum};
 
 const STEPS: u64 = 1000;
+
 /// Pair forces are equal and opposite except for rounding, which adds up over a thousand steps.
-const MOMENTUM: f64 = 1e-5;
-/// Positions are rounded to 3e-8 m in every step, and each rounding changes the angular momentum.
-const ANGULAR_MOMENTUM: f64 = 1e-4;
-/// The gate of the continuity form. It was 1e-4 until that form shifted the particles, which moves them without changing
-/// their velocity (7.1e-3).
-const ANGULAR_MOMENTUM_SHIFTED: f64 = 1e-2;
+static MOMENTUM: Case = Case {
+    name: "momentum",
+    across: "diameter",
+    sizes: &[10],
+    variants: &[
+        Variant::new("summation", SUMMATION),
+        Variant::new("continuity", CONTINUITY),
+        Variant::new("akinci2013", TENSION),
+        // With a = f / rho_i and equal masses the pressure and viscosity of Mueller 2003 are antisymmetric too.
+        Variant::new("mueller2003", MUELLER),
+        Variant::new("dfsph", DFSPH),
+        CONTROL,
+    ],
+};
+/// Positions are rounded to 3e-8 m in every step, and each rounding changes the angular momentum. The continuity form
+/// shifts particles, which moves them without changing their velocity.
+static ANGULAR_MOMENTUM: Case = Case {
+    name: "angular momentum",
+    across: "diameter",
+    sizes: &[10],
+    variants: &[Variant::new("summation", SUMMATION), Variant::new("continuity", CONTINUITY), CONTROL],
+};
+static ENERGY: Case = Case {
+    name: "energy",
+    across: "diameter",
+    sizes: &[10],
+    variants: &[
+        Variant::new("summation", SUMMATION),
+        Variant::new("continuity", CONTINUITY),
+        Variant::new("mueller2003", MUELLER),
+    ],
+};
+pub const CASES: &[&Case] = &[&MOMENTUM, &ANGULAR_MOMENTUM, &ENERGY];
 
 /// A ball of 500 particles in an open box without gravity.
 fn blob(gravity: f32, fluid: &str, solver: &str) -> Scene {
@@ -91,35 +120,27 @@ const MUELLER_TENSION: &str = "method = \"mueller2003\"\nsurface_tension = \"mue
 #[test]
 fn an_isolated_blob_conserves_momentum_and_particles() {
     let fluid = "viscosity = 0.001\nsurface_tension = 1.0";
-    // With a = f / rho_i and equal masses the pressure and viscosity of Mueller 2003 are antisymmetric too.
-    let ways = [
-        ("summation", SUMMATION),
-        ("continuity", CONTINUITY),
-        ("akinci", TENSION),
-        ("mueller", MUELLER),
-        ("dfsph", DFSPH),
-    ];
-    for (word, solver) in ways {
+    for &Variant { name: word, keys: solver, .. } in &MOMENTUM.variants[..5] {
         for (name, executor) in testing::executors("an_isolated_blob_conserves_momentum") {
+            let mut figures = Figures::new(&MOMENTUM, word, 10).on(name);
             let scene = blob(0.0, fluid, solver);
             // The implicit pressure restores the density in one step, so that a displacement x causes a speed of x / dt:
             // 4 m/s for a fifth of a spacing.
             let start = stirred(&scene, if solver == DFSPH { 0.01 } else { 0.2 });
             let end = run(&scene, executor, &start);
-            let mut figures = Figures::new(format!("momentum, {word}, {name}"));
-            figures.at_most("change over M v_rms in 1000 steps", momentum_drift(&start, &end), MOMENTUM);
+            figures.measure("change over M v_rms in 1000 steps", momentum_drift(&start, &end));
             figures.close();
         }
     }
     // Controls: a millionth of the earth's gravity, and forces that are not pair forces.
-    let mut figures = Figures::new("momentum, controls, CPU");
+    let mut figures = Figures::new(&MOMENTUM, "control", 10);
     let scene = blob(-1e-5, fluid, SUMMATION);
     let start = stirred(&scene, 0.2);
     let end = run(&scene, cpu(), &start);
-    figures.control("gravity of 1e-5 m/s^2", momentum_drift(&start, &end), MOMENTUM);
+    figures.measure("gravity of 1e-5 m/s^2", momentum_drift(&start, &end));
     let scene = blob(0.0, fluid, MUELLER_TENSION);
     let end = run(&scene, cpu(), &start);
-    figures.control("surface tension of the colour field", momentum_drift(&start, &end), MOMENTUM);
+    figures.measure("surface tension of the colour field", momentum_drift(&start, &end));
     figures.close();
 }
 
@@ -136,19 +157,17 @@ fn a_spinning_blob_conserves_angular_momentum() {
         let end = run(&scene, executor, &start);
         (angular_sum(&end) - angular_sum(&start)).length() / angular_sum(&start).length()
     };
-    for (word, solver, gate) in
-        [("summation", SUMMATION, ANGULAR_MOMENTUM), ("continuity", CONTINUITY, ANGULAR_MOMENTUM_SHIFTED)]
-    {
+    for &Variant { name: word, keys: solver, .. } in &ANGULAR_MOMENTUM.variants[..2] {
         for (name, executor) in testing::executors("a_spinning_blob_conserves_angular_momentum") {
-            let mut figures = Figures::new(format!("angular momentum, {word}, {name}"));
+            let mut figures = Figures::new(&ANGULAR_MOMENTUM, word, 10).on(name);
             let measured = drift(solver, "viscosity = 0.001", executor);
-            figures.at_most("change over its size in 1000 steps", measured, gate);
+            figures.measure("change over its size in 1000 steps", measured);
             figures.close();
         }
     }
     // Control and report: Mueller's viscosity acts along the difference of velocities, not along the line of the pair.
-    let mut figures = Figures::new("angular momentum, controls, CPU");
-    figures.control("mueller 2003", drift(MUELLER, "viscosity = 0.01", cpu()), ANGULAR_MOMENTUM);
+    let mut figures = Figures::new(&ANGULAR_MOMENTUM, "control", 10);
+    figures.measure("mueller2003", drift(MUELLER, "viscosity = 0.01", cpu()));
     figures.close();
 }
 
@@ -171,14 +190,14 @@ fn viscosity_only_dissipates_energy() {
         }
         (worst, last / first)
     };
-    for (word, solver) in [("laminar", SUMMATION), ("continuity", CONTINUITY), ("mueller", MUELLER)] {
-        let mut figures = Figures::new(format!("energy, {word}, CPU"));
+    for &Variant { name: word, keys: solver, .. } in ENERGY.variants {
+        let mut figures = Figures::new(&ENERGY, word, 10);
         let (worst, left) = rise(solver, 0.01);
-        figures.at_most("largest rise in a step over the initial energy", worst, 1e-6);
-        figures.at_most("energy after 0.1 s over the initial energy", left, 0.5);
+        figures.measure("largest rise in a step over the initial energy", worst);
+        figures.measure("energy after 0.1 s over the initial energy", left);
         // Control: without viscosity the energy does not decay.
         let (_, inviscid) = rise(solver.replace("0.1", "0.0").as_str(), 0.0);
-        figures.control("the same without viscosity", inviscid, 0.5);
+        figures.measure("the same without viscosity", inviscid);
         figures.close();
     }
 }

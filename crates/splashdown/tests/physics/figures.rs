@@ -1,141 +1,214 @@
-//! Measured figures and their gates: printed, asserted, and written for the validation report.
+//! Measured figures and their gates: printed, asserted, and written for the validation page.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::time::Instant;
 
-use super::plot;
+use serde_json::{Value, json};
 
-/// True for the resolution of the published checks; otherwise the cases are smaller, with the same gates.
-pub fn full() -> bool {
-    std::env::var_os("SPLASHDOWN_FULL").is_some()
-}
-
-enum Gate {
-    AtMost(f64),
-    Within(f64, f64),
-    /// The figure of a wrong input must exceed this value; otherwise the comparison detects nothing.
-    Control(f64),
-    Reported,
-}
-
-impl Gate {
-    fn holds(&self, measured: f64) -> bool {
-        match *self {
-            Self::AtMost(limit) => measured <= limit,
-            Self::Within(low, high) => (low..=high).contains(&measured),
-            Self::Control(limit) => measured > limit,
-            Self::Reported => true,
-        }
-    }
-
-    fn words(&self) -> String {
-        match self {
-            Self::AtMost(limit) => format!("<= {limit:.3e}"),
-            Self::Within(low, high) => format!("{low:.4} .. {high:.4}"),
-            Self::Control(limit) => format!("control > {limit:.3e}"),
-            Self::Reported => "reported".to_owned(),
-        }
-    }
-}
+use super::cases::Case;
+use super::gates::{self, Gate};
 
 /// Points of one curve.
 pub type Series = Vec<(f64, f64)>;
 
-/// The figures of one case.
+/// The largest number of points of a curve on the page.
+const POINTS: usize = 120;
+
+struct Row {
+    name: String,
+    measured: f64,
+    /// The figure is zero in the exact solution, so that an order of convergence is defined.
+    is_error: bool,
+    gate: Option<&'static Gate>,
+}
+
+impl Row {
+    /// Whether the limit is kept; true without a gate.
+    fn holds(&self) -> bool {
+        self.gate.is_none_or(|gate| gate.limit.holds(self.measured))
+    }
+
+    /// The state of the gate; an error if it is missed, or met although it is recorded as missed.
+    fn verdict(&self) -> Result<&'static str, &'static str> {
+        match (self.gate, self.holds()) {
+            (None, _) => Ok("reported"),
+            (Some(Gate { missed: None, .. }), true) => Ok("met"),
+            (Some(Gate { missed: None, .. }), false) => Err("MISSED"),
+            (Some(_), false) => Ok("missed, as recorded"),
+            (Some(_), true) => Err("MET, but recorded as missed: remove `missed` from gates.toml"),
+        }
+    }
+
+    fn limit(&self) -> String {
+        self.gate.map(|gate| gate.limit.words()).unwrap_or_default()
+    }
+}
+
+/// The figures of one variant of a case at one resolution.
 pub struct Figures {
-    case: String,
-    rows: Vec<(String, f64, Gate)>,
-    /// Drawings as SVG.
-    plots: Vec<String>,
+    case: &'static Case,
+    variant: String,
+    across: u32,
+    executor: String,
+    start: Instant,
+    rows: Vec<Row>,
+    /// Gated figures that this run does not measure.
+    omitted: Vec<String>,
+    plots: Vec<Value>,
 }
 
 impl Figures {
-    pub fn new(case: impl Into<String>) -> Self {
-        Self { case: case.into(), rows: Vec::new(), plots: Vec::new() }
+    /// The wall time of the figures starts here.
+    pub fn new(case: &'static Case, variant: &str, across: u32) -> Self {
+        assert!(case.variants.iter().any(|known| known.name == variant), "{}: {variant}", case.name);
+        Self {
+            case,
+            variant: variant.to_owned(),
+            across,
+            executor: "CPU".to_owned(),
+            start: Instant::now(),
+            rows: Vec::new(),
+            omitted: Vec::new(),
+            plots: Vec::new(),
+        }
     }
 
-    pub fn at_most(&mut self, name: impl Into<String>, measured: f64, limit: f64) {
-        self.rows.push((name.into(), measured, Gate::AtMost(limit)));
+    /// The figures of another device than the CPU.
+    pub fn on(mut self, executor: &str) -> Self {
+        executor.clone_into(&mut self.executor);
+        self
     }
 
-    pub fn within(&mut self, name: impl Into<String>, measured: f64, low: f64, high: f64) {
-        self.rows.push((name.into(), measured, Gate::Within(low, high)));
+    /// A figure that has a gate in `gates.toml`. At resolutions and in variants without one it is reported.
+    pub fn measure(&mut self, name: impl Into<String>, measured: f64) {
+        self.add(name.into(), measured, false);
     }
 
-    /// The figure of a run with a deliberate error, which must miss the gate `limit` of the correct run.
-    pub fn control(&mut self, name: impl Into<String>, measured: f64, limit: f64) {
-        self.rows.push((name.into(), measured, Gate::Control(limit)));
+    /// As [`Self::measure`]; the exact solution has zero.
+    pub fn error(&mut self, name: impl Into<String>, measured: f64) {
+        self.add(name.into(), measured, true);
     }
 
+    fn add(&mut self, name: String, measured: f64, is_error: bool) {
+        let gates = gates::of(self.case.name, &name);
+        let gates = gates.unwrap_or_else(|| panic!("gates.toml has no gate: {}: {name}", self.case.name));
+        let gate = gates.iter().find(|gate| gate.applies(&self.variant, self.across));
+        self.rows.push(Row { name, measured, is_error, gate });
+    }
+
+    /// A gated figure that only `cargo xtask validate` measures.
+    pub fn omit(&mut self, name: impl Into<String>) {
+        self.omitted.push(name.into());
+    }
+
+    /// A figure without a gate.
     pub fn report(&mut self, name: impl Into<String>, measured: f64) {
-        self.rows.push((name.into(), measured, Gate::Reported));
+        let name = name.into();
+        assert!(gates::of(self.case.name, &name).is_none(), "{}: {name} has a gate", self.case.name);
+        self.rows.push(Row { name, measured, is_error: false, gate: None });
     }
 
-    /// Draws measurements as dots and simulations as lines, if figures are requested.
-    pub fn plot(&mut self, title: &str, axes: [&str; 2], measured: &Series, simulated: &[(&str, &Series)]) {
-        if std::env::var_os("SPLASHDOWN_FIGURES").is_some() {
-            self.plots.push(plot::draw(title, axes, measured, simulated));
-        }
+    /// A plot on the page: dots are measurements or theory, lines are simulations.
+    pub fn plot(&mut self, title: &str, axes: [&str; 2], measured: &Series, simulated: &Series) {
+        self.plots.push(json!({
+            "title": title,
+            "axes": axes,
+            "measured": thinned(measured),
+            "simulated": thinned(simulated),
+        }));
     }
 
-    /// Prints the figures, writes them to the folder `SPLASHDOWN_FIGURES`, and fails if one misses its gate.
-    pub fn close(self) {
-        let mut table = String::new();
-        for (name, measured, gate) in &self.rows {
-            let word = if gate.holds(*measured) { "ok" } else { "MISSED" };
-            let _ =
-                writeln!(table, "{:34} {name:44} {measured:>12.4e}  {:24} {word}", self.case, gate.words());
+    /// Prints the figures and writes them to the folder `SPLASHDOWN_FIGURES`.
+    ///
+    /// # Errors
+    /// If a figure misses its gate, a gate recorded as missed is met, or a gate of the file has no figure.
+    pub fn finish(self) -> Result<(), String> {
+        let seconds = self.start.elapsed().as_secs_f64();
+        let title = format!("{}, {}, {}, {}", self.case.name, self.variant, self.across, self.executor);
+        let mut problems = Vec::new();
+        for row in &self.rows {
+            let word = row.verdict().unwrap_or_else(|word| word);
+            let line = format!("{:44} {:>12.4e}  {:20} {word}", row.name, row.measured, row.limit());
+            print(&format!("{title:50} {line}"));
+            if row.verdict().is_err() {
+                problems.push(format!("{title}: {line}"));
+            }
         }
-        print(&table);
+        for figure in gates::required(self.case.name, &self.variant, self.across) {
+            if self.rows.iter().map(|row| &row.name).chain(&self.omitted).all(|name| name != figure) {
+                problems.push(format!("{title}: the gate of \"{figure}\" is not used"));
+            }
+        }
         if let Some(folder) = std::env::var_os("SPLASHDOWN_FIGURES").map(PathBuf::from) {
-            let rows: Vec<serde_json::Value> = self.rows.iter().map(|row| self.json(row)).collect();
             std::fs::create_dir_all(&folder).unwrap();
-            let file =
-                |end: &str| folder.join(format!("{}.{end}", self.case.replace(", ", "-").replace(' ', "_")));
-            std::fs::write(file("json"), serde_json::to_string_pretty(&rows).unwrap()).unwrap();
-            std::fs::write(file("txt"), &table).unwrap();
-            std::fs::write(file("html"), self.page()).unwrap();
+            let name: String =
+                title.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+            let text = serde_json::to_string_pretty(&self.json(seconds)).unwrap();
+            std::fs::write(folder.join(format!("{name}.json")), text).unwrap();
         }
-        let missed: Vec<&str> =
-            self.rows.iter().filter(|(_, m, gate)| !gate.holds(*m)).map(|(name, ..)| name.as_str()).collect();
-        assert!(missed.is_empty(), "{}: missed: {}\n{table}", self.case, missed.join(", "));
+        if problems.is_empty() { Ok(()) } else { Err(problems.join("\n")) }
     }
 
-    /// The section of the page: a table, then the plots.
-    fn page(&self) -> String {
-        let mut page = format!(
-            "<h2>{}</h2>\n<table>\n<tr><th>figure<th>measured<th>gate<th></tr>\n",
-            escaped(&self.case)
-        );
-        for (name, measured, gate) in &self.rows {
-            let word = match gate {
-                Gate::Reported => "",
-                _ if gate.holds(*measured) => "ok",
-                _ => "<strong>missed</strong>",
-            };
-            let (name, gate) = (escaped(name), escaped(&gate.words()));
-            let _ = writeln!(page, "<tr><td>{name}<td>{measured:.4e}<td>{gate}<td>{word}</tr>");
-        }
-        page + "</table>\n" + &self.plots.concat()
+    /// As [`Self::finish`].
+    ///
+    /// # Panics
+    /// Where that function has an error.
+    pub fn close(self) {
+        self.finish().unwrap_or_else(|problems| panic!("{problems}"));
     }
 
-    fn json(&self, (name, measured, gate): &(String, f64, Gate)) -> serde_json::Value {
-        serde_json::json!({
-            "case": self.case,
-            "figure": name,
-            "measured": measured,
-            "gate": gate.words(),
-            "full_resolution": full(),
-            "passed": gate.holds(*measured),
+    fn json(&self, seconds: f64) -> Value {
+        let row = |row: &Row| {
+            json!({
+                "figure": row.name,
+                "measured": rounded(row.measured),
+                "is_error": row.is_error,
+                "gate": row.limit(),
+                "is_met": row.holds(),
+                "reason": row.gate.and_then(|gate| gate.reason.as_deref()),
+                "missed": row.gate.and_then(|gate| gate.missed.as_deref()),
+            })
+        };
+        json!({
+            "case": self.case.name,
+            "across": self.case.across,
+            "variant": self.variant,
+            "spacings": self.across,
+            "executor": self.executor,
+            "seconds": (10.0 * seconds).round() / 10.0,
+            "cores": std::thread::available_parallelism().map_or(0, usize::from),
+            "figures": self.rows.iter().map(row).collect::<Vec<Value>>(),
+            "plots": self.plots,
         })
     }
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+/// Four significant digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+fn thinned(series: &Series) -> Vec<[f64; 2]> {
+    let step = series.len().div_ceil(POINTS).max(1);
+    series.iter().step_by(step).map(|&(x, y)| [rounded(x), rounded(y)]).collect()
 }
 
 #[expect(clippy::print_stdout, reason = "these tests print figures; the harness shows them on request")]
-fn print(table: &str) {
-    print!("{table}");
+fn print(line: &str) {
+    println!("{line}");
+}
+
+#[test]
+fn a_missed_gate_and_a_stale_record_of_one_are_errors() {
+    let gate = |missed: Option<&str>| -> Row {
+        let text =
+            format!("at_most = 1.0\n{}", missed.map(|m| format!("missed = \"{m}\"")).unwrap_or_default());
+        let gate = Box::leak(Box::new(toml::from_str::<Gate>(&text).unwrap()));
+        Row { name: "x".into(), measured: 0.5, is_error: false, gate: Some(gate) }
+    };
+    let (open, recorded) = (gate(None), gate(Some("1.2, as an example")));
+    assert_eq!(open.verdict(), Ok("met"));
+    assert!(Row { measured: 1.5, ..open }.verdict().is_err());
+    assert!(recorded.verdict().is_err());
+    assert_eq!(Row { measured: 1.5, ..recorded }.verdict(), Ok("missed, as recorded"));
 }

@@ -1,18 +1,25 @@
 //! Physics: whole runs compared with analytic solutions, conservation laws and measurements.
 //!
-//! The gates were set before the first run. With `SPLASHDOWN_FULL=1` the cases run at the resolution of the published
-//! checks; with `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
+//! Each case is data ([`cases`]) with its gates in `gates.toml`, which are set before the first run. The tests run the smallest
+//! of up to three resolutions. With `SPLASHDOWN_FULL=quick` two of them run, with `SPLASHDOWN_FULL=1` all; with
+//! `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
 
+mod accelerated;
+mod cases;
 mod conservation;
 mod dam_break;
+mod disorder;
 mod figures;
 mod floating;
 mod free_fall;
+mod gates;
 mod hydrostatics;
 mod implicit;
+mod jet;
 #[path = "../meshes/mod.rs"]
 mod meshes;
-mod plot;
+mod patch;
+mod ritter;
 mod shapes;
 mod spheric2;
 mod still_water;
@@ -21,12 +28,38 @@ mod submerged;
 mod tilted;
 mod torricelli;
 mod viscosity;
+mod vortex;
 mod waves;
+mod wedge;
 
 use glam::DVec3;
 use splashdown::scene::Scene;
 use splashdown_gpu::{CpuExecutor, Executor};
 use splashdown_io::Particles;
+
+/// All cases, module by module.
+const CASES: &[&[&cases::Case]] = &[
+    accelerated::CASES,
+    conservation::CASES,
+    dam_break::CASES,
+    floating::CASES,
+    free_fall::CASES,
+    hydrostatics::CASES,
+    implicit::CASES,
+    jet::CASES,
+    patch::CASES,
+    ritter::CASES,
+    spheric2::CASES,
+    still_water::CASES,
+    stretching::CASES,
+    submerged::CASES,
+    tilted::CASES,
+    torricelli::CASES,
+    viscosity::CASES,
+    vortex::CASES,
+    waves::CASES,
+    wedge::CASES,
+];
 
 fn cpu() -> Executor {
     CpuExecutor::new().into()

@@ -8,7 +8,7 @@
 use glam::Vec3;
 use splashdown::scene::{MeshShape, Motion};
 
-use super::figures::{Figures, full};
+use super::cases::{Case, Variant};
 use super::shapes::body;
 use super::{rms_speed, scene};
 
@@ -18,15 +18,25 @@ const DEPTH: f64 = 0.4;
 const EDGE: f64 = 0.16;
 /// The height of the centre of the cube in m.
 const CENTRE: f64 = 0.18;
-/// Gate for the rms speed over sqrt(g depth).
-const SPEED: f64 = 0.01;
-/// Gate for a pressure over rho g depth.
-const PRESSURE: f64 = 0.03;
+
+/// Without the force of `dfsph` that continues the pressure along the surface into the body, the first layer slid down
+/// vertical faces at a sixth of gravity, and the water never came to rest.
+static CASE: Case = Case {
+    name: "still water around a cube",
+    across: "edge",
+    sizes: &[8, 12, 16],
+    variants: &[
+        Variant::new("continuity", "density = \"continuity\""),
+        Variant::new("dfsph", "method = \"dfsph\""),
+        Variant::extra("engineering", "accuracy = \"engineering\""),
+    ],
+};
+pub const CASES: &[&Case] = &[&CASE];
 
 /// The rms speed over sqrt(g depth), the lift over the weight of the displaced water, and the pressures of the gauges over
 /// rho g depth, after `seconds`. The lift and the pressures are means over the second half.
-fn simulate(solver: &str, seconds: f32) -> (f64, f64, Vec<(&'static str, f64)>) {
-    let spacing = if full() { 0.01 } else { 0.02 };
+fn simulate(solver: &str, across: u32, seconds: f32) -> (f64, f64, Vec<(&'static str, f64)>) {
+    let spacing = EDGE / f64::from(across);
     let side = 0.5 * (EDGE + spacing);
     let gauges = [
         ("side", [side, 0.0, 0.0]),
@@ -71,32 +81,13 @@ fn simulate(solver: &str, seconds: f32) -> (f64, f64, Vec<(&'static str, f64)>) 
 
 #[test]
 fn water_around_a_cube_stays_still() {
-    let (speed, lift, pressures) = simulate("density = \"continuity\"", 1.0);
-    let mut figures = Figures::new("still water around a cube, CPU");
-    if full() {
-        figures.at_most("rms speed over sqrt(g depth)", speed, SPEED);
-    } else {
-        figures.report("rms speed over sqrt(g depth)", speed);
-    }
-    figures.within("lift over the weight of the displaced water", lift, 0.95, 1.05);
-    for (name, pressure) in pressures {
-        let name = format!("pressure over rho g depth, {name}");
-        if full() {
-            figures.within(name, pressure, 1.0 - PRESSURE, 1.0 + PRESSURE);
-        } else {
-            figures.report(name, pressure);
+    CASE.run(|variant, across, figures| {
+        let seconds = if variant.name == "dfsph" { 2.0 } else { 1.0 };
+        let (speed, lift, pressures) = simulate(variant.keys, across, seconds);
+        figures.error("rms speed over sqrt(g depth)", speed);
+        figures.measure("lift over the weight of the displaced water", lift);
+        for (name, pressure) in pressures {
+            figures.measure(format!("pressure over rho g depth, {name}"), pressure);
         }
-    }
-    figures.close();
-}
-
-/// Without the force that continues the pressure along the surface into the body, the first layer slid down vertical faces
-/// at a sixth of gravity, and the water never came to rest.
-#[test]
-fn water_around_a_cube_comes_to_rest_with_dfsph() {
-    let (speed, lift, _) = simulate("method = \"dfsph\"", 2.0);
-    let mut figures = Figures::new("still water around a cube, dfsph, CPU");
-    figures.at_most("rms speed over sqrt(g depth)", speed, SPEED);
-    figures.within("lift over the weight of the displaced water", lift, 0.9, 1.1);
-    figures.close();
+    });
 }

@@ -8,20 +8,32 @@
 use glam::DVec2;
 use splashdown::{Simulation, sample};
 
+use super::cases::{CONTROL, Case, Variant, is_validation};
 use super::cpu;
-use super::figures::{Figures, full};
+use super::figures::Figures;
 use super::scene;
 
 /// Initial radius in m, and rate in 1/s.
 const RADIUS: f64 = 1.0;
 const RATE: f64 = 1.0;
-/// Spacings across the diameter.
-const ACROSS: f64 = 32.0;
-/// 15 times the largest initial speed.
-const SOUND: &str = "sound_speed = 15";
 
-/// The gate: relative error of the semi-axes after times that are multiples of one over the initial rate.
-const SEMI_AXES: [(f64, f64); 3] = [(0.5, 0.02), (1.0, 0.03), (2.0, 0.03)];
+/// The times of the comparison, as multiples of one over the initial rate.
+const TIMES: [f64; 3] = [0.5, 1.0, 2.0];
+
+static CASE: Case = Case {
+    name: "stretching drop",
+    across: "diameter",
+    sizes: &[32, 48, 64],
+    // A sound speed of 15 times the largest initial speed.
+    variants: &[
+        Variant::new("continuity", "sound_speed = 15\ndensity = \"continuity\""),
+        Variant::extra("engineering", "sound_speed = 15\naccuracy = \"engineering\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
+        Variant::extra("dfsph, support 3", "method = \"dfsph\"\nsupport_ratio = 3"),
+        CONTROL,
+    ],
+};
+pub const CASES: &[&Case] = &[&CASE];
 
 /// The semi-axes a and b at a time in seconds.
 fn exact(time: f64) -> DVec2 {
@@ -43,8 +55,8 @@ fn exact(time: f64) -> DVec2 {
 
 /// The semi-axes at each time of the gate up to `last`, relative to the exact ones, minus one. The second moments of the
 /// particles give them.
-fn deviations(solver: &str, last: f64) -> Vec<(f64, DVec2)> {
-    let spacing = 2.0 * RADIUS / ACROSS;
+fn deviations(solver: &str, across: u32, last: f64) -> Vec<(f64, DVec2)> {
+    let spacing = 2.0 * RADIUS / f64::from(across);
     let thick = 6.0 * spacing;
     let scene = scene(&format!(
         r#"
@@ -79,7 +91,7 @@ fn deviations(solver: &str, last: f64) -> Vec<(f64, DVec2)> {
     let first = moments(&particles.positions);
     let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
     let mut found = Vec::new();
-    for (time, _) in SEMI_AXES.into_iter().filter(|&(time, _)| time <= last) {
+    for time in TIMES.into_iter().filter(|&time| time <= last) {
         let time = time / RATE;
         while simulation.stats().time < time - 1e-6 {
             let left = time - simulation.stats().time;
@@ -95,34 +107,23 @@ fn deviations(solver: &str, last: f64) -> Vec<(f64, DVec2)> {
 
 #[test]
 fn a_stretched_drop_follows_the_exact_solution() {
-    let last = if full() { 2.0 } else { 1.0 };
-    let mut variants = vec![("continuity", "density = \"continuity\"")];
-    if full() {
-        variants.push(("engineering", "accuracy = \"engineering\""));
-    }
-    for (word, solver) in variants {
-        let solver = &format!("{SOUND}\n{solver}");
-        let mut figures = Figures::new(format!("stretching drop, {word}, CPU"));
-        for ((time, deviation), (_, gate)) in deviations(solver, last).into_iter().zip(SEMI_AXES) {
-            figures.within(format!("error of the long semi-axis at A t = {time}"), deviation.y, -gate, gate);
-            figures.within(format!("error of the short semi-axis at A t = {time}"), deviation.x, -gate, gate);
+    let last = if is_validation() { 2.0 } else { 1.0 };
+    CASE.run(|variant, across, figures| {
+        for (time, deviation) in deviations(variant.keys, across, last) {
+            figures.error(format!("error of the long semi-axis at A t = {time}"), deviation.y);
+            figures.error(format!("error of the short semi-axis at A t = {time}"), deviation.x);
         }
-        figures.close();
-    }
+        for time in TIMES.into_iter().filter(|&time| time > last) {
+            figures.omit(format!("error of the long semi-axis at A t = {time}"));
+            figures.omit(format!("error of the short semi-axis at A t = {time}"));
+        }
+    });
 }
 
 #[test]
 fn the_elasticity_of_summed_densities_is_detected() {
-    let (_, deviation) = deviations(&format!("{SOUND}\ndensity = \"summation\""), 0.5)[0];
-    let mut figures = Figures::new("stretching drop, controls, CPU");
-    if full() {
-        for solver in ["method = \"dfsph\"", "method = \"dfsph\"\nsupport_ratio = 3"] {
-            for ((time, deviation), _) in deviations(solver, 2.0).into_iter().zip(SEMI_AXES) {
-                figures
-                    .report(format!("error of the short semi-axis at A t = {time}, {solver}"), deviation.x);
-            }
-        }
-    }
-    figures.control("error of the short semi-axis, summation", deviation.x.abs(), SEMI_AXES[0].1);
+    let mut figures = Figures::new(&CASE, "control", 32);
+    let (_, deviation) = deviations("sound_speed = 15\ndensity = \"summation\"", 32, 0.5)[0];
+    figures.measure("error of the short semi-axis, summation", deviation.x.abs());
     figures.close();
 }

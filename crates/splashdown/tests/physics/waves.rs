@@ -7,8 +7,9 @@
 
 use splashdown::{Simulation, sample};
 
+use super::cases::{CONTROL, Case, Variant, is_validation};
 use super::cpu;
-use super::figures::{Figures, Series, full};
+use super::figures::{Figures, Series};
 use super::scene;
 
 const GRAVITY: f64 = 9.81;
@@ -115,14 +116,21 @@ fn analyse(curve: Series) -> Measured {
     Measured { period, loss, curve }
 }
 
-/// The gates: the period against linear theory, and the loss of height per period at 20 spacings of depth and at 40.
-const PERIOD: f64 = 0.01;
-const LOSS: [(u32, f64); 2] = [(20, 0.03), (40, 0.01)];
-
-/// The continuity equation with its defaults, and variants.
-const CONTINUITY: &str = "density = \"continuity\"";
-const ENGINEERING: &str = "accuracy = \"engineering\"";
-const VISCOUS: &str = "density = \"continuity\"\nartificial_viscosity = 0.1";
+/// A wave must not grow either.
+static CASE: Case = Case {
+    name: "standing wave",
+    across: "depth",
+    sizes: &[20, 28, 40],
+    variants: &[
+        Variant::new("continuity", "density = \"continuity\""),
+        Variant::extra("engineering", "accuracy = \"engineering\""),
+        Variant::extra("summation", "density = \"summation\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
+        Variant::extra("dfsph, support 3", "method = \"dfsph\"\nsupport_ratio = 3"),
+        CONTROL,
+    ],
+};
+pub const CASES: &[&Case] = &[&CASE];
 
 impl Measured {
     /// The relative error of the period.
@@ -133,43 +141,23 @@ impl Measured {
 
 #[test]
 fn a_standing_wave_keeps_its_height_and_its_period() {
-    for &(across, loss) in if full() { &LOSS[..] } else { &LOSS[..1] } {
-        let mut figures = Figures::new(format!("standing wave, {across} spacings deep, continuity, CPU"));
-        let wave =
-            Wave { across, viscosity: 1e-6, solver: CONTINUITY, periods: if full() { 3.1 } else { 1.6 } };
-        let measured = wave.measure();
-        // A wave must not grow either.
-        figures.within("loss of height per period", measured.loss, -loss, loss);
-        figures.within("relative error of the period", measured.period_error(), -PERIOD, PERIOD);
-        if full() && across == LOSS[0].0 {
-            for (word, solver) in [
-                ("accuracy = engineering", ENGINEERING),
-                ("artificial viscosity 0.1", VISCOUS),
-                ("summation", "density = \"summation\""),
-                ("dfsph", "method = \"dfsph\""),
-                ("dfsph, support ratio 3", "method = \"dfsph\"\nsupport_ratio = 3"),
-            ] {
-                let variant = Wave { solver, ..wave }.measure();
-                figures.report(format!("loss of height, {word}"), variant.loss);
-                figures.report(format!("error of the period, {word}"), variant.period_error());
-            }
-        }
+    let periods = if is_validation() { 3.1 } else { 1.6 };
+    CASE.run(|variant, across, figures| {
+        let measured = Wave { across, viscosity: 1e-6, solver: variant.keys, periods }.measure();
+        figures.error("loss of height per period", measured.loss);
+        figures.error("relative error of the period", measured.period_error());
         let theory = |t: f64| measured.curve[20].1 * (frequency() * t).sin();
         let exact: Series = measured.curve.iter().map(|&(t, _)| (t, theory(t))).collect();
-        figures.plot(
-            "Standing wave: centre of mass (dots: linear theory)",
-            ["t (s)", "x (m)"],
-            &exact,
-            &[("continuity", &measured.curve)],
-        );
-        figures.close();
-    }
+        let title = "Centre of mass (dots: linear theory)";
+        figures.plot(title, ["time, s", "x, m"], &exact, &measured.curve);
+    });
 }
 
 #[test]
 fn artificial_viscosity_is_detected() {
-    let wave = Wave { across: 10, viscosity: 1e-6, solver: VISCOUS, periods: 1.6 };
-    let mut figures = Figures::new("standing wave, controls, CPU");
-    figures.control("loss of height per period", wave.measure().loss, LOSS[0].1);
+    let mut figures = Figures::new(&CASE, "control", 10);
+    let solver = "density = \"continuity\"\nartificial_viscosity = 0.1";
+    let wave = Wave { across: 10, viscosity: 1e-6, solver, periods: 1.6 };
+    figures.measure("loss of height per period, artificial viscosity 0.1", wave.measure().loss);
     figures.close();
 }

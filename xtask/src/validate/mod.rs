@@ -1,0 +1,91 @@
+//! The command `validate`: runs the physics cases at two or three resolutions and writes the page of all figures.
+//!
+//! It runs the physics tests of `cargo xtask test`; environment variables select the resolutions and the folder of the
+//! figures. The figures of each run replace its earlier ones in `docs/validation`, from which the page is written, so
+//! that single cases can be repeated.
+
+mod chart;
+mod page;
+mod record;
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use crate::layers::{self, Report};
+use crate::process::{self, say};
+
+/// Where the tests write the figures of this call.
+const FIGURES: &str = "out/validation";
+/// The figures of all cases: one file per case.
+const RECORDS: &str = "docs/validation";
+/// The page, and the folder of its plots, relative to `docs`.
+const PAGE: &str = "docs/validation-figures.md";
+const PLOTS: &str = "pictures/validation";
+
+/// The command `validate`.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let (options, cases): (Vec<&String>, Vec<&String>) =
+        arguments.iter().partition(|argument| argument.starts_with('-'));
+    if let Some(option) = options.iter().find(|option| !["--quick", "--page"].contains(&option.as_str())) {
+        bail!(
+            "validate takes names of tests, for example `waves`, or nothing for all; --quick leaves out the finest \
+             resolution, --page only adds the figures of the last call to the page; got {option}"
+        );
+    }
+    let has = |name: &str| options.iter().any(|option| *option == name);
+    let mut report = Report::default();
+    if !has("--page") {
+        let folder = process::root().join(FIGURES);
+        if folder.exists() {
+            fs::remove_dir_all(&folder).with_context(|| format!("cannot empty {}", folder.display()))?;
+        }
+        report.layer("physics", |filter| {
+            let words =
+                ["test", "--release", "--package", "splashdown", "--test", "physics", "--", "--show-output"];
+            let mut command = process::cargo(words);
+            // One case at a time, so that wall times are comparable.
+            command.args(["--test-threads", "1"]).args(&cases);
+            let level = if has("--quick") { "quick" } else { "1" };
+            command.env("SPLASHDOWN_FULL", level).env("SPLASHDOWN_FIGURES", &folder);
+            // Without a limit: a single case takes long at full resolution.
+            layers::tests(&mut command, filter, None)
+        });
+    }
+    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS))?;
+    write_page(process::root())?;
+    say(format!("Written: {PAGE}. `cargo xtask guide` builds it as HTML."));
+    if has("--page") { Ok(()) } else { report.close() }
+}
+
+/// Writes the page and its plots from the committed figures.
+fn write_page(root: &Path) -> Result<()> {
+    let cases = record::read(&root.join(RECORDS))?;
+    let plots = root.join("docs").join(PLOTS);
+    if plots.exists() {
+        fs::remove_dir_all(&plots).with_context(|| format!("cannot empty {}", plots.display()))?;
+    }
+    fs::create_dir_all(&plots)?;
+    let (text, charts) = page::write(&cases, PLOTS);
+    for (name, svg) in charts {
+        fs::write(plots.join(&name), svg).with_context(|| format!("cannot write {name}"))?;
+    }
+    fs::write(root.join(PAGE), text).with_context(|| format!("cannot write {PAGE}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PAGE, PLOTS, RECORDS, page, record};
+    use crate::process::root;
+
+    #[test]
+    fn the_committed_page_shows_the_committed_figures() {
+        let (text, charts) = page::write(&record::read(&root().join(RECORDS)).unwrap(), PLOTS);
+        let committed = std::fs::read_to_string(root().join(PAGE)).unwrap().replace("\r\n", "\n");
+        assert!(committed == text, "{PAGE} is out of date: run `cargo xtask validate --page`");
+        for (name, _) in charts {
+            assert!(root().join("docs").join(PLOTS).join(&name).exists(), "{name} is missing");
+        }
+    }
+}
