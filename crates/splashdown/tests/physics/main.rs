@@ -9,6 +9,7 @@ mod cases;
 mod conservation;
 mod dam_break;
 mod disorder;
+mod drop;
 mod figures;
 mod floating;
 mod free_fall;
@@ -42,6 +43,7 @@ const CASES: &[&[&cases::Case]] = &[
     accelerated::CASES,
     conservation::CASES,
     dam_break::CASES,
+    drop::CASES,
     floating::CASES,
     free_fall::CASES,
     hydrostatics::CASES,
