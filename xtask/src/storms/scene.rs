@@ -192,7 +192,11 @@ impl Maker {
             text += "sort = \"bitonic\"\n";
         }
         if rng.chance(0.12) {
-            let model = if is_thesis { "mueller2003" } else { "akinci2013" };
+            let model = match self.ratio {
+                _ if is_thesis => "mueller2003",
+                3.0.. => "csf",
+                _ => "akinci2013",
+            };
             let _ = writeln!(text, "surface_tension = {model:?}");
             self.surface = 2.0 * 0.0728 / (800.0 * self.spacing);
             self.traits.push("surface tension");
