@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-const WIDTH: f64 = 760.0;
+const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 360.0;
 /// Margins of the plotting area: left, top, right and bottom.
-const MARGINS: [f64; 4] = [70.0, 34.0, 16.0, 46.0];
+const MARGINS: [f64; 4] = [70.0, 34.0, 130.0, 46.0];
 /// Readable on white, and distinguishable with colour vision deficiency (Okabe & Ito 2008).
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
@@ -76,8 +76,8 @@ pub fn draw(
     }
     for (k, (name, _)) in curves.iter().enumerate() {
         let colour = COLOURS[k % COLOURS.len()];
-        let more = format!(" text-anchor=\"end\" fill=\"{colour}\"");
-        text(left + wide - 8.0, top + 18.0 + 17.0 * k as f64, &more, name);
+        let more = format!(" fill=\"{colour}\"");
+        text(left + wide + 10.0, top + 18.0 + 17.0 * k as f64, &more, name);
     }
     let mut line = |from: (f64, f64), to: (f64, f64)| {
         let _ = writeln!(
