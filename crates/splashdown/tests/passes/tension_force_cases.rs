@@ -112,7 +112,7 @@ fn forces(
         if own_weight == 0.0 {
             return Sum::default();
         }
-        let u = normal(smooth, i).normalize();
+        let u = normal(smooth, i).normalize_or_zero();
         let (mut gradient, mut turn, mut extent) = (Sum::default(), Sum::default(), Sum::default());
         neighbours(world, i, |j, d, by, _| {
             // Without unit: g d / H^5 is the gradient of the kernel.
@@ -122,7 +122,7 @@ fn forces(
             let image = by.sign * normal(smooth, j);
             let weighted = weight(image);
             turn.add_parts(&[
-                DVec3::X * weighted * image.normalize().dot(g),
+                DVec3::X * weighted * image.normalize_or_zero().dot(g),
                 -DVec3::X * weighted * u.dot(g),
             ]);
             let along = d.dot(u);

@@ -84,6 +84,7 @@ snapshot!(
 snapshot!(implicit_keys, changed("\"wcsph\"", "\"dfsph\"\nsound_speed = 20\ndensity = \"continuity\""));
 snapshot!(implicit_step, changed("\"wcsph\"", "\"dfsph\"\nmax_dt = 0.1"));
 snapshot!(tolerance_without_iterations, format!("{CUBE}tolerance = 0.001\n"));
+snapshot!(narrow_surface_force, format!("{CUBE}surface_tension = \"csf\"\nsupport_ratio = 2\n"));
 snapshot!(ignored_diffusion, format!("{CUBE}density_diffusion = 0.2\nsurface_tension = \"mueller2003\"\n"));
 snapshot!(
     output_without_surface,
