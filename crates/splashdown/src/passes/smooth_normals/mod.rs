@@ -15,7 +15,7 @@ use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE};
 
 bindings! {
-    /// The buffers of `smooth_normals.wgsl`.
+    /// The buffers of `average_normals.wgsl`.
     pub(super) struct SmoothNormalsBindings {
         params: uniform Params,
         grid: uniform Grid,
@@ -29,9 +29,9 @@ bindings! {
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {
     label: "smooth_normals.wendland_c2",
-    wgsl: include_str!("smooth_normals.wgsl"),
+    wgsl: include_str!("average_normals.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES],
-    entry: "smooth_normals_of_the_surface",
+    entry: "average_normals",
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0)],
     bindings: SmoothNormalsBindings::LIST,

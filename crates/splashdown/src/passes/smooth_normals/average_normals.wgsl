@@ -8,7 +8,7 @@
 #bindings
 
 @compute @workgroup_size(64)
-fn smooth_normals_of_the_surface(
+fn average_normals(
     @builtin(global_invocation_id) gid: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
