@@ -67,7 +67,7 @@ fn write_page(root: &Path) -> Result<()> {
         fs::remove_dir_all(&plots).with_context(|| format!("cannot empty {}", plots.display()))?;
     }
     fs::create_dir_all(&plots)?;
-    let (text, charts) = page::write(&cases, PLOTS);
+    let (text, charts) = page::write(&cases, PLOTS)?;
     for (name, svg) in charts {
         fs::write(plots.join(&name), svg).with_context(|| format!("cannot write {name}"))?;
     }
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_committed_page_shows_the_committed_figures() {
-        let (text, charts) = page::write(&record::read(&root().join(RECORDS)).unwrap(), PLOTS);
+        let (text, charts) = page::write(&record::read(&root().join(RECORDS)).unwrap(), PLOTS).unwrap();
         let committed = std::fs::read_to_string(root().join(PAGE)).unwrap().replace("\r\n", "\n");
         assert!(committed == text, "{PAGE} is out of date: run `cargo xtask validate --page`");
         for (name, _) in charts {

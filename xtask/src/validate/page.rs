@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use anyhow::Result;
+
 use super::chart;
 use super::record::{Figure, Record, slug};
 
@@ -22,7 +24,7 @@ The order is log(e1 / e2) / log(n2 / n1) of the errors e of successive resolutio
 type Cases = BTreeMap<String, Vec<Record>>;
 
 /// The page, and the names and texts of its plots, which lie in the folder `plots`.
-pub fn write(cases: &Cases, plots: &str) -> (String, Vec<(String, String)>) {
+pub fn write(cases: &Cases, plots: &str) -> Result<(String, Vec<(String, String)>)> {
     let mut page = format!("{HEAD}\n| case | gates met | gates missed | wall time |\n|---|---:|---:|---:|\n");
     for (case, records) in sorted(cases) {
         let gated = || records.iter().flat_map(|r| &r.figures).filter(|figure| figure.gate.is_some());
@@ -39,13 +41,13 @@ pub fn write(cases: &Cases, plots: &str) -> (String, Vec<(String, String)>) {
     for (case, records) in sorted(cases) {
         let _ = write!(page, "\n## {}\n\n", heading(case));
         section(&mut page, records);
-        for (k, (title, svg)) in drawings(records).into_iter().enumerate() {
+        for (k, (title, svg)) in drawings(records)?.into_iter().enumerate() {
             let name = format!("{}-{}.svg", slug(case), k + 1);
             let _ = write!(page, "\n![{title}]({plots}/{name})\n");
             charts.push((name, svg));
         }
     }
-    (page, charts)
+    Ok((page, charts))
 }
 
 /// By name, without regard to capital letters.
@@ -184,9 +186,9 @@ fn orders(errors: &[(u64, f64)]) -> String {
 }
 
 /// The plots of the finest resolution, with the curves of all variants in each.
-fn drawings(records: &[Record]) -> Vec<(String, String)> {
+fn drawings(records: &[Record]) -> Result<Vec<(String, String)>> {
     let with_plots = || records.iter().filter(|record| !record.plots.is_empty());
-    let Some(finest) = with_plots().map(|record| record.spacings).max() else { return Vec::new() };
+    let Some(finest) = with_plots().map(|record| record.spacings).max() else { return Ok(Vec::new()) };
     let across = records.first().map(|record| record.across.as_str()).unwrap_or_default();
     let shown: Vec<&Record> = with_plots().filter(|record| record.spacings == finest).collect();
     let titles = distinct(shown.iter().flat_map(|r| r.plots.iter().map(|(title, ..)| title.clone())));
@@ -198,7 +200,8 @@ fn drawings(records: &[Record]) -> Vec<(String, String)> {
         let curves: Vec<(&str, &[(f64, f64)])> =
             plots.iter().map(|(column, (.., simulated))| (column.as_str(), simulated.as_slice())).collect();
         let title = format!("{title}, {finest} spacings per {across}");
-        (title.clone(), chart::draw(&title, axes, measured, &curves))
+        let drawing = chart::draw(&title, axes, measured, &curves)?;
+        Ok((title, drawing))
     };
     titles.iter().map(draw).collect()
 }
@@ -241,7 +244,7 @@ mod tests {
     #[test]
     fn a_section_shows_gates_orders_and_times() {
         let cases = BTreeMap::from([("a wave".to_owned(), vec![record(10, 0.04), record(20, 0.01)])]);
-        let (page, charts) = write(&cases, "plots");
+        let (page, charts) = write(&cases, "plots").unwrap();
         assert!(charts.is_empty());
         for line in [
             "| [A wave](#a-wave) | 1 | **1** | 4 s |",

@@ -150,6 +150,19 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
             ),
         ),
     ];
+    let numerical = Derived::capillary_viscosity(scene);
+    if numerical > 0.0 {
+        rows.insert(
+            3,
+            (
+                "surface tension",
+                format!(
+                    "{} N/m, with a numerical viscosity of {numerical:.2e} m^2/s",
+                    fluid.material.surface_tension
+                ),
+            ),
+        );
+    }
     if scene.solver.method == Method::Dfsph {
         // An implicit pressure has no speed of sound.
         rows.retain(|(name, _)| *name != "sound");

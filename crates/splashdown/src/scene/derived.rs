@@ -50,8 +50,8 @@ pub struct Derived {
     /// sound_speed)` with `density = "continuity"`, and `max_dt`. With `dfsph` the first is `cfl_factor *
     /// particle_spacing / reference_speed`, and `sqrt(0.02 particle_spacing / gravity)` is another limit.
     pub dt_estimate: f32,
-    /// The limit that determines the time step: `sound`, `viscosity`, `diffusion` or `max_dt`; with `dfsph` also `speed` or
-    /// `gravity`.
+    /// The limit that determines the time step: `sound`, `viscosity`, `diffusion` or `max_dt`; with `dfsph` also `speed`,
+    /// `gravity`, `pressure` or `surface tension`.
     pub dt_limit: &'static str,
     /// Number of frames.
     pub frames: u32,

@@ -18,13 +18,20 @@ const SPACING: f64 = 0.0005;
 /// Rate of the initial stretching times the period over 2 pi: the drop becomes about 15 % longer than wide.
 const PUSH: f64 = 0.12;
 
+const ENGINEERING: &str = "accuracy = \"engineering\"\nsurface_tension = \"csf\"";
+
 static CASE: Case = Case {
     name: "drop",
     across: "radius",
     sizes: &[5, 10, 20],
     variants: &[
-        Variant::new("engineering", "accuracy = \"engineering\""),
-        Variant::new("dfsph", "method = \"dfsph\""),
+        Variant::new("engineering", ENGINEERING),
+        Variant::new("dfsph", "method = \"dfsph\"\nsurface_tension = \"csf\""),
+        // The model for pictures, whose factor was fitted with this case.
+        Variant::extra(
+            "akinci2013",
+            "method = \"wcsph\"\nsurface_tension = \"akinci2013\"\nartificial_viscosity = 0.05",
+        ),
         CONTROL,
     ],
 };
@@ -47,7 +54,7 @@ impl Drop {
             "[scene]\nname = \"drop\"\nduration = 10\ngravity = [0, 0, 0]\n[domain]\nmin = [-{half}, -{half}, -{half}]\n\
              max = [{half}, {half}, {half}]\n[fluid]\nparticle_spacing = {SPACING}\nviscosity = 1e-6\n\
              surface_tension = {tension}\n[[fluid.block]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = {radius}\n\
-             [solver]\nsurface_tension = \"csf\"\n{keys}\n"
+             [solver]\n{keys}\n"
         ));
         let particles = sample::particles(&scene).unwrap();
         let radius = (particles.positions.len() as f64 * SPACING.powi(3) * 0.75 / PI).cbrt();
@@ -100,16 +107,16 @@ fn elongation(particles: &Particles) -> f64 {
     (m.x - m.y) / (m.x + m.y)
 }
 
-/// The period by the zeros of the elongation after the first one.
-fn period(curve: &Series) -> f64 {
+/// The period by the zeros of the elongation after the first one, if there are enough.
+fn period(curve: &Series) -> Option<f64> {
     let zeros: Vec<f64> = curve
         .windows(2)
         .skip(1)
         .filter(|pair| pair[0].1 * pair[1].1 < 0.0)
         .map(|pair| pair[0].0 + (pair[1].0 - pair[0].0) * pair[0].1 / (pair[0].1 - pair[1].1))
         .collect();
-    assert!(zeros.len() > 2, "{} zeros", zeros.len());
-    2.0 * (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64
+    let (first, last) = (zeros.first()?, zeros.last()?);
+    (zeros.len() > 2).then(|| 2.0 * (last - first) / (zeros.len() - 1) as f64)
 }
 
 #[test]
@@ -126,7 +133,13 @@ fn a_drop_has_the_pressure_of_laplace_and_the_period_of_rayleigh() {
         let speed = (square_sum(&rest) / n).sqrt() * drop.period / drop.radius;
         figures.measure("rms speed at rest times period over R", speed);
         let curve = drop.oscillate(3.0);
-        figures.error("period over that of Rayleigh, minus one", period(&curve) / drop.period - 1.0);
+        let figure = "period over that of Rayleigh, minus one";
+        match period(&curve) {
+            Some(found) => figures.error(figure, found / drop.period - 1.0),
+            // A model for pictures need not oscillate.
+            None if variant.name == "akinci2013" => figures.omit(figure),
+            None => panic!("{}: the drop does not oscillate", variant.name),
+        }
         let start = curve[0].1;
         let highest = curve.iter().map(|&(_, e)| e.abs()).fold(0.0, f64::max);
         let theory =
@@ -137,11 +150,11 @@ fn a_drop_has_the_pressure_of_laplace_and_the_period_of_rayleigh() {
 
 #[test]
 fn half_of_the_tension_is_detected() {
-    let mut drop = Drop::at_rest(5, "accuracy = \"engineering\"", 0.5 * TENSION);
+    let mut drop = Drop::at_rest(5, ENGINEERING, 0.5 * TENSION);
     let mut figures = Figures::new(&CASE, CONTROL.name, 5);
     let rest = drop.simulation.particles().unwrap();
     figures.measure("pressure of half of the tension, relative error", (drop.pressure(&rest) - 1.0).abs());
-    let found = period(&drop.oscillate(4.0)) / drop.period;
+    let found = period(&drop.oscillate(4.0)).expect("an oscillation") / drop.period;
     figures.measure("period of half of the tension, relative error", (found - 1.0).abs());
     figures.finish().unwrap();
 }

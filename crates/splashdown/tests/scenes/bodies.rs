@@ -178,6 +178,16 @@ fn a_density_of_a_static_body_gives_a_warning() {
 }
 
 #[test]
+fn bodies_that_surface_tension_does_not_wet_give_a_warning() {
+    let warnings = |model: &str| {
+        let text = format!("{CUBE}surface_tension = \"{model}\"\n[[body]]\n{PLAIN}\n");
+        parse(&text).expect("valid").warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    assert!(warnings("csf").contains("not wetted"), "{}", warnings("csf"));
+    assert!(!warnings("akinci2013").contains("not wetted"));
+}
+
+#[test]
 fn paths_are_relative_to_the_folder_of_the_scene_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.toml");

@@ -1,4 +1,4 @@
-//! Normals of the fluid's free surface, for surface tension (Akinci, Akinci & Teschner 2013):
+//! Normals of the fluid's free surface, for both models of surface tension (Akinci, Akinci & Teschner 2013):
 //! n_i = H sum_j (m / rho_j) grad W(x_i - x_j), over fluid and images, without unit; its length
 //! grows with the curvature. With images the surface meets walls at a right angle.
 
