@@ -156,8 +156,13 @@ fn an_excessive_speed_is_limited_and_counted() {
         let (positions, velocities) = (vec![[0.8, 0.3, 0.3]], vec![[0.0, 1e6, 0.0]]);
         let particles = Particles::from_positions(positions).with_velocities(velocities);
         let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
-        let stats = simulation.advance(0.001).unwrap();
-        assert!(stats.speed_limits > 0 && stats.particles == 1 && stats.non_finite == 0, "{name}: {stats:?}");
+        // The first step is already the shortest allowed, so no step follows this speed even when limited.
+        let result = simulation.advance(0.001);
+        assert!(matches!(result, Err(SimulationError::StepTooSmall { .. })), "{name}: {result:?}");
+        let stats = simulation.stats();
+        // A GPU finishes its batch of steps before the error is read, and the particle may leave the domain in it.
+        let counted = stats.particles + stats.escaped as u32;
+        assert!(stats.speed_limits > 0 && counted == 1 && stats.non_finite == 0, "{name}: {stats:?}");
     }
 }
 

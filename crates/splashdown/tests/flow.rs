@@ -60,12 +60,13 @@ fn a_free_jet_has_a_constant_flux_and_density() {
         changed.emitters = vec![emitter()];
         changed
     };
-    let layer = splashdown::flow::outlet::disc_layer(0.1, SPACING).len() as f32;
+    let layer = splashdown::flow::outlet::disc_layer(0.1, SPACING);
+    let (layer, interval) = (layer.points.len() as f32, layer.interval);
     for (name, executor) in testing::executors("a_free_jet_has_a_constant_flux_and_density") {
         let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
         assert_eq!(simulation.stats().particles, 0, "{name}");
         let (stats, highest) = run(&mut simulation, 4, 0.1);
-        let wanted = layer * (0.4 / SPACING);
+        let wanted = layer * (0.4 / interval);
         assert!(
             (stats.emitted as f32 - wanted).abs() <= layer + 0.5,
             "{name}: {} of {wanted}",

@@ -75,7 +75,7 @@ pub enum BodyError {
     },
     /// The outlet is too small for a particle.
     #[error(
-        "{owner}: the outline of its mesh across the direction holds no particle of {spacing} m, half a spacing inside; the mesh's \
+        "{owner}: the outline of its mesh across the direction is too small for particles of {spacing} m; the mesh's \
          origin must lie inside it: enlarge it, check up and rotation, or refine particle_spacing"
     )]
     Outline {

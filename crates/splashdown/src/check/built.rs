@@ -120,7 +120,7 @@ impl Built {
     /// # Errors
     /// As [`flow`](Self::flow).
     pub fn emitted(&self, scene: &Scene) -> Result<(u64, f64), BodyError> {
-        Ok(self.flow(scene)?.forecast(scene.duration, scene.fluid.particle_spacing))
+        Ok(self.flow(scene)?.forecast(scene.duration))
     }
 
     /// The extents and speeds of the meshes and files of the fluid; those that cannot be read are left out.

@@ -179,9 +179,9 @@ fn check_emitter(
         .add_emitter(emitter, scene)
         .map_err(|error| section.complain("mesh", error.to_string(), "", ""))?;
     let (across, up) = outlet::axes(emitter.direction);
-    let every = layer.len().div_ceil(MAX_POINTS).max(1);
+    let every = layer.points.len().div_ceil(MAX_POINTS).max(1);
     let points: Vec<Vec3> =
-        layer.iter().step_by(every).map(|q| emitter.position + q.x * across + q.y * up).collect();
+        layer.points.iter().step_by(every).map(|q| emitter.position + q.x * across + q.y * up).collect();
     let domain = &scene.domain;
     let slack = 1e-3 * scene.fluid.particle_spacing;
     if points.iter().any(|x| x.cmplt(domain.min - slack).any() || x.cmpgt(domain.max + slack).any()) {

@@ -2,10 +2,11 @@
 
 use std::f32::consts::PI;
 
+use super::Built;
 use crate::sample;
 use crate::scene::{
     DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, Shape,
-    SinkRegion, SurfaceTension, outlet,
+    SinkRegion, SurfaceTension, lattice, outlet,
 };
 
 /// A scene with more steps than this takes days and gives a warning.
@@ -13,6 +14,9 @@ const MANY_STEPS: u64 = 10_000_000;
 /// Smallest ratio of the speed of sound to the reference speed that gives no warning. At this ratio the
 /// density of a weakly compressible fluid varies by about 4 %.
 const SLOWEST_SOUND: f32 = 5.0;
+
+/// The part of the volume of a closed domain from which it counts as full.
+const FULL: f64 = 0.99;
 
 /// Warns of values that are valid but probably unintended.
 pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
@@ -32,6 +36,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         }
     }
     check_viscosity(scene, solver, derived);
+    check_room(scene, root, solver);
     if scene.solver.surface_tension == SurfaceTension::Csf && !scene.bodies.is_empty() {
         let message =
             "with surface_tension = \"csf\" bodies are not wetted: the contact angle is 180 degrees"
@@ -137,6 +142,36 @@ fn check_viscosity(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
     solver.warn("method", message, "method = \"dfsph\" integrates the viscosity implicitly, in longer steps");
 }
 
+/// Warns of closed domains that the fluid fills.
+fn check_room(scene: &Scene, root: &Section<'_>, solver: &Section<'_>) {
+    let is_closed = scene.domain.closed.as_flattened().iter().all(|&closed| closed);
+    if !is_closed || !scene.sinks.is_empty() {
+        return;
+    }
+    let particle = f64::from(scene.fluid.particle_spacing).powi(3);
+    let room = (scene.domain.max - scene.domain.min).as_dvec3().element_product() / particle;
+    // Only the particles of blocks are counted, with those that bodies displace: filling meshes takes time.
+    let initial = lattice::count(&scene.domain, &scene.fluid) as f64;
+    // Without a folder no file is opened.
+    let opens_files = scene.emitters.iter().any(|emitter| matches!(emitter.outlet, Outlet::Mesh(_)));
+    let is_known = root.has_folder() || !opens_files;
+    let emitted = if is_known { Built::of(scene).emitted(scene).unwrap_or_default().0 as f64 } else { 0.0 };
+    if scene.solver.method == Method::Dfsph && initial >= FULL * room {
+        let message = "the fluid fills the closed domain: without a free surface nothing determines the level of an implicit \
+                       pressure, and fluid that moves can end the run"
+            .to_owned();
+        solver.warn("method", message, "use method = \"wcsph\", open a side, or leave a layer of air");
+    }
+    if emitted > 0.0 && initial + emitted > room {
+        let message = format!(
+            "the emitters add {:.3e} m^3 to a closed domain in which {:.3e} m^3 are free",
+            emitted * particle,
+            (room - initial).max(0.0) * particle
+        );
+        root.warn("emitter", message, "open a side, add a sink, or set end or max_particles");
+    }
+}
+
 /// Warns of emitters, sinks and probes that have no effect or an inexact one.
 fn check_flow(scene: &Scene, root: &Section<'_>) {
     let spacing = scene.fluid.particle_spacing;
@@ -147,11 +182,11 @@ fn check_flow(scene: &Scene, root: &Section<'_>) {
             Outlet::Rectangle { size } => (size[0] * size[1], outlet::rectangle_layer(*size, spacing)),
             Outlet::Mesh(_) => continue,
         };
-        let share = layer.len() as f32 * spacing * spacing / area;
-        if !(0.8..1.25).contains(&share) {
+        let share = layer.share_of(area, spacing);
+        if (share - 1.0).abs() > 0.01 {
             let message = format!(
                 "the outlet of emitter {name:?} is too narrow for the spacing: its {} particles per layer emit {:.3e} m^3/s instead of {:.3e}",
-                layer.len(),
+                layer.points.len(),
                 share * area * emitter.speed,
                 area * emitter.speed
             );

@@ -14,7 +14,8 @@ struct Nozzle {
     points: u32,
     most: u32,
     disc: u32,
-    unused: vec2<u32>,
+    interval: f32,
+    unused: u32,
 }
 
 struct SinkShape {

@@ -17,13 +17,14 @@ mod types;
 
 pub use types::{EmissionSchedule, Nozzle, SinkShape};
 
-use glam::{UVec3, Vec2, Vec3, Vec4};
+use glam::{UVec3, Vec3, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, WgslModule, buffer_set};
 use splashdown_io::Particles;
 
 use crate::bodies::{BodyError, closed_solid, owner};
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::fingerprint::hash;
+use crate::scene::outlet::Layer;
 use crate::scene::{Emitter, Scene, Sink, SinkRegion};
 
 /// The WGSL side of [`Nozzle`], [`SinkShape`] and [`EmissionSchedule`].
@@ -74,16 +75,15 @@ impl LoadedFlow {
     ///
     /// # Errors
     /// [`BodyError`] of the outlet's mesh.
-    pub(crate) fn add_emitter(&mut self, emitter: &Emitter, scene: &Scene) -> Result<Vec<Vec2>, BodyError> {
+    pub(crate) fn add_emitter(&mut self, emitter: &Emitter, scene: &Scene) -> Result<Layer, BodyError> {
         let duration = scene.duration.max(scene.frame_count() as f32 * scene.frame_duration());
-        let spacing = scene.fluid.particle_spacing;
         #[cfg(test)]
         crate::work::count("emitter built");
         let (mut nozzle, layer) = outlet::nozzle(emitter, scene)?;
         nozzle.first_point = self.points.len() as u32;
-        self.expected = self.expected.saturating_add(outlet::expected(&nozzle, duration, spacing));
-        let depth = outlet::stagger(nozzle.direction, scene.gravity, spacing);
-        self.points.extend(outlet::staggered(&layer, spacing, depth));
+        self.expected = self.expected.saturating_add(outlet::expected(&nozzle, duration));
+        let depth = outlet::stagger(nozzle.direction, scene.gravity, nozzle.interval);
+        self.points.extend(outlet::staggered(&layer, depth));
         self.nozzles.push(nozzle);
         self.names.push(emitter.name.clone());
         Ok(layer)
@@ -121,9 +121,9 @@ impl LoadedFlow {
             particles.positions.retain(|_| *flags.next().unwrap_or(&true));
             let points = &self.points[nozzle.first_point as usize..][..nozzle.points as usize];
             // The first layer is emitted at the back face in the first step.
-            for layer in 1..=(nozzle.length / spacing) as u32 {
+            for layer in 1..=(nozzle.length / nozzle.interval) as u32 {
                 for q in points {
-                    let forward = (layer as f32 * spacing + q.z) * nozzle.direction;
+                    let forward = (layer as f32 * nozzle.interval + q.z) * nozzle.direction;
                     let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
                     if holds(&x.to_array()) {
                         layers.push((x.to_array(), (nozzle.speed * nozzle.direction).to_array()));
@@ -142,14 +142,14 @@ impl LoadedFlow {
         is_changed
     }
 
-    /// The particles that the emitters create until `duration` (s) at this spacing (m): their number, and how many of
-    /// them exist on average over that time, without obstacles and sinks.
-    pub(crate) fn forecast(&self, duration: f32, spacing: f32) -> (u64, f64) {
+    /// The particles that the emitters create until `duration` (s): their number, and how many of them exist on average
+    /// over that time, without obstacles and sinks.
+    pub(crate) fn forecast(&self, duration: f32) -> (u64, f64) {
         let (mut all, mut average) = (0u64, 0.0);
         for nozzle in &self.nozzles {
-            let emitted = outlet::expected(nozzle, duration, spacing);
+            let emitted = outlet::expected(nozzle, duration);
             // The flow is steady from its start until its end, or until the largest number of particles is reached.
-            let per_second = nozzle.points as f32 * nozzle.speed / spacing;
+            let per_second = nozzle.points as f32 * nozzle.speed / nozzle.interval;
             let busy = (nozzle.end.min(duration) - nozzle.start).clamp(0.0, emitted as f32 / per_second);
             let present = (duration - nozzle.start - 0.5 * busy) / duration;
             all = all.saturating_add(emitted);
@@ -264,19 +264,15 @@ impl Flow {
     ///
     /// # Errors
     /// As [`Executor::create`].
-    pub fn new(
-        executor: &mut Executor,
-        loaded: &LoadedFlow,
-        spacing: f32,
-        next_id: u32,
-    ) -> Result<Self, GpuError> {
+    pub fn new(executor: &mut Executor, loaded: &LoadedFlow, next_id: u32) -> Result<Self, GpuError> {
         let nozzles = if loaded.nozzles.is_empty() {
             None
         } else {
             // The first layer is due in the first step.
             let mut schedules = vec![0; loaded.nozzles.len() * EmissionSchedule::WORDS + 1];
-            for schedule in schedules.chunks_exact_mut(EmissionSchedule::WORDS) {
-                schedule[EmissionSchedule::PHASE] = spacing.to_bits();
+            for (schedule, nozzle) in schedules.chunks_exact_mut(EmissionSchedule::WORDS).zip(&loaded.nozzles)
+            {
+                schedule[EmissionSchedule::PHASE] = nozzle.interval.to_bits();
             }
             schedules[loaded.nozzles.len() * EmissionSchedule::WORDS] = next_id;
             Some(Nozzles {

@@ -4,35 +4,38 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::Nozzle;
 use crate::bodies::{BodyError, closed_solid, owner};
-pub use crate::scene::outlet::{axes, disc_layer, rectangle_layer};
+use crate::scene::outlet::LATTICE_SHIFTS;
+pub use crate::scene::outlet::{Layer, axes, disc_layer, rectangle_layer};
 use crate::scene::{Domain, Emitter, MeshSource, Outlet, Scene};
 use crate::solid::Solid;
 
 /// More particles than any scene emits, and small enough that sums do not overflow.
 const UNLIMITED: u32 = u32::MAX / 2;
 
+/// The largest relative error of the flow of an outlet given by a mesh.
+const MOST_MESH_ERROR: f32 = 0.1;
+
 /// Shifts the points of a layer forward, each by its own fraction of `depth` (m). The distances between columns do not
 /// change, and a jet that gravity stretches thins evenly instead of separating into discs. The fractions are those of
 /// Roberts' sequence R2 on the lattice, which differ strongly between neighbours.
-pub fn staggered(layer: &[Vec2], spacing: f32, depth: f32) -> Vec<Vec4> {
+pub fn staggered(layer: &Layer, depth: f32) -> Vec<Vec4> {
     const PLASTIC: f32 = 1.324_718;
     let fraction = |q: &Vec2| {
-        let place = (*q / spacing + 0.25).floor();
+        let place = (*q / layer.pitch + 0.25).floor();
         (place.x / PLASTIC + place.y / (PLASTIC * PLASTIC)).rem_euclid(1.0)
     };
-    layer.iter().map(|q| q.extend(depth * fraction(q)).extend(0.0)).collect()
+    layer.points.iter().map(|q| q.extend(depth * fraction(q)).extend(0.0)).collect()
 }
 
-/// The depth in m by which a layer is staggered: a spacing for a jet straight down, and zero for one that gravity does
-/// not stretch, whose layers may have to enter fluid at rest as a whole.
-pub fn stagger(direction: Vec3, gravity: Vec3, spacing: f32) -> f32 {
-    spacing * direction.dot(gravity.normalize_or_zero()).clamp(0.0, 1.0)
+/// The depth in m by which a layer is staggered: the distance between layers for a jet straight down, and zero for one
+/// that gravity does not stretch, whose layers may have to enter fluid at rest as a whole.
+pub fn stagger(direction: Vec3, gravity: Vec3, interval: f32) -> f32 {
+    interval * direction.dot(gravity.normalize_or_zero()).clamp(0.0, 1.0)
 }
 
-/// The points of a square lattice along [`axes`] that lie in the cross-section of the mesh at the outlet, at least half
-/// a spacing from its rim. Four lattices are tried, which differ in their position relative to the centre; the one whose
-/// points represent the area best is used.
-fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Vec<Vec2> {
+/// As [`disc_layer`], for the cross-section of the mesh at the outlet; none if its area is too
+/// small for the spacing.
+fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f32) -> Option<Layer> {
     const FINER: i32 = 4;
     let (across, up) = axes(emitter.direction);
     let reach = solid.mesh.vertices.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
@@ -48,22 +51,21 @@ fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f3
     // The area of the cross-section in squares of the spacing, by counting finer cells.
     let fine = lattice(spacing / FINER as f32, Vec2::splat(0.5)).filter(|q| inside(*q)).count();
     let wanted = fine as f32 / (FINER * FINER) as f32;
-    let off_rim = |q: Vec2| {
-        let rim =
-            (0..8).map(|k| Vec2::from_angle(std::f32::consts::FRAC_PI_4 * k as f32) * (0.499 * spacing));
-        inside(q) && rim.into_iter().all(|offset| inside(q + offset))
-    };
-    let shifts = [Vec2::ZERO, Vec2::splat(0.5), Vec2::new(0.5, 0.0), Vec2::new(0.0, 0.5)];
-    let layers = shifts.map(|shift| lattice(spacing, shift).filter(|q| off_rim(*q)).collect::<Vec<_>>());
+    let layers =
+        LATTICE_SHIFTS.map(|shift| lattice(spacing, shift).filter(|q| inside(*q)).collect::<Vec<_>>());
     let error = |layer: &Vec<Vec2>| (layer.len() as f32 - wanted).abs();
-    layers.into_iter().min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or_default()
+    let best = layers.into_iter().filter(|layer| !layer.is_empty());
+    let points = best.min_by(|a, b| error(a).total_cmp(&error(b)))?;
+    let area = wanted * spacing * spacing;
+    let layer = Layer::covering(area, points, spacing);
+    ((layer.share_of(area, spacing) - 1.0).abs() < MOST_MESH_ERROR).then_some(layer)
 }
 
 /// The nozzle of an emitter, with `first_point` not yet set, and its layer, not yet [`staggered`].
 ///
 /// # Errors
 /// [`BodyError`] of the outlet's mesh, which must be closed.
-pub fn nozzle(emitter: &Emitter, scene: &Scene) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
+pub fn nozzle(emitter: &Emitter, scene: &Scene) -> Result<(Nozzle, Layer), BodyError> {
     let spacing = scene.fluid.particle_spacing;
     let support_radius = scene.solver.support_radius(spacing);
     nozzle_in(emitter, &scene.domain, spacing, support_radius)
@@ -75,16 +77,15 @@ pub(crate) fn nozzle_in(
     domain: &Domain,
     spacing: f32,
     support_radius: f32,
-) -> Result<(Nozzle, Vec<Vec2>), BodyError> {
+) -> Result<(Nozzle, Layer), BodyError> {
     let (across, up) = axes(emitter.direction);
-    let half = |layer: &[Vec2]| {
-        layer.iter().fold(Vec2::ZERO, |most, q| most.max(q.abs())) + Vec2::splat(0.5 * spacing)
-    };
+    let half =
+        |layer: &Layer| layer.points.iter().fold(Vec2::ZERO, |most, q| most.max(q.abs())) + 0.5 * layer.pitch;
     let (layer, disc, half) = match &emitter.outlet {
         Outlet::Disc { radius } => {
             let layer = disc_layer(*radius, spacing);
-            let widest = layer.iter().map(|q| q.length()).fold(0.0, f32::max);
-            (layer, 1, Vec2::splat(radius.max(widest + 0.5 * spacing)))
+            // A single column has no extent of its own.
+            (layer, 1, Vec2::splat(radius.max(0.5 * spacing)))
         }
         Outlet::Rectangle { size } => {
             let layer = rectangle_layer(*size, spacing);
@@ -94,17 +95,16 @@ pub(crate) fn nozzle_in(
         Outlet::Mesh(source) => {
             let owner = owner("emitter", &emitter.name, source);
             let solid = closed_solid(&owner, source, domain, spacing)?;
-            let layer = mesh_layer(emitter, source, &solid, spacing);
-            if layer.is_empty() {
+            let Some(layer) = mesh_layer(emitter, source, &solid, spacing) else {
                 return Err(BodyError::Outline { owner, spacing });
-            }
+            };
             let half = half(&layer);
             (layer, 0, half)
         }
     };
     let length = support_radius + spacing;
     let start = emitter.position - length * emitter.direction;
-    let back = start + emitter.direction * forward(domain, start, emitter, &layer, length, spacing);
+    let back = start + emitter.direction * forward(domain, start, emitter, &layer.points, length, spacing);
     let nozzle = Nozzle {
         back,
         speed: emitter.speed,
@@ -117,10 +117,11 @@ pub(crate) fn nozzle_in(
         half_across: half.x,
         half_up: half.y,
         first_point: 0,
-        points: layer.len() as u32,
+        points: layer.points.len() as u32,
         most: emitter.max_particles.unwrap_or(UNLIMITED).min(UNLIMITED),
         disc,
-        unused: glam::UVec2::ZERO,
+        interval: layer.interval,
+        unused: 0,
     };
     Ok((nozzle, layer))
 }
@@ -141,12 +142,12 @@ fn forward(domain: &Domain, back: Vec3, emitter: &Emitter, layer: &[Vec2], lengt
 }
 
 /// The number of particles that a nozzle creates until `duration` (s), plus one layer.
-pub fn expected(nozzle: &Nozzle, duration: f32, spacing: f32) -> u64 {
+pub fn expected(nozzle: &Nozzle, duration: f32) -> u64 {
     let active = (nozzle.end.min(duration) - nozzle.start).max(0.0);
     if active == 0.0 {
         return 0;
     }
-    let layers = (f64::from(nozzle.speed) * f64::from(active) / f64::from(spacing)).ceil() as u64 + 1;
+    let layers = (f64::from(nozzle.speed) * f64::from(active) / f64::from(nozzle.interval)).ceil() as u64 + 1;
     layers.saturating_mul(u64::from(nozzle.points)).min(u64::from(nozzle.most))
 }
 
@@ -158,18 +159,33 @@ mod tests {
     use crate::scene::{MeshShape, UpAxis};
 
     #[test]
-    fn layers_fill_the_outlet_up_to_half_a_spacing_from_the_rim() {
-        for radius in [0.02, 0.03, 0.05, 0.083] {
+    fn layers_emit_the_flow_of_the_outlet_and_stay_inside_it() {
+        for radius in [0.012, 0.02, 0.03, 0.04, 0.05, 0.083, 0.2] {
             let layer = disc_layer(radius, 0.01);
             let area = std::f32::consts::PI * radius * radius;
-            assert!(layer.iter().all(|q| q.length() <= radius - 0.0049), "{radius}");
-            let filled = layer.len() as f32 * 1e-4 / area;
-            assert!((0.5..1.15).contains(&filled), "{radius}: {filled}");
+            assert!((layer.share_of(area, 0.01) - 1.0).abs() < 1e-5, "{radius}");
+            assert!(layer.points.iter().all(|q| q.length() <= radius - 0.0024), "{radius}");
+            // At rest density, to the points at the rim.
+            let volume = layer.pitch.element_product() * layer.interval;
+            assert!((volume / 1e-6 - 1.0).abs() < 1e-5, "{radius}: {volume}");
+            let adjusted = layer.interval / 0.01;
+            assert!((0.8..1.43).contains(&adjusted), "{radius}: {adjusted}");
+            assert!(radius < 0.03 || (adjusted - 1.0).abs() < 0.1, "{radius}: {adjusted}");
         }
-        assert_eq!(disc_layer(0.001, 0.01), [Vec2::ZERO]);
-        let layer = rectangle_layer([0.04, 0.03], 0.01);
-        assert_eq!(layer.len(), 12);
-        assert!(layer.iter().all(|q| q.x.abs() < 0.0151 && q.y.abs() < 0.0101));
+        for size in [[0.04, 0.03], [0.043, 0.026], [0.015, 0.2], [0.012, 0.01]] {
+            let layer = rectangle_layer(size, 0.01);
+            assert!((layer.share_of(size[0] * size[1], 0.01) - 1.0).abs() < 1e-5, "{size:?}");
+            let outside = |q: &Vec2| 2.0 * q.abs() + layer.pitch - Vec2::from(size);
+            assert!(layer.points.iter().all(|q| outside(q).max_element() < 1e-6), "{size:?}");
+        }
+        assert_eq!(rectangle_layer([0.04, 0.03], 0.01).points.len(), 12);
+    }
+
+    #[test]
+    fn an_outlet_much_narrower_than_a_spacing_emits_too_much() {
+        let layer = disc_layer(0.001, 0.01);
+        assert_eq!(layer.points, [Vec2::ZERO]);
+        assert!(layer.interval < 0.0143 && layer.share_of(3.14e-6, 0.01) > 20.0);
     }
 
     #[test]
@@ -195,8 +211,9 @@ mod tests {
         // A square whose edge is an even or odd number of spacings is filled to its rim.
         for (spacing, count) in [(0.01, 100), (0.02, 25)] {
             let (nozzle, layer) = nozzle_in(&emitter, &domain, spacing, 2.0 * spacing).unwrap();
-            assert_eq!((layer.len(), nozzle.points), (count, count as u32), "{spacing}");
-            assert!(layer.iter().all(|q| q.abs().max_element() < 0.05 - 0.49 * spacing));
+            assert_eq!((layer.points.len(), nozzle.points), (count, count as u32), "{spacing}");
+            assert!((layer.interval / spacing - 1.0).abs() < 1e-3, "{spacing}: {}", layer.interval);
+            assert!(layer.points.iter().all(|q| q.abs().max_element() < 0.05 - 0.49 * spacing));
         }
         // The gear is 0.22 m wide at this scale. Its layer has no points in the bore and between the teeth.
         let gear = MeshSource {
@@ -206,9 +223,14 @@ mod tests {
         };
         let (_, layer) =
             nozzle_in(&Emitter { outlet: Outlet::Mesh(gear), ..emitter }, &domain, 0.01, 0.02).unwrap();
-        let area = layer.len() as f32 * 1e-4;
-        assert!((0.5..0.8).contains(&(area / (std::f32::consts::PI * 0.1 * 0.1))), "{area}");
-        assert!(layer.iter().all(|q| q.length() > 0.01));
+        // A disc with 20 teeth, without six holes and the bore with its groove (`models::machines`).
+        let disc = |radius: f32| std::f32::consts::PI * radius * radius;
+        let full = disc(0.178) + 20.0 * 0.5 * (0.033 + 0.016) * 0.031;
+        let area = 0.25 * (full - 6.0 * disc(0.027) - disc(0.031) - 0.018 * 0.011);
+        let share = layer.share_of(area, 0.01);
+        // The distance field rounds the teeth and the holes, which are a few spacings wide.
+        assert!((share - 1.0).abs() < 0.15, "{share}");
+        assert!(layer.points.iter().all(|q| q.length() > 0.01));
     }
 
     #[test]
@@ -222,19 +244,22 @@ mod tests {
     #[test]
     fn neighbours_in_a_layer_are_emitted_at_different_depths() {
         for layer in [disc_layer(0.083, 0.01), rectangle_layer([0.08, 0.05], 0.01)] {
-            let points = staggered(&layer, 0.01, 0.01);
-            assert!(points.iter().zip(&layer).all(|(p, q)| p.x == q.x && p.y == q.y));
+            let points = staggered(&layer, 0.01);
+            assert!(points.iter().zip(&layer.points).all(|(p, q)| p.x == q.x && p.y == q.y));
             assert!(points.iter().all(|p| (0.0..0.01).contains(&p.z)));
             let mut pairs = 0;
             for a in &points {
-                for b in points.iter().filter(|b| (a.x - b.x).hypot(a.y - b.y) < 0.0101 && *b != a) {
+                for b in points
+                    .iter()
+                    .filter(|b| (a.x - b.x).hypot(a.y - b.y) < 1.01 * layer.pitch.max_element() && *b != a)
+                {
                     let apart = (a.z - b.z).rem_euclid(0.01);
                     assert!(apart.min(0.01 - apart) > 0.0024, "{a} and {b}");
                     pairs += 1;
                 }
             }
-            assert!(pairs > 2 * layer.len(), "{pairs}");
-            assert!(staggered(&layer, 0.01, 0.0).iter().all(|p| p.z == 0.0));
+            assert!(pairs > 2 * layer.points.len(), "{pairs}");
+            assert!(staggered(&layer, 0.0).iter().all(|p| p.z == 0.0));
         }
     }
 

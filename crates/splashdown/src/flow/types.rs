@@ -1,6 +1,6 @@
 //! The elements of the buffers of emitters and sinks.
 
-use glam::{UVec2, UVec3, Vec3};
+use glam::{UVec3, Vec3};
 use splashdown_gpu::gpu_struct;
 
 gpu_struct! {
@@ -34,8 +34,10 @@ gpu_struct! {
         most: u32,
         /// 1 for a disc, 0 for a rectangle.
         disc: u32,
+        /// Distance between layers in m.
+        interval: f32,
         /// Padding.
-        unused: UVec2,
+        unused: u32,
     }
 }
 

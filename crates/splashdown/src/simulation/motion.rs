@@ -141,7 +141,7 @@ impl Simulation {
     }
 
     /// Reduces the next time step to what this speed allows, by the formula of [`end_step`](crate::state::end_step).
-    async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
+    pub(super) async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
         let Params { support_radius, sound_speed, cfl_factor, particle_spacing, min_dt, .. } = self.params;
         let by_motion = cfl_factor * particle_spacing / speed.max(1e-20);
         let allowed = if self.params.is_implicit == 1 {
@@ -167,6 +167,8 @@ pub(super) fn active_in_order(positions: &[Vec4], ids: &[u32]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use splashdown_gpu::{CpuExecutor, Executor};
+
     use crate::{Device, Scene, Simulation, SimulationError};
 
     fn simulation() -> Simulation {
@@ -216,6 +218,19 @@ mod tests {
         let slow = simulation.dt();
         simulation.set_velocities(&vec![[0.0, 200.0, 0.0]; n]).unwrap();
         assert!(slow <= before && simulation.dt() < 0.2 * slow, "{before} {slow} {}", simulation.dt());
+    }
+
+    #[test]
+    fn fast_particles_get_a_short_first_step() {
+        let given = simulation().particles().unwrap();
+        let dt = |velocity: [f32; 3]| {
+            let mut particles = given.clone();
+            particles.velocities = vec![velocity; given.positions.len()];
+            let executor = Executor::from(CpuExecutor::new());
+            let started = Simulation::with_particles(simulation().scene(), executor, &particles);
+            started.unwrap().dt()
+        };
+        assert!(dt([0.0, 200.0, 0.0]) < 0.2 * dt([0.0; 3]));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::mem::offset_of;
 
+use glam::Vec3;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
@@ -121,6 +122,11 @@ impl Simulation {
         simulation.executor.write(simulation.fields.duration, &[0.0])?;
         simulation.executor.run(&simulation.prime)?;
         simulation.count().await?;
+        // The estimate of the scene does not know the velocities of particles from files and programs.
+        let fastest = particles.velocities.iter().map(|&v| Vec3::from(v).length()).fold(0.0, f32::max);
+        if fastest > 0.0 {
+            simulation.limit_time_step(fastest).await?;
+        }
         Ok(simulation)
     }
 
@@ -151,11 +157,8 @@ impl Simulation {
         } else {
             Some(Bodies::new(&mut executor, loaded, &params, scheme.walls(), &scene.domain)?)
         };
-        let flow = if loaded_flow.is_empty() {
-            None
-        } else {
-            Some(Flow::new(&mut executor, loaded_flow, params.particle_spacing, next_id)?)
-        };
+        let flow =
+            if loaded_flow.is_empty() { None } else { Some(Flow::new(&mut executor, loaded_flow, next_id)?) };
         let stable_dt = Derived::without_particles(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;

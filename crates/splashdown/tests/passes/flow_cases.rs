@@ -1,6 +1,6 @@
 //! Emitters and sinks.
 
-use glam::{DVec3, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{DVec3, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::flow::{EmissionSchedule, Nozzle, SinkShape};
 use splashdown::state::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
 use splashdown_gpu::DispatchSize;
@@ -31,7 +31,8 @@ fn nozzles() -> Vec<Nozzle> {
         points: 12,
         most: 1000,
         disc: 1,
-        unused: UVec2::ZERO,
+        interval: 0.97 * SPACING,
+        unused: 0,
     };
     let rectangle = Nozzle {
         back: Vec3::new(0.13, 0.31, 0.47),
@@ -63,7 +64,7 @@ fn plan() -> Case {
     let active = world.active() as u32;
     world.params.particle_count = active + 25;
     let dt = world.state.dt;
-    let phases = [SPACING, 0.999_9 * SPACING, SPACING, SPACING, SPACING, SPACING];
+    let phases = [1.0, 0.999_9, 1.0, 1.0, 1.0, 1.0].map(|layers| layers * due[0].interval);
     let emitted = [24, 0, 0, 0, 5, 95];
     let mut plans = vec![0; 6 * EmissionSchedule::WORDS + 1];
     for (k, plan) in plans.chunks_exact_mut(EmissionSchedule::WORDS).enumerate() {
@@ -77,8 +78,9 @@ fn plan() -> Case {
         plan[EmissionSchedule::LAYER] = 0;
     }
     let mut set = |k: usize, word: usize, value: u32| expected[k * EmissionSchedule::WORDS + word] = value;
-    let rest =
-        |k: usize| (f64::from(phases[k]) + f64::from(due[k % 4].speed * dt) - f64::from(SPACING)) as f32;
+    let rest = |k: usize| {
+        (f64::from(phases[k]) + f64::from(due[k % 4].speed * dt) - f64::from(due[0].interval)) as f32
+    };
     for (k, slot, id) in [(0, active, 4000), (1, active + 12, 4012)] {
         set(k, EmissionSchedule::PHASE, rest(k).to_bits());
         set(k, EmissionSchedule::DISTANCE, rest(k).to_bits());

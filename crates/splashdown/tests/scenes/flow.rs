@@ -77,3 +77,25 @@ fn errors_in_emitters_and_sinks_are_reported() {
         assert!(message.contains(part), "{text}\n{message}");
     }
 }
+
+#[test]
+fn a_closed_domain_that_the_fluid_fills_gives_a_warning() {
+    let scene = |size: f32, solver: &str, rest: &str| {
+        let text = format!(
+            "[scene]\nname = \"full\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+             particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, {size}, 1]\n[solver]\n{solver}\n{rest}\n"
+        );
+        parse(&text).expect("valid").warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    let fills = "fills the closed domain";
+    let text = scene(1.0, "method = \"dfsph\"", "");
+    assert!(text.contains(fills), "{text}");
+    assert!(!scene(0.95, "method = \"dfsph\"", "").contains(fills));
+    assert!(!scene(1.0, "method = \"wcsph\"", "").contains(fills));
+    let adds = "the emitters add 6.";
+    assert!(scene(0.95, "", TAP).contains(adds), "{}", scene(0.95, "", TAP));
+    assert!(!scene(0.5, "", TAP).contains(adds));
+    assert!(!scene(0.95, "", &format!("{TAP}\nmax_particles = 300")).contains(adds));
+    let sink = "[[sink]]\nname = \"drain\"\nmin = [0, 0, 0]\nmax = [0.1, 0.1, 0.1]";
+    assert!(!scene(0.95, "", &format!("{TAP}\n{sink}")).contains(adds));
+}

@@ -14,8 +14,8 @@ pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
             continue;
         }
         let mut phase = f32::from_bits(schedule[EmissionSchedule::PHASE]) + nozzle.speed * state.dt;
-        if phase >= params.particle_spacing {
-            phase -= params.particle_spacing;
+        if phase >= nozzle.interval {
+            phase -= nozzle.interval;
             if slot + nozzle.points > params.particle_count {
                 schedule[EmissionSchedule::REFUSED] += nozzle.points;
             } else {

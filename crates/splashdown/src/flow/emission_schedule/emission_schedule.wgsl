@@ -20,8 +20,8 @@ fn emission_schedule() {
             continue;
         }
         var phase = bitcast<f32>(schedules[w + SCHEDULE_PHASE]) + nozzle.speed * state.dt;
-        if (phase >= params.particle_spacing) {
-            phase -= params.particle_spacing;
+        if (phase >= nozzle.interval) {
+            phase -= nozzle.interval;
             if (slot + nozzle.points > params.particle_count) {
                 schedules[w + SCHEDULE_REFUSED] += nozzle.points;
             } else {
