@@ -28,12 +28,15 @@ pub struct Line {
     pub density_error: Option<f32>,
     /// The largest speed in m/s.
     pub max_speed: Option<f32>,
-    /// Volume inside the surface in m^3.
+    /// Volume inside the surface and of the droplets in m^3.
     pub volume: Option<f64>,
     /// Triangles of the surface.
     pub triangles: Option<usize>,
     /// Complete files.
     pub files: Option<Vec<String>>,
+    /// Isolated particles, which are not part of the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub droplets: Option<usize>,
     /// Number of frames of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<u32>,
@@ -132,6 +135,7 @@ impl Line {
             frame: Some(frame.summary.index),
             volume: frame.summary.volume,
             triangles: frame.summary.triangles,
+            droplets: frame.summary.droplets,
             files: Some(frame.files.iter().map(|file| file.display().to_string()).collect()),
             ..Self::of_stats(&frame.summary.stats)
         }

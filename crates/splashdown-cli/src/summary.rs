@@ -112,7 +112,7 @@ fn volume(summary: &Summary) -> String {
     match summary.volume {
         None => particles,
         Some([inside_first, inside_last]) => format!(
-            "{particles}; inside the surface initially {} ({}), finally {} ({})",
+            "{particles}; surface with droplets initially {} ({}), finally {} ({})",
             human::volume(inside_first),
             change(inside_first, first),
             human::volume(inside_last),

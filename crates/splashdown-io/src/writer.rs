@@ -14,6 +14,7 @@ use crate::data::Mesh;
 use crate::data::Particles;
 use crate::error::IoError;
 use crate::film::Film;
+use crate::gltf;
 use crate::mesh::write_mesh;
 use crate::particles::write_particles;
 use crate::picture::Picture;
@@ -27,6 +28,8 @@ pub enum Job {
     Particles(PathBuf, Arc<Particles>),
     /// A mesh, for [`write_mesh`].
     Mesh(PathBuf, Arc<Mesh>),
+    /// Particles as points of a glTF file, for [`gltf::write_points`](crate::gltf::write_points).
+    Points(PathBuf, Arc<Particles>),
     /// A picture as PNG.
     #[cfg(feature = "png")]
     Png(PathBuf, Arc<Picture>),
@@ -194,6 +197,7 @@ fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
     let file = |path: &Path, bytes| Some(WrittenFile { path: path.to_owned(), bytes });
     Ok(match job {
         Job::Particles(path, particles) => file(path, write_particles(path, particles)?),
+        Job::Points(path, particles) => file(path, gltf::write_points(path, particles)?),
         Job::Mesh(path, mesh) => file(path, write_mesh(path, mesh)?),
         #[cfg(feature = "png")]
         Job::Png(path, picture) => file(path, crate::picture::write_png(path, picture)?),

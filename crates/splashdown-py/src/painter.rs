@@ -49,7 +49,7 @@ impl Painter {
 
     /// Draws a frame of a `Run`, the path of a file of a finished run, a `Mesh` or `Particles`.
     ///
-    /// A frame has its time, bodies and foam. Those of a file are read from the output folder to which it belongs; the number
+    /// A frame has its time, bodies, droplets and foam. Those of a file are read from the output folder to which it belongs; the number
     /// at the end of its name is the frame. For a mesh or particles, give `time` (s, for the caption and a moving camera),
     /// `bodies` and `foam`, if they are to be drawn. A mesh without normals is shaded with those of its triangles.
     ///
@@ -112,7 +112,7 @@ impl Painter {
             bodies: self.states(bodies.as_deref().unwrap_or_default())?,
             foam: foam.map(|foam| Arc::clone(&foam.get().particles)),
         };
-        let mut time = time;
+        let (mut time, mut droplets) = (time, None);
         let drawn = if let Ok(mesh) = what.cast::<Mesh>() {
             Drawn::Surface(Arc::clone(&mesh.get().0))
         } else if let Ok(particles) = what.cast::<Particles>() {
@@ -124,6 +124,7 @@ impl Painter {
             let frame = frame.get();
             time = time.or(Some(frame.time));
             beside.bodies = self.states(&frame.bodies)?;
+            droplets = frame.droplets.as_ref().map(|droplets| Arc::clone(&droplets.get().0));
             beside.foam = frame.foam.as_ref().map(|foam| Arc::clone(&foam.get().particles));
             self.of_frame(frame)?
         } else if let Ok(path) = what.extract::<PathBuf>() {
@@ -139,7 +140,7 @@ impl Painter {
         let mut taken = self.painter.take()?;
         let (painter, time) = (taken.get(), time.unwrap_or(0.0));
         Ok(py.detach(|| match drawn {
-            Drawn::Surface(mesh) => painter.surface(mesh, &beside, time),
+            Drawn::Surface(mesh) => painter.surface_with_droplets(mesh, droplets, &beside, time),
             Drawn::Particles(particles) => painter.particles(particles, &beside, time),
         })?)
     }

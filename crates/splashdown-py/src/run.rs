@@ -268,9 +268,14 @@ pub struct Frame {
     /// >>> frame.mesh.is_watertight
     /// True
     pub mesh: Option<Py<Mesh>>,
-    /// The volume that the surface encloses in m^3.
+    /// The isolated particles, which are not part of the surface, if that is enabled: ids, positions and velocities.
     ///
-    /// >>> frame.volume == frame.mesh.volume  # m^3
+    /// >>> len(frame.droplets)
+    /// 0
+    pub droplets: Option<Py<Particles>>,
+    /// The volume that the surface encloses, plus that of the droplets, in m^3.
+    ///
+    /// >>> frame.volume == frame.mesh.volume  # m^3, without droplets
     /// True
     volume: Option<f64>,
     /// Foam, spray and bubbles, if enabled.
@@ -309,6 +314,7 @@ impl Frame {
             time: frame.time,
             particles: Py::new(py, Particles(Arc::clone(&frame.particles)))?,
             mesh: frame.mesh.map(|mesh| Py::new(py, Mesh(mesh))).transpose()?,
+            droplets: frame.droplets.map(|droplets| Py::new(py, Particles(droplets))).transpose()?,
             volume: frame.volume,
             foam: frame.foam.map(|foam| Py::new(py, Foam::new(foam))).transpose()?,
             bodies: states

@@ -56,6 +56,22 @@ impl State {
         Ok(Self { simulation, foam, surface: None, particles: None })
     }
 
+    /// Extracts the surface with the settings of the scene.
+    fn extracted(
+        &mut self,
+    ) -> Result<(&mut splashdown::Simulation, &splashdown::Surface), splashdown::SimulationError> {
+        let Self { simulation, surface, .. } = self;
+        let surface = match surface {
+            Some(surface) => surface,
+            None => {
+                let settings = simulation.scene().surface.clone();
+                surface.insert(simulation.surface(&settings)?)
+            }
+        };
+        simulation.extract(surface)?;
+        Ok((simulation, surface))
+    }
+
     /// Simulates for a short time. Returns the statistics at the end of the frame, and the progress before.
     fn proceed(&mut self) -> Result<Option<splashdown::Stats>, splashdown::SimulationError> {
         let begun = Instant::now();
@@ -285,16 +301,25 @@ impl Simulation {
         let mut taken = self.0.take()?;
         let state = taken.get();
         let mesh = py.detach(|| {
-            let State { simulation, surface, .. } = state;
-            if surface.is_none() {
-                let settings = simulation.scene().surface.clone();
-                *surface = Some(simulation.surface(&settings)?);
-            }
-            let Some(surface) = surface else { unreachable!("set above") };
-            simulation.extract(surface)?;
+            let (simulation, surface) = state.extracted()?;
             simulation.mesh(surface)
         })?;
         Ok(Mesh(Arc::new(mesh)))
+    }
+
+    /// The isolated particles, which are not part of the surface, with the settings of the scene: ids, positions and
+    /// velocities.
+    ///
+    /// >>> len(simulation.droplets())
+    /// 0
+    fn droplets(&self, py: Python<'_>) -> Result<Particles> {
+        let mut taken = self.0.take()?;
+        let state = taken.get();
+        let droplets = py.detach(|| {
+            let (simulation, surface) = state.extracted()?;
+            simulation.droplets(surface)
+        })?;
+        Ok(Particles(Arc::new(droplets)))
     }
 
     /// The rows that the probes have measured since the last call, by the name of the probe: (rows, columns) float64, the first

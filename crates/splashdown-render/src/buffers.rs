@@ -29,6 +29,16 @@ pub struct FoamBuffers<'a> {
     pub count: u32,
 }
 
+/// Droplets on the GPU.
+#[derive(Clone, Copy, Debug)]
+pub struct DropletBuffers<'a> {
+    /// 32 bytes per droplet: position in metres (three `f32`), four bytes that are not read, velocity in m/s (three
+    /// `f32`), four bytes that are not read. Needs [`BufferUsages::STORAGE`].
+    pub droplets: &'a Buffer,
+    /// How many droplets to draw.
+    pub count: u32,
+}
+
 /// A closed triangle mesh on the GPU, counterclockwise as seen from outside.
 ///
 /// A mesh with holes is drawn too, but its thickness is wrong, and therefore its tint and shadow.
@@ -130,6 +140,17 @@ impl<'a> FoamBuffers<'a> {
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         self.column().check("foam", self.count)
+    }
+}
+
+impl<'a> DropletBuffers<'a> {
+    /// The droplets as a column of [`bind_chunks`](crate::chunks::bind_chunks).
+    pub(crate) fn column(&self) -> Column<'a> {
+        Column { buffer: self.droplets, stride: 32 }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        self.column().check("droplets", self.count)
     }
 }
 

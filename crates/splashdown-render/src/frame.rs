@@ -3,8 +3,8 @@
 use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
 use crate::{
-    BodyBuffers, Camera, Domain, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface,
-    Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
+    BodyBuffers, Camera, Domain, DrawnDroplets, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice,
+    DrawnSurface, Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
 };
 use glam::{Vec2, Vec3};
 
@@ -41,6 +41,8 @@ pub struct Frame<'a> {
     /// a `surface` and neither `particles` nor a `slice`; the rays then replace the approximations
     /// of the interactive picture.
     pub traced: Option<(&'a TracedMeshes, Quality)>,
+    /// Droplets of the liquid that are not part of its mesh.
+    pub droplets: Option<DrawnDroplets<'a>>,
     /// Foam, spray and bubbles.
     pub foam: Option<DrawnFoam<'a>>,
     /// Bodies.
@@ -73,6 +75,8 @@ setters! {
     with_liquid_particles, liquid_particles: DrawnLiquidParticles<'a>;
     /// Adds a plane through the fluid.
     with_slice, slice: DrawnSlice<'a>;
+    /// Adds droplets.
+    with_droplets, droplets: DrawnDroplets<'a>;
     /// Adds foam, spray and bubbles.
     with_foam, foam: DrawnFoam<'a>;
     /// Adds bodies.
@@ -96,6 +100,7 @@ impl<'a> Frame<'a> {
             liquid_particles: None,
             slice: None,
             traced: None,
+            droplets: None,
             foam: None,
             bodies: None,
             caption: None,
@@ -146,6 +151,10 @@ impl<'a> Frame<'a> {
         globals.sample = sample;
         globals.sample_count = quality.samples;
         globals.shutter_time = time * quality.shutter;
+        if quality.shutter > 0.0 {
+            // The samples move the droplets.
+            globals.droplet_shutter = 0.0;
+        }
         (globals.water_root, globals.body_root) = meshes.roots();
         Ok(globals)
     }
@@ -230,6 +239,9 @@ impl<'a> Frame<'a> {
         }
         if let Some(foam) = &self.foam {
             foam.fill(&mut globals)?;
+        }
+        if let Some(droplets) = &self.droplets {
+            droplets.fill(&mut globals)?;
         }
         if let Some(surface) = &self.surface {
             surface.fill(&mut globals)?;

@@ -60,6 +60,9 @@ pub(crate) struct Globals {
     pub slice_scale: f32,
     pub splat_margin: f32,
     pub foam_radius: f32,
+    pub droplet_radius: f32,
+    pub droplet_shutter: f32,
+    pub padding: [f32; 2],
     pub ray_shift: [f32; 3],
     pub linear_output: u32,
     pub glass: [u32; 4],
@@ -122,7 +125,7 @@ mod tests {
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin foam_radius ray_shift linear_output glass
+            slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter padding ray_shift linear_output glass
             zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
             contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness daylight
             water_root bounced body_root edges);

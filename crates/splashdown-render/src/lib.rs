@@ -36,6 +36,7 @@
 //! * the same with traced rays ([`TracedMeshes`], [`Quality`]): slower, and what published pictures use;
 //! * a liquid directly from the particles, in screen space ([`DrawnLiquidParticles`]);
 //! * a plane through the fluid coloured by a quantity ([`DrawnSlice`]);
+//! * droplets of the liquid beside a mesh of it ([`DrawnDroplets`]);
 //! * foam, spray and bubbles, combined with any other mode ([`DrawnFoam`]).
 //!
 //! `examples/modes.rs` draws all of them side by side and compares their times.
@@ -54,6 +55,7 @@ mod chunks;
 mod colour_map;
 mod colouring;
 mod domain;
+mod droplets;
 mod edges;
 mod error;
 mod floor;
@@ -86,11 +88,14 @@ mod uploads;
 pub use wgpu;
 
 pub use bodies::{PlacedBody, UploadedBodies};
-pub use buffers::{BodyBuffers, Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers, SurfaceStyle};
+pub use buffers::{
+    BodyBuffers, Draw, DropletBuffers, FoamBuffers, ParticleBuffers, SurfaceBuffers, SurfaceStyle,
+};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 pub use colouring::{Colouring, Quantity};
 pub use domain::{Domain, Tank};
+pub use droplets::DrawnDroplets;
 pub use error::RenderError;
 pub use floor::{Floor, FloorPattern};
 pub use foam::DrawnFoam;
@@ -106,4 +111,4 @@ pub use slice::{Axis, DrawnSlice};
 pub use surface::DrawnSurface;
 pub use ticket::Ticket;
 pub use tree::TracedMeshes;
-pub use uploads::{UploadedFoam, UploadedParticles, UploadedSurface};
+pub use uploads::{UploadedDroplets, UploadedFoam, UploadedParticles, UploadedSurface};

@@ -3,6 +3,7 @@
 use crate::background::Background;
 use crate::bodies::Bodies;
 use crate::colour_map::ColourTextures;
+use crate::droplets::Droplets;
 use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
 use crate::glass::{Glass, Panes};
@@ -65,6 +66,7 @@ pub struct Renderer {
     bodies: Bodies,
     particles: Particles,
     slice: Slice,
+    droplets: Droplets,
     foam: Foam,
     glass: Glass,
     surface: Surface,
@@ -104,6 +106,7 @@ impl Renderer {
             bodies: Bodies::new(device, layouts, format, sample_count),
             particles: Particles::new(device, layouts, format, sample_count, colours.clone()),
             slice: Slice::new(device, layouts, format, sample_count, colours),
+            droplets: Droplets::new(device, &layouts, format, sample_count),
             foam: Foam::new(device, layouts, format, sample_count),
             glass: Glass::new(device, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
@@ -195,6 +198,8 @@ impl Renderer {
         let chunks =
             frame.particles.map(|drawn| self.particles.bind(&self.device, &drawn)).unwrap_or_default();
         let foam = frame.foam.map(|drawn| self.foam.bind(&self.device, &drawn)).unwrap_or_default();
+        let droplets =
+            frame.droplets.map(|drawn| self.droplets.bind(&self.device, &drawn)).unwrap_or_default();
         let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
         let has_liquid = surface.is_some() || frame.liquid_particles.is_some();
         let (has_panes, has_edges) = frame.sides(has_liquid);
@@ -267,6 +272,7 @@ impl Renderer {
             if let Some(drawn) = &frame.surface {
                 self.surface.record_lines(&self.device, &mut pass, drawn);
             }
+            self.droplets.record(&mut pass, &droplets);
             let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
             self.foam.record(&mut pass, &foam, kinds);
             if has_panes {

@@ -16,6 +16,8 @@ pub(crate) const MATTE: &str = include_str!("shared/matte.wgsl");
 /// Stands in for [`TRACE`] without trees of triangles.
 pub(crate) const LIT: &str = include_str!("shared/lit.wgsl");
 pub(crate) const TRACE: &str = include_str!("tree/trace.wgsl");
+/// The path of light through liquid, with [`TRACE`].
+pub(crate) const REFRACTED: &str = include_str!("trace/refracted.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
 pub(crate) const QUANTITY: &str = include_str!("shared/quantity.wgsl");
 pub(crate) const SPHERE: &str = include_str!("shared/sphere.wgsl");
@@ -39,7 +41,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 30] = [
+    const ALL: [Shader; 32] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -61,6 +63,8 @@ mod tests {
         crate::overlay::SHADER,
         crate::shadow::ABSORB,
         crate::foam::SHADER,
+        crate::droplets::SHADER,
+        crate::droplets::TRACED,
         crate::glass::SHADER,
         crate::bodies::TRACED,
         crate::trace::DEPTH,
@@ -115,8 +119,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 12,
-            "each shader has its own file, and twelve more are shared: {files:?}"
+            ALL.len() + 13,
+            "each shader has its own file, and thirteen more are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

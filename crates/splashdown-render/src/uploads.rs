@@ -1,6 +1,6 @@
 //! Upload of particles and meshes from host slices.
 
-use crate::{Draw, FoamBuffers, ParticleBuffers, RenderError, SurfaceBuffers};
+use crate::{Draw, DropletBuffers, FoamBuffers, ParticleBuffers, RenderError, SurfaceBuffers};
 use bytemuck::Pod;
 use glam::Vec3;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -82,7 +82,23 @@ impl UploadedFoam {
         ids: &[u32],
         kinds: &[u32],
     ) -> Result<UploadedFoam, RenderError> {
+        UploadedFoam::moving(device, positions, &[], lifetimes, ids, kinds)
+    }
+
+    /// As [`new`](Self::new), with velocities in m/s for motion blur; if empty, the particles rest.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn moving(
+        device: &Device,
+        positions: &[[f32; 3]],
+        velocities: &[[f32; 3]],
+        lifetimes: &[f32],
+        ids: &[u32],
+        kinds: &[u32],
+    ) -> Result<UploadedFoam, RenderError> {
         let needed = positions.len();
+        check_length("velocities", velocities.len(), needed)?;
         check_length("lifetimes", lifetimes.len(), needed)?;
         check_length("ids", ids.len(), needed)?;
         if kinds.len() != needed {
@@ -93,7 +109,8 @@ impl UploadedFoam {
                 let [x, y, z] = positions[i].map(f32::to_bits);
                 let lifetime = lifetimes.get(i).copied().unwrap_or(f32::MAX).to_bits();
                 let id = ids.get(i).copied().unwrap_or(i as u32);
-                [x, y, z, lifetime, 0, 0, 0, id << 2 | (kinds[i] & 3)]
+                let [u, v, w] = velocities.get(i).copied().unwrap_or_default().map(f32::to_bits);
+                [x, y, z, lifetime, u, v, w, id << 2 | (kinds[i] & 3)]
             })
             .collect();
         Ok(UploadedFoam {
@@ -105,6 +122,41 @@ impl UploadedFoam {
     /// The buffers, for [`DrawnFoam`](crate::DrawnFoam).
     pub fn buffers(&self) -> FoamBuffers<'_> {
         FoamBuffers { particles: &self.particles, count: self.count }
+    }
+}
+
+/// Droplets uploaded from the host.
+#[derive(Debug)]
+pub struct UploadedDroplets {
+    droplets: Buffer,
+    count: u32,
+}
+
+impl UploadedDroplets {
+    /// Copies positions (metres) and velocities (m/s) to the GPU. If `velocities` is empty, the droplets rest.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] if there are velocities, but not one per droplet.
+    pub fn new(
+        device: &Device,
+        positions: &[[f32; 3]],
+        velocities: &[[f32; 3]],
+    ) -> Result<UploadedDroplets, RenderError> {
+        check_length("velocities", velocities.len(), positions.len())?;
+        let rows: Vec<[f32; 8]> = (0..positions.len())
+            .map(|i| {
+                let [x, y, z] = positions[i];
+                let [u, v, w] = velocities.get(i).copied().unwrap_or_default();
+                [x, y, z, 0.0, u, v, w, 0.0]
+            })
+            .collect();
+        let count = rows.len() as u32;
+        Ok(UploadedDroplets { droplets: upload(device, "droplets", &rows, BufferUsages::STORAGE), count })
+    }
+
+    /// The buffers, for [`DrawnDroplets`](crate::DrawnDroplets).
+    pub fn buffers(&self) -> DropletBuffers<'_> {
+        DropletBuffers { droplets: &self.droplets, count: self.count }
     }
 }
 

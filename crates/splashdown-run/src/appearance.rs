@@ -4,8 +4,10 @@
 use splashdown::scene::{
     Choice, ColourBy, Derived, FloorKind, PictureQuality, PictureSettings, Scene, SkyKind, TankKind,
 };
+use splashdown::surface::droplet_radius;
 use splashdown_render::{
-    Camera, Colouring, Domain, Floor, FloorPattern, Frame, Liquid, Quality, Quantity, Sky, Tank,
+    Camera, Colouring, Domain, DrawnDroplets, DropletBuffers, Floor, FloorPattern, Frame, Liquid, Quality,
+    Quantity, Sky, Tank,
 };
 
 /// The empty picture of the scene: its domain, its sky and its floor.
@@ -133,11 +135,21 @@ pub fn quality(scene: &Scene, quality: PictureQuality) -> Option<Quality> {
             let mut best = Quality::FINAL;
             // A lens that leaves the domain nearly sharp.
             best.aperture = 0.006 * scene.camera.distance;
-            // The shutter is open for half a frame (of the scene, which may be shown in slow motion).
-            best.shutter = 0.5 / scene.frame_rate;
+            best.shutter = shutter(scene);
             Some(best)
         }
     }
+}
+
+/// Time in seconds for which the shutter is open: half a frame of the scene, which may be shown in slow motion.
+fn shutter(scene: &Scene) -> f32 {
+    0.5 / scene.frame_rate
+}
+
+/// Droplets with the volume of a particle each, blurred by their motion.
+pub fn droplets<'a>(scene: &Scene, buffers: DropletBuffers<'a>, liquid: Liquid) -> DrawnDroplets<'a> {
+    DrawnDroplets::new(buffers, droplet_radius(scene.fluid.particle_spacing), liquid)
+        .with_shutter(shutter(scene))
 }
 
 /// Colours by this quantity. The range is the scene's if it sets one for this quantity, else the expected one. It is

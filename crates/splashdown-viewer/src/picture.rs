@@ -96,6 +96,7 @@ impl Picture {
                 };
                 let (buffers, liquid) = (mesh.buffers(), appearance::liquid(scene));
                 frame.surface = Some(DrawnSurface::new(buffers, liquid).with_style(style));
+                frame.droplets = drawn.droplets().map(|buffers| appearance::droplets(scene, buffers, liquid));
             }
             (DisplayMode::Slice, _) => {
                 let (axis, low, high) = match look.slice_axis {

@@ -81,6 +81,7 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
     let (a, b) = (&old.surface, &new.surface);
     set("surface", "cell_size", a.cell_size != b.cell_size || old.fluid != new.fluid, number(b.cell_size));
     set("foam", "enabled", old.foam.enabled != new.foam.enabled, value(new.foam.enabled));
+    set("surface", "min_blob", a.min_blob != b.min_blob, value(i64::from(b.min_blob)));
     let iterations = value(i64::from(b.smoothing_iterations));
     set("surface", "smoothing_iterations", a.smoothing_iterations != b.smoothing_iterations, iterations);
 }
@@ -171,6 +172,7 @@ mod tests {
             changed.gravity = Vec3::new(0.1, -9.0, 1.0 / 3.0);
             changed.fluid.particle_spacing *= 1.1;
             changed.surface.cell_size *= 1.1;
+            changed.surface.min_blob = 4;
             changed.fluid.material.viscosity = 1.0 / 700.0;
             changed.solver.select_method(Method::Wcsph);
             changed.solver.artificial_viscosity = 0.07;
@@ -182,6 +184,7 @@ mod tests {
             let read = Scene::parse(&saved, name).unwrap();
             assert_eq!(read.camera.azimuth, 77.0, "{name}");
             assert_eq!(read.bodies, changed.bodies, "{name}");
+            assert_eq!(read.surface.min_blob, 4, "{name}");
             // Comments are preserved.
             assert_eq!(text.lines().next(), saved.lines().next(), "{name}");
         }

@@ -188,6 +188,30 @@ fn both_devices_show_the_same_surface() {
 }
 
 #[test]
+fn isolated_particles_are_drawn_as_droplets() {
+    let Some(gpu) = testing::gpu_or_skip("isolated_particles_are_drawn_as_droplets") else { return };
+    for simulate in [Simulate::OnCpu, Simulate::WhereDrawn] {
+        let mut engine = start(&gpu, simulate);
+        engine.send(Command::Surface(true));
+        let (shown, _) = until(&mut engine, |now| now.drawn.mesh().is_some());
+        assert!(shown.drawn.droplets().is_none());
+        let surface = picture(&gpu, &engine, DisplayMode::Surface);
+        // With this limit all particles are isolated.
+        let mut changed = scene();
+        changed.surface.min_neighbours = 32;
+        engine.send(Command::Change(Box::new(changed)));
+        let (shown, _) = until(&mut engine, |now| now.drawn.droplets().is_some());
+        assert_eq!(shown.drawn.droplets().map(|droplets| droplets.count), Some(shown.stats.particles));
+        assert_eq!(shown.drawn.mesh().map(|mesh| mesh.stats.triangles), Some(0));
+        let droplets = picture(&gpu, &engine, DisplayMode::Surface);
+        assert!(differing(&surface, &droplets) > 200);
+        // Control: neither surface nor droplets.
+        engine.send(Command::Surface(false));
+        until(&mut engine, |now| now.drawn.mesh().is_none() && now.drawn.droplets().is_none());
+    }
+}
+
+#[test]
 fn foam_is_computed_if_enabled_and_drawn_in_every_mode() {
     let Some(gpu) = testing::gpu_or_skip("foam_is_computed_if_enabled_and_drawn_in_every_mode") else {
         return;

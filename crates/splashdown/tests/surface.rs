@@ -275,6 +275,8 @@ fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
     particles.resize(capacity as usize, glam::Vec4::NAN);
     SurfaceInput {
         sorted_positions: executor.create_from("sorted_positions", &particles).unwrap(),
+        sorted_velocities: executor.create_from("sorted_velocities", &[]).unwrap(),
+        sorted_ids: executor.create_from("sorted_ids", &[]).unwrap(),
         cell_start: executor.create_from("cell_start", &cell_start).unwrap(),
         grid: executor.create_uniform("grid", &grid).unwrap(),
         grid_host: grid,

@@ -11,11 +11,12 @@ mod view;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, RangedI64ValueParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use splashdown::Device;
 use splashdown::scene::Choice;
+use splashdown::surface::MAX_BLOB;
 use splashdown_io::Format;
 
 use crate::console::Verbosity;
@@ -54,6 +55,11 @@ impl Arguments {
         let command = Self::command().mut_subcommands(|command| command.allow_negative_numbers(true));
         Self::from_arg_matches_mut(&mut command.try_get_matches_from(arguments)?)
     }
+}
+
+/// A limit of particles or neighbours below which particles become droplets.
+fn limit() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(0..=i64::from(MAX_BLOB))
 }
 
 /// A size in GiB, as bytes.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use splashdown::scene::PictureQuality;
 
-use super::choice;
+use super::{choice, limit};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -15,8 +15,8 @@ Examples:
   splashdown render out/my --scene my.toml --slow 4
 
 Reads the meshes and the spray, foam and bubbles of the run, and writes numbered PNG pictures and,
-with ffmpeg and several frames, a film. Particles files make spray of single particles visible as
-droplets. Frames without a mesh are left out and reported once.";
+with ffmpeg and several frames, a film. Isolated particles, which are not part of the meshes, are
+drawn as droplets if the run has particle files. Frames without a mesh are left out and reported once.";
 
 /// Options of `render`.
 #[derive(Debug, Args)]
@@ -37,6 +37,12 @@ pub struct RenderArguments {
     /// How carefully pictures are drawn
     #[arg(long, value_name = "QUALITY", value_parser = choice::<PictureQuality>(), default_value = "standard")]
     pub quality: PictureQuality,
+    /// Particles in blobs of fewer than N are drawn as droplets; 0: none [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = limit())]
+    pub min_blob: Option<u32>,
+    /// Particles with fewer than N others within 0.9 support radii are drawn as droplets; 0: none [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = limit())]
+    pub min_neighbours: Option<u32>,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = picture_size)]
     pub size: Option<[u32; 2]>,

@@ -7,7 +7,7 @@ use splashdown::Device;
 use splashdown::scene::{self, OnBurst, PictureKind, PictureQuality};
 use splashdown_io::Format;
 
-use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file};
+use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file, limit};
 
 /// The examples and the output files.
 fn after_help() -> String {
@@ -27,6 +27,8 @@ Files in the output folder:
                                          ParaView
   mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
                                          velocities in {with_velocities}
+  droplets/droplets_0000.ply, ...        isolated particles, which are not part of the surface, with
+                                         velocities and diameter; with --formats usd, droplets.usda
   particles.usda, surface.usda           all frames in one file, with --formats usd; written at
                                          the end, until then its data is in checkpoints/*.usdpart
   pictures/surface_0000.png, particles_0000.png
@@ -74,6 +76,13 @@ pub struct RunArguments {
     /// Do not extract the surface: no meshes and no pictures of it
     #[arg(long)]
     pub no_surface: bool,
+    /// Particles in blobs of fewer than N leave the surface and become droplets; 0: none [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = limit())]
+    pub min_blob: Option<u32>,
+    /// Particles with fewer than N others within 0.9 support radii leave the surface and become droplets; 0: none
+    /// [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = limit())]
+    pub min_neighbours: Option<u32>,
     /// Pictures, separated by commas, overriding the scene; a missing driver is then an error
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = choice::<PictureKind>())]
     pub pictures: Option<Vec<PictureKind>>,

@@ -6,7 +6,7 @@ use clap::Args;
 use splashdown::scene::SurfaceKernels;
 use splashdown_io::Format;
 
-use super::{DeviceArgument, choice, is_mesh_file};
+use super::{DeviceArgument, choice, is_mesh_file, limit};
 
 /// The examples, and the formats in the order of their table.
 fn after_help() -> String {
@@ -34,6 +34,7 @@ Examples:
   splashdown surface particles.vtk -o water.ply --particle-spacing 0.02
   splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
+  splashdown surface splash.ply -o splash.obj --particle-spacing 0.02 --min-blob 9 --droplets drops.ply
   splashdown surface out/my/particles -o 'meshes/water_*.glb' --particle-spacing 0.02";
 
 /// Options of `surface`.
@@ -67,9 +68,15 @@ pub struct SurfaceArguments {
     /// Iterations of smoothing; 15 to 25 remove the bumps of single particles and preserve the volume
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub smoothing: u32,
-    /// Remove components with less volume than N particles in the bulk; a single particle has 1 to 2
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0.0, value_parser = component_size)]
-    pub min_blob: f64,
+    /// Leave particles in blobs of fewer than N particles out of the mesh
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub min_blob: u32,
+    /// Leave particles with fewer than N others within 0.9 support radii out of the mesh
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = limit())]
+    pub min_neighbours: u32,
+    /// Write the particles that are left out, with their diameter; named as the meshes
+    #[arg(long, value_name = "FILE")]
+    pub droplets: Option<PathBuf>,
     /// Interpolate this attribute of the particles to the vertices, or `all` of them; may be repeated
     #[arg(short, long, value_name = "NAME|all")]
     pub attribute: Vec<String>,
@@ -89,12 +96,4 @@ fn length(text: &str) -> Result<f32, String> {
         .ok()
         .filter(|length| (1e-12..=1e12).contains(length))
         .ok_or_else(|| "a length is a number above 0, such as 0.02".to_owned())
-}
-
-/// A number of particles, which need not be whole.
-fn component_size(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|size: &f64| (0.0..=1e12).contains(size))
-        .ok_or_else(|| "the smallest component is a number of particles, 0 or more".to_owned())
 }

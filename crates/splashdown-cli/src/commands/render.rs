@@ -14,6 +14,8 @@ use crate::{console, human, scene_file};
 pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let mut scene = scene(arguments)?;
     scene.output.quality = arguments.quality;
+    scene.surface.min_blob = arguments.min_blob.unwrap_or(scene.surface.min_blob);
+    scene.surface.min_neighbours = arguments.min_neighbours.unwrap_or(scene.surface.min_neighbours);
     scene.output.picture_size = arguments.size.unwrap_or(scene.output.picture_size);
     if arguments.elevation.is_some_and(|elevation| !(-89.0..=89.0).contains(&elevation)) {
         return Err(Failure::new(Exit::Usage, "--elevation: the elevation is between -89 and 89 degrees"));

@@ -62,6 +62,8 @@ fn settings(arguments: &RunArguments) -> Result<RunSettings, Failure> {
     settings.frames = arguments.frames;
     settings.formats = formats;
     settings.surface = !arguments.no_surface;
+    settings.min_blob = arguments.min_blob;
+    settings.min_neighbours = arguments.min_neighbours;
     settings.pictures = if arguments.no_pictures { Some(Vec::new()) } else { arguments.pictures.clone() };
     settings.quality = arguments.quality;
     settings.film = !arguments.no_film;

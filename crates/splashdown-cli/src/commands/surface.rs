@@ -1,17 +1,17 @@
 //! `splashdown surface`: closed surface meshes from particle files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
 use splashdown::sample::typical_spacing;
 use splashdown::surface::{
-    SurfaceError, SurfaceParams, interpolate, reconstruct_with, remove_small_components,
+    SurfaceError, SurfaceParams, droplets_of, interpolate, isolated, reconstruct_with,
 };
 use splashdown_gpu::Executor;
 use splashdown_io::{
-    Format, IoError, Mesh, Particles, Topology, prepare_folder, read_particles,
-    read_particles_with_attributes, write_mesh,
+    Format, IoError, Mesh, Particles, Topology, gltf, prepare_folder, read_particles,
+    read_particles_with_attributes, write_mesh, write_particles,
 };
 use splashdown_run::sequence::{self, Step};
 
@@ -32,7 +32,8 @@ struct Line<'a> {
     vertices: usize,
     triangles: usize,
     pieces: usize,
-    dropped_blobs: usize,
+    /// Isolated particles, which are not part of the mesh.
+    droplets: usize,
     /// In the unit of the files, cubed.
     volume: f64,
     closed: bool,
@@ -62,6 +63,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     let start_memory = memory::resident();
     let inputs = sequence::expand(&arguments.particles, &Format::endings(Format::reads_particles))?;
     let steps = sequence::steps(inputs, &arguments.out)?;
+    let droplet_files = droplet_files(arguments, &steps)?;
     for Step { output, .. } in &steps {
         mesh_format(output, &arguments.out)?;
         attributes::check_format(&arguments.attribute, output)?;
@@ -74,14 +76,17 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     params.iso_level = arguments.iso_level;
     params.smoothing_iterations = arguments.smoothing;
     params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
-    if let Some(folder) = steps[0].output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        prepare_folder(folder)?;
+    for output in [Some(&steps[0].output), droplet_files.first()].into_iter().flatten() {
+        if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            prepare_folder(folder)?;
+        }
     }
     let mut executor = arguments.device.device.executor()?;
     let (mut failures, mut last) = (Vec::new(), None);
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
-        let topology = match one(step, &params, arguments, &mut executor, place) {
+        let droplet_file = droplet_files.get(number).map(PathBuf::as_path);
+        let topology = match one((step, droplet_file), &params, arguments, &mut executor, place) {
             // The remaining files of a series are still processed.
             Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
                 failures.push(failure.message);
@@ -99,7 +104,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
 
 /// Reads one file and writes its mesh; returns the mesh's topology.
 fn one(
-    step: &Step,
+    (step, droplet_file): (&Step, Option<&Path>),
     params: &SurfaceParams,
     arguments: &SurfaceArguments,
     executor: &mut Executor,
@@ -110,14 +115,12 @@ fn one(
     let particles = read(input, arguments)?;
     let selected = attributes::selected(&particles, &arguments.attribute, input)?;
     let read = Instant::now();
-    let (mut surface, _) = reconstruct_with(&particles.positions, params, executor)
+    let (mut surface, droplets) = separated(&particles.positions, params, arguments, executor)
         .map_err(|error| input_failure(error, input))?;
     let surface_seconds = read.elapsed().as_secs_f64();
-    let dropped_blobs = if arguments.min_blob > 0.0 {
-        remove_small_components(&mut surface, arguments.min_blob * f64::from(params.particle_spacing).powi(3))
-    } else {
-        0
-    };
+    if let Some(path) = droplet_file {
+        write_droplets(path, &droplets_of(&particles, &droplets, params.particle_spacing))?;
+    }
     if !particles.velocities.is_empty() && Format::of(output).is_some_and(Format::has_velocities) {
         let Particles { positions, velocities, .. } = &particles;
         surface.velocities = interpolate(&surface.vertices, positions, velocities, params)?;
@@ -132,7 +135,7 @@ fn one(
         vertices: surface.vertices.len(),
         triangles: surface.len(),
         pieces: topology.components,
-        dropped_blobs,
+        droplets: droplets.len(),
         volume: surface.volume(),
         closed: topology.is_closed(),
         manifold: topology.is_manifold(),
@@ -153,13 +156,69 @@ fn one(
     Ok(topology)
 }
 
+/// The mesh without isolated particles, and the indices of these.
+fn separated(
+    positions: &[[f32; 3]],
+    params: &SurfaceParams,
+    arguments: &SurfaceArguments,
+    executor: &mut Executor,
+) -> Result<(Mesh, Vec<u32>), SurfaceError> {
+    let mut limits = *params;
+    (limits.min_blob, limits.min_neighbours) = (arguments.min_blob, arguments.min_neighbours);
+    let droplets = isolated(positions, &limits)?;
+    let (mesh, _) = if droplets.is_empty() {
+        reconstruct_with(positions, params, executor)?
+    } else {
+        let mut apart = droplets.iter().copied().peekable();
+        let kept = (0..).zip(positions).filter(|(i, _)| apart.next_if_eq(i).is_none());
+        let kept: Vec<[f32; 3]> = kept.map(|(_, &x)| x).collect();
+        reconstruct_with(&kept, params, executor)?
+    };
+    Ok((mesh, droplets))
+}
+
+/// The files of the isolated particles, if they are to be written.
+///
+/// # Errors
+/// [`Exit::Usage`] for a name without a format of points; as [`sequence::steps`].
+fn droplet_files(arguments: &SurfaceArguments, steps: &[Step]) -> Result<Vec<PathBuf>, Failure> {
+    let Some(given) = &arguments.droplets else { return Ok(Vec::new()) };
+    if !Format::of(given).is_some_and(is_point_file) {
+        let error = IoError::UnknownFormat { path: given.clone(), allowed: Format::endings(is_point_file) };
+        return Err(Failure::new(Exit::Usage, error.to_string()));
+    }
+    let inputs = steps.iter().map(|step| step.input.clone()).collect();
+    let files: Vec<PathBuf> = sequence::steps(inputs, given)?.into_iter().map(|step| step.output).collect();
+    if let Some(file) = files.iter().find(|file| steps.iter().any(|step| step.output == **file)) {
+        let message = format!(
+            "`{}` would be the mesh and the droplets: give another name for --droplets",
+            file.display()
+        );
+        return Err(Failure::new(Exit::Usage, message));
+    }
+    Ok(files)
+}
+
+/// Formats of points with one file per frame.
+fn is_point_file(format: &Format) -> bool {
+    format.ending == ".glb" || (format.writes_particles() && !format.is_series())
+}
+
+fn write_droplets(path: &Path, droplets: &Particles) -> Result<(), IoError> {
+    match Format::of(path) {
+        Some(format) if format.ending == ".glb" => gltf::write_points(path, droplets)?,
+        _ => write_particles(path, droplets)?,
+    };
+    Ok(())
+}
+
 /// One line for people.
 fn describe(line: &Line<'_>, surface: &Mesh) -> String {
     let (particles, triangles) =
         (human::counted(line.particles as u64, "particle"), human::count(surface.len() as u64));
-    let removed = match line.dropped_blobs {
+    let left_out = match line.droplets {
         0 => String::new(),
-        count => format!(", {} removed", human::counted(count as u64, "small component")),
+        count => format!(", {} left out", human::counted(count as u64, "isolated particle")),
     };
     let velocities = line.velocities.then_some("velocities");
     let attributes: Vec<&str> =
@@ -167,7 +226,7 @@ fn describe(line: &Line<'_>, surface: &Mesh) -> String {
     let attributes =
         if attributes.is_empty() { String::new() } else { format!(", with {}", attributes.join(", ")) };
     format!(
-        "{}: {particles} -> {}: {triangles} triangles{attributes}, volume {}{removed} ({})",
+        "{}: {particles} -> {}: {triangles} triangles{attributes}, volume {}{left_out} ({})",
         line.input.display(),
         line.output.display(),
         human::three_digits(line.volume),

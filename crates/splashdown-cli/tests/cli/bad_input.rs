@@ -29,6 +29,8 @@ fn wrong_scenes() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ("fluid partly outside", edit("size = [0.3, 0.3, 0.3]", "size = [0.3, 3, 0.3]"), "domain"),
         ("no block", edit("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.3, 0.3, 0.3]\n", ""), "block"),
         ("no particle", edit("size = [0.3, 0.3, 0.3]", "size = [0.001, 0.001, 0.001]"), "particle"),
+        ("a large blob", edit("[fluid]", "[surface]\nmin_blob = 33\n[fluid]"), "surface.min_blob"),
+        ("half a neighbour", edit("[fluid]", "[surface]\nmin_neighbours = 2.5\n[fluid]"), "min_neighbours"),
         ("too many particles", edit("particle_spacing = 0.05", "particle_spacing = 0.0006"), "particles"),
         ("a name that leaves the output folder", edit("\"small\"", "\"../../x\""), "name"),
     ]

@@ -77,7 +77,7 @@ fn a_killed_run_continues_its_usd_files() -> Outcome {
 
     let output = place.splashdown(&["run", "--resume", "out"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    for file in ["particles.usda", "surface.usda", "probes/level.csv"] {
+    for file in ["particles.usda", "surface.usda", "droplets.usda", "probes/level.csv"] {
         let [whole, resumed] = ["uninterrupted", "out"].map(|root| fs::read(place.path(root).join(file)));
         assert!(whole? == resumed?, "{file} differs");
     }
@@ -88,7 +88,7 @@ fn a_killed_run_continues_its_usd_files() -> Outcome {
     assert!(output.status.success(), "{}", stderr(&output));
     let text = fs::read_to_string(place.path("out/particles.usda"))?;
     assert!(text.contains("endTimeCode = 14") && text.contains("startTimeCode = 0"), "{:.200}", text);
-    assert_eq!(names(&place.path("out"))?.iter().filter(|name| name.ends_with(".usda")).count(), 2);
+    assert_eq!(names(&place.path("out"))?.iter().filter(|name| name.ends_with(".usda")).count(), 3);
     Ok(())
 }
 

@@ -117,9 +117,9 @@ fn missing_files_are_reported_and_existing_files_are_counted() -> Outcome {
     }
     let output = place.splashdown(&["run", "--resume", "out", "--frames", "4"]).output()?;
     assert!(!stderr(&output).contains("cannot be found"), "{}", stderr(&output));
-    // Five frames of particles and surface, two checkpoints.
-    assert_eq!(report("uninterrupted")?["files"], 12);
-    assert_eq!(report("out")?["files"], 12);
+    // Five frames of particles, droplets and surface, two checkpoints.
+    assert_eq!(report("uninterrupted")?["files"], 17);
+    assert_eq!(report("out")?["files"], 17);
 
     // From here on other formats are requested. Earlier frames do not have them, and no warning appears.
     let longer = |frames: &str, more: &[&str]| {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::place::{Outcome, Place, can_draw, lines, names, stderr, stdout};
+use crate::place::{Outcome, Place, assert_refused, can_draw, lines, names, stderr, stdout};
 use serde_json::{Value, json};
 use splashdown_io::ply;
 
@@ -81,6 +81,72 @@ fn spray_foam_and_bubbles_have_separate_files() -> Outcome {
 }
 
 #[test]
+fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome {
+    let place = Place::new()?;
+    // A block and a single particle above it.
+    let scene = "[scene]\nname = \"drop\"\nduration = 0.02\nframe_rate = 100\n[domain]\nmin = [0, 0, 0]\nmax = [0.4, 0.8, 0.4]\n\
+                 [fluid]\nparticle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.4, 0.2, 0.4]\n\
+                 [[fluid.block]]\nposition = [0.2, 0.6, 0.2]\nsize = [0.05, 0.05, 0.05]\n\
+                 [foam]\nenabled = true\n[output]\npicture_size = [96, 64]\n";
+    place.write("drop.toml", scene)?;
+    let options = ["--device", "cpu", "--no-pictures", "--json", "-o", "out"];
+    let run =
+        |more: &[&str]| place.splashdown(&[&["run", "drop.toml"], &options[..], more].concat()).output();
+    let file = |name: &str| place.path(&format!("out/{name}"));
+    let output = run(&["--formats", "ply,vtk,glb,usd"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    for frame in 0..=2 {
+        let name = format!("droplets_000{frame}");
+        let droplets = splashdown_io::read_particles_with_attributes(&file(&format!("droplets/{name}.ply")))?;
+        assert_eq!((droplets.len(), droplets.velocities.len(), &droplets.ids[..]), (1, 1, &[256][..]));
+        let width =
+            droplets.attributes.iter().find(|attribute| attribute.name == "width").ok_or("no width")?;
+        assert!((width.values[0] / 0.05 - 1.2407).abs() < 1e-3, "{width:?}");
+        assert!(["vtk", "glb"].iter().all(|ending| file(&format!("droplets/{name}.{ending}")).exists()));
+        let mesh = ply::read_mesh(&file(&format!("mesh/surface_000{frame}.ply")))?;
+        assert_eq!(mesh.topology()?.components, 1);
+        let line =
+            lines(&output)?.into_iter().find(|line| line["event"] == "frame" && line["frame"] == frame);
+        let line = line.ok_or("no line")?;
+        assert_eq!(line["droplets"], 1);
+        let droplet = line["volume"].as_f64().ok_or("no volume")? - mesh.volume();
+        assert!((droplet / 0.05_f64.powi(3) - 1.0).abs() < 1e-2, "{droplet} m^3");
+    }
+    // Foam is written as points, too.
+    assert!(file("particles/spray_0002.glb").exists() && file("bubbles.usda").exists());
+    let usd = fs::read_to_string(file("droplets.usda"))?;
+    assert!(usd.contains("def Points \"droplets\"") && usd.contains("widths = [0.0620"), "{usd}");
+    assert!(usd.contains("velocities.timeSamples"), "{usd}");
+
+    // Drawn again, with and without limits.
+    if can_draw() {
+        for more in [&[][..], &["--min-blob", "0", "--min-neighbours", "0"]] {
+            let render = ["render", "out", "--frames", "1", "--quality", "interactive"];
+            let output = place.splashdown(&[&render, more].concat()).output()?;
+            assert!(output.status.success(), "{}", stderr(&output));
+        }
+        let pictures = ["render", "render-2"].map(|name| fs::read(file(&format!("{name}/picture_0000.png"))));
+        let [with, without] = pictures;
+        // The droplet of the files is not part of the mesh, whatever the limits.
+        assert!(with? == without?);
+    }
+
+    // Without limits the drop is a component of the mesh. Files of the earlier run are removed.
+    let output = run(&["--min-blob", "0", "--min-neighbours", "0", "--formats", "ply"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    let mesh = ply::read_mesh(&file("mesh/surface_0000.ply"))?;
+    assert_eq!(mesh.topology()?.components, 2);
+    assert!(!file("droplets/droplets_0000.glb").exists() && !file("droplets.usda").exists());
+
+    for (command, limit) in [("run", "33"), ("render", "-1")] {
+        let input = if command == "run" { "drop.toml" } else { "out" };
+        let output = place.splashdown(&[command, input, "--min-blob", limit]).output()?;
+        assert_refused(&output, 2, &["--min-blob", "0..=32"]);
+    }
+    Ok(())
+}
+
+#[test]
 fn every_json_line_has_every_key() -> Outcome {
     let place = Place::new()?;
     let output = place.run_small(&["--json", "--formats", "ply"]).output()?;
@@ -101,7 +167,7 @@ fn every_json_line_has_every_key() -> Outcome {
         assert!(frame["volume"].as_f64().is_some_and(|volume| volume > 0.0));
         assert!(frame["triangles"].as_u64().is_some_and(|count| count > 100));
         let files = frame["files"].as_array().ok_or("no files")?;
-        assert_eq!(files.len(), 2, "{frame}");
+        assert_eq!(files.len(), 3, "{frame}");
         for file in files {
             assert!(place.path(file.as_str().ok_or("no name")?).exists(), "{file}");
         }

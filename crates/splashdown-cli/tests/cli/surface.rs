@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
-use splashdown_io::{Mesh, Particles, ply, read_mesh, write_particles};
+use splashdown_io::{Mesh, Particles, ply, read_mesh, read_particles_with_attributes, write_particles};
 
 use crate::place::{Outcome, Place, assert_refused, stderr, stdout};
 
@@ -63,10 +63,39 @@ fn a_file_becomes_a_closed_mesh_with_velocities() -> Outcome {
     let more = [&arguments[..], &["--min-blob", "4", "--smoothing", "15", "--json"]].concat();
     let output = place.splashdown(&more).output()?;
     let line: Value = serde_json::from_str(stdout(&output).trim())?;
-    assert_eq!((&line["dropped_blobs"], &line["pieces"]), (&Value::from(3), &Value::from(1)));
+    assert_eq!((&line["droplets"], &line["pieces"]), (&Value::from(3), &Value::from(1)));
     assert_eq!(line["closed"], Value::from(true));
     let smooth = ply::read_mesh(&place.path("new/mesh.ply"))?;
     assert!(smooth.area() < 0.99 * mesh.area(), "{} and {}", smooth.area(), mesh.area());
+    Ok(())
+}
+
+#[test]
+fn isolated_particles_are_written_to_their_own_file() -> Outcome {
+    let place = Place::new()?;
+    for number in [1, 2] {
+        write_particles(&place.path(&format!("in_{number}.ply")), &with_drops(block([0.0; 3]), 3 * number))?;
+    }
+    let surface = |more: &[&str]| {
+        let options = ["surface", "in_*.ply", "-o", "made/w_*.ply", "-s", "0.02", "-d", "cpu"];
+        place.splashdown(&[&options, more].concat()).output()
+    };
+    let output = surface(&["--min-neighbours", "3", "--droplets", "made/drops_*.ply"])?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("6 isolated particles left out"), "{}", stderr(&output));
+    for number in [1, 2] {
+        let drops = read_particles_with_attributes(&place.path(&format!("made/drops_000{number}.ply")))?;
+        assert_eq!((drops.len(), drops.velocities[0]), (3 * number, [0.0, 9.0, 0.0]));
+        assert_eq!(drops.ids[0], 1728);
+        let width = drops.attributes.iter().find(|attribute| attribute.name == "width").ok_or("no width")?;
+        let volume = std::f32::consts::PI / 6.0 * width.values[0].powi(3);
+        assert!((volume / SPACING.powi(3) - 1.0).abs() < 1e-5, "{volume}");
+        let mesh = ply::read_mesh(&place.path(&format!("made/w_000{number}.ply")))?;
+        assert_eq!(mesh.topology()?.components, 1);
+    }
+    // Blobs of any size, and points in a format of meshes.
+    assert!(surface(&["--min-blob", "1000", "--droplets", "made/drops_*.glb"])?.status.success());
+    assert!(place.path("made/drops_0002.glb").exists());
     Ok(())
 }
 
@@ -172,7 +201,7 @@ fn errors_are_reported_before_anything_is_written() -> Outcome {
     let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let face = Mesh::new(corners, vec![[0, 1, 2]]);
     splashdown_io::write_mesh(&place.path("mesh.ply"), &face)?;
-    let cases: [Case<'_>; 18] = [
+    let cases: [Case<'_>; 22] = [
         ("absent.ply", "m.ply", &spacing, 3, &["absent.ply"]),
         ("notes.txt", "m.ply", &spacing, 3, &["notes.txt", ".bgeo", ".xyz"]),
         ("empty.xyz", "m.ply", &spacing, 3, &["no particles"]),
@@ -194,6 +223,10 @@ fn errors_are_reported_before_anything_is_written() -> Outcome {
             2,
             &["no surface", "iso_level of 5", "from 0 outside to 1."],
         ),
+        ("block.ply", "m.ply", &["-s", "0.02", "--min-blob", "-1"], 2, &["--min-blob", "0.."]),
+        ("block.ply", "m.ply", &["-s", "0.02", "--min-neighbours", "33"], 2, &["33", "0..=32"]),
+        ("block.ply", "m.ply", &["-s", "0.02", "--droplets", "d.obj"], 2, &["d.obj", ".ply", ".glb"]),
+        ("block.ply", "m.ply", &["-s", "0.02", "--droplets", "m.ply"], 2, &["m.ply", "--droplets"]),
         ("block.ply", "m*/x.ply", &spacing, 2, &["m*/x.ply", "star"]),
         ("block.ply", "m.obj", &["-s", "0.02", "-a", "all"], 2, &["m.obj", ".ply and .vtk"]),
         ("block.ply", "m.ply", &["-s", "0.02", "-a", "heat"], 2, &["`heat`", "it has velocity"]),

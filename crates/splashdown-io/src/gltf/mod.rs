@@ -15,7 +15,7 @@ mod transform;
 mod write;
 
 pub(crate) use write::write_mesh;
-pub use write::write_mesh_to;
+pub use write::{write_mesh_to, write_points, write_points_to};
 
 use std::path::Path;
 

@@ -165,7 +165,8 @@ impl PointSeries {
         diameter: f32,
         keep: Option<&Path>,
     ) -> Result<Self, IoError> {
-        Series::start(Place::new(path, frames_per_second, keep), Self::head(diameter), &POINTS).map(Self)
+        Series::start(Place::new(path, frames_per_second, keep), Self::head(path, diameter), &POINTS)
+            .map(Self)
     }
 
     /// Begins a series whose data is not kept.
@@ -188,12 +189,17 @@ impl PointSeries {
         last: u32,
     ) -> Result<Option<Self>, IoError> {
         let place = Place::new(path, frames_per_second, keep);
-        Ok(Series::resume(place, Self::head(diameter), &POINTS, last)?.map(Self))
+        Ok(Series::resume(place, Self::head(path, diameter), &POINTS, last)?.map(Self))
     }
 
-    fn head(diameter: f32) -> String {
+    /// The points have the name of the file without the number of its first frame: several files can be loaded together.
+    fn head(path: &Path, diameter: f32) -> String {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let word = stem.split('_').next().unwrap_or_default();
+        let is_name = !word.is_empty() && word.bytes().all(|letter| letter.is_ascii_alphabetic());
+        let name = if is_name { word } else { "particles" };
         format!(
-            "def Points \"particles\"\n    {{\n        float[] widths = [{diameter}] (\n            interpolation = \
+            "def Points \"{name}\"\n    {{\n        float[] widths = [{diameter}] (\n            interpolation = \
              \"constant\"\n        )\n"
         )
     }

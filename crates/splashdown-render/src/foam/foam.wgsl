@@ -31,7 +31,9 @@ fn random(tag: u32) -> f32 {
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
-    let particle = bitcast<vec4f>(diffuse[2u * (index / 6u)]);
+    var particle = bitcast<vec4f>(diffuse[2u * (index / 6u)]);
+    let velocity = bitcast<vec3f>(diffuse[2u * (index / 6u) + 1u].xyz);
+    particle += vec4f(velocity * globals.shutter_time, 0.0);
     let tag = diffuse[2u * (index / 6u) + 1u].w;
     let kind = tag & 3u;
     let variation = random(tag);

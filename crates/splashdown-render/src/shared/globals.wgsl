@@ -51,6 +51,9 @@ struct Globals {
     slice_scale: f32,       // 1 / (high - low)
     splat_margin: f32,      // extra pixels on each side of the distance texture
     foam_radius: f32,       // radius of the fluid's particles
+    droplet_radius: f32,
+    droplet_shutter: f32,   // s; time for which droplets are blurred
+    padding: vec2f,
     ray_shift: vec3f,       // moves every view ray: place in the pixel, and on the lens
     linear_output: u32,     // 1: the target stores linear light, without tone mapping
     glass: vec4u,           // per axis: bit 0: the lower side is a pane of glass, bit 1: the upper one

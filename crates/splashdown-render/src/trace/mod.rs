@@ -8,7 +8,7 @@
 //!    arrives. Points with additive blending then collect the light where it arrives, which makes
 //!    caustics and the shadows of bodies. A map of the visible fraction of the sky darkens the floor
 //!    around bodies.
-//! 2. *Samples*: background, bodies, liquid, foam and glass are drawn with one sample per pixel as
+//! 2. *Samples*: background, bodies, liquid, droplets, foam and glass are drawn with one sample per pixel as
 //!    light without tone mapping. The depth of the liquid is drawn first, so that its shader runs
 //!    once per pixel. It follows the refracted ray from surface to surface (Fresnel equations, total
 //!    internal reflection, absorption by Beer-Lambert) until it meets a body, the floor or the sky,
@@ -24,12 +24,12 @@
 //! pictures with few samples have no noise.
 //!
 //! # Things we might try
-//! Motion blur of the liquid; caustics on bodies; bubbles under water.
+//! Motion blur of the liquid; caustics on bodies; bubbles under water; droplets in reflections.
 
 mod floor;
 mod picture;
 
-use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, MATTE, OPTICS, Shader, TRACE};
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, MATTE, OPTICS, REFRACTED, Shader, TRACE};
 
 pub(crate) use picture::TracedPicture;
 
@@ -37,15 +37,7 @@ pub(crate) const DEPTH: Shader =
     Shader { label: "depth of the liquid", parts: &[GLOBALS, include_str!("depth.wgsl")] };
 pub(crate) const LIQUID: Shader = Shader {
     label: "traced liquid",
-    parts: &[
-        GLOBALS,
-        ENVIRONMENT,
-        OPTICS,
-        TRACE,
-        MATTE,
-        include_str!("refracted.wgsl"),
-        include_str!("liquid.wgsl"),
-    ],
+    parts: &[GLOBALS, ENVIRONMENT, OPTICS, TRACE, MATTE, REFRACTED, include_str!("liquid.wgsl")],
 };
 pub(crate) const PHOTONS: Shader = Shader {
     label: "rays of the sun",

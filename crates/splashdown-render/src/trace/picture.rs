@@ -3,6 +3,7 @@
 use super::floor::Floor;
 use crate::background::Background;
 use crate::bodies;
+use crate::droplets::Droplets;
 use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
 use crate::glass::{Glass, Panes};
@@ -26,6 +27,7 @@ pub(crate) struct TracedPicture {
     bodies: RenderPipeline,
     depth: RenderPipeline,
     liquid: RenderPipeline,
+    droplets: Droplets,
     foam: Foam,
     glass: Glass,
     edges: Edges,
@@ -82,6 +84,7 @@ impl TracedPicture {
             bodies: bodies::pipeline(device, bodies::TRACED, &traced, LIGHT, 1),
             depth: depth.build(device),
             liquid: liquid.build(device),
+            droplets: Droplets::new(device, &traced, LIGHT, 1),
             foam: Foam::new(device, plain, LIGHT, 1),
             glass: Glass::new(device, plain, LIGHT, 1),
             edges: Edges::new(device, [globals], LIGHT, 1),
@@ -149,6 +152,7 @@ impl TracedPicture {
         let (has_panes, has_edges) = frame.sides(true);
         let behind = frame.domain.edges_behind(frame.camera.eye.into());
         let foam = frame.foam.map(|drawn| self.foam.bind(device, &drawn)).unwrap_or_default();
+        let droplets = frame.droplets.map(|drawn| self.droplets.bind(device, &drawn)).unwrap_or_default();
         {
             let mut pass = recorder.light("scene", &targets.sample, &targets.depth, Start::Clear);
             pass.set_bind_group(0, globals, &[]);
@@ -175,6 +179,7 @@ impl TracedPicture {
             pass.set_pipeline(&self.liquid);
             pass.set_vertex_buffer(1, surface.buffers.normals.slice(..));
             surface.buffers.draw(&mut pass);
+            self.droplets.record(&mut pass, &droplets);
         }
         let mut pass = recorder.light("foam and glass", &targets.sample, &targets.depth, Start::Load);
         pass.set_bind_group(0, globals, &[]);

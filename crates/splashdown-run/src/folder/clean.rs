@@ -38,7 +38,7 @@ impl RunFolder {
     pub(crate) fn files_up_to(&self, frame: u32) -> Vec<WrittenFile> {
         let numbered = numbered::ALL.iter().flat_map(|series| series.files(&self.root));
         let numbered = numbered.filter(|(number, _)| *number <= frame).map(|(_, path)| path);
-        let animated = PictureKind::ALL.iter().map(|(kind, ..)| self.animated(*kind, None));
+        let animated = numbered::ANIMATED.stems.iter().map(|stem| self.animated_file(stem, None));
         let existing = |path: std::path::PathBuf| {
             let bytes = fs::metadata(&path).ok()?.len();
             Some(WrittenFile { path, bytes })
@@ -77,7 +77,9 @@ impl RunFolder {
         remove(&self.report());
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
-            remove(&self.animated(*kind, None));
+        }
+        for stem in numbered::ANIMATED.stems {
+            remove(&self.animated_file(stem, None));
         }
         files
     }
@@ -115,6 +117,7 @@ mod tests {
         let folder = RunFolder::new(temporary.path().to_owned(), 10);
         let all = Subfolders {
             particles: true,
+            droplets: true,
             mesh: true,
             pictures: true,
             probes: true,

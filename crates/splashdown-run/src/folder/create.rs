@@ -10,6 +10,8 @@ use super::{BODIES, PROBES, RunFolder, numbered};
 pub(crate) struct Subfolders {
     /// Particles.
     pub particles: bool,
+    /// Droplets.
+    pub droplets: bool,
     /// Surface meshes.
     pub mesh: bool,
     /// Pictures.
@@ -29,7 +31,8 @@ impl Subfolders {
             scene.output.formats.iter().any(|&format| format.is_numbered() && wanted(format))
         };
         Self {
-            particles: any(Format::has_particles),
+            particles: any(Format::has_particles) || (scene.foam.enabled && any(Format::has_points)),
+            droplets: scene.surface.separates() && any(Format::has_points),
             mesh: scene.surface.enabled && any(Format::has_surface),
             pictures,
             probes: !scene.probes.is_empty(),
@@ -56,6 +59,7 @@ impl RunFolder {
         self.create()?;
         let subfolders = [
             (wanted.particles, numbered::PARTICLES.folder),
+            (wanted.droplets, numbered::DROPLETS),
             (wanted.mesh, numbered::MESHES.folder),
             (wanted.pictures, numbered::PICTURES.folder),
             (wanted.probes, PROBES),

@@ -6,7 +6,7 @@ mod numbered;
 
 pub(crate) use clean::remove_partial;
 pub(crate) use create::Subfolders;
-pub(crate) use numbered::MESHES;
+pub(crate) use numbered::{DROPLETS, MESHES};
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,6 +60,16 @@ impl RunFolder {
         self.numbered("particles", name, frame, ending)
     }
 
+    /// Droplets of a frame.
+    pub fn droplets(&self, frame: u32, ending: &str) -> PathBuf {
+        self.numbered(DROPLETS, DROPLETS, frame, ending)
+    }
+
+    /// Droplets, spray, foam or bubbles of a frame, by the stem of the file name.
+    pub(crate) fn points(&self, name: &str, frame: u32, ending: &str) -> PathBuf {
+        if name == DROPLETS { self.droplets(frame, ending) } else { self.diffuse(name, frame, ending) }
+    }
+
     /// The surface of a frame.
     pub fn mesh(&self, frame: u32, ending: &str) -> PathBuf {
         self.numbered("mesh", "surface", frame, ending)
@@ -83,23 +93,27 @@ impl RunFolder {
 
     /// The USD file of the surface or the particles, of the frames from `first` on, or of all frames.
     pub fn animated(&self, kind: PictureKind, first: Option<u32>) -> PathBuf {
+        self.animated_file(kind.name(), first)
+    }
+
+    /// As [`animated`](Self::animated), for a file of this stem, such as `droplets`.
+    pub fn animated_file(&self, stem: &str, first: Option<u32>) -> PathBuf {
         match first {
-            Some(frame) => self.numbered("", kind.name(), frame, Format::Usd.ending()),
-            None => self.root.join(format!("{}.{}", kind.name(), Format::Usd.ending())),
+            Some(frame) => self.numbered("", stem, frame, Format::Usd.ending()),
+            None => self.root.join(format!("{stem}.{}", Format::Usd.ending())),
         }
     }
 
     /// The USD file that a run resumed after a frame continues: the last one that begins before.
-    pub(crate) fn animated_at(&self, kind: PictureKind, last: u32) -> PathBuf {
+    pub(crate) fn animated_at(&self, stem: &str, last: u32) -> PathBuf {
         let files = numbered::ANIMATED.files(&self.root).map(|(number, path)| (number, file_name(&path)));
         let parts = self.usd_parts().into_iter().map(|path| file_name(&path)).filter_map(|name| {
             // `surface_0006_points.usdpart` belongs to `surface_0006.usda`.
             let (stem, _) = name.rsplit_once('_')?;
             Some((stem.rsplit_once('_')?.1.parse().ok()?, name))
         });
-        let first =
-            files.chain(parts).filter(|(first, name)| *first <= last && name.starts_with(kind.name()));
-        self.animated(kind, first.map(|(first, _)| first).max())
+        let first = files.chain(parts).filter(|(first, name)| *first <= last && name.starts_with(stem));
+        self.animated_file(stem, first.map(|(first, _)| first).max())
     }
 
     /// The data of USD files that are not complete yet.
@@ -110,8 +124,8 @@ impl RunFolder {
     }
 
     /// Whether there is such data of this file.
-    pub(crate) fn has_usd_parts(&self, kind: PictureKind) -> bool {
-        self.usd_parts().iter().any(|path| file_name(path).starts_with(kind.name()))
+    pub(crate) fn has_usd_parts(&self, stem: &str) -> bool {
+        self.usd_parts().iter().any(|path| file_name(path).starts_with(stem))
     }
 
     /// The ParaView index of the VTU particles.

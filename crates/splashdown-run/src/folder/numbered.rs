@@ -8,6 +8,8 @@ use splashdown_io::Format;
 
 /// The folder of the checkpoints.
 pub const CHECKPOINTS: &str = "checkpoints";
+/// The stem of the names of droplets, and their folder.
+pub const DROPLETS: &str = "droplets";
 /// The stem of the names of checkpoints.
 pub const CHECKPOINT: &str = "checkpoint";
 
@@ -15,7 +17,7 @@ pub const CHECKPOINT: &str = "checkpoint";
 #[derive(Clone, Copy, Debug)]
 pub struct Series {
     pub folder: &'static str,
-    stems: &'static [&'static str],
+    pub stems: &'static [&'static str],
     /// Whether files of the series can have this ending, given without a dot.
     has_ending: fn(&str) -> bool,
 }
@@ -30,12 +32,23 @@ pub const MESHES: Series = Series {
     stems: &["surface"],
     has_ending: |ending| is_format(ending, |format| format.writes_meshes() && !format.is_series()),
 };
+/// Points in a format of meshes.
+const DIFFUSE_POINTS: Series = Series {
+    folder: "particles",
+    stems: &["spray", "foam", "bubbles"],
+    has_ending: |ending| ending == "glb",
+};
+const DROPLET_SERIES: Series = Series {
+    folder: DROPLETS,
+    stems: &[DROPLETS],
+    has_ending: |ending| ending == "glb" || (PARTICLES.has_ending)(ending),
+};
 pub const PICTURES: Series =
     Series { folder: "pictures", stems: &["surface", "particles"], has_ending: |ending| ending == "png" };
 /// USD files of resumed runs, numbered by their first frame.
 pub const ANIMATED: Series = Series {
     folder: "",
-    stems: &["surface", "particles"],
+    stems: &["surface", "particles", DROPLETS, "spray", "foam", "bubbles"],
     has_ending: |ending| is_format(ending, Format::is_series),
 };
 const CHECKPOINT_SERIES: Series =
@@ -46,7 +59,8 @@ fn is_format(ending: &str, condition: fn(&Format) -> bool) -> bool {
 }
 
 /// All series.
-pub const ALL: [Series; 5] = [PARTICLES, MESHES, PICTURES, ANIMATED, CHECKPOINT_SERIES];
+pub const ALL: [Series; 7] =
+    [PARTICLES, DIFFUSE_POINTS, DROPLET_SERIES, MESHES, PICTURES, ANIMATED, CHECKPOINT_SERIES];
 
 impl Series {
     /// The files of this series below `root`, with their frame numbers.

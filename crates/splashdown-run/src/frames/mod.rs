@@ -11,9 +11,11 @@ use splashdown::Stats;
 use splashdown::foam::DiffuseKind;
 use splashdown::run::Frame;
 use splashdown::scene::{Format, Scene};
+use splashdown_io::Particles;
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
 
 use crate::RunFolder;
+use crate::folder::DROPLETS;
 use animated::Animated;
 use tracker::Tracker;
 
@@ -35,10 +37,12 @@ pub struct FrameSummary {
     pub index: u32,
     /// The statistics of the simulation.
     pub stats: Stats,
-    /// Volume enclosed by the surface in m^3.
+    /// Volume enclosed by the surface, with that of the droplets, in m^3.
     pub volume: Option<f64>,
     /// Triangles of the surface.
     pub triangles: Option<usize>,
+    /// Number of droplets.
+    pub droplets: Option<usize>,
 }
 
 impl FrameSummary {
@@ -48,8 +52,16 @@ impl FrameSummary {
             stats: frame.stats,
             volume: frame.volume,
             triangles: frame.mesh.as_ref().map(|mesh| mesh.len()),
+            droplets: frame.droplets.as_ref().map(|droplets| droplets.len()),
         }
     }
+}
+
+/// The droplets and the diffuse particles of a frame, by the stem of their files.
+fn points_of(frame: &Frame) -> Vec<(&'static str, Arc<Particles>)> {
+    let droplets = frame.droplets.iter().map(|droplets| (DROPLETS, Arc::clone(droplets)));
+    let kinds = frame.foam.iter().flat_map(|foam| DiffuseKind::ALL.map(|(kind, name)| (foam, kind, name)));
+    droplets.chain(kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind))))).collect()
 }
 
 /// Writes the particles and meshes of a run.
@@ -95,16 +107,14 @@ impl FrameFiles {
     pub fn submit(&mut self, frame: &Frame, pictures: Vec<PathBuf>) -> Result<(), IoError> {
         let mut jobs = Vec::new();
         let mut files = Vec::new();
-        let kinds =
-            frame.foam.iter().flat_map(|foam| DiffuseKind::ALL.map(|(kind, name)| (foam, kind, name)));
-        let diffuse: Vec<_> = kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind)))).collect();
+        let points = points_of(frame);
         for format in self.formats.iter().filter(|format| format.is_numbered()) {
             if format.has_particles() {
                 let path = self.folder.particles(frame.index, format.ending());
                 files.push(path.clone());
                 jobs.push(Job::Particles(path, Arc::clone(&frame.particles)));
-                for (name, particles) in &diffuse {
-                    let path = self.folder.diffuse(name, frame.index, format.ending());
+                for (name, particles) in &points {
+                    let path = self.folder.points(name, frame.index, format.ending());
                     files.push(path.clone());
                     jobs.push(Job::Particles(path, Arc::clone(particles)));
                 }
@@ -114,8 +124,15 @@ impl FrameFiles {
                 files.push(path.clone());
                 jobs.push(Job::Mesh(path, Arc::clone(mesh)));
             }
+            if *format == Format::Glb {
+                for (name, particles) in &points {
+                    let path = self.folder.points(name, frame.index, format.ending());
+                    files.push(path.clone());
+                    jobs.push(Job::Points(path, Arc::clone(particles)));
+                }
+            }
         }
-        jobs.extend(self.animated.jobs(frame));
+        jobs.extend(self.animated.jobs(frame, &points));
         if !jobs.is_empty() {
             self.writer.submit(jobs)?;
         }

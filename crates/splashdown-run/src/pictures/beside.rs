@@ -92,7 +92,9 @@ impl FrameOfFile {
                 self.root.join("particles").join(format!("{name}_{digits}.{ending}"))
             };
             let endings = Format::endings(Format::reads_particles);
-            let endings = [self.ending.as_str()].into_iter().chain(endings);
+            // GLB files of foam are written and not read.
+            let own = Format::with_ending(&self.ending).filter(|format| format.reads_particles());
+            let endings = own.map(|format| format.ending).into_iter().chain(endings);
             match endings.map(file).find(|path| path.exists()) {
                 Some(path) => match read_particles_with_attributes(&path) {
                     Ok(particles) => parts.push((kind, particles)),

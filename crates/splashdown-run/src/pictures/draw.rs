@@ -8,11 +8,10 @@ use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
 use splashdown_render::{
     Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
-    TracedMeshes, UploadedBodies, UploadedFoam, UploadedParticles, UploadedSurface,
+    TracedMeshes, UploadedBodies, UploadedDroplets, UploadedFoam, UploadedParticles, UploadedSurface,
 };
 
 use super::FrameData;
-use super::spray::with_droplets;
 use crate::{RunError, appearance};
 
 /// Draws frames on a device.
@@ -73,17 +72,20 @@ impl FrameRenderer {
             true => Some(UploadedParticles::new(device, positions, velocities, densities, pressures)?),
             false => None,
         };
-        let spacing = self.scene.fluid.particle_spacing;
         let mesh = data.mesh.as_ref().filter(|_| self.kinds.contains(&PictureKind::Surface));
-        let mesh = mesh.map(|mesh| with_droplets(mesh, &data.particles, spacing));
-        let surface = match &mesh {
+        let surface = match mesh {
             Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
+            None => None,
+        };
+        let droplets = match data.droplets.as_ref().filter(|_| mesh.is_some()) {
+            Some(droplets) => Some(UploadedDroplets::new(device, &droplets.positions, &droplets.velocities)?),
             None => None,
         };
         let foam = match &data.foam {
             Some(foam) => {
                 let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
-                Some(UploadedFoam::new(device, &foam.positions, &foam.lifetimes, &foam.ids, &kinds)?)
+                let (positions, velocities) = (&foam.positions, &foam.velocities);
+                Some(UploadedFoam::moving(device, positions, velocities, &foam.lifetimes, &foam.ids, &kinds)?)
             }
             None => None,
         };
@@ -95,7 +97,7 @@ impl FrameRenderer {
             )
         });
         let quality = appearance::quality(&self.scene, self.scene.output.quality);
-        let traced = match (&mesh, quality) {
+        let traced = match (mesh, quality) {
             (Some(mesh), Some(quality)) => {
                 let placed = self.bodies.iter().zip(&*data.bodies);
                 let bodies = placed
@@ -124,6 +126,9 @@ impl FrameRenderer {
                 PictureKind::Surface => {
                     frame.surface =
                         surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
+                    frame.droplets = droplets
+                        .as_ref()
+                        .map(|droplets| appearance::droplets(&self.scene, droplets.buffers(), self.liquid));
                     frame.traced = traced.as_ref().map(|(meshes, quality)| (meshes, *quality));
                 }
             }

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use splashdown::SimulationError;
 use splashdown::bodies::body_meshes;
 use splashdown::scene::{PictureKind, Scene};
-use splashdown_io::{Format, Picture, read_mesh, read_particles};
+use splashdown_io::{Format, Picture, read_mesh};
 
 use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
+use super::droplets::separate;
 use super::{FrameData, drawing_device};
 use crate::RunError;
 use crate::folder::MESHES;
@@ -80,13 +81,10 @@ impl FinishedRun {
             return Err(RunError::Input(format!("frame {frame} has no mesh in `{}`", self.folder.display())));
         };
         let mesh = read_mesh(path)?;
+        let (mesh, droplets) = separate(mesh, path, &self.scene)?;
         let of_file = FrameOfFile::of(path, &self.scene);
         let time = of_file.time;
         let Beside { bodies, foam } = of_file.beside(&self.scene)?;
-        let particles = match particle_file(path) {
-            Some(path) => read_particles(&path)?,
-            None => splashdown_io::Particles::default(),
-        };
         let mut camera = self.scene.camera;
         camera.azimuth += orbit.azimuth + orbit.turn * progress;
         camera.elevation = orbit.elevation.unwrap_or(camera.elevation);
@@ -95,24 +93,15 @@ impl FinishedRun {
         let data = FrameData {
             index: frame,
             time,
-            particles: Arc::new(particles),
+            particles: Arc::default(),
             mesh: Some(Arc::new(mesh)),
+            droplets: droplets.map(Arc::new),
             foam,
             bodies,
         };
         let pictures = self.renderer.draw(&data)?;
         pictures.into_iter().next().ok_or_else(|| RunError::Input("no picture was drawn".to_owned()))
     }
-}
-
-/// The particles of the frame of a mesh file, in any format that can be read.
-fn particle_file(mesh: &Path) -> Option<PathBuf> {
-    let name = mesh.file_stem()?.to_string_lossy().into_owned();
-    let (_, digits) = name.rsplit_once('_')?;
-    let folder = mesh.parent()?.parent()?.join("particles");
-    let endings = Format::endings(Format::reads_particles);
-    let file = |ending: &str| folder.join(format!("particles_{digits}.{}", ending.trim_start_matches('.')));
-    endings.into_iter().map(file).find(|path| path.exists())
 }
 
 /// The mesh of every frame; of several formats the first that can be read.

@@ -2,9 +2,9 @@
 
 mod beside;
 mod draw;
+mod droplets;
 mod finished;
 mod painter;
-mod spray;
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -45,6 +45,7 @@ struct FrameData {
     time: f64,
     particles: Arc<Particles>,
     mesh: Option<Arc<Mesh>>,
+    droplets: Option<Arc<Particles>>,
     foam: Option<Arc<DiffuseParticles>>,
     bodies: Arc<[BodyState]>,
 }
@@ -113,6 +114,7 @@ impl Pictures {
             time: frame.time,
             particles: Arc::clone(&frame.particles),
             mesh: frame.mesh.clone(),
+            droplets: frame.droplets.clone(),
             foam: frame.foam.clone(),
             bodies: Arc::clone(&frame.bodies),
         };

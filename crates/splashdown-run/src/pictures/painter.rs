@@ -10,6 +10,7 @@ use splashdown_io::{Mesh, Particles, Picture, read_mesh, read_particles};
 
 use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
+use super::droplets::separate;
 use super::{FrameData, drawing_device};
 use crate::RunError;
 
@@ -56,7 +57,7 @@ impl Painter {
         time: f64,
     ) -> Result<Arc<Picture>, RunError> {
         self.expect(PictureKind::Particles)?;
-        self.draw(particles, None, beside, time)
+        self.draw(particles, (None, None), beside, time)
     }
 
     /// Draws a surface at a time in s. Without normals, as in meshes that were read from files, those of the triangles are
@@ -65,11 +66,25 @@ impl Painter {
     /// # Errors
     /// [`RunError::Input`] if the painter draws particles; [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
     pub fn surface(&mut self, mesh: Arc<Mesh>, beside: &Beside, time: f64) -> Result<Arc<Picture>, RunError> {
-        self.expect(PictureKind::Surface)?;
-        self.draw(Arc::default(), Some(mesh), beside, time)
+        self.surface_with_droplets(mesh, None, beside, time)
     }
 
-    /// Draws a file of a finished run, with the bodies and the foam of its frame from the same output folder. The number at
+    /// As [`surface`](Self::surface), with droplets: particles that are not part of the mesh, with positions and velocities.
+    ///
+    /// # Errors
+    /// As [`surface`](Self::surface).
+    pub fn surface_with_droplets(
+        &mut self,
+        mesh: Arc<Mesh>,
+        droplets: Option<Arc<Particles>>,
+        beside: &Beside,
+        time: f64,
+    ) -> Result<Arc<Picture>, RunError> {
+        self.expect(PictureKind::Surface)?;
+        self.draw(Arc::default(), (Some(mesh), droplets), beside, time)
+    }
+
+    /// Draws a file of a finished run, with the bodies, the foam and the droplets of its frame from the same output folder. The number at
     /// the end of the file's name is the frame, which gives the time unless `time` (s) does.
     ///
     /// # Errors
@@ -85,9 +100,9 @@ impl Painter {
                 self.particles(particles, &beside, time)
             }
             PictureKind::Surface => {
-                let mesh = read_mesh(path)?.into();
+                let (mesh, droplets) = separate(read_mesh(path)?, path, &self.scene)?;
                 let beside = frame.beside(&self.scene)?;
-                self.surface(mesh, &beside, time)
+                self.surface_with_droplets(mesh.into(), droplets.map(Arc::new), &beside, time)
             }
         }
     }
@@ -108,12 +123,12 @@ impl Painter {
     fn draw(
         &mut self,
         particles: Arc<Particles>,
-        mesh: Option<Arc<Mesh>>,
+        (mesh, droplets): (Option<Arc<Mesh>>, Option<Arc<Particles>>),
         Beside { bodies, foam }: &Beside,
         time: f64,
     ) -> Result<Arc<Picture>, RunError> {
         let (foam, bodies) = (foam.clone(), Arc::clone(bodies));
-        let data = FrameData { index: 0, time, particles, mesh, foam, bodies };
+        let data = FrameData { index: 0, time, particles, mesh, droplets, foam, bodies };
         let pictures = self.renderer.draw(&data)?;
         pictures.into_iter().next().ok_or_else(|| RunError::Input("no picture was drawn".to_owned()))
     }

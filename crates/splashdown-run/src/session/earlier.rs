@@ -35,7 +35,10 @@ impl Earlier {
                 if format.has_particles() {
                     missing.push(folder.particles(frame, ending));
                     let kinds = DiffuseKind::ALL.iter().filter(|_| scene.foam.enabled);
-                    missing.extend(kinds.map(|(_, name)| folder.diffuse(name, frame, ending)));
+                    missing.extend(kinds.map(|(_, name)| folder.points(name, frame, ending)));
+                }
+                if format.has_points() && scene.surface.separates() {
+                    missing.push(folder.droplets(frame, ending));
                 }
                 if format.has_surface() && scene.surface.enabled {
                     missing.push(folder.mesh(frame, ending));

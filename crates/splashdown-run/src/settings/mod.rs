@@ -21,6 +21,10 @@ pub struct RunSettings {
     pub formats: Option<Vec<Format>>,
     /// Extract the surface, if the scene enables it. Without it there are no meshes and no pictures of it.
     pub surface: bool,
+    /// Blobs of fewer particles leave the surface and become droplets.
+    pub min_blob: Option<u32>,
+    /// Particles with fewer neighbours leave the surface and become droplets.
+    pub min_neighbours: Option<u32>,
     /// Pictures; an empty list draws none. If pictures are given, a device that cannot draw them is an error.
     pub pictures: Option<Vec<PictureKind>>,
     /// How carefully pictures of the surface are drawn.
@@ -40,6 +44,8 @@ impl Default for RunSettings {
             frames: None,
             formats: None,
             surface: true,
+            min_blob: None,
+            min_neighbours: None,
             pictures: None,
             quality: None,
             film: true,
@@ -57,6 +63,8 @@ impl RunSettings {
             frames: self.frames.or(earlier.frames),
             formats: self.formats.or(earlier.formats),
             surface: self.surface && earlier.surface,
+            min_blob: self.min_blob.or(earlier.min_blob),
+            min_neighbours: self.min_neighbours.or(earlier.min_neighbours),
             pictures: self.pictures.or(earlier.pictures),
             quality: self.quality.or(earlier.quality),
             film: self.film && earlier.film,
@@ -68,6 +76,8 @@ impl RunSettings {
     /// Applies the settings to the scene.
     pub(crate) fn apply_to(&self, scene: &mut Scene) {
         scene.surface.enabled &= self.surface;
+        scene.surface.min_blob = self.min_blob.unwrap_or(scene.surface.min_blob);
+        scene.surface.min_neighbours = self.min_neighbours.unwrap_or(scene.surface.min_neighbours);
         if let Some(formats) = &self.formats {
             scene.output.formats = distinct(formats);
         }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use splashdown::Checkpoint;
 use splashdown::error::CheckpointError;
 use splashdown::scene::{Choice, Format, OnBurst, PictureKind, PictureQuality};
+use splashdown::surface::MAX_BLOB;
 
 use super::RunSettings;
 
@@ -16,6 +17,8 @@ pub(crate) struct Notes {
     frames: Option<u32>,
     formats: Option<Vec<String>>,
     no_surface: bool,
+    min_blob: Option<u32>,
+    min_neighbours: Option<u32>,
     pictures: Option<Vec<String>>,
     no_pictures: bool,
     quality: Option<String>,
@@ -41,6 +44,8 @@ impl Notes {
             frames: settings.frames,
             formats: settings.formats.as_deref().map(words),
             no_surface: !settings.surface,
+            min_blob: settings.min_blob,
+            min_neighbours: settings.min_neighbours,
             pictures: pictures.map(|kinds| words(kinds)),
             no_pictures,
             quality: settings.quality.map(|quality| quality.name().to_owned()),
@@ -70,6 +75,8 @@ impl Notes {
             frames: self.frames,
             formats: self.formats.as_deref().map(choices::<Format>),
             surface: !self.no_surface,
+            min_blob: self.min_blob,
+            min_neighbours: self.min_neighbours,
             pictures: if self.no_pictures { Some(Vec::new()) } else { pictures },
             quality: self.quality.as_deref().and_then(PictureQuality::from_name),
             film: !self.no_film,
@@ -88,6 +95,11 @@ impl Notes {
         for (name, number) in numbers {
             if number.is_some_and(|number| !(1..=1_000_000).contains(&number)) {
                 return Err(format!("`{name}` is not between 1 and 1000000"));
+            }
+        }
+        for (name, limit) in [("min_blob", self.min_blob), ("min_neighbours", self.min_neighbours)] {
+            if limit.is_some_and(|limit| limit > MAX_BLOB) {
+                return Err(format!("`{name}` is above {MAX_BLOB}"));
             }
         }
         if self.digits.is_some_and(|digits| !(4..=10).contains(&digits)) {
@@ -126,6 +138,8 @@ mod tests {
             RunSettings {
                 device: Some(Device::Cpu),
                 frames: Some(7),
+                min_blob: Some(0),
+                min_neighbours: Some(4),
                 formats: Some(vec![Format::Vtu, Format::Ply]),
                 pictures: Some(vec![PictureKind::Particles]),
                 film: false,

@@ -7,7 +7,7 @@ use splashdown::Simulation;
 use splashdown::foam::Foam;
 use splashdown::surface::{Surface, SurfaceStats};
 use splashdown_gpu::{Buffer, Executor, Gpu, GpuElement};
-use splashdown_render::{Draw, FoamBuffers, ParticleBuffers, SurfaceBuffers};
+use splashdown_render::{Draw, DropletBuffers, FoamBuffers, ParticleBuffers, SurfaceBuffers};
 use wgpu::BufferUsages as Use;
 
 /// The particles and, if requested, the surface.
@@ -17,6 +17,8 @@ pub struct Drawn {
     densities: wgpu::Buffer,
     count: u32,
     mesh: Option<DrawnMesh>,
+    /// Isolated particles, which are not part of the mesh.
+    droplets: Option<(wgpu::Buffer, u32)>,
     foam: Option<(wgpu::Buffer, u32)>,
 }
 
@@ -45,6 +47,11 @@ impl Drawn {
     /// Foam, spray and bubbles for the renderer.
     pub fn foam(&self) -> Option<FoamBuffers<'_>> {
         self.foam.as_ref().map(|(particles, count)| FoamBuffers { particles, count: *count })
+    }
+
+    /// The droplets beside the surface for the renderer.
+    pub fn droplets(&self) -> Option<DropletBuffers<'_>> {
+        self.droplets.as_ref().map(|(droplets, count)| DropletBuffers { droplets, count: *count })
     }
 
     /// The surface.
@@ -79,7 +86,7 @@ impl Copies {
         Self { gpu, pool: Vec::new() }
     }
 
-    /// Copies the particles, the last extracted surface, and the given number of foam particles. The copy is executed
+    /// Copies the particles, the last extracted surface with its droplets, and the given number of foam particles. The copy is executed
     /// after all work submitted so far.
     pub fn take(
         &mut self,
@@ -91,6 +98,7 @@ impl Copies {
         let count = simulation.params().particle_count;
         let mut old = self.reuse();
         let mut mesh = old.as_mut().and_then(|drawn| drawn.mesh.take());
+        let old_droplets = old.as_mut().and_then(|drawn| drawn.droplets.take());
         let old_foam = old.as_mut().and_then(|drawn| drawn.foam.take());
         let mut copy = Copy {
             gpu: &self.gpu,
@@ -115,6 +123,11 @@ impl Copies {
             foam: foam.map(|(foam, count)| {
                 let old = old_foam.map(|(old, _)| old);
                 (copy.take(foam.pool(), count as usize, old, Use::STORAGE), count)
+            }),
+            droplets: surface.filter(|(_, stats)| stats.droplets > 0).map(|(surface, stats)| {
+                let old = old_droplets.map(|(old, _)| old);
+                let count = stats.droplets;
+                (copy.take(surface.droplets(), count as usize, old, Use::STORAGE), count)
             }),
             mesh: surface.map(|(surface, stats)| {
                 if let Some(shared) = shared(copy.executor, surface, stats) {

@@ -2,6 +2,7 @@
 
 use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, SliderClamping, Ui};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
+use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
 use super::gravity;
@@ -197,7 +198,11 @@ fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if size.changed() {
             surface.cell_size = cell * spacing;
         }
-        if size.changed() || iterations.changed() {
+        let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
+        let blob = ui
+            .add(blob.text("smallest blob"))
+            .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
+        if size.changed() || iterations.changed() || blob.changed() {
             actions.push(Action::Change);
         }
     }

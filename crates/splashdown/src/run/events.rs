@@ -196,7 +196,10 @@ pub struct Frame {
     pub particles: Arc<Particles>,
     /// The surface of the fluid, if enabled.
     pub mesh: Option<Arc<Mesh>>,
-    /// The volume that the surface encloses in m^3.
+    /// The isolated particles, which are not part of the mesh, if they leave the surface: ids, positions and velocities,
+    /// and their diameter in m as the attribute `width`.
+    pub droplets: Option<Arc<Particles>>,
+    /// The volume in m^3 that the surface encloses, plus that of the droplets.
     pub volume: Option<f64>,
     /// Foam, spray and bubbles, if enabled.
     pub foam: Option<Arc<DiffuseParticles>>,
@@ -234,7 +237,7 @@ pub struct Summary {
     pub energy: EnergyBalance,
     /// The highest level of the monitor.
     pub level: Level,
-    /// Enclosed volume of the first and the last surface in m^3.
+    /// Volume of the first and the last surface with its droplets in m^3.
     pub volume: Option<[f64; 2]>,
     /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
     pub particle_volume: f64,

@@ -11,7 +11,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use splashdown_gpu::Gpu;
-use splashdown_io::Mesh;
 use web_time::Instant;
 
 use crate::check::Built;
@@ -69,6 +68,7 @@ pub struct Run {
     density_error: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
+    volume_per_particle: f64,
     particle_steps: f64,
     pending_events: VecDeque<Event>,
     /// Warnings about the scene's probes.
@@ -135,8 +135,8 @@ impl Run {
         }
         let frames = options.frames.unwrap_or_else(|| scene.frame_count());
         let frame_duration = scene.frame_duration();
-        let particle_volume =
-            f64::from(simulation.stats().particles) * f64::from(scene.fluid.particle_spacing).powi(3);
+        let volume_per_particle = f64::from(scene.fluid.particle_spacing).powi(3);
+        let particle_volume = f64::from(simulation.stats().particles) * volume_per_particle;
         Ok(Self {
             surface,
             foam,
@@ -161,6 +161,7 @@ impl Run {
             density_error: 0.0,
             volume: None,
             particle_volume,
+            volume_per_particle,
             particle_steps: 0.0,
             pending_events: VecDeque::new(),
             probe_warnings,
@@ -267,12 +268,14 @@ impl Run {
 
     fn fetch(&mut self, index: u32) -> Result<Frame, SimulationError> {
         let begun = Instant::now();
-        let mut mesh = match &mut self.surface {
+        let (mut mesh, droplets) = match &mut self.surface {
             Some(surface) => {
                 self.simulation.extract(surface)?;
-                Some(self.simulation.mesh(surface)?)
+                let separates = surface.params().separates();
+                let droplets = separates.then(|| self.simulation.droplets(surface)).transpose()?;
+                (Some(self.simulation.mesh(surface)?), droplets)
             }
-            None => None,
+            None => (None, None),
         };
         let foam = match &mut self.foam {
             Some(foam) => {
@@ -286,7 +289,9 @@ impl Run {
             let (positions, velocities) = (&particles.positions, &particles.velocities);
             mesh.velocities = interpolate(&mesh.vertices, positions, velocities, surface.params())?;
         }
-        let volume = mesh.as_ref().map(Mesh::volume);
+        let droplet_volume =
+            droplets.as_ref().map_or(0.0, |droplets| droplets.len() as f64 * self.volume_per_particle);
+        let volume = mesh.as_ref().map(|mesh| mesh.volume() + droplet_volume);
         if let Some(volume) = volume {
             let first = self.volume.map_or(volume, |[first, _]| first);
             self.volume = Some([first, volume]);
@@ -326,6 +331,7 @@ impl Run {
             level: self.monitor.level(),
             particles,
             mesh: mesh.map(Arc::new),
+            droplets: droplets.map(Arc::new),
             volume,
             foam,
             bodies,

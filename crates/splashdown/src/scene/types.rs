@@ -330,6 +330,11 @@ impl Format {
         self.has(splashdown_io::Format::writes_particles)
     }
 
+    /// Whether files of this format can contain points: particles, or droplets and foam beside meshes.
+    pub fn has_points(self) -> bool {
+        self.has_particles() || self == Self::Glb
+    }
+
     /// Whether files of this format can contain the surface.
     pub fn has_surface(self) -> bool {
         self.has(splashdown_io::Format::writes_meshes)
@@ -365,11 +370,20 @@ pub struct SurfaceSettings {
     pub iso_level: f32,
     /// Iterations of weighted smoothing of the mesh.
     pub smoothing_iterations: u32,
+    /// Particles in blobs of fewer than this many leave the surface and become droplets.
+    pub min_blob: u32,
+    /// Particles with fewer neighbours than this leave the surface and become droplets.
+    pub min_neighbours: u32,
     /// Support radius of the field divided by the particle spacing.
     pub support_ratio: f32,
 }
 
 impl SurfaceSettings {
+    /// Whether the surface is reconstructed and isolated particles leave it.
+    pub fn separates(&self) -> bool {
+        self.enabled && (self.min_blob > 1 || self.min_neighbours > 0)
+    }
+
     /// The scene file's defaults at this particle spacing (m).
     pub fn for_spacing(particle_spacing: f32) -> Self {
         Self {
@@ -378,6 +392,8 @@ impl SurfaceSettings {
             cell_size: particle_spacing * 0.5,
             iso_level: 0.6,
             smoothing_iterations: 5,
+            min_blob: 9,
+            min_neighbours: 3,
             support_ratio: 2.0,
         }
     }

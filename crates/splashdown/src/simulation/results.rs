@@ -159,6 +159,8 @@ impl Simulation {
             SurfaceParams::of_scene(settings, self.params.particle_spacing, Walls::of_params(&self.params));
         let input = SurfaceInput {
             sorted_positions: self.fields.sorted_positions,
+            sorted_velocities: self.fields.sorted_velocities,
+            sorted_ids: self.fields.sorted_ids,
             cell_start: self.cells.cell_start,
             grid: self.cells.grid_uniform,
             grid_host: self.cells.grid,
@@ -183,6 +185,15 @@ impl Simulation {
     pub async fn extract_async(&mut self, surface: &mut Surface) -> Result<SurfaceStats, SimulationError> {
         self.sort()?;
         Ok(surface.extract_async(&mut self.executor).await?)
+    }
+
+    /// Fetches the isolated particles of the last [`extract`](Self::extract), which are not part of its mesh, in the order
+    /// of their ids: ids, positions and velocities, and their diameter in m as the attribute `width`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn droplets(&mut self, surface: &Surface) -> Result<Particles, SimulationError> {
+        Ok(block_on(surface.droplets_async(&mut self.executor))?)
     }
 
     /// Fetches the mesh of the last [`extract`](Self::extract).

@@ -16,54 +16,86 @@ pub fn remove_small_components(mesh: &mut Mesh, volume: f64) -> usize {
 
 /// As [`remove_small_components`]; returns the bounding boxes of the components, lower and upper corner in m.
 pub fn take_small_components(mesh: &mut Mesh, volume: f64) -> Vec<[[f32; 3]; 2]> {
-    let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    for &[a, b, c] in &mesh.triangles {
-        join(&mut parents, a, b);
-        join(&mut parents, b, c);
-    }
-    let roots: Vec<u32> = (0..parents.len() as u32).map(|vertex| root(&mut parents, vertex)).collect();
+    let components = Components::of(mesh);
     // Relative to a vertex of the component, which avoids cancellation far from the origin.
-    let mut six_fold = vec![0.0; roots.len()];
+    let mut six_fold = vec![0.0; mesh.vertices.len()];
     let place = |vertex: u32| DVec3::from(mesh.vertices[vertex as usize].map(f64::from));
     for &[a, b, c] in &mesh.triangles {
-        let piece = roots[a as usize];
+        let piece = components.roots[a as usize];
         let [a, b, c] = [a, b, c].map(|corner| place(corner) - place(piece));
         six_fold[piece as usize] += a.dot(b.cross(c));
     }
-    let dropped = |vertex: u32| (0.0..6.0 * volume).contains(&six_fold[roots[vertex as usize] as usize]);
-    let mut boxes: BTreeMap<u32, [Vec3; 2]> = BTreeMap::new();
-    for &vertex in mesh.triangles.as_flattened().iter().filter(|&&vertex| dropped(vertex)) {
-        let at = Vec3::from(mesh.vertices[vertex as usize]);
-        let [low, high] = boxes.entry(roots[vertex as usize]).or_insert([at; 2]);
-        (*low, *high) = (low.min(at), high.max(at));
-    }
-    if boxes.is_empty() {
-        return Vec::new();
-    }
-    let keep: Vec<bool> = (0..roots.len() as u32).map(|vertex| !dropped(vertex)).collect();
-    let mut number = 0;
-    let numbers: Vec<u32> = keep
-        .iter()
-        .map(|&keep| {
-            number += u32::from(keep);
-            number.wrapping_sub(1)
-        })
-        .collect();
-    mesh.triangles.retain(|&[a, _, _]| keep[a as usize]);
-    mesh.triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
-    for values in [&mut mesh.vertices, &mut mesh.normals, &mut mesh.velocities] {
-        let mut keep = keep.iter();
-        values.retain(|_| keep.next().is_some_and(|&keep| keep));
-    }
-    for attribute in &mut mesh.attributes {
-        let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
-        attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
-    }
+    let is_small = |piece: &u32| (0.0..6.0 * volume).contains(&six_fold[*piece as usize]);
+    let mut boxes = components.boxes.clone();
+    boxes.retain(|piece, _| is_small(piece));
+    components.remove(mesh, |piece| boxes.contains_key(&piece));
     boxes.into_values().map(|corners| corners.map(Into::into)).collect()
 }
 
+/// Removes the connected components of a mesh for whose bounding box, lower and upper corner in m, `keep` is false; returns
+/// their number. The remaining vertices keep their order, normals, velocities and attributes.
+pub fn retain_components(mesh: &mut Mesh, mut keep: impl FnMut([Vec3; 2]) -> bool) -> usize {
+    let components = Components::of(mesh);
+    let mut removed = components.boxes.clone();
+    removed.retain(|_, corners| !keep(*corners));
+    components.remove(mesh, |piece| removed.contains_key(&piece));
+    removed.len()
+}
+
+/// The connected components of a mesh. Their smallest vertices identify them.
+struct Components {
+    /// The component of each vertex.
+    roots: Vec<u32>,
+    /// Bounding boxes.
+    boxes: BTreeMap<u32, [Vec3; 2]>,
+}
+
+impl Components {
+    fn of(mesh: &Mesh) -> Self {
+        let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+        for &[a, b, c] in &mesh.triangles {
+            join(&mut parents, a, b);
+            join(&mut parents, b, c);
+        }
+        let roots: Vec<u32> = (0..parents.len() as u32).map(|vertex| root(&mut parents, vertex)).collect();
+        let mut boxes: BTreeMap<u32, [Vec3; 2]> = BTreeMap::new();
+        for &vertex in mesh.triangles.as_flattened() {
+            let at = Vec3::from(mesh.vertices[vertex as usize]);
+            let [low, high] = boxes.entry(roots[vertex as usize]).or_insert([at; 2]);
+            (*low, *high) = (low.min(at), high.max(at));
+        }
+        Self { roots, boxes }
+    }
+
+    /// Removes components.
+    fn remove(&self, mesh: &mut Mesh, is_removed: impl Fn(u32) -> bool) {
+        let keep: Vec<bool> = self.roots.iter().map(|&piece| !is_removed(piece)).collect();
+        if keep.iter().all(|&keep| keep) {
+            return;
+        }
+        let mut number = 0;
+        let numbers: Vec<u32> = keep
+            .iter()
+            .map(|&keep| {
+                number += u32::from(keep);
+                number.wrapping_sub(1)
+            })
+            .collect();
+        mesh.triangles.retain(|&[a, _, _]| keep[a as usize]);
+        mesh.triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
+        for values in [&mut mesh.vertices, &mut mesh.normals, &mut mesh.velocities] {
+            let mut keep = keep.iter();
+            values.retain(|_| keep.next().is_some_and(|&keep| keep));
+        }
+        for attribute in &mut mesh.attributes {
+            let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
+            attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
+        }
+    }
+}
+
 /// The smallest known vertex of the component (union-find).
-fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+pub(super) fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
     while parents[vertex as usize] != vertex {
         let above = parents[vertex as usize];
         // Path halving.
@@ -73,7 +105,8 @@ fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
     vertex
 }
 
-fn join(parents: &mut [u32], a: u32, b: u32) {
+/// Unites the sets of two elements (union-find).
+pub(super) fn join(parents: &mut [u32], a: u32, b: u32) {
     let (a, b) = (root(parents, a), root(parents, b));
     parents[a.max(b) as usize] = a.min(b);
 }
@@ -123,6 +156,10 @@ mod tests {
         let topology = mesh.topology().unwrap();
         assert!(topology.is_watertight() && topology.components == 1 && topology.unused_vertices == 0);
         assert!((mesh.volume() / alone.volume() - 1.0).abs() < 1e-3);
+        let mut all = mesh.clone();
+        assert_eq!(retain_components(&mut all, |[_, high]| high.max_element() < 1.0), 0);
+        assert_eq!(retain_components(&mut all, |[_, high]| high.max_element() > 1.0), 1);
+        assert!(all.is_empty() && all.vertices.is_empty());
         assert_eq!(remove_small_components(&mut mesh, 1e9), 1);
         assert!(mesh.is_empty() && mesh.vertices.is_empty());
         assert_eq!(remove_small_components(&mut mesh, 1e9), 0);

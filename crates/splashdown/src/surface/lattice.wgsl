@@ -24,7 +24,9 @@ struct Lattice {
     search_reach: f32,
     wall_high_nodes: vec3<u32>,
     bulk_number: f32,
-    padding: vec3<u32>,
+    min_blob: u32,
+    min_neighbours: u32,
+    link_square: f32,
     lone_size: f32,
 }
 

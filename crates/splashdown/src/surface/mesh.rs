@@ -3,8 +3,9 @@
 use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, BufferId, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
-use splashdown_io::Mesh;
+use splashdown_io::{Mesh, Particles};
 
+use super::droplets::{self, Droplet};
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
 use super::{SurfaceError, anisotropy, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
@@ -17,6 +18,10 @@ use crate::scene::SurfaceKernels;
 pub struct SurfaceInput {
     /// Positions in m, sorted by cell; w is ignored.
     pub sorted_positions: Buffer<Vec4>,
+    /// Velocities in m/s, sorted by cell; w is ignored. Empty if no particles leave the surface.
+    pub sorted_velocities: Buffer<Vec4>,
+    /// Ids, sorted by cell. Empty if no particles leave the surface.
+    pub sorted_ids: Buffer<u32>,
     /// First particle of every cell, followed by the number of active particles.
     pub cell_start: Buffer<u32>,
     /// The neighbour grid on the device.
@@ -30,7 +35,7 @@ pub struct SurfaceInput {
 impl SurfaceInput {
     /// The buffers by name, for recordings.
     pub(super) fn buffers(&self) -> BufferSet {
-        buffer_set!(self => sorted_positions, cell_start, grid)
+        buffer_set!(self => sorted_positions, sorted_velocities, sorted_ids, cell_start, grid)
     }
 }
 
@@ -46,6 +51,8 @@ pub struct SurfaceStats {
     pub blocks: u32,
     /// Number of repetitions of the extraction because the capacity was too small.
     pub retries: u32,
+    /// Number of isolated particles, which are not part of the mesh.
+    pub droplets: u32,
     /// Number of particles that were skipped because a coordinate was NaN or infinite. Only host
     /// data can contain these.
     pub not_finite: u32,
@@ -66,6 +73,7 @@ pub struct Surface {
     lattice: Lattice,
     pub(super) recording: Recording,
     pub(super) b: Buffers,
+    kept_scan: Option<Scan>,
     mark_scan: Scan,
     block_scan: Scan,
     vertex_scan: Option<Scan>,
@@ -75,6 +83,12 @@ pub struct Surface {
 pub(super) struct Buffers {
     pub lattice: Buffer<Lattice>,
     pub cases: Buffer<UVec2>,
+    pub kept: Buffer<u32>,
+    pub kept_starts: Buffer<u32>,
+    pub kept_positions: Buffer<Vec4>,
+    pub kept_cell_start: Buffer<u32>,
+    pub droplets: Buffer<Droplet>,
+    pub droplet_count: Buffer<u32>,
     pub samples: Buffer<Vec4>,
     pub neighbour_moments: Buffer<Vec4>,
     pub kernel_centres: Buffer<Vec4>,
@@ -112,6 +126,12 @@ impl Buffers {
         Ok(Self {
             lattice: e.create_uniform("lattice", lattice)?,
             cases: e.create_from("cases", &marching_cubes::packed())?,
+            kept: e.create("kept", 0)?,
+            kept_starts: e.create("kept_starts", 0)?,
+            kept_positions: e.create("kept_positions", 0)?,
+            kept_cell_start: e.create("kept_cell_start", 0)?,
+            droplets: e.create("droplets", 0)?,
+            droplet_count: e.create_from("droplet_count", &[0])?,
             samples: e.create("samples", 0)?,
             neighbour_moments: e.create("neighbour_moments", 0)?,
             kernel_centres: e.create("kernel_centres", 0)?,
@@ -146,7 +166,7 @@ impl Buffers {
     /// The buffers by name, for recordings.
     fn by_name(&self) -> BufferSet {
         buffer_set!(self =>
-            lattice, cases, samples, neighbour_moments, kernel_centres, kernel_matrices, local_density, marks, mark_starts, block_slot, block_list, field_values, signs, rows,
+            lattice, cases, kept, kept_starts, kept_positions, kept_cell_start, droplets, droplet_count, samples, neighbour_moments, kernel_centres, kernel_matrices, local_density, marks, mark_starts, block_slot, block_list, field_values, signs, rows,
             vertex_counts, triangle_counts, vertex_starts, triangle_starts, status, draw_args, block_groups,
             vertex_groups, triangle_groups, vertex_positions, normals, indices, valences, one_ring_starts, one_rings,
             relaxed,
@@ -159,6 +179,7 @@ impl Buffers {
         e: &mut Executor,
         lattice: &Lattice,
         params: &SurfaceParams,
+        cells: u32,
     ) -> Result<(), SurfaceError> {
         macro_rules! resize {
             ($($buffer:ident: $len:expr),* $(,)?) => {
@@ -174,6 +195,12 @@ impl Buffers {
             block_list: blocks, field_values: blocks * NODES, signs: blocks * ROWS, rows: blocks * ROWS,
             vertex_counts: blocks, triangle_counts: blocks, vertex_starts: blocks + 1, triangle_starts: blocks + 1,
             vertex_positions: vertices, normals: vertices, indices: 3 * triangles,
+        }
+        if params.separates() {
+            resize! {
+                kept: particles, kept_starts: particles + 1, kept_positions: particles, droplets: particles,
+                kept_cell_start: cells as usize + 1,
+            }
         }
         let particles = if params.kernels == SurfaceKernels::Anisotropic { particles } else { 0 };
         resize! { neighbour_moments: 3 * particles, kernel_centres: particles, kernel_matrices: 2 * particles }
@@ -203,8 +230,11 @@ pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> R
     // Valences, one-ring starts, relaxed vertices; one-rings.
     let smoothing = vertices * (4 + 4 + 16) + triangles * 24;
     // Moments, centres and matrices.
+    // Flags, starts, positions that remain, droplets; the first particle of each cell.
+    let separated =
+        if params.separates() { 56 * u64::from(particles) + 4 * u64::from(grid.cell_count) } else { 0 };
     let kernels = u64::from(particles) * if params.kernels == SurfaceKernels::Anisotropic { 96 } else { 0 };
-    Ok(whole + kernels + if params.smoothing_iterations > 0 { smoothing } else { 0 })
+    Ok(whole + kernels + separated + if params.smoothing_iterations > 0 { smoothing } else { 0 })
 }
 
 impl Surface {
@@ -265,6 +295,7 @@ impl Surface {
             lattice,
             recording: Recording::new("surface"),
             b: Buffers::new(executor, &lattice)?,
+            kept_scan: None,
             mark_scan: Scan::new(executor, lattice.block_count)?,
             block_scan: Scan::new(executor, lattice.block_capacity)?,
             vertex_scan: None,
@@ -281,7 +312,10 @@ impl Surface {
     /// Resizes the buffers to the lattice, and rebuilds the list of passes.
     fn allocate(&mut self, executor: &mut Executor) -> Result<(), SurfaceError> {
         let smoothed = self.params.smoothing_iterations > 0;
-        self.b.resize(executor, &self.lattice, &self.params)?;
+        self.b.resize(executor, &self.lattice, &self.params, self.input.grid_host.cell_count)?;
+        if self.params.separates() && self.kept_scan.is_none() {
+            self.kept_scan = Some(Scan::new(executor, self.input.particle_capacity)?);
+        }
         if self.block_scan.len() != self.lattice.block_capacity {
             let scan = Scan::new(executor, self.lattice.block_capacity)?;
             std::mem::replace(&mut self.block_scan, scan).free(executor)?;
@@ -302,12 +336,29 @@ impl Surface {
     /// buffers.
     #[doc(hidden)]
     pub fn record(&self, recording: &mut Recording) {
-        let buffers = self.b.by_name().and(&self.input.buffers());
+        let mut buffers = self.b.by_name().and(&self.input.buffers());
+        if let Some(scan) = &self.kept_scan {
+            self.record_separation(recording, &buffers, scan);
+            buffers = buffers
+                .with("sorted_positions", self.b.kept_positions)
+                .with("cell_start", self.b.kept_cell_start);
+        }
         self.record_field(recording, &buffers);
         self.record_march(recording, &buffers);
         if let Some(scan) = &self.vertex_scan {
             self.record_smoothing(recording, &buffers, scan);
         }
+    }
+
+    fn record_separation(&self, recording: &mut Recording, buffers: &BufferSet, scan: &Scan) {
+        let particles = DispatchSize::Items(self.input.particle_capacity);
+        let cells = DispatchSize::Items(self.input.grid_host.cell_count + 1);
+        // The scan includes inactive particles.
+        recording.clear(self.b.kept);
+        recording.dispatch(&droplets::CLASSIFY, particles, buffers);
+        scan.record(recording, self.b.kept, self.b.kept_starts);
+        recording.dispatch(&droplets::SEPARATE, particles, buffers);
+        recording.dispatch(&droplets::KEPT_CELLS, cells, buffers);
     }
 
     fn record_field(&self, recording: &mut Recording, buffers: &BufferSet) {
@@ -386,9 +437,11 @@ impl Surface {
         loop {
             executor.run(&self.recording)?;
             let status = self.read_status(executor).await?;
+            let droplets = executor.request(self.b.droplet_count, 1)?;
             if !self.grow(executor, &status)? {
                 let Status { blocks, vertices, triangles, .. } = status;
-                return Ok(SurfaceStats { vertices, triangles, blocks, retries, not_finite: 0 });
+                let droplets = droplets.take().await?[0];
+                return Ok(SurfaceStats { vertices, triangles, blocks, retries, droplets, not_finite: 0 });
             }
             retries += 1;
         }
@@ -442,6 +495,22 @@ impl Surface {
         Ok(Mesh::new(xyz(vertices), triangles).with_normals(xyz(normals)))
     }
 
+    /// Reads back the isolated particles of the last extraction in the order of their ids: ids, positions and
+    /// velocities, and their diameter in m as the attribute `width`.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Gpu`] if the device was lost.
+    pub async fn droplets_async(&self, executor: &mut Executor) -> Result<Particles, SurfaceError> {
+        let count = executor.fetch(self.b.droplet_count).await?[0];
+        let mut found = executor.fetch_first(self.b.droplets, count as usize).await?;
+        found.sort_unstable_by_key(|droplet| droplet.id);
+        let all = Particles::from_positions(found.iter().map(|droplet| droplet.position.into()).collect())
+            .with_ids(found.iter().map(|droplet| droplet.id).collect())
+            .with_velocities(found.iter().map(|droplet| droplet.velocity.into()).collect());
+        let indices: Vec<u32> = (0..count).collect();
+        Ok(droplets::droplets_of(&all, &indices, self.params.particle_spacing))
+    }
+
     async fn read_status(&self, executor: &mut Executor) -> Result<Status, SurfaceError> {
         Ok(executor.fetch(self.b.status).await?[0])
     }
@@ -469,7 +538,8 @@ impl Surface {
     }
 
     fn free_scans(&self, executor: &mut Executor) -> Result<(), SurfaceError> {
-        for scan in [self.mark_scan, self.block_scan].into_iter().chain(self.vertex_scan) {
+        let optional = self.kept_scan.into_iter().chain(self.vertex_scan);
+        for scan in [self.mark_scan, self.block_scan].into_iter().chain(optional) {
             scan.free(executor)?;
         }
         Ok(())
@@ -504,6 +574,12 @@ impl Surface {
     #[doc(hidden)]
     pub fn status(&self) -> Buffer<Status> {
         self.b.status
+    }
+
+    /// The isolated particles; the first [`SurfaceStats::droplets`] are valid. Empty if none leave the surface.
+    #[doc(hidden)]
+    pub fn droplets(&self) -> Buffer<Droplet> {
+        self.b.droplets
     }
 
     /// The parameters.

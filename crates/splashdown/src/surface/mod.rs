@@ -5,15 +5,16 @@
 //! Closed sides of the domain are planes of symmetry of the field, and the mesh ends there: see
 //! `walls`.
 //!
-//! 1. `volume`: the volume and the local density of each particle; or `anisotropy`, the ellipsoids of
+//! 1. `droplets`: isolated particles leave the surface, if requested.
+//! 2. `volume`: the volume and the local density of each particle; or `anisotropy`, the ellipsoids of
 //!    the anisotropic field.
-//! 2. `blocks`: the blocks of 8x8x8 nodes within reach of particles are marked, numbered by a scan,
+//! 3. `blocks`: the blocks of 8x8x8 nodes within reach of particles are marked, numbered by a scan,
 //!    and listed.
-//! 3. `field`: the colour field and its signs at the nodes of these blocks.
-//! 4. `march`: cut edges are counted, numbered by scans, and converted into shared vertices with
+//! 4. `field`: the colour field and its signs at the nodes of these blocks.
+//! 5. `march`: cut edges are counted, numbered by scans, and converted into shared vertices with
 //!    normals and into triangles (marching cubes: Lorensen and Cline 1987). The arguments of the
 //!    indirect draw are written on the device.
-//! 5. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), optional.
+//! 6. `smooth`: weighted Laplacian smoothing (Löschner et al. 2023), optional.
 //!
 //! The mesh is closed, manifold and oriented outwards for any set of particles: vertices and
 //! connectivity follow from the signs of the nodes alone (see
@@ -45,6 +46,7 @@
 mod anisotropy;
 mod blocks;
 mod components;
+mod droplets;
 mod error;
 mod field;
 mod interpolate;
@@ -60,7 +62,10 @@ mod tests;
 mod volume;
 mod walls;
 
-pub use components::{remove_small_components, take_small_components};
+pub use components::{remove_small_components, retain_components, take_small_components};
+#[doc(hidden)]
+pub use droplets::Droplet;
+pub use droplets::{MAX_BLOB, droplet_radius, droplets_of, isolated};
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
 #[doc(hidden)]
@@ -79,6 +84,9 @@ use splashdown_gpu::PassDesc;
 #[doc(hidden)]
 pub fn passes() -> Vec<&'static PassDesc> {
     vec![
+        &droplets::CLASSIFY,
+        &droplets::SEPARATE,
+        &droplets::KEPT_CELLS,
         &volume::VOLUME,
         &anisotropy::MOMENTS,
         &anisotropy::SHAPES,

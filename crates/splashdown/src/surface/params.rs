@@ -4,6 +4,7 @@ use glam::{DVec3, UVec3, Vec3};
 use splashdown_gpu::gpu_struct;
 
 use super::anisotropy::{self, MAX_SHIFT, MAX_STRETCH};
+use super::droplets::{LINK, MAX_BLOB};
 use super::{SurfaceError, Walls};
 use crate::cells::Grid;
 use crate::scene::{SurfaceKernels, SurfaceSettings};
@@ -41,13 +42,19 @@ pub struct SurfaceParams {
     /// Iterations of weighted Laplacian smoothing. 0 keeps the vertices of marching cubes; 15 to 25
     /// remove the bumps of the particles.
     pub smoothing_iterations: u32,
+    /// Particles in blobs of fewer than this many leave the surface, see [`isolated`](super::isolated); at most
+    /// [`MAX_BLOB`](super::MAX_BLOB). 0 or 1: none of them.
+    pub min_blob: u32,
+    /// Particles with fewer than this many others within 0.9 support radii leave the surface; at most
+    /// [`MAX_BLOB`](super::MAX_BLOB). 0: none of them.
+    pub min_neighbours: u32,
     /// Closed sides at which the mesh ends; [`Walls::NONE`] without.
     pub walls: Walls,
 }
 
 impl SurfaceParams {
     /// Default values for a particle spacing: a support radius of 2 spacings, cells of half a
-    /// spacing, an iso level of 0.6, no smoothing.
+    /// spacing, an iso level of 0.6, no smoothing; no particles leave the surface.
     pub fn new(particle_spacing: f32) -> Self {
         Self {
             particle_spacing,
@@ -56,6 +63,8 @@ impl SurfaceParams {
             cell_size: 0.5 * particle_spacing,
             iso_level: 0.6,
             smoothing_iterations: 0,
+            min_blob: 0,
+            min_neighbours: 0,
             walls: Walls::NONE,
         }
     }
@@ -69,8 +78,15 @@ impl SurfaceParams {
             cell_size: settings.cell_size,
             iso_level: settings.iso_level,
             smoothing_iterations: settings.smoothing_iterations,
+            min_blob: settings.min_blob,
+            min_neighbours: settings.min_neighbours,
             walls,
         }
+    }
+
+    /// Whether isolated particles leave the surface.
+    pub fn separates(&self) -> bool {
+        self.min_blob > 1 || self.min_neighbours > 0
     }
 
     /// Validates the values.
@@ -97,6 +113,11 @@ impl SurfaceParams {
         if !(1e-3..=1e3).contains(&self.iso_level) {
             let (name, given) = ("iso_level", self.iso_level);
             return Err(SurfaceError::Parameter { name, given, allowed: "between 0.001 and 1000" });
+        }
+        for (name, given) in [("min_blob", self.min_blob), ("min_neighbours", self.min_neighbours)] {
+            if given > MAX_BLOB {
+                return Err(SurfaceError::Parameter { name, given: given as f32, allowed: "at most 32" });
+            }
         }
         Ok(())
     }
@@ -146,7 +167,12 @@ gpu_struct! {
         wall_high_nodes: UVec3,
         /// Number of neighbours in the bulk, as [`anisotropy`](super::anisotropy) counts them.
         bulk_number: f32,
-        padding: UVec3,
+        /// Blobs of fewer particles leave the surface.
+        min_blob: u32,
+        /// Particles with fewer neighbours leave the surface.
+        min_neighbours: u32,
+        /// Square of the largest distance of linked particles in m^2.
+        link_square: f32,
         /// Size of the anisotropic kernel of a lone particle, see [`lone_size`](super::anisotropy::lone_size).
         lone_size: f32,
     }
@@ -231,7 +257,9 @@ impl Lattice {
             search_reach,
             wall_high_nodes: layers(params.walls.high),
             bulk_number: anisotropy::bulk_number(params),
-            padding: UVec3::ZERO,
+            min_blob: params.min_blob,
+            min_neighbours: params.min_neighbours,
+            link_square: (LINK * params.support_radius).powi(2),
             lone_size: anisotropy::lone_size(params),
         };
         lattice.estimate(params);

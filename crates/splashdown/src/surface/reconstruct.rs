@@ -54,7 +54,8 @@ fn extract(
 ) -> Result<(Surface, SurfaceStats), SurfaceError> {
     let mut surface = Surface::new(executor, *params, input)?;
     let stats = surface.extract(executor).and_then(|stats| match stats.triangles {
-        0 => {
+        // All particles can be isolated.
+        0 if stats.droplets < input.particle_capacity => {
             let highest = surface.highest(executor, &stats)?;
             Err(SurfaceError::NoSurface { given: params.iso_level, highest })
         }
@@ -76,9 +77,14 @@ pub(super) fn upload(
     params: &SurfaceParams,
 ) -> Result<SurfaceInput, SurfaceError> {
     let grid = grid_over(points, params)?;
-    let (sorted, cell_start) = sort_by_cell(&grid, points);
+    let (order, cell_start) = sort_order(&grid, points);
+    let sorted: Vec<Vec4> = order.iter().map(|&particle| points[particle as usize].extend(0.0)).collect();
+    // The index is the id; the particles have no velocities.
+    let (ids, moving) = if params.separates() { (&order[..], sorted.len()) } else { (&[][..], 0) };
     Ok(SurfaceInput {
         sorted_positions: executor.create_from("sorted_positions", &sorted)?,
+        sorted_velocities: executor.create_from("sorted_velocities", &vec![Vec4::ZERO; moving])?,
+        sorted_ids: executor.create_from("sorted_ids", ids)?,
         cell_start: executor.create_from("cell_start", &cell_start)?,
         grid: executor.create_uniform("grid", &grid)?,
         grid_host: grid,
@@ -122,13 +128,7 @@ pub(super) fn grid_over(positions: &[Vec3], params: &SurfaceParams) -> Result<Gr
     }
 }
 
-/// A stable counting sort by cell.
-fn sort_by_cell(grid: &Grid, positions: &[Vec3]) -> (Vec<Vec4>, Vec<u32>) {
-    let (order, start) = sort_order(grid, positions);
-    (order.iter().map(|&particle| positions[particle as usize].extend(0.0)).collect(), start)
-}
-
-/// The indices of the particles sorted by cell, and the first of each cell.
+/// The indices of the particles in a stable counting sort by cell, and the first of each cell.
 pub(super) fn sort_order(grid: &Grid, positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
     let cells: Vec<u32> = positions.iter().map(|&p| grid.cell_of(p)).collect();
     let mut start = vec![0_u32; grid.cell_count as usize + 1];

@@ -124,6 +124,20 @@ pub(super) static SURFACE: Table = Table {
             .default("5")
             .also(&["smoothing"]),
         key(
+            "min_blob",
+            Kind::Integer(range(0.0, 32.0, "")),
+            "Particles in blobs of fewer than this many leave the surface and become droplets; 0: none.",
+        )
+        .default("9")
+        .also(&["min_component", "min_component_size"]),
+        key(
+            "min_neighbours",
+            Kind::Integer(range(0.0, 32.0, "")),
+            "Particles with fewer others within 0.9 support radii of the field leave the surface and become droplets; 0: none.",
+        )
+        .default("3")
+        .also(&["min_neighbors"]),
+        key(
             "support_ratio",
             a_number(1.0, 6.0, ""),
             "Support radius of the field divided by the particle spacing.",

@@ -16,6 +16,8 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
     let cell_size = section.number("cell_size");
     let iso_level = section.number("iso_level");
     let smoothing_iterations = section.integer("smoothing_iterations");
+    let min_blob = section.integer("min_blob");
+    let min_neighbours = section.integer("min_neighbours");
     let support_ratio = section.number("support_ratio");
     let spacing = fluid.map(|fluid| fluid.particle_spacing);
     let standard = SurfaceSettings::for_spacing(spacing.unwrap_or(1.0));
@@ -25,6 +27,8 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
         cell_size: cell_size?.unwrap_or(standard.cell_size),
         iso_level: iso_level?.unwrap_or(standard.iso_level),
         smoothing_iterations: smoothing_iterations?.unwrap_or(standard.smoothing_iterations),
+        min_blob: min_blob?.unwrap_or(standard.min_blob),
+        min_neighbours: min_neighbours?.unwrap_or(standard.min_neighbours),
         support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
     };
     let Some(spacing) = spacing else { return Ok(surface) };

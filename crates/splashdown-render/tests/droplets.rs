@@ -1,0 +1,158 @@
+//! Droplets, in cases where the expected pixels are known.
+
+mod common;
+
+use common::{Harness, Picture, sample, with};
+use splashdown_render::*;
+
+const SIZE: [u32; 2] = [200, 160];
+/// A droplet of this radius in the middle has an outline of 22 pixels.
+const RADIUS: f32 = 0.4;
+
+fn frame() -> Frame<'static> {
+    let camera = Camera::orbit([0.0; 3], 4.0, 0.0, 0.0, 40.0);
+    Frame::new(camera, Domain::closed([-50.0; 3], [50.0; 3]))
+}
+
+/// A droplet at rest or in motion along x, blurred for 0.1 s.
+fn draw(harness: &mut Harness, place: [f32; 3], speed: f32, frame: Frame<'_>) -> Picture {
+    let droplet = UploadedDroplets::new(&harness.device, &[place], &[[speed, 0.0, 0.0]]).unwrap();
+    let drawn = DrawnDroplets::new(droplet.buffers(), RADIUS, Liquid::water()).with_shutter(0.1);
+    harness.draw(SIZE, &frame.with_droplets(drawn))
+}
+
+/// The pixels that differ between two pictures: columns and rows of their bounding box, and their number.
+fn changed(a: &Picture, b: &Picture) -> ([u32; 2], [u32; 2], usize) {
+    let differs = |x, y| (0..3).any(|c| a.pixel([x, y])[c].abs_diff(b.pixel([x, y])[c]) > 3);
+    let pixels: Vec<[u32; 2]> = (0..SIZE[1])
+        .flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
+        .filter(|&[x, y]| differs(x, y))
+        .collect();
+    let range = |axis: usize| {
+        let values = || pixels.iter().map(|pixel| pixel[axis]);
+        [values().min().unwrap_or(0), values().max().unwrap_or(0)]
+    };
+    (range(0), range(1), pixels.len())
+}
+
+#[test]
+fn a_droplet_at_rest_covers_its_disc() {
+    let Some(mut harness) = common::harness() else { return };
+    let empty = harness.draw(SIZE, &frame());
+    let picture = draw(&mut harness, [0.0; 3], 0.0, frame());
+    let ([left, right], [top, bottom], count) = changed(&picture, &empty);
+    let radius = 80.0 / (20.0_f32.to_radians().tan() * 4.0) * RADIUS;
+    for (low, high, middle) in [(left, right, 99.5), (top, bottom, 79.5)] {
+        assert!((low as f32 - middle + radius).abs() < 2.0, "{low} to {high}, radius {radius}");
+        assert!((high as f32 - middle - radius).abs() < 2.0, "{low} to {high}, radius {radius}");
+    }
+    let disc = std::f32::consts::PI * radius * radius;
+    assert!(count as f32 > 0.7 * disc && (count as f32) < 1.1 * disc, "{count} of {disc}");
+    // The droplet shows the sky below and the floor above, opposite to what is behind it.
+    let below = picture.pixel([100, 80 + radius as u32 / 2]);
+    let above = picture.pixel([100, 80 - radius as u32 / 2]);
+    assert!(below[2] > above[2] + 10, "{below:?} below, {above:?} above");
+}
+
+#[test]
+fn a_moving_droplet_is_a_fainter_streak_of_the_length_of_its_way() {
+    let Some(mut harness) = common::harness() else { return };
+    let empty = harness.draw(SIZE, &frame());
+    let rest = draw(&mut harness, [0.0; 3], 0.0, frame());
+    // 1.6 m in 0.1 s.
+    let moving = draw(&mut harness, [0.0; 3], 16.0, frame());
+    let ([left, right], [top, bottom], _) = changed(&moving, &empty);
+    let ([rest_left, rest_right], [rest_top, rest_bottom], _) = changed(&rest, &empty);
+    let pixels_per_metre = 80.0 / (20.0_f32.to_radians().tan() * 4.0);
+    let longer = (right - left) as f32 - (rest_right - rest_left) as f32;
+    // The ends of a streak fade. Half of the time would give half of the length.
+    let expected = 1.6 * pixels_per_metre;
+    assert!(longer > 0.7 * expected && longer < 1.02 * expected, "{longer} of {expected}");
+    assert!(top.abs_diff(rest_top) <= 4 && bottom.abs_diff(rest_bottom) <= 4);
+    let contrast = |picture: &Picture, x: u32, y: u32| {
+        (0..3).map(|c| i32::from(picture.pixel([x, y])[c].abs_diff(empty.pixel([x, y])[c]))).max()
+    };
+    assert!(contrast(&moving, 100, 95) < contrast(&rest, 100, 95));
+    // Control: a droplet that moves away from the eye has no streak.
+    let droplet = UploadedDroplets::new(&harness.device, &[[0.0; 3]], &[[0.0, 0.0, 16.0]]).unwrap();
+    let drawn = DrawnDroplets::new(droplet.buffers(), RADIUS, Liquid::water()).with_shutter(0.1);
+    let away = harness.draw(SIZE, &frame().with_droplets(drawn));
+    let ([left, right], ..) = changed(&away, &empty);
+    assert!((right - left).abs_diff(rest_right - rest_left) <= 1);
+}
+
+#[test]
+fn a_surface_hides_droplets_behind_it() {
+    let Some(mut harness) = common::harness() else { return };
+    let ball = sample::ball([0.0; 3], 0.8, 48);
+    let ball = UploadedSurface::new(&harness.device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
+    let black = with(Liquid::water(), |l| {
+        l.absorption = [400.0; 3];
+        l.scattering = 400.0;
+        l.colour = [0.0; 3];
+    });
+    let with_ball = frame().with_surface(DrawnSurface::new(ball.buffers(), black));
+    let alone = harness.draw(SIZE, &with_ball);
+    let behind = draw(&mut harness, [0.0, 0.0, -1.5], 0.0, with_ball);
+    assert_eq!(changed(&behind, &alone).2, 0);
+    let before = draw(&mut harness, [0.0, 0.0, 1.5], 0.0, with_ball);
+    assert!(changed(&before, &alone).2 > 1000);
+}
+
+#[test]
+fn the_samples_of_a_traced_picture_move_droplets_and_foam() {
+    let Some(mut harness) = common::harness() else { return };
+    // Liquid out of view: traced pictures need a surface.
+    let mesh = sample::ball([0.0, 0.0, 30.0], 0.1, 8);
+    let surface =
+        UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let meshes = TracedMeshes::new(
+        &harness.device,
+        &mesh.vertices,
+        &mesh.normals,
+        &mesh.triangles,
+        std::iter::empty::<(&PlacedBody, [f32; 3], [f32; 4])>(),
+    )
+    .unwrap();
+    let mut width = |speed: f32, shutter: f32, foam: bool| {
+        let quality = with(Quality::FINAL, |quality| {
+            quality.samples = 12;
+            quality.shutter = shutter;
+        });
+        let base = frame().with_surface(DrawnSurface::new(surface.buffers(), Liquid::water()));
+        let base = base.with_tracing(&meshes, quality);
+        let empty = harness.draw(SIZE, &base);
+        let velocity = [[speed, 0.0, 0.0]];
+        let droplet = UploadedDroplets::new(&harness.device, &[[0.0; 3]], &velocity).unwrap();
+        let spray = UploadedFoam::moving(&harness.device, &[[0.0; 3]], &velocity, &[], &[], &[0]).unwrap();
+        let picture = match foam {
+            true => harness.draw(SIZE, &base.with_foam(DrawnFoam::new(spray.buffers(), 1.0))),
+            false => {
+                let drawn = DrawnDroplets::new(droplet.buffers(), RADIUS, Liquid::water());
+                harness.draw(SIZE, &base.with_droplets(drawn))
+            }
+        };
+        let ([left, right], ..) = changed(&picture, &empty);
+        right - left
+    };
+    for foam in [false, true] {
+        let (rest, moving) = (width(0.0, 0.1, foam), width(16.0, 0.1, foam));
+        assert!(moving > rest + 50, "{moving} pixels in motion, {rest} at rest, foam: {foam}");
+        // Control: without a shutter the motion is not visible.
+        assert_eq!(width(16.0, 0.0, foam), rest, "foam: {foam}");
+    }
+}
+
+#[test]
+fn invalid_droplets_are_refused() {
+    let Some(harness) = common::harness() else { return };
+    let error = UploadedDroplets::new(&harness.device, &[[0.0; 3]; 2], &[[0.0; 3]]).unwrap_err();
+    assert!(error.to_string().contains("velocities"), "{error}");
+    let droplets = UploadedDroplets::new(&harness.device, &[[0.0; 3]; 2], &[]).unwrap();
+    let mut target = Offscreen::new(&harness.device, &harness.queue, SIZE).unwrap();
+    let mut renderer = Renderer::new(&harness.device, &harness.queue, Offscreen::FORMAT, 4).unwrap();
+    for (radius, shutter) in [(0.0, 0.0), (0.1, -1.0), (0.1, f32::NAN)] {
+        let drawn = DrawnDroplets::new(droplets.buffers(), radius, Liquid::water()).with_shutter(shutter);
+        assert!(target.render_to_rgba(&mut renderer, &frame().with_droplets(drawn)).is_err());
+    }
+}
