@@ -61,13 +61,13 @@ impl Bar {
         self.bar.set_message(text);
     }
 
-    /// Shows the progress of the bodies' distance fields, which are computed before a run starts.
+    /// Shows the progress of what precedes the first step, such as distance fields and the initial packing.
     pub fn preparation(&self) -> ProgressFn {
         let (bar, plain) = (self.bar.clone(), self.plain);
         let last_line = Mutex::new(Instant::now());
-        ProgressFn::new(move |body, fraction| {
+        ProgressFn::new(move |task, fraction| {
             bar.set_position((fraction.clamp(0.0, 1.0) * LENGTH as f32) as u64);
-            let text = format!("computing the distance field of {body:?}");
+            let text = format!("preparing the {task}");
             // If another thread is printing, this line is not needed.
             if let (true, Ok(mut last)) = (plain, last_line.try_lock())
                 && last.elapsed() >= PAUSE

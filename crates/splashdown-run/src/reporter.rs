@@ -36,7 +36,7 @@ pub trait Reporter {
         let _ = what;
     }
 
-    /// Called with the progress of distance fields, which are computed before the simulation starts.
+    /// Called with the progress of what precedes the first step, such as distance fields and the initial packing.
     fn preparation(&self) -> Option<ProgressFn> {
         None
     }

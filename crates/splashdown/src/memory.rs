@@ -197,7 +197,7 @@ mod tests {
                 scene.surface.kernels = kernels;
                 scene.solver.sort = sort;
                 // Without the particles inside bodies, which the simulation removes.
-                let inventory = crate::inventory(&scene).unwrap();
+                let inventory = crate::inventory(&scene, &|_, _| {}).unwrap();
                 let forecast = memory_forecast_of(&scene, &inventory);
                 assert!(memory_forecast(&scene) >= forecast, "{name}");
                 let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();

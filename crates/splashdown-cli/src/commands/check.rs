@@ -4,13 +4,16 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use splashdown::check::{BodyWidths, Interpretation, Resolution, interpretations, resolution};
+use splashdown::run::ProgressFn;
 use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Method, Scene, SceneWarning};
-use splashdown::{Device, Packing, Simulation, check_particles, memory_forecast_of};
+use splashdown::{Device, Packing, Simulation, SimulationError, check_particles, memory_forecast_of};
 
 use crate::args::CheckArguments;
+use crate::console::Verbosity;
 use crate::exit::{Exit, Failure};
 use crate::lines::Line;
+use crate::progress::Bar;
 use crate::speed::{bench_scene, seconds_per_step};
 use crate::{console, human, scene_file};
 
@@ -64,12 +67,13 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             console::print_json(&Line::error(failure));
         }
     })?;
-    // Without the particles inside bodies, as in the simulation.
-    let inventory = splashdown::inventory(&scene)?;
+    let bar = Bar::new(Verbosity::Normal, arguments.json);
+    let prepared = prepare(&scene, &bar.preparation());
+    bar.clear();
+    let (inventory, packing) = prepared?;
     let derived = Derived::with_inventory(&scene, &inventory);
     let meshes = interpretations(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
     let resolution = resolution(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
-    let packing = splashdown::initial_packing(&scene)?;
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let largest = arguments.device.device.executor()?.largest_buffer();
@@ -104,6 +108,12 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     print_meshes(&meshes);
     print_resolution(&resolution);
     Ok(fits?)
+}
+
+/// The particles of a scene, without those inside bodies as in the simulation, and their packing.
+fn prepare(scene: &Scene, progress: &ProgressFn) -> Result<(Inventory, Option<Packing>), SimulationError> {
+    let progress = |task: &str, fraction: f32| progress.call(task, fraction);
+    Ok((splashdown::inventory(scene, &progress)?, splashdown::initial_packing(scene, &progress)?))
 }
 
 fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {

@@ -17,9 +17,7 @@ pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
         .show(ctx, |ui| {
             ui.set_max_width((over.width() - 20.0).clamp(120.0, 520.0));
             if let Some((what, part)) = &state.preparing {
-                ui.add(
-                    ProgressBar::new(*part).text(format!("distance field of {what:?}")).desired_width(240.0),
-                );
+                ui.add(ProgressBar::new(*part).text(what).desired_width(240.0));
             }
             for (number, note) in state.notes.iter().enumerate() {
                 Frame::popup(ui.style()).show(ui, |ui| {

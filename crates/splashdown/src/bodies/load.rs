@@ -1,7 +1,7 @@
 //! Loads the bodies of a scene: meshes, solids, masses, and boundary particles.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Mat3, Quat, Vec2, Vec3, Vec4};
 use splashdown_io::{IoError, Mesh};
@@ -173,7 +173,7 @@ pub fn body_meshes(scene: &scene::Scene) -> Result<Vec<BodyMesh>, BodyError> {
 }
 
 /// Builds the bodies of a scene from their meshes, which [`mesh_of`] has read in the order of the scene. `progress`
-/// is called with the name of a body and the completed part of it in [0, 1].
+/// is called with what is computed, such as `distance field of "tug"`, and the completed part of it in [0, 1].
 ///
 /// # Errors
 /// The first [`BodyError`].
@@ -238,9 +238,14 @@ fn load_one(
     let surroundings = surroundings
         .within(solid::bounds(&mesh), params.support_radius + half_thickness)
         .filter(|_| body.motion == Motion::Static);
-    let solid =
-        Solid::build_within(&mesh, &settings, surroundings.as_ref(), &|part| progress(&body.name, part))
-            .map_err(solid_error)?;
+    let task = format!("distance field of {:?}", body.name);
+    let complete = Mutex::new(0.0);
+    let report = |part: f32| {
+        let mut complete = complete.lock().unwrap_or_else(PoisonError::into_inner);
+        *complete += part;
+        progress(&task, f32::min(*complete, 1.0));
+    };
+    let solid = Solid::build_within(&mesh, &settings, surroundings.as_ref(), &report).map_err(solid_error)?;
     let mut state = Body {
         position: body.mesh.position,
         orientation: Vec4::from(body.mesh.rotation),

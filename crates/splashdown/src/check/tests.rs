@@ -104,7 +104,7 @@ fn checking_a_scene_builds_everything_once() {
     let path = write(folder.path());
     let ((), counts) = work::counted(|| {
         let scene = Scene::load(&path).unwrap();
-        let counted = inventory(&scene).unwrap();
+        let counted = inventory(&scene, &|_, _| {}).unwrap();
         Derived::with_inventory(&scene, &counted);
         assert!(memory_forecast_of(&scene, &counted) > 0);
     });

@@ -38,12 +38,12 @@ pub struct RunOptions {
     pub timing: bool,
     /// What to do when the fluid bursts.
     pub on_burst: OnBurst,
-    /// Called while the distance fields of bodies are computed, before the first event.
+    /// Called while the distance fields of bodies are computed and the initial packing is relaxed, before the first event.
     pub progress: Option<ProgressFn>,
 }
 
-/// A callback for the progress of distance fields. Its arguments are a body's name and the completed fraction, in
-/// [0, 1]. Several threads may call it at once.
+/// A callback for what precedes the first step. Its arguments are what is being prepared, such as `initial packing` or
+/// `distance field of "tug"`, and the completed fraction in [0, 1]. Several threads may call it at once.
 #[derive(Clone)]
 pub struct ProgressFn(Arc<Report>);
 
@@ -57,8 +57,8 @@ impl ProgressFn {
     }
 
     /// Calls it.
-    pub fn call(&self, body: &str, fraction: f32) {
-        (self.0)(body, fraction);
+    pub fn call(&self, task: &str, fraction: f32) {
+        (self.0)(task, fraction);
     }
 }
 
@@ -105,9 +105,9 @@ impl RunOptions {
 
     /// Calls the progress callback, if there is one.
     pub(super) fn report_progress(&self) -> impl Fn(&str, f32) + Sync {
-        |body, fraction| {
+        |task, fraction| {
             if let Some(progress) = &self.progress {
-                progress.call(body, fraction);
+                progress.call(task, fraction);
             }
         }
     }

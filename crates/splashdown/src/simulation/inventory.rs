@@ -8,11 +8,11 @@ use crate::sample::{self, Inventory, SampleError};
 use crate::scene::{Scene, lattice};
 
 /// Counts the particles that a [`Simulation`] of this scene starts with. Bodies are loaded for this, which may take
-/// seconds the first time.
+/// seconds the first time; `progress` is called as that of [`Simulation::prepare`].
 ///
 /// # Errors
 /// [`SimulationError`] of sampling, bodies and outlets.
-pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
+pub fn inventory(scene: &Scene, progress: &(dyn Fn(&str, f32) + Sync)) -> Result<Inventory, SimulationError> {
     let built = Built::of(scene);
     let emitted = built.emitted(scene)?.0;
     let blocks = lattice::count(&scene.domain, &scene.fluid);
@@ -20,7 +20,7 @@ pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
         return Ok(Inventory { particles: built.count(scene), removed: 0, emitted });
     }
     let mut particles = built.take_particles(scene)?;
-    let removed = sample::remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, &|_, _| {})?);
+    let removed = sample::remove_inside(scene, &mut particles, &Simulation::load_bodies(scene, progress)?);
     if removed > 0 && particles.is_empty() && emitted == 0 {
         return Err(SampleError::AllInside { removed }.into());
     }
@@ -31,19 +31,23 @@ pub fn inventory(scene: &Scene) -> Result<Inventory, SimulationError> {
 const MOST_RELAXED: usize = 500_000;
 
 /// The packing with which a [`Simulation`] of this scene starts. More than half a million particles are measured, but not
-/// relaxed. `None` for a scene whose fluid is one lattice without bodies.
+/// relaxed. `None` for a scene whose fluid is one lattice without bodies. `progress` is called as that of
+/// [`Simulation::prepare`].
 ///
 /// # Errors
 /// As [`inventory`].
-pub fn initial_packing(scene: &Scene) -> Result<Option<Packing>, SimulationError> {
+pub fn initial_packing(
+    scene: &Scene,
+    progress: &(dyn Fn(&str, f32) + Sync),
+) -> Result<Option<Packing>, SimulationError> {
     let built = Built::of(scene);
     if built.count(scene) == 0 || packing::is_lattice(scene) {
         return Ok(None);
     }
     let mut particles = built.take_particles(scene)?;
-    let bodies = Simulation::load_bodies(scene, &|_, _| {})?;
+    let bodies = Simulation::load_bodies(scene, progress)?;
     sample::remove_inside(scene, &mut particles, &bodies);
     built.flow(scene)?.fill_nozzles(&mut particles, scene);
     let rounds = if particles.len() > MOST_RELAXED { 0 } else { MAX_ROUNDS };
-    packing::relax(scene, &mut particles, &bodies, rounds)
+    packing::relax(scene, &mut particles, &bodies, rounds, progress)
 }

@@ -25,6 +25,10 @@ use crate::{SimulationError, sample};
 
 /// The largest density error that is left as it is, over the rest density.
 pub(crate) const TOLERANCE: f32 = 0.02;
+/// The density error at which the relaxation ends, over the rest density.
+const TARGET: f32 = 0.5 * TOLERANCE;
+/// The name of the task for reports of progress.
+const TASK: &str = "initial packing";
 /// Maximum number of rounds.
 pub(super) const MAX_ROUNDS: u32 = 200;
 /// Rounds without progress after which the relaxation ends.
@@ -100,6 +104,7 @@ pub(super) fn relax(
     particles: &mut Particles,
     bodies: &[LoadedBody],
     most_rounds: u32,
+    progress: &(dyn Fn(&str, f32) + Sync),
 ) -> Result<Option<Packing>, SimulationError> {
     if is_lattice(scene) || particles.is_empty() {
         return Ok(None);
@@ -110,7 +115,8 @@ pub(super) fn relax(
     let before = relaxation.density(&first)?;
     let mut packing = Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 };
     if before.excess > TOLERANCE && most_rounds > 0 {
-        let (positions, after) = relaxation.run(first.clone(), before, most_rounds, &mut packing.rounds)?;
+        let (positions, after) =
+            relaxation.run(first.clone(), before, most_rounds, &mut packing.rounds, progress)?;
         let moved = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).distance(Vec3::from(*b));
         packing.moved = first.iter().zip(&positions).map(moved).fold(0.0, f32::max);
         packing.after = Some(after);
@@ -125,6 +131,13 @@ pub(super) fn is_lattice(scene: &Scene) -> bool {
     let fluid = &scene.fluid;
     let is_alone = scene.bodies.is_empty() && scene.emitters.is_empty();
     is_alone && sample::has_blocks_only(fluid) && fluid.blocks.len() < 2
+}
+
+/// An estimate of the completed part of a relaxation in [0, 1]: of the rounds, or of the way to the target, whichever is
+/// farther. Errors fall by a factor per round.
+fn completed_part(rounds: u32, most_rounds: u32, before: f32, now: f32) -> f32 {
+    let way = (before / now.max(TARGET)).ln() / (before / TARGET).ln();
+    way.max(rounds as f32 / most_rounds.max(1) as f32).clamp(0.0, 1.0)
 }
 
 /// The fluid of a scene without gravity.
@@ -178,10 +191,13 @@ impl Relaxation {
         before: InitialDensity,
         most_rounds: u32,
         rounds: &mut u32,
+        progress: &(dyn Fn(&str, f32) + Sync),
     ) -> Result<(Vec<[f32; 3]>, InitialDensity), SimulationError> {
         let (mut best, mut least) = (first, before);
         let (mut energy, mut since) = (0.0_f64, 0);
-        while *rounds < most_rounds && since < PATIENCE && least.excess > 0.5 * TOLERANCE {
+        let complete = |rounds: u32, excess: f32| completed_part(rounds, most_rounds, before.excess, excess);
+        progress(TASK, 0.0);
+        while *rounds < most_rounds && since < PATIENCE && least.excess > TARGET {
             *rounds += 1;
             let duration = STEPS * self.simulation.dt();
             let stats = self.simulation.advance(duration)?;
@@ -205,7 +221,9 @@ impl Relaxation {
             } else {
                 energy = now;
             }
+            progress(TASK, complete(*rounds, least.excess));
         }
+        progress(TASK, 1.0);
         Ok((best, least))
     }
 

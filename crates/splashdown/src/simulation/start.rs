@@ -37,8 +37,9 @@ impl Simulation {
         Self::prepare(scene, executor, &|_, _| {})
     }
 
-    /// As [`with_executor`](Self::with_executor). `progress` is called with the name of each body whose distances
-    /// are being computed, and the completed part in [0, 1]: a mesh of 100,000 triangles takes seconds the first time.
+    /// As [`with_executor`](Self::with_executor). `progress` is called with what is being prepared and the completed part in
+    /// [0, 1]: the distance field of each body, which takes seconds for a mesh of 100,000 triangles the first time, and the
+    /// initial packing of particles that are too close.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -63,7 +64,7 @@ impl Simulation {
         let mut particles = Built::of(scene).take_particles(scene)?;
         let removed = sample::remove_inside(scene, &mut particles, &bodies);
         Built::of(scene).flow(scene)?.fill_nozzles(&mut particles, scene);
-        let packing = packing::relax(scene, &mut particles, &bodies, packing::MAX_ROUNDS)?;
+        let packing = packing::relax(scene, &mut particles, &bodies, packing::MAX_ROUNDS, progress)?;
         sample::start_at_rest(scene, &mut particles, &bodies);
         if removed > 0 && particles.positions.is_empty() {
             return Err(sample::SampleError::AllInside { removed }.into());

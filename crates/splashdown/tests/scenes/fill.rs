@@ -166,7 +166,7 @@ fn a_scene_with_a_mesh_and_a_file_runs() {
          [[body]]\nname = \"post\"\nmesh = \"block\"\nposition = [0.3, 0.3, 0.3]\n",
     );
     let scene = load(folder.path(), &text).expect("valid");
-    let inventory = splashdown::inventory(&scene).expect("it can be counted");
+    let inventory = splashdown::inventory(&scene, &|_, _| {}).expect("it can be counted");
     let mut simulation = Simulation::new(&scene, &Device::Cpu).expect("it starts");
     assert_eq!(u64::from(simulation.stats().particles), inventory.particles);
     assert_eq!(u64::from(simulation.removed()), inventory.removed);
@@ -190,7 +190,7 @@ fn particles_of_emitters_are_counted_in_advance() {
     assert_eq!((derived.particles, derived.emitted), (0, 8 * 21));
     // On average they exist for half of the second.
     assert!((derived.mean_particles / 84.0 - 1.0).abs() < 0.1, "{}", derived.mean_particles);
-    let inventory = splashdown::inventory(&scene).expect("it can be counted");
+    let inventory = splashdown::inventory(&scene, &|_, _| {}).expect("it can be counted");
     assert_eq!((inventory.particles, inventory.removed, inventory.emitted), (0, 0, 168));
     let mut capped = scene;
     capped.emitters[0].max_particles = Some(50);

@@ -14,11 +14,12 @@ pub const SPACING: f32 = 0.05;
 pub const SIZE: Vec3 = Vec3::new(0.6, 0.8, 0.5);
 pub const DEPTH: f32 = 0.4;
 
-/// The forms of the equations.
-pub const FORMS: [&str; 3] = [
-    "method = \"wcsph\"\ndensity = \"summation\"\n",
-    "method = \"wcsph\"\ndensity = \"continuity\"\n",
-    "method = \"mueller2003\"\n",
+/// The forms of the equations: name and keys of `[solver]`.
+pub const FORMS: [(&str, &str); 4] = [
+    ("summation", "method = \"wcsph\"\ndensity = \"summation\"\n"),
+    ("continuity", "method = \"wcsph\"\ndensity = \"continuity\"\n"),
+    ("mueller2003", "method = \"mueller2003\"\n"),
+    ("dfsph", "method = \"dfsph\"\n"),
 ];
 
 /// A pool that is open at the top, without bodies.
