@@ -1,6 +1,7 @@
 //! `cargo xtask bench --peers`: runs the same cases with Splashdown, SPlisHSPlasH and splashsurf, alternately, on one
 //! machine with the same number of threads. The other programs are Python wheels.
 
+mod cases;
 mod numbers;
 mod simulated;
 mod steps;
