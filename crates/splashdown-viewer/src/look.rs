@@ -49,6 +49,11 @@ impl DisplayMode {
         matches!(self, Self::Surface | Self::Mesh)
     }
 
+    /// Whether it needs the particles.
+    pub fn needs_particles(self) -> bool {
+        !self.needs_surface()
+    }
+
     /// Whether colours represent a quantity.
     pub fn has_colours(self) -> bool {
         matches!(self, Self::Particles | Self::Slice)

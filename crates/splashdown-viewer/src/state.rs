@@ -11,6 +11,7 @@ use crate::camera::Orbit;
 use crate::edit;
 use crate::engine::Grip;
 use crate::look::Look;
+use crate::timeline::Timeline;
 
 /// The effect of dragging the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -101,6 +102,8 @@ pub enum Action {
     Record,
     /// Switch between dark and light.
     SwapTheme,
+    /// Continue the simulation of the run that is played from its newest checkpoint.
+    Continue,
 }
 
 /// A tank that follows the mouse by a spring and returns when it is released.
@@ -242,6 +245,8 @@ pub struct State {
     pub pouring: bool,
     /// Checkpoints listed in the gallery.
     pub files: Vec<PathBuf>,
+    /// The position in the run that is played; `None` while a scene is simulated.
+    pub timeline: Option<Timeline>,
 }
 
 impl State {
@@ -267,6 +272,7 @@ impl State {
             recorded: None,
             pouring: edit::has_tap(&scene),
             files: Vec::new(),
+            timeline: None,
             scene,
         }
     }

@@ -6,16 +6,25 @@ use egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
 use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
+use splashdown_run::RunFrames;
 
 use crate::engine::Simulate;
 use crate::{Viewer, ViewerError};
 
+/// What the window shows first.
+pub enum Start {
+    /// The simulation of a scene from its beginning.
+    Scene(Scene),
+    /// A simulation that continues from a checkpoint.
+    Checkpoint(Checkpoint),
+    /// The frames of a finished or interrupted run.
+    Run(RunFrames),
+}
+
 /// The options of the window.
 pub struct ViewOptions {
-    /// The initial scene.
-    pub scene: Scene,
-    /// The checkpoint to resume from; `scene` is then its scene.
-    pub checkpoint: Option<Checkpoint>,
+    /// What it shows first.
+    pub start: Start,
     /// The device that draws.
     pub device: DeviceRequest,
     /// Which device simulates. `None`: the one that draws, unless it is a software driver.
@@ -29,14 +38,19 @@ pub struct ViewOptions {
 /// # Errors
 /// [`ViewerError`]: the checkpoint cannot be used, or there is no display, no device or no driver.
 pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
-    if let Some(checkpoint) = &options.checkpoint {
-        checkpoint.check()?;
-    }
+    let scene = match &options.start {
+        Start::Scene(scene) => scene.clone(),
+        Start::Checkpoint(checkpoint) => {
+            checkpoint.check()?;
+            checkpoint.scene()?
+        }
+        Start::Run(run) => run.scene().clone(),
+    };
     let unset = |name: &str| std::env::var_os(name).is_none_or(|value| value.is_empty());
     if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
         return Err(ViewerError::NoDisplay);
     }
-    let ViewOptions { scene, checkpoint, device, simulate, size } = options;
+    let ViewOptions { start, device, simulate, size } = options;
     let title = format!("Splashdown - {}", scene.name);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -50,11 +64,19 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     let create = move |context: &eframe::CreationContext<'_>| -> Result<Viewer, ViewerError> {
         let render_state =
             context.wgpu_render_state.as_ref().ok_or_else(|| no_window("the window has no device"))?;
-        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
-        if let Some(checkpoint) = checkpoint {
-            viewer.resume(checkpoint)?;
+        match start {
+            Start::Scene(_) => Viewer::new(&context.egui_ctx, render_state, scene, simulate),
+            Start::Checkpoint(checkpoint) => {
+                let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
+                viewer.resume(checkpoint)?;
+                Ok(viewer)
+            }
+            Start::Run(run) => {
+                let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
+                viewer.play(run, &context.egui_ctx).map_err(no_window)?;
+                Ok(viewer)
+            }
         }
-        Ok(viewer)
     };
     let create: eframe::AppCreator<'_> = Box::new(move |context| Ok(Box::new(create(context)?)));
     eframe::run_native("splashdown", native, create).map_err(viewer_error)

@@ -95,6 +95,10 @@ impl Viewer {
             Action::ShowFiles => self.state.files = splashdown_run::recent_checkpoints(MENU_FILES),
             Action::Share => self.share(now),
             Action::Record => self.toggle_recording(now),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::Continue => self.continue_run(now),
+            #[cfg(target_arch = "wasm32")]
+            Action::Continue => {}
             Action::SwapTheme => {
                 let theme = match ctx.theme() {
                     egui::Theme::Dark => egui::Theme::Light,

@@ -71,7 +71,8 @@ impl Viewer {
                 self.save_rescue(now);
             }
         }
-        let Some(snapshot) = self.engine.snapshot() else { return };
+        // A run that is played has its own figures.
+        let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) else { return };
         let figures = &mut self.state.figures;
         figures.frames_per_second = self.requested.frames_per_second;
         figures.steps_per_second = snapshot.steps_per_second;

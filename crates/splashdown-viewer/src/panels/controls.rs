@@ -6,7 +6,7 @@ use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
 use super::gravity;
-use crate::look::DisplayMode;
+use crate::look::{DisplayMode, Look};
 use crate::state::{Action, State};
 
 /// The number of particles cannot be changed in scenes that start with fewer particles than this.
@@ -14,6 +14,12 @@ const MIN_PARTICLES: u64 = 20;
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ScrollArea::vertical().show(ui, |ui| {
+        if state.timeline.is_some() {
+            // A finished run cannot be changed.
+            section(ui, "Display", |ui| display(ui, state, actions));
+            section(ui, "Export", |ui| export(ui, state, actions));
+            return;
+        }
         section(ui, "Fluid", |ui| fluid(ui, state, actions));
         section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
         section(ui, "Interact", |ui| interact(ui, state, actions));
@@ -151,60 +157,73 @@ fn name(method: Method) -> &'static str {
 }
 
 fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let is_simulated = state.timeline.is_none();
+    if is_simulated {
+        foam(ui, state, actions);
+    }
+    let look = &mut state.look;
+    if look.mode.has_colours() {
+        colours(ui, look);
+    } else if look.mode.needs_surface() && is_simulated {
+        surface(ui, state, actions);
+    }
+}
+
+fn foam(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let foam = ui
         .checkbox(&mut state.scene.foam.enabled, "Foam and spray")
         .on_hover_text("Spray in the air, foam on the surface, bubbles in the water (Ihmsen et al. 2012)");
     if foam.changed() {
         actions.push(Action::Change);
     }
-    let look = &mut state.look;
-    if look.mode.has_colours() {
+}
+
+fn colours(ui: &mut Ui, look: &mut Look) {
+    ui.horizontal(|ui| {
+        ui.label("colour by");
+        for (quantity, text) in
+            [(ColourBy::Speed, "speed"), (ColourBy::Density, "density"), (ColourBy::Pressure, "pressure")]
+        {
+            ui.selectable_value(&mut look.colour_by, quantity, text);
+        }
+    });
+    ComboBox::from_label("colours").selected_text(look.map.name()).show_ui(ui, |ui| {
+        for map in [ColourMap::Water, ColourMap::Viridis, ColourMap::Inferno, ColourMap::BlueRed] {
+            ui.selectable_value(&mut look.map, map, map.name());
+        }
+    });
+    if look.mode == DisplayMode::Slice {
         ui.horizontal(|ui| {
-            ui.label("colour by");
-            for (quantity, text) in
-                [(ColourBy::Speed, "speed"), (ColourBy::Density, "density"), (ColourBy::Pressure, "pressure")]
-            {
-                ui.selectable_value(&mut look.colour_by, quantity, text);
+            for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
+                ui.selectable_value(&mut look.slice_axis, axis, name);
             }
+            ui.add(
+                Slider::new(&mut look.slice_at, 0.0..=1.0).clamping(SliderClamping::Edits).text("position"),
+            );
         });
-        ComboBox::from_label("colours").selected_text(look.map.name()).show_ui(ui, |ui| {
-            for map in [ColourMap::Water, ColourMap::Viridis, ColourMap::Inferno, ColourMap::BlueRed] {
-                ui.selectable_value(&mut look.map, map, map.name());
-            }
-        });
-        if look.mode == DisplayMode::Slice {
-            ui.horizontal(|ui| {
-                for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
-                    ui.selectable_value(&mut look.slice_axis, axis, name);
-                }
-                ui.add(
-                    Slider::new(&mut look.slice_at, 0.0..=1.0)
-                        .clamping(SliderClamping::Edits)
-                        .text("position"),
-                );
-            });
-        }
-    } else if look.mode.needs_surface() {
-        let surface = &mut state.scene.surface;
-        let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
-            .clamping(SliderClamping::Edits)
-            .text("smoothing");
-        let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
-        let spacing = state.scene.fluid.particle_spacing;
-        let mut cell = surface.cell_size / spacing;
-        let size = ui
-            .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
-            .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
-        if size.changed() {
-            surface.cell_size = cell * spacing;
-        }
-        let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
-        let blob = ui
-            .add(blob.text("smallest blob"))
-            .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
-        if size.changed() || iterations.changed() || blob.changed() {
-            actions.push(Action::Change);
-        }
+    }
+}
+
+fn surface(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let surface = &mut state.scene.surface;
+    let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
+        .clamping(SliderClamping::Edits)
+        .text("smoothing");
+    let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
+    let spacing = state.scene.fluid.particle_spacing;
+    let mut cell = surface.cell_size / spacing;
+    let size = ui
+        .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
+        .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
+    if size.changed() {
+        surface.cell_size = cell * spacing;
+    }
+    let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
+    let blob = ui
+        .add(blob.text("smallest blob"))
+        .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
+    if size.changed() || iterations.changed() || blob.changed() {
+        actions.push(Action::Change);
     }
 }
 
@@ -220,7 +239,8 @@ fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
             ),
             ("Mesh", "Export the surface as a closed mesh in PLY (M)", Action::SaveMesh),
         ] {
-            if ui.button(text).on_hover_text(hint).clicked() {
+            let is_possible = state.timeline.is_none() || action == Action::Screenshot;
+            if is_possible && ui.button(text).on_hover_text(hint).clicked() {
                 actions.push(action);
             }
         }
@@ -231,7 +251,7 @@ fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
             actions.push(Action::Share);
         }
     });
-    if cfg!(target_arch = "wasm32") {
+    if cfg!(target_arch = "wasm32") || state.timeline.is_some() {
         return;
     }
     let text = match state.recorded {

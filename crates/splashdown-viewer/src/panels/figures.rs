@@ -6,6 +6,16 @@ use crate::state::State;
 
 pub(super) fn show(ui: &mut Ui, state: &mut State) {
     let figures = &state.figures;
+    if state.timeline.is_some() {
+        ui.horizontal_wrapped(|ui| {
+            ui.monospace(format!("t = {:7.3} s", figures.time)).on_hover_text("Simulated time");
+            ui.monospace(format!("{} particles", count(figures.particles.into())));
+            if let Some(triangles) = figures.triangles {
+                ui.monospace(format!("{} triangles", count(triangles.into())));
+            }
+        });
+        return;
+    }
     ui.horizontal_wrapped(|ui| {
         let mut item = |text: String, hint: &str| {
             ui.label(RichText::new(text).monospace()).on_hover_text(hint);

@@ -5,9 +5,10 @@ use glam::Vec3;
 
 use crate::look::DisplayMode;
 use crate::state::{Action, State};
+use crate::timeline::Timeline;
 
 /// The lines of the help.
-const LINES: [(&str, &str); 20] = [
+const LINES: [(&str, &str); 21] = [
     ("drag", "orbit the camera (with the tool Orbit)"),
     ("right or middle drag", "pan"),
     ("wheel, pinch", "zoom"),
@@ -16,6 +17,7 @@ const LINES: [(&str, &str); 20] = [
     ("Shift + drag", "drag water and dynamic bodies"),
     ("Space", "play, pause"),
     (".", "advance one frame"),
+    ("arrows, Home, End", "frames of a run that is played"),
     ("R", "restart with the changes"),
     ("1, 2, ...", "display mode"),
     ("B", "drop a ball"),
@@ -48,23 +50,28 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     };
     let pressed = |key| struck(key, false);
     let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
-    if pressed(Key::Space) {
+    if let Some(timeline) = &mut state.timeline {
+        playback_keys(timeline, pressed);
+    } else if pressed(Key::Space) {
         actions.push(Action::Play(!state.playing));
     }
+    let is_simulated = state.timeline.is_none();
     for (key, action) in [
         (Key::Period, Action::Step),
         (Key::R, Action::Restart),
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
-        (Key::T, Action::Screenshot),
         (Key::M, Action::SaveMesh),
         (Key::K, Action::SaveCheckpoint),
     ] {
-        if pressed(key) {
+        if is_simulated && pressed(key) {
             actions.push(action);
         }
     }
-    if struck(Key::S, true) {
+    if pressed(Key::T) {
+        actions.push(Action::Screenshot);
+    }
+    if is_simulated && struck(Key::S, true) {
         actions.push(Action::SaveScene);
     }
     if pressed(Key::H) || pressed(Key::F1) {
@@ -95,6 +102,26 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         state.orbit.fly(direction, seconds);
         ctx.request_repaint();
+    }
+}
+
+/// The keys of a run that is played.
+fn playback_keys(timeline: &mut Timeline, pressed: impl Fn(Key) -> bool) {
+    let (first, last) = timeline.range();
+    if pressed(Key::Space) {
+        timeline.toggle();
+    }
+    if pressed(Key::ArrowRight) || pressed(Key::Period) {
+        timeline.step(1);
+    }
+    if pressed(Key::ArrowLeft) {
+        timeline.step(-1);
+    }
+    if pressed(Key::Home) {
+        timeline.seek(first);
+    }
+    if pressed(Key::End) {
+        timeline.seek(last);
     }
 }
 

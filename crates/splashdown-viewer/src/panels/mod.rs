@@ -5,7 +5,9 @@ mod figures;
 mod gallery;
 mod gravity;
 mod help;
+mod icons;
 mod notes;
+mod timeline;
 mod toolbar;
 mod viewport;
 
@@ -25,6 +27,9 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
     help::keys(ui.ctx(), state, &mut actions);
     Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, state, &mut actions));
     Panel::bottom("figures").show(ui, |ui| figures::show(ui, state));
+    if state.timeline.is_some() {
+        Panel::bottom("timeline").show(ui, |ui| timeline::show(ui, state, &mut actions));
+    }
     // On a phone the controls would cover the picture.
     let narrow = ui.max_rect().width() < NARROW;
     if std::mem::replace(&mut state.shown.narrow, narrow) != narrow {

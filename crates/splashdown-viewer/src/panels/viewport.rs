@@ -39,7 +39,12 @@ pub(super) fn show(
     if by(PointerButton::Secondary) || by(PointerButton::Middle) {
         state.orbit.pan(drag, size_of(rect));
     }
-    let tool = if ui.input(|input| input.modifiers.shift) { Tool::Drag } else { state.tool };
+    let tool = match (&state.timeline, ui.input(|input| input.modifiers.shift)) {
+        // The water of a finished run cannot be moved.
+        (Some(_), _) => Tool::Orbit,
+        (None, true) => Tool::Drag,
+        (None, false) => state.tool,
+    };
     let mut touched = None;
     match tool {
         Tool::Orbit if by(PointerButton::Primary) => state.orbit.orbit(drag),
