@@ -17,6 +17,7 @@ pub mod engine;
 mod error;
 mod export;
 pub mod look;
+mod mouse;
 #[cfg(target_arch = "wasm32")]
 mod page;
 pub mod panels;

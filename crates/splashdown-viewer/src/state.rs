@@ -57,16 +57,16 @@ impl Tool {
 pub enum Action {
     /// Open a built-in scene.
     OpenPreset(&'static str),
-    /// Restart `State::scene`.
-    Restart,
+    /// Start `State::scene` again at time 0.
+    Reset,
     /// Continue with the changed `State::scene`.
     Change,
     /// Run or pause.
     Play(bool),
     /// Simulate one frame of the scene.
     Step,
-    /// Restart the scene as its file defines it.
-    Reset,
+    /// Start the scene again as its file defines it.
+    DiscardChanges,
     /// `State::time_scale` has changed.
     TimeScale,
     /// Apply the mouse force.
@@ -197,12 +197,12 @@ pub struct Shown {
     pub gallery: bool,
     /// The help on keys and mouse.
     pub help: bool,
-    /// Time per pass.
+    /// All numbers of the simulation.
+    pub statistics: bool,
+    /// The time per pass, as a part of the statistics.
     pub timings: bool,
-    /// The side panel is hidden.
-    pub bare: bool,
-    /// The window is too narrow for the side panel.
-    pub narrow: bool,
+    /// The settings.
+    pub settings: bool,
 }
 
 /// The state of the window.

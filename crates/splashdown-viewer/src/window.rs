@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{SurfaceErrorAction, WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
 use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
@@ -107,6 +107,16 @@ fn sentence(message: impl ToString) -> String {
     message.to_string().trim_end_matches('.').to_owned()
 }
 
+/// What happens when the window has no picture to draw into, for example while its size changes: it is tried again.
+fn after_surface_error(status: &wgpu::CurrentSurfaceTexture) -> SurfaceErrorAction {
+    match status {
+        wgpu::CurrentSurfaceTexture::Lost => SurfaceErrorAction::RecreateSurface,
+        // A hidden window is drawn when it is shown again.
+        wgpu::CurrentSurfaceTexture::Occluded => SurfaceErrorAction::SkipFrame,
+        _ => SurfaceErrorAction::Reconfigure,
+    }
+}
+
 /// A device with the capabilities of its adapter: buffers as large as the memory allows, and timestamps for passes.
 fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
     let choose = move |adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>| {
@@ -124,13 +134,27 @@ fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
         device_descriptor: Arc::new(Gpu::descriptor),
         ..defaults
     };
-    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+    WgpuConfiguration {
+        wgpu_setup: WgpuSetup::CreateNew(setup),
+        on_surface_status: Arc::new(after_surface_error),
+        ..WgpuConfiguration::default()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use splashdown::error::CheckpointError;
+
+    #[test]
+    fn transient_errors_of_the_surface_are_tried_again() {
+        use wgpu::CurrentSurfaceTexture as Status;
+        for status in [Status::Outdated, Status::Timeout, Status::Validation] {
+            assert!(matches!(after_surface_error(&status), SurfaceErrorAction::Reconfigure), "{status:?}");
+        }
+        assert!(matches!(after_surface_error(&Status::Lost), SurfaceErrorAction::RecreateSurface));
+        assert!(matches!(after_surface_error(&Status::Occluded), SurfaceErrorAction::SkipFrame));
+    }
 
     #[test]
     fn each_failure_has_its_own_error() {

@@ -40,7 +40,8 @@ fn finish(out: &Path) -> Outcome {
     settings.checkpoint_every = Some(5);
     let mut request = RunRequest::new(Scene::parse(SCENE, "small.toml")?, settings);
     request.out = Some(out.to_owned());
-    run(request, &mut (), &|| Stop::No)?;
+    let outcome = run(request, &mut (), &|| Stop::No)?;
+    assert_eq!(outcome.complete_frames, 11);
     Ok(())
 }
 

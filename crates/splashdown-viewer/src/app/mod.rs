@@ -69,6 +69,8 @@ struct Requested {
     wants_surface: bool,
     wants_timing: bool,
     frames_per_second: f32,
+    /// When the last picture was shown, in s of the window's clock.
+    shown_at: f64,
     exporting: bool,
     /// When a backup was last requested, in s of the window's clock.
     rescue_requested: f64,
@@ -154,7 +156,8 @@ impl Viewer {
         self.engine.picture_drawn();
         #[cfg(target_arch = "wasm32")]
         crate::browser::set_figures(self.state.figures.to_json());
-        let passed = ctx.input(|input| input.stable_dt).max(1e-4);
+        let now = ctx.input(|input| input.time);
+        let passed = (now - std::mem::replace(&mut self.requested.shown_at, now)).max(1e-4) as f32;
         self.requested.frames_per_second += 0.1 * (1.0 / passed - self.requested.frames_per_second);
         if self.state.playing {
             ctx.request_repaint();

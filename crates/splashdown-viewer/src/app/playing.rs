@@ -35,7 +35,7 @@ impl Viewer {
         if !timeline.has_particles && self.state.look.mode.needs_particles() {
             self.state.look.mode = DisplayMode::Surface;
         } else if !timeline.has_meshes && self.state.look.mode.needs_surface() {
-            self.state.look.mode = DisplayMode::Fluid;
+            self.state.look.mode = DisplayMode::Liquid;
         }
         self.state.timeline = Some(timeline);
         self.player = Some(Player { playback, opened: None, shown: None });

@@ -14,6 +14,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     if ui.available_width() < ONE_ROW {
         ui.horizontal(|ui| position(ui, timeline, ui.available_width()));
         ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
             buttons(ui, timeline);
             options(ui, timeline, actions);
         });
@@ -21,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
     ui.horizontal(|ui| {
         buttons(ui, timeline);
-        let rest = if timeline.can_continue { 330.0 } else { 190.0 };
+        let rest = if timeline.can_continue { 250.0 } else { 170.0 };
         position(ui, timeline, ui.available_width() - rest);
         options(ui, timeline, actions);
     });
@@ -50,8 +51,9 @@ fn buttons(ui: &mut Ui, timeline: &mut Timeline) {
 /// The slider over the frames, and the number of the current one, in this width.
 fn position(ui: &mut Ui, timeline: &mut Timeline, width: f32) {
     let (first, last) = timeline.range();
-    let text = format!("frame {:>5} of {last}", timeline.current());
-    let label = 9.0 * text.len() as f32;
+    let digits = last.to_string().len();
+    let text = format!("frame {:>digits$} of {last}", timeline.current());
+    let label = 8.0 * text.len() as f32;
     ui.spacing_mut().slider_width = (width - label).max(60.0);
     let mut frame = timeline.current();
     // A run of one frame has no range.

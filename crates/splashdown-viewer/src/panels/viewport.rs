@@ -1,8 +1,9 @@
 //! The picture in the middle, and the mouse tools.
 
-use egui::{PointerButton, Rect, Response, Sense, TextureId, Ui};
+use egui::{Color32, PointerButton, Rect, Response, Sense, Stroke, TextureId, Ui};
 use glam::{Quat, Vec2, Vec3};
 
+use crate::mouse;
 use crate::state::{Action, Shaking, State, Tool};
 
 /// Degrees of tilt per point.
@@ -30,7 +31,7 @@ pub(super) fn show(
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     if let Some(picture) = picture {
         let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-        ui.painter().image(picture, rect, whole, egui::Color32::WHITE);
+        ui.painter().image(picture, rect, whole, Color32::WHITE);
     }
     zoom(ui, &response, state);
     let drag = response.drag_delta();
@@ -58,6 +59,9 @@ pub(super) fn show(
         }
         Tool::Shake => {}
         Tool::Orbit => {}
+    }
+    if tool == Tool::Drag && state.grip.is_none() {
+        ring(ui, &response, state);
     }
     if tool != Tool::Drag && state.drag_point.take().is_some() {
         state.grip = None;
@@ -113,6 +117,16 @@ fn drag_fluid(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec
     let velocity = (ray.0 + depth * ray.1 - old.0 - depth * old.1) / seconds;
     actions.push(Action::Drag { ray, velocity });
     None
+}
+
+/// Shows the reach of the mouse force, at the distance of the camera's target.
+fn ring(ui: &Ui, response: &Response, state: &State) {
+    let Some(at) = response.hover_pos().or(response.interact_pointer_pos()) else { return };
+    let radius = mouse::radius(&state.scene) / state.orbit.metres_per_point(size_of(response.rect));
+    let painter = ui.painter_at(response.rect);
+    // Two colours, so that it is visible on water and on the sky.
+    painter.circle_stroke(at, radius, Stroke::new(3.0, Color32::from_black_alpha(110)));
+    painter.circle_stroke(at, radius, Stroke::new(1.5, Color32::WHITE));
 }
 
 /// Rotates gravity, which is equivalent to tilting the tank.

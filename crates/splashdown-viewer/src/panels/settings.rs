@@ -1,32 +1,42 @@
-//! The controls: fluid, gravity, interaction, solver, display, export.
+//! The settings of the simulation and of the view.
 
-use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, SliderClamping, Ui};
+use egui::{CollapsingHeader, ComboBox, Context, Rect, ScrollArea, Slider, SliderClamping, Ui, vec2};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
 use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
-use super::gravity;
+use super::{dialog, gravity};
 use crate::look::{DisplayMode, Look};
 use crate::state::{Action, State};
 
+/// Width of the panel, in points.
+const WIDTH: f32 = 290.0;
 /// The number of particles cannot be changed in scenes that start with fewer particles than this.
 const MIN_PARTICLES: u64 = 20;
 
-pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    ScrollArea::vertical().show(ui, |ui| {
-        if state.timeline.is_some() {
-            // A finished run cannot be changed.
-            section(ui, "Display", |ui| display(ui, state, actions));
-            section(ui, "Export", |ui| export(ui, state, actions));
-            return;
-        }
-        section(ui, "Fluid", |ui| fluid(ui, state, actions));
-        section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
-        section(ui, "Interact", |ui| interact(ui, state, actions));
-        section(ui, "Solver", |ui| solver(ui, state, actions));
-        section(ui, "Display", |ui| display(ui, state, actions));
-        section(ui, "Export", |ui| export(ui, state, actions));
-    });
+/// The panel lies over the right side of the picture, `over`.
+pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, over: Rect) {
+    let mut is_open = state.shown.settings;
+    dialog::new("Settings", over)
+        .open(&mut is_open)
+        .default_pos(over.right_top() + vec2(-WIDTH, 0.0))
+        .default_size([WIDTH, over.height()])
+        .resizable([true, false])
+        .show(ctx, |ui| {
+            ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
+                if state.timeline.is_some() {
+                    // A finished run cannot be changed.
+                    view(ui, state, actions);
+                    return;
+                }
+                section(ui, "Fluid", |ui| fluid(ui, state, actions));
+                section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
+                section(ui, "Add", |ui| add(ui, state, actions));
+                section(ui, "Solver", |ui| solver(ui, state, actions));
+                section(ui, "View", |ui| view(ui, state, actions));
+            });
+        });
+    state.shown.settings = is_open;
 }
 
 fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
@@ -52,7 +62,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         state.scene.fluid.particle_spacing *= factor;
         state.scene.surface.cell_size *= factor;
         state.counted = splashdown::check::count(&state.scene);
-        actions.push(Action::Restart);
+        actions.push(Action::Reset);
     }
     ui.weak(format!("{:.2} mm apart", 1000.0 * state.scene.fluid.particle_spacing));
     let material = &mut state.scene.fluid.material;
@@ -89,7 +99,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
 }
 
-fn interact(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn add(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         if ui.button("Drop a ball").on_hover_text("A ball with half the density of water (B)").clicked() {
             actions.push(Action::DropBall);
@@ -156,7 +166,7 @@ fn name(method: Method) -> &'static str {
     }
 }
 
-fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn view(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let is_simulated = state.timeline.is_none();
     if is_simulated {
         foam(ui, state, actions);
@@ -166,6 +176,8 @@ fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         colours(ui, look);
     } else if look.mode.needs_surface() && is_simulated {
         surface(ui, state, actions);
+    } else if !is_simulated {
+        ui.label("A run that is played has settings in the views Particles and Slice only.");
     }
 }
 
@@ -224,43 +236,5 @@ fn surface(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
     if size.changed() || iterations.changed() || blob.changed() {
         actions.push(Action::Change);
-    }
-}
-
-fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
-    ui.horizontal_wrapped(|ui| {
-        for (text, hint, action) in [
-            ("Picture", "Export the picture as PNG (T)", Action::Screenshot),
-            ("Scene", "Export the scene with its changes (Ctrl + S)", Action::SaveScene),
-            (
-                "Checkpoint",
-                "Export a checkpoint to resume from, here or on the command line (K). Drop the file onto the window to resume",
-                Action::SaveCheckpoint,
-            ),
-            ("Mesh", "Export the surface as a closed mesh in PLY (M)", Action::SaveMesh),
-        ] {
-            let is_possible = state.timeline.is_none() || action == Action::Screenshot;
-            if is_possible && ui.button(text).on_hover_text(hint).clicked() {
-                actions.push(action);
-            }
-        }
-        // Only a web page has an address that a link can open.
-        if cfg!(target_arch = "wasm32")
-            && ui.button("Link").on_hover_text("A link that opens the scene with its changes").clicked()
-        {
-            actions.push(Action::Share);
-        }
-    });
-    if cfg!(target_arch = "wasm32") || state.timeline.is_some() {
-        return;
-    }
-    let text = match state.recorded {
-        Some(frames) => format!("Stop recording ({frames} pictures)"),
-        None => "Film".to_owned(),
-    };
-    let hint = "Record a picture of every frame of the scene, and a film if ffmpeg is installed. The simulation advances frame \
-                by frame";
-    if ui.button(text).on_hover_text(hint).clicked() {
-        actions.push(Action::Record);
     }
 }
