@@ -16,6 +16,7 @@ mod edit;
 pub mod engine;
 mod error;
 mod export;
+pub mod items;
 pub mod look;
 mod mouse;
 #[cfg(target_arch = "wasm32")]

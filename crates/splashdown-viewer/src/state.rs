@@ -10,6 +10,7 @@ use splashdown_gpu::Timings;
 use crate::camera::Orbit;
 use crate::edit;
 use crate::engine::Grip;
+use crate::items::{Axis3, BodyBounds, History, Item};
 use crate::look::Look;
 use crate::timeline::Timeline;
 
@@ -25,11 +26,13 @@ pub enum Tool {
     Tilt,
     /// Shakes the domain.
     Shake,
+    /// Selects, moves, adds and removes things of the scene at time 0.
+    Edit,
 }
 
 impl Tool {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Orbit, Self::Drag, Self::Tilt, Self::Shake];
+    pub const ALL: [Self; 5] = [Self::Orbit, Self::Drag, Self::Tilt, Self::Shake, Self::Edit];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -38,6 +41,7 @@ impl Tool {
             Self::Drag => "Drag",
             Self::Tilt => "Tilt",
             Self::Shake => "Shake",
+            Self::Edit => "Edit",
         }
     }
 
@@ -48,6 +52,7 @@ impl Tool {
             Self::Drag => "Drag water and dynamic bodies (also with Shift held)",
             Self::Tilt => "Drag to tilt the tank; double-click to set it upright",
             Self::Shake => "Drag to shake the tank",
+            Self::Edit => "Select, move, add and remove blocks, bodies and emitters at time 0",
         }
     }
 }
@@ -119,7 +124,22 @@ pub struct Shaking {
     pub gravity: Vec3,
 }
 
-/// The numbers in the status bar.
+/// A thing of the scene that is being moved along an axis.
+#[derive(Clone, Debug)]
+pub struct Moving {
+    /// The thing.
+    pub item: Item,
+    /// The axis of its handle.
+    pub axis: Axis3,
+    /// Its middle before, in m.
+    pub middle: Vec3,
+    /// Where the handle was grabbed, along the axis from the middle, in m.
+    pub from: f32,
+    /// The scene before.
+    pub before: Scene,
+}
+
+/// The numbers in the status line.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     /// Pictures per second.
@@ -223,7 +243,7 @@ pub struct State {
     pub shown: Shown,
     /// Notifications.
     pub notes: Vec<Note>,
-    /// The status bar.
+    /// The status line.
     pub figures: Figures,
     /// The body being prepared and the completed fraction, in [0, 1].
     pub preparing: Option<(String, f32)>,
@@ -247,6 +267,14 @@ pub struct State {
     pub files: Vec<PathBuf>,
     /// The position in the run that is played; `None` while a scene is simulated.
     pub timeline: Option<Timeline>,
+    /// The selected thing of the scene.
+    pub selected: Option<Item>,
+    /// The thing that is being moved.
+    pub moving: Option<Moving>,
+    /// Changes of things that can be undone.
+    pub history: History,
+    /// The bounding boxes of the bodies at time 0.
+    pub body_bounds: BodyBounds,
 }
 
 impl State {
@@ -273,6 +301,10 @@ impl State {
             pouring: edit::has_tap(&scene),
             files: Vec::new(),
             timeline: None,
+            selected: None,
+            moving: None,
+            history: History::default(),
+            body_bounds: BodyBounds::new(),
             scene,
         }
     }

@@ -6,6 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use splashdown::scene::{ColourBy, Method, Scene, presets};
+use splashdown_viewer::items::Item;
 use splashdown_viewer::look::DisplayMode;
 use splashdown_viewer::panels;
 use splashdown_viewer::state::{Action, State, Tool};
@@ -92,13 +93,14 @@ const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [390.0, 844.0]];
 #[test]
 fn dialogs_do_not_cover_the_toolbar_or_the_status_line() {
     for size in SIZES {
-        for title in ["Scenes", "Settings", "Help", "Statistics"] {
+        for title in ["Scenes", "Settings", "Help", "Statistics", "Edit"] {
             let mut window = window(size);
             let shown = &mut window.state_mut().0.shown;
             match title {
                 "Scenes" => shown.gallery = true,
                 "Settings" => shown.settings = true,
                 "Help" => shown.help = true,
+                "Edit" => window.state_mut().0.tool = Tool::Edit,
                 _ => (shown.statistics, shown.timings) = (true, true),
             }
             window.run_steps(6);
@@ -391,6 +393,101 @@ fn the_button_of_the_tap_follows_the_scene() {
         state.open(Scene::parse(&emitter(emitter_name), name).unwrap());
         assert_eq!(state.pouring, is_open, "{emitter_name}");
     }
+}
+
+/// The place of a point of the scene in the window.
+fn seen(window: &Harness<'_, Both>, point: Vec3) -> egui::Pos2 {
+    let (state, _, picture) = window.state();
+    let camera = state.orbit.camera(picture.width() / picture.height());
+    let size = [picture.width() as u32, picture.height() as u32];
+    let [x, y] = camera.project(point.into(), size).unwrap().unwrap();
+    picture.min + vec2(x, y)
+}
+
+/// The middle of the first block, the offset of a place on its handle of the x axis in m, and the place in the window.
+fn handle(window: &Harness<'_, Both>) -> (Vec3, f32, egui::Pos2) {
+    let (state, _, picture) = window.state();
+    let (low, high) = state.scene.fluid.blocks[0].shape.bounds();
+    let middle = 0.5 * (low + high);
+    let offset = 50.0 * state.orbit.metres_per_point(glam::Vec2::new(picture.width(), picture.height()));
+    (middle, offset, seen(window, middle + Vec3::X * offset))
+}
+
+/// Clicks a place in the picture.
+fn click_at(window: &mut Harness<'_, Both>, at: egui::Pos2) {
+    window.drag_at(at);
+    window.run_steps(1);
+    window.drop_at(at);
+    window.run_steps(2);
+}
+
+#[test]
+fn things_are_selected_moved_removed_and_restored() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert!(!window.state().0.playing);
+    let shape = |window: &Harness<'_, Both>| window.state().0.scene.fluid.blocks[0].shape;
+    let (before, orbit) = (shape(&window), window.state().0.orbit);
+    let (middle, offset, from) = handle(&window);
+    click_at(&mut window, egui::pos2(1200.0, 100.0));
+    assert_eq!(window.state().0.selected, None);
+    let at = seen(&window, middle);
+    click_at(&mut window, at);
+    assert_eq!(window.state().0.selected, Some(Item::Block(0)));
+    let to = seen(&window, middle + Vec3::X * (offset + 0.1));
+    window.drag_at(from);
+    window.run_steps(1);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        window.hover_at(from + part * (to - from));
+        window.run_steps(1);
+    }
+    let moved = shape(&window).bounds().0 - before.bounds().0;
+    assert!((moved - Vec3::X * 0.1).length() < 0.01, "{moved}");
+    assert_eq!(window.state().1, [], "the simulation starts again during the move");
+    window.drop_at(to);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(window.state().0.orbit, orbit, "moving a block moved the camera");
+    let after = shape(&window);
+    click(&mut window, &["Undo"]);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], after));
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    // Added, removed by the key, and restored.
+    click(&mut window, &["Add block"]);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(window.state().0.selected, Some(Item::Block(1)));
+    window.key_press(Key::Delete);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!((window.state().0.scene.fluid.blocks.len(), window.state().0.selected), (1, None));
+    click(&mut window, &["Undo"]);
+    assert_eq!(window.state().0.scene.fluid.blocks.len(), 2);
+    let state = &window.state().0;
+    let text = splashdown_viewer::save::scene(&state.scene, &state.orbit).unwrap();
+    assert_eq!(Scene::parse(&text, "edited.toml").unwrap().fluid.blocks, state.scene.fluid.blocks);
+}
+
+#[test]
+fn a_block_cannot_be_moved_out_of_the_domain() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(1);
+    let (middle, offset, from) = handle(&window);
+    let domain = window.state().0.scene.domain.clone();
+    let to = seen(&window, middle + Vec3::X * (offset + 2.0 * domain.size().x));
+    window.drag_at(from);
+    window.run_steps(1);
+    for part in [0.1, 0.5, 1.0] {
+        window.hover_at(from + part * (to - from));
+        window.run_steps(1);
+    }
+    window.drop_at(to);
+    window.run_steps(2);
+    let right = window.state().0.scene.fluid.blocks[0].shape.bounds().1.x;
+    assert!((right - domain.max.x).abs() < 1e-4, "{right}");
 }
 
 /// Drags the slider of the number of particles.

@@ -9,6 +9,7 @@ use splashdown_gpu::GpuError;
 
 use super::Viewer;
 use crate::engine::{Command, Message, Purpose};
+use crate::state::Tool;
 use crate::{edit, export, pick};
 
 impl Viewer {
@@ -90,6 +91,9 @@ impl Viewer {
         figures.mean_height = snapshot.mean_height;
         figures.memory = snapshot.opened.memory;
         figures.device.clone_from(&snapshot.opened.device);
+        if self.state.tool == Tool::Edit && snapshot.stats.time == 0.0 {
+            self.state.body_bounds = pick::bounds(&snapshot.opened, &snapshot.bodies);
+        }
     }
 
     /// Replaces the scene with changes by the scene being simulated.

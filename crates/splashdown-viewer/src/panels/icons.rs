@@ -20,16 +20,21 @@ pub const SETTINGS: &str = "\u{e434}";
 pub const STEP: &str = "\u{e064}";
 pub const VIEW: &str = "\u{e220}";
 
+pub const REDO: &str = "\u{e08c}";
+pub const REMOVE: &str = "\u{e4a6}";
+pub const UNDO: &str = "\u{e08a}";
+
 pub const DRAG: &str = "\u{e57c}";
+pub const EDIT: &str = "\u{e3b4}";
 pub const ORBIT: &str = "\u{e7a4}";
 pub const SHAKE: &str = "\u{e0a0}";
 pub const TILT: &str = "\u{e7bc}";
 
 /// All icons.
 #[cfg(test)]
-const ALL: [&str; 17] = [
+const ALL: [&str; 21] = [
     FIRST, LAST, LOOP, MORE, NEXT, PAUSE, PLAY, PREVIOUS, RESET, SCENE, SETTINGS, STEP, VIEW, DRAG, ORBIT,
-    SHAKE, TILT,
+    SHAKE, TILT, EDIT, REDO, REMOVE, UNDO,
 ];
 
 /// Width of a button with an icon, in points.

@@ -1,6 +1,7 @@
 //! The panels. Each shows and changes a part of the state, and requests actions.
 
 mod dialog;
+mod edit;
 mod figures;
 mod gallery;
 mod gravity;
@@ -41,6 +42,7 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
     let over = viewport.rect;
     notes::show(ui.ctx(), state, over);
     settings::show(ui.ctx(), state, &mut actions, over);
+    edit::show(ui.ctx(), state, &mut actions, over);
     gallery::show(ui.ctx(), state, &mut actions, over);
     help::show(ui.ctx(), state, over);
     figures::show_statistics(ui.ctx(), state, over);

@@ -3,7 +3,7 @@
 use egui::containers::menu::MenuButton;
 use egui::{Button, DragValue, Popup, Ui, vec2};
 
-use super::{icons, more};
+use super::{edit, icons, more};
 use crate::look::DisplayMode;
 use crate::state::{Action, State, Tool};
 
@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if state.timeline.is_none() {
             clock(ui, state, actions, has_words);
             ui.separator();
-            tools(ui, state, has_words);
+            tools(ui, state, actions, has_words);
         }
         views(ui, state, has_words);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -81,7 +81,7 @@ pub(super) fn speed(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
 }
 
-fn tools(ui: &mut Ui, state: &mut State, has_words: bool) {
+fn tools(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: bool) {
     let tool = state.tool;
     let text = if has_words { format!("{} {}", icon(tool), tool.name()) } else { icon(tool).to_owned() };
     let (response, _) =
@@ -92,7 +92,10 @@ fn tools(ui: &mut Ui, state: &mut State, has_words: bool) {
                 let response = ui.add(button).on_hover_text(tool.hint());
                 icons::named(&response, tool.name(), state.tool == tool);
                 if response.clicked() {
-                    state.tool = tool;
+                    let before = std::mem::replace(&mut state.tool, tool);
+                    if tool == Tool::Edit && before != tool {
+                        edit::start_again(state, actions);
+                    }
                 }
             }
         });
@@ -137,6 +140,7 @@ fn icon(tool: Tool) -> &'static str {
         Tool::Drag => icons::DRAG,
         Tool::Tilt => icons::TILT,
         Tool::Shake => icons::SHAKE,
+        Tool::Edit => icons::EDIT,
     }
 }
 

@@ -3,6 +3,7 @@
 use egui::{Color32, PointerButton, Rect, Response, Sense, Stroke, TextureId, Ui};
 use glam::{Quat, Vec2, Vec3};
 
+use super::edit;
 use crate::mouse;
 use crate::state::{Action, Shaking, State, Tool};
 
@@ -58,6 +59,7 @@ pub(super) fn show(
             state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).target += motion;
         }
         Tool::Shake => {}
+        Tool::Edit => edit::interact(ui, &response, state, actions),
         Tool::Orbit => {}
     }
     if tool == Tool::Drag && state.grip.is_none() {
