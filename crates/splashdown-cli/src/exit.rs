@@ -126,6 +126,7 @@ impl From<RunError> for Failure {
             RunError::AlreadyFinished { .. } => (Exit::Usage, " (--frames N)"),
             RunError::Output(_) => (Exit::Usage, " (--out)"),
             RunError::Input(_) => (Exit::Scene, ""),
+            RunError::UnknownScene(_) => (Exit::Usage, " (--scene FILE)"),
             RunError::NoCheckpoint { .. } => {
                 (Exit::Files, "; `--checkpoint-every N` writes them, and so does Ctrl-C")
             }

@@ -50,8 +50,18 @@ fn shortest(value: f32) -> f64 {
 /// The row of a table at a time in s, or `None` if it has no row within `tolerance` (s) of it. Forces are not read.
 ///
 /// # Errors
-/// [`RunError::Io`] if the file cannot be read; [`RunError::Input`] if it is not the table of a body.
+/// As [`read_all`].
 pub(crate) fn read(path: &Path, time: f64, tolerance: f64) -> Result<Option<BodyState>, RunError> {
+    let rows = read_all(path)?.into_iter().filter(|(at, _)| (at - time).abs() <= tolerance);
+    let nearest = rows.min_by(|(a, _), (b, _)| (a - time).abs().total_cmp(&(b - time).abs()));
+    Ok(nearest.map(|(_, state)| state))
+}
+
+/// All complete rows of a table: times in s and states. Forces are not read.
+///
+/// # Errors
+/// [`RunError::Io`] if the file cannot be read; [`RunError::Input`] if it is not the table of a body.
+pub(crate) fn read_all(path: &Path) -> Result<Vec<(f64, BodyState)>, RunError> {
     let text = fs::read_to_string(path)
         .map_err(|error| IoError::Read { path: path.to_owned(), detail: error.to_string() })?;
     let mut lines = text.lines();
@@ -60,16 +70,18 @@ pub(crate) fn read(path: &Path, time: f64, tolerance: f64) -> Result<Option<Body
     }
     let rows = lines.filter_map(|line| {
         let values = line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>().ok()?;
-        (values.len() == COLUMNS.len() && (values[0] - time).abs() <= tolerance).then_some(values)
+        (values.len() == COLUMNS.len()).then(|| (values[0], state(&values)))
     });
-    let nearest = rows.min_by(|a, b| (a[0] - time).abs().total_cmp(&(b[0] - time).abs()));
-    Ok(nearest.map(|row| {
-        let number = |index: usize| row[index] as f32;
-        let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
-        let mut state = BodyState::at(vector(1), Quat::from_xyzw(number(4), number(5), number(6), number(7)));
-        (state.velocity, state.angular_velocity) = (vector(8), vector(11));
-        state
-    }))
+    Ok(rows.collect())
+}
+
+/// The state in a row.
+fn state(row: &[f64]) -> BodyState {
+    let number = |index: usize| row[index] as f32;
+    let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
+    let mut state = BodyState::at(vector(1), Quat::from_xyzw(number(4), number(5), number(6), number(7)));
+    (state.velocity, state.angular_velocity) = (vector(8), vector(11));
+    state
 }
 
 #[cfg(test)]

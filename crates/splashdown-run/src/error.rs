@@ -96,6 +96,10 @@ pub enum RunError {
         reason: String,
     },
 
+    /// The scene of a run is not known.
+    #[error("{0}; give the scene of the run")]
+    UnknownScene(String),
+
     /// No file, or files of several series, match the input given.
     #[error("{0}")]
     Input(String),

@@ -49,6 +49,8 @@ mod lock;
 mod outcome;
 #[cfg(not(target_arch = "wasm32"))]
 mod pictures;
+#[cfg(not(target_arch = "wasm32"))]
+mod playback;
 mod recorder;
 mod report;
 mod reporter;
@@ -66,6 +68,8 @@ pub use frames::{CompleteFrame, FrameSummary};
 pub use outcome::{RunEnd, RunOutcome};
 #[cfg(not(target_arch = "wasm32"))]
 pub use pictures::{Beside, FinishedRun, Orbit, Painter};
+#[cfg(not(target_arch = "wasm32"))]
+pub use playback::{PlayedFrame, RunFrames, reported_scene, scene_of_run};
 pub use recorder::Recorder;
 pub use report::{PassNumbers, pass_numbers};
 pub use reporter::{Reporter, Stop};

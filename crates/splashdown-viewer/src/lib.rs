@@ -16,16 +16,21 @@ mod edit;
 pub mod engine;
 mod error;
 mod export;
+pub mod items;
 pub mod look;
+mod mouse;
 #[cfg(target_arch = "wasm32")]
 mod page;
 pub mod panels;
 mod pick;
 pub mod picture;
 mod pixels;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod playback;
 pub mod save;
 pub mod state;
 mod thumbnails;
+pub mod timeline;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
@@ -36,4 +41,4 @@ pub use error::ViewerError;
 #[cfg(target_arch = "wasm32")]
 pub use page::{start_on_page, try_passes};
 #[cfg(not(target_arch = "wasm32"))]
-pub use window::{ViewOptions, view};
+pub use window::{Start, ViewOptions, view};

@@ -9,7 +9,7 @@ pub enum DisplayMode {
     /// Particles as spheres, coloured by a quantity.
     Particles,
     /// A liquid reconstructed from the particles in screen space.
-    Fluid,
+    Liquid,
     /// The surface by marching cubes, as water.
     Surface,
     /// The triangles of that surface.
@@ -20,13 +20,13 @@ pub enum DisplayMode {
 
 impl DisplayMode {
     /// All modes, in the order of their keys.
-    pub const ALL: [Self; 5] = [Self::Particles, Self::Fluid, Self::Surface, Self::Mesh, Self::Slice];
+    pub const ALL: [Self; 5] = [Self::Particles, Self::Liquid, Self::Surface, Self::Mesh, Self::Slice];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Particles => "Particles",
-            Self::Fluid => "Fluid",
+            Self::Liquid => "Liquid",
             Self::Surface => "Surface",
             Self::Mesh => "Mesh",
             Self::Slice => "Slice",
@@ -37,7 +37,7 @@ impl DisplayMode {
     pub fn hint(self) -> &'static str {
         match self {
             Self::Particles => "Particles as spheres, coloured by a quantity",
-            Self::Fluid => "A liquid reconstructed from the particles in screen space: fast, without a mesh",
+            Self::Liquid => "A liquid reconstructed from the particles in screen space: fast, without a mesh",
             Self::Surface => "The surface by marching cubes, which is the mesh that is exported",
             Self::Mesh => "The triangles of the surface",
             Self::Slice => "A plane through the fluid, coloured by density, speed or pressure",
@@ -47,6 +47,11 @@ impl DisplayMode {
     /// Whether it needs the surface.
     pub fn needs_surface(self) -> bool {
         matches!(self, Self::Surface | Self::Mesh)
+    }
+
+    /// Whether it needs the particles.
+    pub fn needs_particles(self) -> bool {
+        !self.needs_surface()
     }
 
     /// Whether colours represent a quantity.
@@ -73,7 +78,7 @@ pub struct Look {
 impl Default for Look {
     fn default() -> Self {
         Self {
-            mode: DisplayMode::Fluid,
+            mode: DisplayMode::Liquid,
             colour_by: ColourBy::Speed,
             map: ColourMap::Water,
             slice_axis: Axis::Z,

@@ -6,6 +6,22 @@ use splashdown::scene::Motion;
 use splashdown::solid::ray_distance;
 
 use crate::engine::{Grip, Opened};
+use crate::items::BodyBounds;
+
+/// The bounding boxes of the bodies in these states, relative to the positions of their meshes in the scene.
+pub fn bounds(opened: &Opened, states: &[BodyState]) -> BodyBounds {
+    let bodies = opened.bodies.iter().zip(states).zip(&opened.scene.bodies);
+    bodies
+        .map(|((body, state), source)| {
+            let place = |&vertex: &[f32; 3]| {
+                state.position + state.orientation * Vec3::from(vertex) - source.mesh.position
+            };
+            let points = body.mesh.vertices.iter().map(place);
+            let low = points.clone().fold(Vec3::INFINITY, Vec3::min);
+            (body.name.clone(), (low, points.fold(Vec3::NEG_INFINITY, Vec3::max)))
+        })
+        .collect()
+}
 
 /// The dynamic body that a ray (a point in m and a unit vector) hits before any other body, held at the point of the hit,
 /// and the distance of that point from the start of the ray in m.

@@ -108,7 +108,7 @@ impl Picture {
                 frame.slice = Some(DrawnSlice::new(drawn.particles(), axis, position, radius, colouring));
             }
             // The screen-space liquid is drawn until the first surface is extracted.
-            (DisplayMode::Fluid | DisplayMode::Surface | DisplayMode::Mesh, _) => {
+            (DisplayMode::Liquid | DisplayMode::Surface | DisplayMode::Mesh, _) => {
                 let (buffers, liquid) = (drawn.particles(), appearance::liquid(scene));
                 frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
             }

@@ -10,7 +10,9 @@ use splashdown_gpu::Timings;
 use crate::camera::Orbit;
 use crate::edit;
 use crate::engine::Grip;
+use crate::items::{Axis3, BodyBounds, History, Item};
 use crate::look::Look;
+use crate::timeline::Timeline;
 
 /// The effect of dragging the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,11 +26,13 @@ pub enum Tool {
     Tilt,
     /// Shakes the domain.
     Shake,
+    /// Selects, moves, adds and removes things of the scene at time 0.
+    Edit,
 }
 
 impl Tool {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Orbit, Self::Drag, Self::Tilt, Self::Shake];
+    pub const ALL: [Self; 5] = [Self::Orbit, Self::Drag, Self::Tilt, Self::Shake, Self::Edit];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -37,6 +41,7 @@ impl Tool {
             Self::Drag => "Drag",
             Self::Tilt => "Tilt",
             Self::Shake => "Shake",
+            Self::Edit => "Edit",
         }
     }
 
@@ -47,6 +52,7 @@ impl Tool {
             Self::Drag => "Drag water and dynamic bodies (also with Shift held)",
             Self::Tilt => "Drag to tilt the tank; double-click to set it upright",
             Self::Shake => "Drag to shake the tank",
+            Self::Edit => "Select, move, add and remove blocks, bodies and emitters at time 0",
         }
     }
 }
@@ -56,16 +62,16 @@ impl Tool {
 pub enum Action {
     /// Open a built-in scene.
     OpenPreset(&'static str),
-    /// Restart `State::scene`.
-    Restart,
+    /// Start `State::scene` again at time 0.
+    Reset,
     /// Continue with the changed `State::scene`.
     Change,
     /// Run or pause.
     Play(bool),
     /// Simulate one frame of the scene.
     Step,
-    /// Restart the scene as its file defines it.
-    Reset,
+    /// Start the scene again as its file defines it.
+    DiscardChanges,
     /// `State::time_scale` has changed.
     TimeScale,
     /// Apply the mouse force.
@@ -101,6 +107,8 @@ pub enum Action {
     Record,
     /// Switch between dark and light.
     SwapTheme,
+    /// Continue the simulation of the run that is played from its newest checkpoint.
+    Continue,
 }
 
 /// A tank that follows the mouse by a spring and returns when it is released.
@@ -116,7 +124,22 @@ pub struct Shaking {
     pub gravity: Vec3,
 }
 
-/// The numbers in the status bar.
+/// A thing of the scene that is being moved along an axis.
+#[derive(Clone, Debug)]
+pub struct Moving {
+    /// The thing.
+    pub item: Item,
+    /// The axis of its handle.
+    pub axis: Axis3,
+    /// Its middle before, in m.
+    pub middle: Vec3,
+    /// Where the handle was grabbed, along the axis from the middle, in m.
+    pub from: f32,
+    /// The scene before.
+    pub before: Scene,
+}
+
+/// The numbers in the status line.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     /// Pictures per second.
@@ -194,12 +217,12 @@ pub struct Shown {
     pub gallery: bool,
     /// The help on keys and mouse.
     pub help: bool,
-    /// Time per pass.
+    /// All numbers of the simulation.
+    pub statistics: bool,
+    /// The time per pass, as a part of the statistics.
     pub timings: bool,
-    /// The side panel is hidden.
-    pub bare: bool,
-    /// The window is too narrow for the side panel.
-    pub narrow: bool,
+    /// The settings.
+    pub settings: bool,
 }
 
 /// The state of the window.
@@ -220,7 +243,7 @@ pub struct State {
     pub shown: Shown,
     /// Notifications.
     pub notes: Vec<Note>,
-    /// The status bar.
+    /// The status line.
     pub figures: Figures,
     /// The body being prepared and the completed fraction, in [0, 1].
     pub preparing: Option<(String, f32)>,
@@ -242,6 +265,16 @@ pub struct State {
     pub pouring: bool,
     /// Checkpoints listed in the gallery.
     pub files: Vec<PathBuf>,
+    /// The position in the run that is played; `None` while a scene is simulated.
+    pub timeline: Option<Timeline>,
+    /// The selected thing of the scene.
+    pub selected: Option<Item>,
+    /// The thing that is being moved.
+    pub moving: Option<Moving>,
+    /// Changes of things that can be undone.
+    pub history: History,
+    /// The bounding boxes of the bodies at time 0.
+    pub body_bounds: BodyBounds,
 }
 
 impl State {
@@ -267,6 +300,11 @@ impl State {
             recorded: None,
             pouring: edit::has_tap(&scene),
             files: Vec::new(),
+            timeline: None,
+            selected: None,
+            moving: None,
+            history: History::default(),
+            body_bounds: BodyBounds::new(),
             scene,
         }
     }

@@ -2,20 +2,29 @@
 
 use std::sync::Arc;
 
-use egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{SurfaceErrorAction, WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
 use splashdown::Checkpoint;
 use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
+use splashdown_run::RunFrames;
 
 use crate::engine::Simulate;
 use crate::{Viewer, ViewerError};
 
+/// What the window shows first.
+pub enum Start {
+    /// The simulation of a scene from its beginning.
+    Scene(Scene),
+    /// A simulation that continues from a checkpoint.
+    Checkpoint(Checkpoint),
+    /// The frames of a finished or interrupted run.
+    Run(RunFrames),
+}
+
 /// The options of the window.
 pub struct ViewOptions {
-    /// The initial scene.
-    pub scene: Scene,
-    /// The checkpoint to resume from; `scene` is then its scene.
-    pub checkpoint: Option<Checkpoint>,
+    /// What it shows first.
+    pub start: Start,
     /// The device that draws.
     pub device: DeviceRequest,
     /// Which device simulates. `None`: the one that draws, unless it is a software driver.
@@ -29,14 +38,19 @@ pub struct ViewOptions {
 /// # Errors
 /// [`ViewerError`]: the checkpoint cannot be used, or there is no display, no device or no driver.
 pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
-    if let Some(checkpoint) = &options.checkpoint {
-        checkpoint.check()?;
-    }
+    let scene = match &options.start {
+        Start::Scene(scene) => scene.clone(),
+        Start::Checkpoint(checkpoint) => {
+            checkpoint.check()?;
+            checkpoint.scene()?
+        }
+        Start::Run(run) => run.scene().clone(),
+    };
     let unset = |name: &str| std::env::var_os(name).is_none_or(|value| value.is_empty());
     if cfg!(target_os = "linux") && ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().all(unset) {
         return Err(ViewerError::NoDisplay);
     }
-    let ViewOptions { scene, checkpoint, device, simulate, size } = options;
+    let ViewOptions { start, device, simulate, size } = options;
     let title = format!("Splashdown - {}", scene.name);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -50,11 +64,19 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
     let create = move |context: &eframe::CreationContext<'_>| -> Result<Viewer, ViewerError> {
         let render_state =
             context.wgpu_render_state.as_ref().ok_or_else(|| no_window("the window has no device"))?;
-        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
-        if let Some(checkpoint) = checkpoint {
-            viewer.resume(checkpoint)?;
+        match start {
+            Start::Scene(_) => Viewer::new(&context.egui_ctx, render_state, scene, simulate),
+            Start::Checkpoint(checkpoint) => {
+                let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
+                viewer.resume(checkpoint)?;
+                Ok(viewer)
+            }
+            Start::Run(run) => {
+                let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
+                viewer.play(run, &context.egui_ctx).map_err(no_window)?;
+                Ok(viewer)
+            }
         }
-        Ok(viewer)
     };
     let create: eframe::AppCreator<'_> = Box::new(move |context| Ok(Box::new(create(context)?)));
     eframe::run_native("splashdown", native, create).map_err(viewer_error)
@@ -85,6 +107,16 @@ fn sentence(message: impl ToString) -> String {
     message.to_string().trim_end_matches('.').to_owned()
 }
 
+/// What happens when the window has no picture to draw into, for example while its size changes: it is tried again.
+fn after_surface_error(status: &wgpu::CurrentSurfaceTexture) -> SurfaceErrorAction {
+    match status {
+        wgpu::CurrentSurfaceTexture::Lost => SurfaceErrorAction::RecreateSurface,
+        // A hidden window is drawn when it is shown again.
+        wgpu::CurrentSurfaceTexture::Occluded => SurfaceErrorAction::SkipFrame,
+        _ => SurfaceErrorAction::Reconfigure,
+    }
+}
+
 /// A device with the capabilities of its adapter: buffers as large as the memory allows, and timestamps for passes.
 fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
     let choose = move |adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>| {
@@ -102,13 +134,27 @@ fn wgpu_options(device: DeviceRequest) -> WgpuConfiguration {
         device_descriptor: Arc::new(Gpu::descriptor),
         ..defaults
     };
-    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+    WgpuConfiguration {
+        wgpu_setup: WgpuSetup::CreateNew(setup),
+        on_surface_status: Arc::new(after_surface_error),
+        ..WgpuConfiguration::default()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use splashdown::error::CheckpointError;
+
+    #[test]
+    fn transient_errors_of_the_surface_are_tried_again() {
+        use wgpu::CurrentSurfaceTexture as Status;
+        for status in [Status::Outdated, Status::Timeout, Status::Validation] {
+            assert!(matches!(after_surface_error(&status), SurfaceErrorAction::Reconfigure), "{status:?}");
+        }
+        assert!(matches!(after_surface_error(&Status::Lost), SurfaceErrorAction::RecreateSurface));
+        assert!(matches!(after_surface_error(&Status::Occluded), SurfaceErrorAction::SkipFrame));
+    }
 
     #[test]
     fn each_failure_has_its_own_error() {

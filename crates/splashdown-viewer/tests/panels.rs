@@ -1,25 +1,32 @@
 //! The panels, without a device: clicks, keys and drags request the right actions.
 
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use splashdown::scene::{ColourBy, Method, Scene, presets};
+use splashdown_viewer::items::Item;
 use splashdown_viewer::look::DisplayMode;
 use splashdown_viewer::panels;
 use splashdown_viewer::state::{Action, State, Tool};
+use splashdown_viewer::timeline::Timeline;
 
-type Both = (State, Vec<Action>);
+/// The state, the actions requested, and the place of the picture.
+type Both = (State, Vec<Action>, egui::Rect);
+
+fn show(ui: &mut egui::Ui, (state, all, picture): &mut Both) {
+    let (viewport, actions) = panels::show(ui, state, None);
+    all.extend(actions);
+    *picture = viewport.rect;
+}
 
 fn window(size: [f32; 2]) -> Harness<'static, Both> {
     let (name, text) = presets()[1];
     let state = State::new(Scene::parse(text, name).unwrap());
-    let show = |ui: &mut egui::Ui, (state, all): &mut Both| {
-        let (_, actions) = panels::show(ui, state, None);
-        all.extend(actions);
-    };
-    let mut window =
-        Harness::builder().with_size(vec2(size[0], size[1])).build_ui_state(show, (state, Vec::new()));
+    let mut window = Harness::builder()
+        .with_size(vec2(size[0], size[1]))
+        .build_ui_state(show, (state, Vec::new(), egui::Rect::NOTHING));
     window.run_steps(3);
     window
 }
@@ -33,37 +40,206 @@ fn actions(window: &mut Harness<'_, Both>) -> Vec<Action> {
     std::mem::take(&mut window.state_mut().1)
 }
 
+/// Clicks the button with this name, also in a menu that is named first.
+fn click(window: &mut Harness<'_, Both>, path: &[&str]) {
+    for label in path {
+        window.get_by_role_and_label(Role::Button, label).click();
+        window.run_steps(3);
+    }
+}
+
+/// A window in which all settings are visible without scrolling.
+fn with_settings() -> Harness<'static, Both> {
+    let mut window = window([1280.0, 1600.0]);
+    click(&mut window, &["Settings"]);
+    assert!(window.state().0.shown.settings);
+    window
+}
+
 #[test]
 fn buttons_request_their_actions() {
     let mut window = wide();
     assert_eq!(actions(&mut window), []);
-    for (label, action) in [
-        ("Pause", Action::Play(false)),
-        ("Step", Action::Step),
-        ("Restart", Action::Restart),
-        ("Reset", Action::Reset),
-        ("Drop a ball", Action::DropBall),
-        ("Open the tap", Action::Pour),
-        ("Picture", Action::Screenshot),
-        ("Scene", Action::SaveScene),
-        ("Film", Action::Record),
-        ("Theme", Action::SwapTheme),
+    for (path, action) in [
+        (&["Pause"][..], Action::Play(false)),
+        (&["Step"], Action::Step),
+        (&["Reset"], Action::Reset),
+        (&["Scenes"], Action::ShowFiles),
+        (&["More", "Discard changes"], Action::DiscardChanges),
+        (&["More", "Export picture"], Action::Screenshot),
+        (&["More", "Export scene"], Action::SaveScene),
+        (&["More", "Export mesh"], Action::SaveMesh),
+        (&["More", "Export checkpoint"], Action::SaveCheckpoint),
+        (&["More", "Export film"], Action::Record),
+        (&["More", "Light or dark"], Action::SwapTheme),
+        (&["Settings", "Drop a ball"], Action::DropBall),
+        (&["Open the tap"], Action::Pour),
     ] {
-        window.get_by_label(label).click();
-        assert_eq!(actions(&mut window), [action], "{label}");
+        click(&mut window, path);
+        assert_eq!(actions(&mut window), [action], "{path:?}");
     }
-    window.get_by_label("Drag").click();
-    window.get_by_label("Particles").click();
-    window.run_steps(2);
+    let mut window = with_settings();
+    click(&mut window, &["Tool", "Drag"]);
+    click(&mut window, &["View", "Particles"]);
     assert_eq!((window.state().0.tool, window.state().0.look.mode), (Tool::Drag, DisplayMode::Particles));
     window.get_by_label("density").click();
     window.run_steps(2);
     assert_eq!(window.state().0.look.colour_by, ColourBy::Density);
 }
 
+/// The sizes at which the window must be usable: a usual one, a small screen, and a phone.
+const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [390.0, 844.0]];
+
+#[test]
+fn dialogs_do_not_cover_the_toolbar_or_the_status_line() {
+    for size in SIZES {
+        for title in ["Scenes", "Settings", "Help", "Statistics", "Edit"] {
+            let mut window = window(size);
+            let shown = &mut window.state_mut().0.shown;
+            match title {
+                "Scenes" => shown.gallery = true,
+                "Settings" => shown.settings = true,
+                "Help" => shown.help = true,
+                "Edit" => window.state_mut().0.tool = Tool::Edit,
+                _ => (shown.statistics, shown.timings) = (true, true),
+            }
+            window.run_steps(6);
+            let area = window.ctx.memory(|memory| memory.area_rect(egui::Id::unique(title))).unwrap();
+            let picture = window.state().2;
+            assert!(
+                picture.contains_rect(area),
+                "{title} at {size:?}: {area:?} outside the picture {picture:?}"
+            );
+            assert!(area.area() > 1000.0, "{title} at {size:?}: {area:?}");
+        }
+    }
+}
+
+#[test]
+fn the_toolbar_and_the_status_line_have_one_row_at_every_size() {
+    for size in SIZES {
+        let mut window = window(size);
+        window.state_mut().0.scene.name = "a-scene-with-quite-a-long-name".to_owned();
+        let figures = &mut window.state_mut().0.figures;
+        // The longest texts.
+        (figures.particles, figures.triangles, figures.time) = (123_456_789, Some(123_456_789), 1234.567);
+        (figures.steps_per_second, figures.frames_per_second) = (99_999.0, 999.0);
+        figures.device =
+            "a device with a name that is longer than the line, and then some more words".to_owned();
+        window.run_steps(6);
+        let picture = window.state().2;
+        // The harness has a margin of eight points.
+        let (toolbar, status) = (picture.top() - 8.0, size[1] - 8.0 - picture.bottom());
+        assert!(toolbar < 32.0 && status < 30.0, "{size:?}: {picture:?}");
+        assert_eq!(picture.width(), size[0] - 16.0);
+        // Every button of the toolbar is inside the window, and none covers another.
+        let names = ["Scenes", "Pause", "Step", "Reset", "Tool", "View", "Settings", "More"];
+        let rects = names.map(|name| window.get_by_role_and_label(Role::Button, name).rect());
+        for pair in rects.windows(2) {
+            assert!(pair[0].right() <= pair[1].left(), "{size:?}: {rects:?}");
+        }
+        assert!(rects[7].right() <= size[0], "{size:?}: {rects:?}");
+        // The picture stays where it is when the numbers change.
+        window.state_mut().0.figures = splashdown_viewer::state::Figures::default();
+        window.run_steps(3);
+        assert_eq!(window.state().2, picture);
+    }
+}
+
+/// The same window with a run that is played.
+fn played(size: [f32; 2]) -> Harness<'static, Both> {
+    let mut window = window(size);
+    let mut timeline = Timeline::new((0..=100).collect(), 50.0).unwrap();
+    (timeline.can_continue, timeline.playing, timeline.has_particles) = (true, false, false);
+    window.state_mut().0.timeline = Some(timeline);
+    window.run_steps(3);
+    window
+}
+
+#[test]
+fn a_played_run_has_a_timeline() {
+    for size in SIZES {
+        let mut window = played(size);
+        let frame = |window: &Harness<'_, Both>| window.state().0.timeline.as_ref().unwrap().current();
+        for (label, expected) in [
+            ("Next frame", 1),
+            ("Next frame", 2),
+            ("Previous frame", 1),
+            ("Last frame", 100),
+            ("First frame", 0),
+        ] {
+            click(&mut window, &[label]);
+            assert_eq!(frame(&window), expected, "{label} at {size:?}");
+        }
+        for (key, expected) in [(Key::ArrowRight, 1), (Key::End, 100), (Key::ArrowLeft, 99), (Key::Home, 0)] {
+            window.key_press(key);
+            window.run_steps(3);
+            assert_eq!(frame(&window), expected, "{key:?} at {size:?}");
+        }
+        let slider = window.get_by_role(Role::Slider).rect();
+        window.drag_at(slider.left_center() + vec2(4.0, 0.0));
+        window.hover_at(slider.center());
+        window.run_steps(1);
+        window.drop_at(slider.center());
+        window.run_steps(2);
+        assert!((45..=55).contains(&frame(&window)), "{} at {size:?}", frame(&window));
+        // The slider does not take the keys.
+        window.key_press(Key::Space);
+        window.run_steps(2);
+        assert!(window.state().0.timeline.as_ref().unwrap().playing);
+        click(&mut window, &["Loop"]);
+        assert!(!window.state().0.timeline.as_ref().unwrap().looping);
+        assert_eq!(actions(&mut window), []);
+        click(&mut window, &["Continue"]);
+        assert_eq!(actions(&mut window), [Action::Continue]);
+        let continues = window.get_by_role_and_label(Role::Button, "Continue").rect();
+        assert!(continues.right() <= size[0], "{continues:?} at {size:?}");
+    }
+}
+
+#[test]
+fn a_played_run_cannot_be_changed() {
+    let mut window = played([1280.0, 800.0]);
+    for key in [Key::R, Key::B, Key::P, Key::M, Key::K] {
+        window.key_press(key);
+        assert_eq!(actions(&mut window), [], "{key:?}");
+    }
+    window.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    assert_eq!(actions(&mut window), []);
+    assert!(window.query_by_label("Reset").is_none() && window.query_by_label("Tool").is_none());
+    // A view for which the run has no files.
+    let mode = window.state().0.look.mode;
+    click(&mut window, &["View", "Particles"]);
+    assert_eq!(window.state().0.look.mode, mode);
+    // Control: in the same window without a run.
+    window.state_mut().0.timeline = None;
+    window.run_steps(3);
+    window.key_press(Key::R);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+}
+
+#[test]
+fn the_ring_of_the_mouse_force_follows_the_pointer() {
+    let circles = |tool: Tool| {
+        let mut window = wide();
+        window.state_mut().0.tool = tool;
+        window.hover_at(egui::pos2(400.0, 400.0));
+        window.run_steps(2);
+        let shapes = &window.output().shapes;
+        let at = |shape: &egui::epaint::ClippedShape| match &shape.shape {
+            egui::Shape::Circle(circle) if circle.center == egui::pos2(400.0, 400.0) => Some(circle.radius),
+            _ => None,
+        };
+        shapes.iter().filter_map(at).collect::<Vec<_>>()
+    };
+    let drawn = circles(Tool::Drag);
+    assert!(drawn.len() == 2 && drawn[0] > 10.0, "{drawn:?}");
+    assert_eq!(circles(Tool::Orbit), [0.0; 0]);
+}
+
 #[test]
 fn foam_belongs_to_the_scene_and_is_exported_with_it() {
-    let mut window = wide();
+    let mut window = with_settings();
     assert!(!window.state().0.scene.foam.enabled);
     window.get_by_label("Foam and spray").click();
     assert_eq!(actions(&mut window), [Action::Change]);
@@ -79,7 +255,7 @@ fn keys_request_the_actions_in_the_help() {
     for (key, action) in [
         (Key::Space, Action::Play(false)),
         (Key::Period, Action::Step),
-        (Key::R, Action::Restart),
+        (Key::R, Action::Reset),
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
         (Key::T, Action::Screenshot),
@@ -109,7 +285,7 @@ fn keys_request_the_actions_in_the_help() {
 
 #[test]
 fn changing_the_solver_changes_its_models() {
-    let mut window = wide();
+    let mut window = with_settings();
     window.get_by_label("with surface tension").click();
     assert_eq!(actions(&mut window), [Action::Change]);
     let before = window.state().0.scene.solver.clone();
@@ -158,13 +334,15 @@ fn dragging_orbits_the_camera_or_moves_the_water() {
 }
 
 #[test]
-fn a_narrow_window_starts_with_hidden_controls() {
-    let mut window = window([400.0, 700.0]);
-    assert!(window.state().0.shown.bare);
-    assert!(window.query_by_label("Drop a ball").is_none());
-    window.get_by_label("Controls").click();
-    window.run_steps(3);
-    assert!(window.query_by_label("Drop a ball").is_some());
+fn settings_open_over_the_picture_and_do_not_move_it() {
+    for size in SIZES {
+        let mut window = window(size);
+        assert!(window.query_by_label("Drop a ball").is_none());
+        let before = window.state().2;
+        click(&mut window, &["Settings"]);
+        assert!(window.query_by_label("Drop a ball").is_some(), "{size:?}");
+        assert_eq!(window.state().2, before);
+    }
 }
 
 #[test]
@@ -185,16 +363,17 @@ fn a_scene_without_water_at_the_start_keeps_its_spacing() {
     let text = presets().iter().find(|(name, _)| *name == "knot").unwrap().1;
     let state = State::new(Scene::parse(text, "knot").unwrap());
     let spacing = state.scene.fluid.particle_spacing;
-    let show = |ui: &mut egui::Ui, (state, all): &mut Both| all.extend(panels::show(ui, state, None).1);
-    let mut window =
-        Harness::builder().with_size(vec2(1280.0, 800.0)).build_ui_state(show, (state, Vec::new()));
+    let mut window = Harness::builder()
+        .with_size(vec2(1280.0, 800.0))
+        .build_ui_state(show, (state, Vec::new(), egui::Rect::NOTHING));
+    click(&mut window, &["Settings"]);
     drag_count(&mut window);
     assert_eq!(actions(&mut window), []);
     assert_eq!(window.state().0.scene.fluid.particle_spacing, spacing);
     // Control: the slider works in a scene that starts with water.
-    let mut other = wide();
+    let mut other = with_settings();
     drag_count(&mut other);
-    assert!(actions(&mut other).contains(&Action::Restart));
+    assert!(actions(&mut other).contains(&Action::Reset));
 }
 
 #[test]
@@ -216,13 +395,109 @@ fn the_button_of_the_tap_follows_the_scene() {
     }
 }
 
-/// Drags the slider of the number of particles.
-fn drag_count(window: &mut Harness<'_, Both>) {
-    let y = window.get_all_by_label("Fluid").last().unwrap().rect().center().y + 23.0;
-    window.drag_at(egui::pos2(1000.0, y));
-    for x in [1020.0, 1040.0, 1060.0] {
-        window.hover_at(egui::pos2(x, y));
+/// The place of a point of the scene in the window.
+fn seen(window: &Harness<'_, Both>, point: Vec3) -> egui::Pos2 {
+    let (state, _, picture) = window.state();
+    let camera = state.orbit.camera(picture.width() / picture.height());
+    let size = [picture.width() as u32, picture.height() as u32];
+    let [x, y] = camera.project(point.into(), size).unwrap().unwrap();
+    picture.min + vec2(x, y)
+}
+
+/// The middle of the first block, the offset of a place on its handle of the x axis in m, and the place in the window.
+fn handle(window: &Harness<'_, Both>) -> (Vec3, f32, egui::Pos2) {
+    let (state, _, picture) = window.state();
+    let (low, high) = state.scene.fluid.blocks[0].shape.bounds();
+    let middle = 0.5 * (low + high);
+    let offset = 50.0 * state.orbit.metres_per_point(glam::Vec2::new(picture.width(), picture.height()));
+    (middle, offset, seen(window, middle + Vec3::X * offset))
+}
+
+/// Clicks a place in the picture.
+fn click_at(window: &mut Harness<'_, Both>, at: egui::Pos2) {
+    window.drag_at(at);
+    window.run_steps(1);
+    window.drop_at(at);
+    window.run_steps(2);
+}
+
+#[test]
+fn things_are_selected_moved_removed_and_restored() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert!(!window.state().0.playing);
+    let shape = |window: &Harness<'_, Both>| window.state().0.scene.fluid.blocks[0].shape;
+    let (before, orbit) = (shape(&window), window.state().0.orbit);
+    let (middle, offset, from) = handle(&window);
+    click_at(&mut window, egui::pos2(1200.0, 100.0));
+    assert_eq!(window.state().0.selected, None);
+    let at = seen(&window, middle);
+    click_at(&mut window, at);
+    assert_eq!(window.state().0.selected, Some(Item::Block(0)));
+    let to = seen(&window, middle + Vec3::X * (offset + 0.1));
+    window.drag_at(from);
+    window.run_steps(1);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        window.hover_at(from + part * (to - from));
         window.run_steps(1);
     }
-    window.drop_at(egui::pos2(1060.0, y));
+    let moved = shape(&window).bounds().0 - before.bounds().0;
+    assert!((moved - Vec3::X * 0.1).length() < 0.01, "{moved}");
+    assert_eq!(window.state().1, [], "the simulation starts again during the move");
+    window.drop_at(to);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(window.state().0.orbit, orbit, "moving a block moved the camera");
+    let after = shape(&window);
+    click(&mut window, &["Undo"]);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], after));
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    // Added, removed by the key, and restored.
+    click(&mut window, &["Add block"]);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(window.state().0.selected, Some(Item::Block(1)));
+    window.key_press(Key::Delete);
+    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!((window.state().0.scene.fluid.blocks.len(), window.state().0.selected), (1, None));
+    click(&mut window, &["Undo"]);
+    assert_eq!(window.state().0.scene.fluid.blocks.len(), 2);
+    let state = &window.state().0;
+    let text = splashdown_viewer::save::scene(&state.scene, &state.orbit).unwrap();
+    assert_eq!(Scene::parse(&text, "edited.toml").unwrap().fluid.blocks, state.scene.fluid.blocks);
+}
+
+#[test]
+fn a_block_cannot_be_moved_out_of_the_domain() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(1);
+    let (middle, offset, from) = handle(&window);
+    let domain = window.state().0.scene.domain.clone();
+    let to = seen(&window, middle + Vec3::X * (offset + 2.0 * domain.size().x));
+    window.drag_at(from);
+    window.run_steps(1);
+    for part in [0.1, 0.5, 1.0] {
+        window.hover_at(from + part * (to - from));
+        window.run_steps(1);
+    }
+    window.drop_at(to);
+    window.run_steps(2);
+    let right = window.state().0.scene.fluid.blocks[0].shape.bounds().1.x;
+    assert!((right - domain.max.x).abs() < 1e-4, "{right}");
+}
+
+/// Drags the slider of the number of particles.
+fn drag_count(window: &mut Harness<'_, Both>) {
+    let slider = window.get_all_by_role(Role::Slider).next().unwrap().rect();
+    let at = |part: f32| egui::pos2(slider.left() + part * slider.width(), slider.center().y);
+    window.drag_at(at(0.2));
+    for part in [0.3, 0.4, 0.5] {
+        window.hover_at(at(part));
+        window.run_steps(1);
+    }
+    window.drop_at(at(0.5));
 }

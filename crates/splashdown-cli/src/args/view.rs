@@ -9,9 +9,13 @@ use super::DeviceArgument;
 /// Options of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArguments {
-    /// Scene file (TOML), the name of a built-in scene, or a checkpoint or output folder to resume from
+    /// Scene file (TOML), the name of a built-in scene, the output folder of a run to play, or a checkpoint to resume
+    /// from
     #[arg(value_name = "SCENE", default_value = "dam-break")]
-    pub scene: PathBuf,
+    pub path: PathBuf,
+    /// Scene of the run to play, if its folder does not name one: a file or the name of a built-in scene
+    #[arg(long, value_name = "FILE")]
+    pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub device: DeviceArgument,
     /// Width and height of the window in points

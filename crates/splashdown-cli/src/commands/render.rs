@@ -1,10 +1,9 @@
 //! `splashdown render`: the frames of a finished run, drawn again.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use splashdown::scene::Scene;
-use splashdown_run::{FinishedRun, Orbit, Recorder, films};
+use splashdown_run::{FinishedRun, Orbit, Recorder, films, reported_scene};
 
 use crate::args::RenderArguments;
 use crate::exit::{Exit, Failure};
@@ -94,24 +93,5 @@ fn scene(arguments: &RenderArguments) -> Result<Scene, Failure> {
     if let Some(path) = &arguments.scene {
         return scene_file::load(path);
     }
-    let report = arguments.run.join("run.json");
-    let unknown = || {
-        let message =
-            format!("`{}` does not name the scene of this run: give it with --scene", report.display());
-        Failure::new(Exit::Usage, message)
-    };
-    let text = std::fs::read_to_string(&report).map_err(|_| unknown())?;
-    let values: serde_json::Value = serde_json::from_str(&text).map_err(|_| unknown())?;
-    let word = |key: &str| values.get(key).and_then(|value| value.as_str()).map(PathBuf::from);
-    let path = word("file").or_else(|| word("scene")).ok_or_else(unknown)?;
-    let is_known = path.exists() || path.to_str().and_then(scene_file::preset).is_some();
-    if !is_known {
-        let message = format!(
-            "the scene `{}` that `{}` names does not exist here: give it with --scene",
-            path.display(),
-            report.display()
-        );
-        return Err(Failure::new(Exit::Usage, message));
-    }
-    scene_file::load(Path::new(&path))
+    Ok(reported_scene(&arguments.run)?)
 }

@@ -1,13 +1,15 @@
 //! `splashdown view`: the window.
 
+use std::path::Path;
+
 use splashdown::{Checkpoint, Device};
 use splashdown_gpu::DeviceRequest;
-use splashdown_run::find_checkpoint;
-use splashdown_viewer::ViewOptions;
+use splashdown_run::{RunFrames, find_checkpoint};
 use splashdown_viewer::engine::Simulate;
+use splashdown_viewer::{Start, ViewOptions};
 
 use crate::args::ViewArguments;
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::scene_file;
 
 /// Opens the window; returns when it is closed.
@@ -15,13 +17,7 @@ use crate::scene_file;
 /// # Errors
 /// The scene's problems; no display or no driver.
 pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
-    let path = &arguments.scene;
-    let is_checkpoint = path.is_dir() || path.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
-    let checkpoint = if is_checkpoint { Some(find_checkpoint(path)?.checkpoint) } else { None };
-    let scene = match &checkpoint {
-        Some(checkpoint) => checkpoint.scene()?,
-        None => scene_file::load(path)?,
-    };
+    let start = start(&arguments.path, arguments.scene.as_deref())?;
     // Drawing needs a GPU or a software driver even if the CPU simulates.
     let (device, simulate) = match &arguments.device.device {
         Device::Auto => (DeviceRequest::Auto, None),
@@ -29,5 +25,25 @@ pub fn view(arguments: &ViewArguments) -> Result<(), Failure> {
         Device::Gpu => (DeviceRequest::Hardware, Some(Simulate::WhereDrawn)),
         Device::Named(name) => (DeviceRequest::Named(name.clone()), Some(Simulate::WhereDrawn)),
     };
-    Ok(splashdown_viewer::view(ViewOptions { scene, checkpoint, device, simulate, size: arguments.size })?)
+    Ok(splashdown_viewer::view(ViewOptions { start, device, simulate, size: arguments.size })?)
+}
+
+/// A folder with frames is played. A checkpoint, or a folder with checkpoints only, is continued.
+fn start(path: &Path, scene: Option<&Path>) -> Result<Start, Failure> {
+    if path.is_dir() && RunFrames::exist_in(path) {
+        let scene = scene.map(scene_file::load).transpose()?;
+        return Ok(Start::Run(RunFrames::open(path, scene)?));
+    }
+    if scene.is_some() {
+        let message = format!(
+            "--scene names the scene of a run that is played, and `{}` is not a folder with frames",
+            path.display()
+        );
+        return Err(Failure::new(Exit::Usage, message));
+    }
+    let is_checkpoint = path.is_dir() || path.extension().is_some_and(|ending| ending == Checkpoint::ENDING);
+    Ok(match is_checkpoint {
+        true => Start::Checkpoint(find_checkpoint(path)?.checkpoint),
+        false => Start::Scene(scene_file::load(path)?),
+    })
 }

@@ -6,7 +6,7 @@ mod numbered;
 
 pub(crate) use clean::remove_partial;
 pub(crate) use create::Subfolders;
-pub(crate) use numbered::{DROPLETS, MESHES};
+pub(crate) use numbered::{DROPLET_SERIES, DROPLETS, MESHES, PARTICLES};
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -38,7 +38,7 @@ const DIFFUSE_POINTS: Series = Series {
     stems: &["spray", "foam", "bubbles"],
     has_ending: |ending| ending == "glb",
 };
-const DROPLET_SERIES: Series = Series {
+pub const DROPLET_SERIES: Series = Series {
     folder: DROPLETS,
     stems: &[DROPLETS],
     has_ending: |ending| ending == "glb" || (PARTICLES.has_ending)(ending),

@@ -1,18 +1,14 @@
 //! Executing the actions of panels.
 
 use egui::Context;
-use splashdown::MouseForce;
 use splashdown::scene::{Scene, presets};
 
 use super::Viewer;
 use crate::edit;
 use crate::engine::{Command, Purpose};
+use crate::mouse;
 use crate::state::Action;
 
-/// Rate at which the water approaches the velocity of the mouse, in 1/s.
-const MOUSE_FORCE_RATE: f32 = 14.0;
-/// Radius of the mouse force over the smallest edge of the domain.
-const MOUSE_FORCE_SIZE: f32 = 0.16;
 /// Number of recent checkpoints that the gallery lists.
 const MENU_FILES: usize = 8;
 
@@ -31,7 +27,7 @@ impl Viewer {
                     Err(error) => self.state.notify(error.to_string(), true, now),
                 }
             }
-            Action::Restart => self.restart(),
+            Action::Reset => self.restart(),
             Action::Change => self.change(),
             Action::Play(playing) => {
                 self.state.playing = playing;
@@ -41,7 +37,7 @@ impl Viewer {
                 self.state.playing = false;
                 self.engine.send(Command::Advance(self.state.scene.frame_duration()));
             }
-            Action::Reset => {
+            Action::DiscardChanges => {
                 let source = self.state.scene.source.clone();
                 let name = source
                     .as_ref()
@@ -56,12 +52,7 @@ impl Viewer {
             }
             Action::TimeScale => self.engine.send(Command::TimeScale(self.state.time_scale.into())),
             Action::Drag { ray, velocity } => {
-                let scene = &self.state.scene;
-                let radius = (MOUSE_FORCE_SIZE * scene.domain.size().min_element())
-                    .max(3.0 * scene.fluid.particle_spacing);
-                // The velocity is limited, because a faster motion would scatter the particles.
-                let velocity = velocity.clamp_length_max(3.0 * scene.domain.size().max_element());
-                let force = MouseForce::new(ray.0, ray.1, velocity, radius, MOUSE_FORCE_RATE);
+                let force = mouse::force(&self.state.scene, ray, velocity);
                 self.engine.send(Command::MouseForce(Some(force)));
             }
             Action::Release => {
@@ -95,6 +86,10 @@ impl Viewer {
             Action::ShowFiles => self.state.files = splashdown_run::recent_checkpoints(MENU_FILES),
             Action::Share => self.share(now),
             Action::Record => self.toggle_recording(now),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::Continue => self.continue_run(now),
+            #[cfg(target_arch = "wasm32")]
+            Action::Continue => {}
             Action::SwapTheme => {
                 let theme = match ctx.theme() {
                     egui::Theme::Dark => egui::Theme::Light,

@@ -20,7 +20,10 @@ impl Viewer {
     pub(super) fn dropped_files(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
-            self.open_file(file.path(), now);
+            match file.path().is_dir() {
+                true => self.open_folder(file.path(), ctx),
+                false => self.open_file(file.path(), now),
+            }
         }
     }
 
@@ -89,6 +92,7 @@ impl Viewer {
     /// Resumes from a checked checkpoint, at its time.
     pub(crate) fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         let scene = checkpoint.scene()?;
+        self.leave_playback();
         self.state.open(scene);
         self.engine.send(Command::MouseForce(None));
         self.engine.send(Command::Resume(Box::new(checkpoint)));

@@ -9,6 +9,7 @@ use splashdown_gpu::GpuError;
 
 use super::Viewer;
 use crate::engine::{Command, Message, Purpose};
+use crate::state::Tool;
 use crate::{edit, export, pick};
 
 impl Viewer {
@@ -71,7 +72,8 @@ impl Viewer {
                 self.save_rescue(now);
             }
         }
-        let Some(snapshot) = self.engine.snapshot() else { return };
+        // A run that is played has its own figures.
+        let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) else { return };
         let figures = &mut self.state.figures;
         figures.frames_per_second = self.requested.frames_per_second;
         figures.steps_per_second = snapshot.steps_per_second;
@@ -89,6 +91,9 @@ impl Viewer {
         figures.mean_height = snapshot.mean_height;
         figures.memory = snapshot.opened.memory;
         figures.device.clone_from(&snapshot.opened.device);
+        if self.state.tool == Tool::Edit && snapshot.stats.time == 0.0 {
+            self.state.body_bounds = pick::bounds(&snapshot.opened, &snapshot.bodies);
+        }
     }
 
     /// Replaces the scene with changes by the scene being simulated.

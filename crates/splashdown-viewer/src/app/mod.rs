@@ -5,6 +5,8 @@ mod exporting;
 mod files;
 mod listen;
 #[cfg(not(target_arch = "wasm32"))]
+mod playing;
+#[cfg(not(target_arch = "wasm32"))]
 mod recording;
 
 use std::sync::Arc;
@@ -42,6 +44,8 @@ pub struct Viewer {
     size: [u32; 2],
     #[cfg(not(target_arch = "wasm32"))]
     recording: Option<recording::Recording>,
+    #[cfg(not(target_arch = "wasm32"))]
+    player: Option<playing::Player>,
 }
 
 /// All data that determine the picture.
@@ -65,6 +69,8 @@ struct Requested {
     wants_surface: bool,
     wants_timing: bool,
     frames_per_second: f32,
+    /// When the last picture was shown, in s of the window's clock.
+    shown_at: f64,
     exporting: bool,
     /// When a backup was last requested, in s of the window's clock.
     rescue_requested: f64,
@@ -76,6 +82,18 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError`] if the device cannot draw.
     pub fn new(
+        ctx: &Context,
+        render_state: &RenderState,
+        scene: Scene,
+        simulate: Option<Simulate>,
+    ) -> Result<Self, ViewerError> {
+        let mut viewer = Self::idle(ctx, render_state, scene, simulate)?;
+        viewer.restart();
+        Ok(viewer)
+    }
+
+    /// As [`new`](Self::new), without a simulation.
+    pub(crate) fn idle(
         ctx: &Context,
         render_state: &RenderState,
         scene: Scene,
@@ -93,7 +111,7 @@ impl Viewer {
             false => Simulate::WhereDrawn,
         });
         let engine = Engine::start(Arc::clone(&gpu), simulate, move || repaint.request_repaint());
-        let mut viewer = Self {
+        Ok(Self {
             gpu,
             engine,
             picture,
@@ -105,9 +123,9 @@ impl Viewer {
             size: [1, 1],
             #[cfg(not(target_arch = "wasm32"))]
             recording: None,
-        };
-        viewer.restart();
-        Ok(viewer)
+            #[cfg(not(target_arch = "wasm32"))]
+            player: None,
+        })
     }
 
     /// Shows one frame of the window.
@@ -115,6 +133,8 @@ impl Viewer {
         let ctx = ui.ctx().clone();
         self.dropped_files(&ctx);
         self.listen(&ctx);
+        #[cfg(not(target_arch = "wasm32"))]
+        self.update_player(&ctx);
         let (viewport, actions) = panels::show(ui, &mut self.state, self.texture);
         for action in actions {
             self.act(action, &ctx);
@@ -129,13 +149,15 @@ impl Viewer {
         #[cfg(not(target_arch = "wasm32"))]
         self.record(&ctx);
         // A software driver draws at half resolution while the simulation runs.
-        let coarse = self.gpu.is_software() && self.state.playing;
+        let plays = self.state.timeline.as_ref().map_or(self.state.playing, |timeline| timeline.playing);
+        let coarse = self.gpu.is_software() && plays;
         let size = viewport.size.map(|side| if coarse { side.div_ceil(2) } else { side });
         self.draw(size, render_state, &ctx);
         self.engine.picture_drawn();
         #[cfg(target_arch = "wasm32")]
         crate::browser::set_figures(self.state.figures.to_json());
-        let passed = ctx.input(|input| input.stable_dt).max(1e-4);
+        let now = ctx.input(|input| input.time);
+        let passed = (now - std::mem::replace(&mut self.requested.shown_at, now)).max(1e-4) as f32;
         self.requested.frames_per_second += 0.1 * (1.0 / passed - self.requested.frames_per_second);
         if self.state.playing {
             ctx.request_repaint();
@@ -153,6 +175,7 @@ impl Viewer {
     }
 
     fn restart(&mut self) {
+        self.leave_playback();
         self.engine.send(Command::Open(Box::new(self.state.scene.clone())));
         self.engine.send(Command::TimeScale(self.state.time_scale.into()));
         self.engine.send(Command::Play(self.state.playing));
@@ -164,18 +187,36 @@ impl Viewer {
         self.restart();
     }
 
+    /// Shows the simulation again instead of a run that was played.
+    fn leave_playback(&mut self) {
+        self.state.timeline = None;
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            self.player = None;
+        }
+    }
+
+    /// What is drawn, and how: the frame of a run that is played, else the newest snapshot of the engine.
+    fn shown(&self) -> Option<(Arc<Snapshot>, Look)> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(player) = &self.player {
+            return player.shown(self.state.look);
+        }
+        Some((self.engine.snapshot()?, self.state.look))
+    }
+
     fn draw(&mut self, size: [u32; 2], render_state: &RenderState, ctx: &Context) {
-        let Some(snapshot) = self.engine.snapshot() else { return };
+        let Some((snapshot, look)) = self.shown() else { return };
         let mut camera = self.state.orbit;
         camera.target -= self.state.shaking.map_or(Vec3::ZERO, |shaking| shaking.offset);
-        let content = PictureContent { snapshot: Arc::clone(&snapshot), size, look: self.state.look, camera };
+        let content = PictureContent { snapshot: Arc::clone(&snapshot), size, look, camera };
         // An unchanged picture is not drawn again.
         if self.drawn.as_ref().is_some_and(|drawn| drawn.equals(&content)) {
             return;
         }
         let aspect = size[0] as f32 / size[1] as f32;
         let before = self.picture.view().cloned();
-        let drawn = self.picture.draw(size, &snapshot, &self.state.look, camera.camera(aspect));
+        let drawn = self.picture.draw(size, &snapshot, &look, camera.camera(aspect));
         if let Err(error) = drawn {
             let now = ctx.input(|input| input.time);
             self.state.notify(error.to_string(), true, now);

@@ -1,78 +1,122 @@
-//! The status bar, and the table of time per pass.
+//! The status line, and the dialog of all numbers.
 
-use egui::{Grid, RichText, Ui, Window};
+use egui::{Grid, Rect, RichText, ScrollArea, TextStyle, Ui};
 
-use crate::state::State;
+use super::dialog;
+use crate::state::{Figures, State};
 
+/// One line at every width: the numbers that fit, the most important ones first.
 pub(super) fn show(ui: &mut Ui, state: &mut State) {
-    let figures = &state.figures;
-    ui.horizontal_wrapped(|ui| {
-        let mut item = |text: String, hint: &str| {
-            ui.label(RichText::new(text).monospace()).on_hover_text(hint);
-        };
-        item(format!("{:3.0} frames/s", figures.frames_per_second), "Pictures per second of this window");
-        item(format!("{:5.0} steps/s", figures.steps_per_second), "Time steps of the simulation per second");
-        item(format!("{:.2} x real time", figures.speed), "Simulated seconds per second, recent average");
-        item(format!("t = {:7.3} s", figures.time), "Simulated time");
-        item(format!("dt = {}", seconds(figures.dt.into())), "Length of a time step");
-        item(format!("{} particles", count(figures.particles.into())), "Number of particles");
-        if figures.mean_height.is_finite() {
-            item(format!("{:.3} m high", figures.mean_height), "Mean height of the particles");
+    let items = items(&state.figures, state.timeline.is_some());
+    ui.horizontal(|ui| {
+        let (font, colour) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
+        let mut left = ui.available_width();
+        for (text, hint) in items {
+            let galley = ui.painter().layout_no_wrap(text, font.clone(), colour);
+            let needed = galley.size().x + ui.spacing().item_spacing.x;
+            if needed > left {
+                break;
+            }
+            left -= needed;
+            ui.label(galley).on_hover_text(hint);
         }
-        if let Some(triangles) = figures.triangles {
-            item(format!("{} triangles", count(triangles.into())), "Triangles of the surface");
-        }
-        item(
-            format!("density +{:.1} %", 100.0 * figures.density_error),
-            "Largest recent density above the rest density",
-        );
-        if figures.iterations > 0.0 {
-            item(
-                format!(
-                    "{:.1} iterations, {:.2} % compressed",
-                    figures.iterations,
-                    100.0 * figures.compression
-                ),
-                "Pressure iterations per step, and mean density above the rest density",
-            );
-        }
-        item(format!("{:.0} MB", figures.memory as f64 / 1e6), "Memory of the simulation's buffers");
-        item(figures.device.clone(), "Simulating device");
-        ui.toggle_value(&mut state.shown.timings, "time per pass")
-            .on_hover_text("Time of each pass. Measuring slows the simulation down a little");
     });
 }
 
-pub(super) fn show_timings(ctx: &egui::Context, state: &mut State) {
+/// The numbers with their explanations. Their widths do not change with every picture.
+fn items(figures: &Figures, is_played: bool) -> Vec<(String, &'static str)> {
+    let mut items = vec![
+        (format!("time {:7.3} s ", figures.time), "Simulated time"),
+        (format!("{} particles ", count(figures.particles.into())), "Number of particles"),
+    ];
+    if !is_played {
+        let speed =
+            (format!("speed {:4.2} x ", figures.speed), "Simulated seconds per second, recent average");
+        items.insert(1, speed);
+        items.push((
+            format!("{:3.0} pictures/s ", figures.frames_per_second),
+            "Pictures per second of this window",
+        ));
+    }
+    if let Some(triangles) = figures.triangles {
+        items.push((format!("{} triangles ", count(triangles.into())), "Triangles of the surface"));
+    }
+    if !is_played {
+        items.push((
+            format!("{:5.0} steps/s ", figures.steps_per_second),
+            "Time steps of the simulation per second",
+        ));
+        items.push((figures.device.clone(), "Simulating device"));
+    }
+    items
+}
+
+/// The dialog of all numbers, with the time per pass.
+pub(super) fn show_statistics(ctx: &egui::Context, state: &mut State, over: Rect) {
     let figures = &state.figures;
-    let steps = figures.timed_steps.max(1) as f64;
-    Window::new("Time per pass").open(&mut state.shown.timings).resizable(false).show(ctx, |ui| {
-        if figures.timings.passes.is_empty() && figures.drawing.is_empty() {
-            ui.label("No times yet, or this device has no timestamps.");
-            return;
-        }
-        Grid::new("timings").striped(true).num_columns(2).show(ui, |ui| {
-            let mut passes: Vec<_> = figures.timings.passes.iter().collect();
-            passes.sort_by_key(|(_, time)| std::cmp::Reverse(time.total));
-            for (label, time) in passes {
-                ui.label(*label);
-                ui.monospace(seconds(time.total.as_secs_f64() / steps));
-                ui.end_row();
+    let shown = &mut state.shown;
+    dialog::new("Statistics", over).open(&mut shown.statistics).resizable(false).show(ctx, |ui| {
+        ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
+            Grid::new("numbers").striped(true).num_columns(2).show(ui, |ui| {
+                for (name, text) in numbers(figures) {
+                    ui.label(name);
+                    ui.monospace(text);
+                    ui.end_row();
+                }
+            });
+            ui.toggle_value(&mut shown.timings, "Time per pass")
+                .on_hover_text("Measuring slows the simulation down a little");
+            if shown.timings {
+                timings(ui, figures);
             }
-            ui.strong("step");
-            ui.monospace(seconds(figures.timings.total().as_secs_f64() / steps));
-            ui.end_row();
-            let mut picture = 0.0;
-            for (label, milliseconds) in &figures.drawing {
-                ui.label(*label);
-                ui.monospace(seconds(1e-3 * f64::from(*milliseconds)));
-                ui.end_row();
-                picture += 1e-3 * f64::from(*milliseconds);
-            }
-            ui.strong("picture");
-            ui.monospace(seconds(picture));
-            ui.end_row();
         });
+    });
+    // Passes are not timed for a closed dialog.
+    shown.timings &= shown.statistics;
+}
+
+fn numbers(figures: &Figures) -> Vec<(&'static str, String)> {
+    let mut numbers = vec![
+        ("device", figures.device.clone()),
+        ("memory", format!("{:.0} MB", figures.memory as f64 / 1e6)),
+        ("steps per second", format!("{:.0}", figures.steps_per_second)),
+        ("time step", seconds(figures.dt.into())),
+        ("largest density excess", format!("{:.1} %", 100.0 * figures.density_error)),
+    ];
+    if figures.mean_height.is_finite() {
+        numbers.push(("mean height", format!("{:.3} m", figures.mean_height)));
+    }
+    if figures.iterations > 0.0 {
+        numbers.push(("pressure iterations per step", format!("{:.1}", figures.iterations)));
+        numbers.push(("mean density excess", format!("{:.2} %", 100.0 * figures.compression)));
+    }
+    numbers
+}
+
+fn timings(ui: &mut Ui, figures: &Figures) {
+    if figures.timings.passes.is_empty() && figures.drawing.is_empty() {
+        ui.label("No times yet, or this device has no timestamps.");
+        return;
+    }
+    let steps = figures.timed_steps.max(1) as f64;
+    Grid::new("timings").striped(true).num_columns(2).show(ui, |ui| {
+        let mut row = |name: RichText, time: f64| {
+            ui.label(name);
+            ui.monospace(seconds(time));
+            ui.end_row();
+        };
+        let mut passes: Vec<_> = figures.timings.passes.iter().collect();
+        passes.sort_by_key(|(_, time)| std::cmp::Reverse(time.total));
+        for (label, time) in passes {
+            row(RichText::new(*label), time.total.as_secs_f64() / steps);
+        }
+        row(RichText::new("step").strong(), figures.timings.total().as_secs_f64() / steps);
+        let mut picture = 0.0;
+        for (label, milliseconds) in &figures.drawing {
+            row(RichText::new(*label), 1e-3 * f64::from(*milliseconds));
+            picture += 1e-3 * f64::from(*milliseconds);
+        }
+        row(RichText::new("picture").strong(), picture);
     });
 }
 

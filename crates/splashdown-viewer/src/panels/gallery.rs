@@ -1,17 +1,21 @@
 //! The gallery of built-in scenes.
 
-use egui::{Button, Context, Grid, ScrollArea, Ui, Window, vec2};
+use egui::{Button, Context, Grid, Rect, ScrollArea, Ui, vec2};
 
+use super::dialog;
 use crate::state::{Action, State};
 use crate::thumbnails;
 
 /// Space between two pictures, in points.
 const GAP: f32 = 12.0;
+/// Height of the list of checkpoints, in points.
+const FILES: f32 = 100.0;
 
-pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
+pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, over: Rect) {
     let (mut chosen, mut file) = (None, None);
-    Window::new("Scenes").open(&mut state.shown.gallery).default_width(640.0).show(ctx, |ui| {
-        ScrollArea::vertical().max_height(440.0).show(ui, |ui| {
+    let files = if state.files.is_empty() { 0.0 } else { FILES };
+    dialog::new("Scenes", over).open(&mut state.shown.gallery).default_width(800.0).show(ctx, |ui| {
+        ScrollArea::vertical().max_height(dialog::inner_height(over) - files).show(ui, |ui| {
             let columns =
                 ((ui.available_width() + GAP) / (thumbnails::WIDTH + GAP)).floor().max(1.0) as usize;
             let scenes: Vec<_> = thumbnails::scenes().collect();
@@ -28,13 +32,15 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         });
         if !state.files.is_empty() {
             ui.separator();
-            ui.label("Resume from a checkpoint:");
-            ui.horizontal_wrapped(|ui| {
-                for path in &state.files {
-                    if ui.button(path.display().to_string().trim_start_matches("./")).clicked() {
-                        file = Some(path.clone());
+            ui.label("Continue from a checkpoint:");
+            ScrollArea::vertical().id_salt("files").max_height(FILES - 40.0).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    for path in &state.files {
+                        if ui.button(path.display().to_string().trim_start_matches("./")).clicked() {
+                            file = Some(path.clone());
+                        }
                     }
-                }
+                });
             });
         }
     });

@@ -1,28 +1,31 @@
 //! Keyboard shortcuts and their help.
 
-use egui::{Context, Event, Grid, Key, RichText, Window};
+use egui::{Context, Event, Grid, Key, Label, Rect, RichText, ScrollArea};
 use glam::Vec3;
 
+use super::dialog;
 use crate::look::DisplayMode;
 use crate::state::{Action, State};
+use crate::timeline::Timeline;
 
 /// The lines of the help.
-const LINES: [(&str, &str); 20] = [
+const LINES: [(&str, &str); 21] = [
     ("drag", "orbit the camera (with the tool Orbit)"),
     ("right or middle drag", "pan"),
     ("wheel, pinch", "zoom"),
     ("W A S D, Q E", "fly"),
-    ("F", "reset the camera to the scene's"),
+    ("F", "reset the camera"),
     ("Shift + drag", "drag water and dynamic bodies"),
     ("Space", "play, pause"),
     (".", "advance one frame"),
-    ("R", "restart with the changes"),
-    ("1, 2, ...", "display mode"),
+    ("arrows, Home, End", "frames of a run that is played"),
+    ("R", "reset: start again at time 0, with the changes"),
+    ("1, 2, ...", "view"),
     ("B", "drop a ball"),
     ("P", "open or close the tap"),
-    ("drop a file", "open a scene or checkpoint, add a mesh as a body"),
+    ("drop a file", "open a scene, checkpoint or run; add a mesh as a body"),
     ("G", "choose a scene"),
-    ("C", "show or hide the controls"),
+    ("C", "settings"),
     ("T", "export a picture"),
     ("M", "export the surface as a mesh"),
     ("K", "export a checkpoint to resume from"),
@@ -48,23 +51,28 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     };
     let pressed = |key| struck(key, false);
     let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
-    if pressed(Key::Space) {
+    if let Some(timeline) = &mut state.timeline {
+        playback_keys(timeline, pressed);
+    } else if pressed(Key::Space) {
         actions.push(Action::Play(!state.playing));
     }
+    let is_simulated = state.timeline.is_none();
     for (key, action) in [
         (Key::Period, Action::Step),
-        (Key::R, Action::Restart),
+        (Key::R, Action::Reset),
         (Key::B, Action::DropBall),
         (Key::P, Action::Pour),
-        (Key::T, Action::Screenshot),
         (Key::M, Action::SaveMesh),
         (Key::K, Action::SaveCheckpoint),
     ] {
-        if pressed(key) {
+        if is_simulated && pressed(key) {
             actions.push(action);
         }
     }
-    if struck(Key::S, true) {
+    if pressed(Key::T) {
+        actions.push(Action::Screenshot);
+    }
+    if is_simulated && struck(Key::S, true) {
         actions.push(Action::SaveScene);
     }
     if pressed(Key::H) || pressed(Key::F1) {
@@ -75,10 +83,10 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         actions.push(Action::ShowFiles);
     }
     if pressed(Key::C) {
-        state.shown.bare = !state.shown.bare;
+        state.shown.settings = !state.shown.settings;
     }
     if pressed(Key::Escape) {
-        (state.shown.help, state.shown.gallery) = (false, false);
+        (state.shown.help, state.shown.gallery, state.shown.statistics) = (false, false, false);
     }
     if pressed(Key::F) {
         state.orbit = crate::camera::Orbit::of_scene(&state.scene);
@@ -98,17 +106,43 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     }
 }
 
-pub(super) fn show(ctx: &Context, state: &mut State) {
-    Window::new("Keys and mouse").open(&mut state.shown.help).resizable(false).collapsible(false).show(
-        ctx,
-        |ui| {
+/// The keys of a run that is played.
+fn playback_keys(timeline: &mut Timeline, pressed: impl Fn(Key) -> bool) {
+    let (first, last) = timeline.range();
+    if pressed(Key::Space) {
+        timeline.toggle();
+    }
+    if pressed(Key::ArrowRight) || pressed(Key::Period) {
+        timeline.step(1);
+    }
+    if pressed(Key::ArrowLeft) {
+        timeline.step(-1);
+    }
+    if pressed(Key::Home) {
+        timeline.seek(first);
+    }
+    if pressed(Key::End) {
+        timeline.seek(last);
+    }
+}
+
+pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
+    dialog::new("Help", over).open(&mut state.shown.help).resizable(false).show(ctx, |ui| {
+        ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
+            let keys = 110.0;
+            let what = (over.width() - keys - 70.0).clamp(120.0, 330.0);
             Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-                for (keys, what) in LINES {
-                    ui.label(RichText::new(keys).strong());
-                    ui.label(what);
+                for (key, meaning) in LINES {
+                    for (text, width) in [(RichText::new(key).strong(), keys), (RichText::new(meaning), what)]
+                    {
+                        ui.vertical(|ui| {
+                            ui.set_width(width);
+                            ui.add(Label::new(text).wrap());
+                        });
+                    }
                     ui.end_row();
                 }
             });
-        },
-    );
+        });
+    });
 }

@@ -1,11 +1,16 @@
 //! The panels. Each shows and changes a part of the state, and requests actions.
 
-mod controls;
+mod dialog;
+mod edit;
 mod figures;
 mod gallery;
 mod gravity;
 mod help;
+mod icons;
+mod more;
 mod notes;
+mod settings;
+mod timeline;
 mod toolbar;
 mod viewport;
 
@@ -15,35 +20,31 @@ use crate::state::{Action, State};
 
 pub use viewport::Viewport;
 
-/// Windows narrower than this, in points, start with hidden controls.
-const NARROW: f32 = 700.0;
-
 /// Shows all panels. `picture` is the texture in the middle. Returns the viewport, which determines the size of the next
 /// picture, and the requested actions.
 pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) -> (Viewport, Vec<Action>) {
     let mut actions = Vec::new();
-    help::keys(ui.ctx(), state, &mut actions);
-    Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, state, &mut actions));
-    Panel::bottom("figures").show(ui, |ui| figures::show(ui, state));
-    // On a phone the controls would cover the picture.
-    let narrow = ui.max_rect().width() < NARROW;
-    if std::mem::replace(&mut state.shown.narrow, narrow) != narrow {
-        state.shown.bare = narrow;
+    if !icons::install(ui.ctx()) {
+        // Fonts can be used from the next pass on, which egui makes before it shows anything.
+        ui.ctx().request_discard("the font of the icons");
+        return (Viewport { rect: ui.max_rect(), size: [1, 1], touched: None }, actions);
     }
-    if !state.shown.bare {
-        Panel::right("controls")
-            .resizable(true)
-            .default_size(270.0)
-            .size_range(220.0..=420.0)
-            .show(ui, |ui| controls::show(ui, state, &mut actions));
+    help::keys(ui.ctx(), state, &mut actions);
+    Panel::top("toolbar").resizable(false).show(ui, |ui| toolbar::show(ui, state, &mut actions));
+    Panel::bottom("status").resizable(false).show(ui, |ui| figures::show(ui, state));
+    if state.timeline.is_some() {
+        Panel::bottom("timeline").resizable(false).show(ui, |ui| timeline::show(ui, state, &mut actions));
     }
     let viewport = egui::CentralPanel::default()
         .frame(egui::Frame::NONE)
         .show(ui, |ui| viewport::show(ui, state, picture, &mut actions))
         .inner;
-    notes::show(ui.ctx(), state, viewport.rect);
-    gallery::show(ui.ctx(), state, &mut actions);
-    help::show(ui.ctx(), state);
-    figures::show_timings(ui.ctx(), state);
+    let over = viewport.rect;
+    notes::show(ui.ctx(), state, over);
+    settings::show(ui.ctx(), state, &mut actions, over);
+    edit::show(ui.ctx(), state, &mut actions, over);
+    gallery::show(ui.ctx(), state, &mut actions, over);
+    help::show(ui.ctx(), state, over);
+    figures::show_statistics(ui.ctx(), state, over);
     (viewport, actions)
 }

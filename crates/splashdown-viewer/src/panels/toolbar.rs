@@ -1,61 +1,153 @@
-//! The toolbar: scene, clock, tools, display modes.
+//! The toolbar: scene, clock, tool, view, settings and more, in one row at every width.
 
-use egui::{Button, RichText, Slider, SliderClamping, Ui};
+use egui::containers::menu::MenuButton;
+use egui::{Button, DragValue, Popup, Ui, vec2};
 
+use super::{edit, icons, more};
 use crate::look::DisplayMode;
 use crate::state::{Action, State, Tool};
 
+/// Below this width, in points, buttons show icons without words, and the speed is in the menu.
+const WORDS: f32 = 700.0;
+/// Length of the longest name of a scene in the toolbar, in characters.
+const NAME: usize = 22;
+/// The same in a narrow window.
+const SHORT_NAME: usize = 9;
+
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    ui.horizontal_wrapped(|ui| {
-        let title = state.scene.name.clone();
-        if ui.button(RichText::new(title).strong()).on_hover_text("Choose a scene (G)").clicked() {
+    let has_words = ui.available_width() >= WORDS;
+    ui.horizontal(|ui| {
+        if !has_words {
+            ui.spacing_mut().item_spacing.x = 4.0;
+        }
+        let name = shortened(&state.scene.name, if has_words { NAME } else { SHORT_NAME });
+        let scene = Button::new(format!("{} {name}", icons::SCENE)).selected(state.shown.gallery);
+        let scene = ui.add(scene).on_hover_text("Scenes: choose a scene (G)");
+        icons::named(&scene, "Scenes", state.shown.gallery);
+        if scene.clicked() {
             state.shown.gallery = !state.shown.gallery;
             actions.push(Action::ShowFiles);
         }
         ui.separator();
-        let (sign, hint) = if state.playing { ("Pause", "Pause (Space)") } else { ("Play", "Play (Space)") };
-        if ui.add(Button::new(sign).min_size([52.0, 0.0].into())).on_hover_text(hint).clicked() {
-            actions.push(Action::Play(!state.playing));
+        // A run that is played has these below the picture.
+        if state.timeline.is_none() {
+            clock(ui, state, actions, has_words);
+            ui.separator();
+            tools(ui, state, actions, has_words);
         }
-        if ui.button("Step").on_hover_text("One frame of the scene (.)").clicked() {
-            actions.push(Action::Step);
-        }
-        if ui.button("Restart").on_hover_text("Restart with the changes (R)").clicked() {
-            actions.push(Action::Restart);
-        }
-        if ui.button("Reset").on_hover_text("Restart without the changes").clicked() {
-            actions.push(Action::Reset);
-        }
-        let speed = Slider::new(&mut state.time_scale, 0.05..=4.0).clamping(SliderClamping::Edits)
-            .logarithmic(true)
-            .max_decimals(2)
-            .suffix(" x")
-            .text("speed");
-        let speed = ui.add(speed).on_hover_text(
-            "Simulated seconds per second. If the machine is too slow, the simulation runs slower; the window stays responsive",
-        );
-        if speed.changed() {
-            actions.push(Action::TimeScale);
-        }
-        ui.separator();
-        for tool in Tool::ALL {
-            ui.selectable_value(&mut state.tool, tool, tool.name()).on_hover_text(tool.hint());
-        }
-        ui.separator();
-        for (number, mode) in DisplayMode::ALL.into_iter().enumerate() {
-            let hint = format!("{} ({})", mode.hint(), number + 1);
-            ui.selectable_value(&mut state.look.mode, mode, mode.name()).on_hover_text(hint);
-        }
-        ui.separator();
-        let controls = if state.shown.bare { "Controls" } else { "Hide controls" };
-        if ui.button(controls).on_hover_text("Show or hide the controls (C)").clicked() {
-            state.shown.bare = !state.shown.bare;
-        }
-        if ui.button("Theme").on_hover_text("Light or dark").clicked() {
-            actions.push(Action::SwapTheme);
-        }
-        if ui.button("Help").on_hover_text("Keys and mouse (H)").clicked() {
-            state.shown.help = !state.shown.help;
-        }
+        views(ui, state, has_words);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            more::show(ui, state, actions, has_words);
+            let hint = "Fluid, gravity, solver and view (C)";
+            if icons::toggle(ui, icons::SETTINGS, "Settings", hint, state.shown.settings).clicked() {
+                state.shown.settings = !state.shown.settings;
+            }
+        });
     });
+}
+
+/// What controls a simulation.
+fn clock(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: bool) {
+    let (icon, name) = if state.playing { (icons::PAUSE, "Pause") } else { (icons::PLAY, "Play") };
+    if icons::button(ui, icon, name, "Space").clicked() {
+        actions.push(Action::Play(!state.playing));
+    }
+    if icons::button(ui, icons::STEP, "Step", "Simulate one frame of the scene (.)").clicked() {
+        actions.push(Action::Step);
+    }
+    if icons::button(ui, icons::RESET, "Reset", "Start again at time 0, with the changes (R)").clicked() {
+        actions.push(Action::Reset);
+    }
+    if has_words {
+        speed(ui, state, actions);
+    }
+}
+
+/// The speed of a simulation.
+pub(super) fn speed(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let speed = DragValue::new(&mut state.time_scale)
+        .range(0.05..=4.0)
+        .clamp_existing_to_range(true)
+        .speed(0.02)
+        .max_decimals(2)
+        .prefix("speed ")
+        .suffix(" x");
+    let speed = ui.add(speed).on_hover_text(
+        "Simulated seconds per second: drag, or click to type. If the machine is too slow, the simulation runs slower; the \
+         window stays responsive",
+    );
+    if speed.changed() {
+        actions.push(Action::TimeScale);
+    }
+}
+
+fn tools(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: bool) {
+    let tool = state.tool;
+    let text = if has_words { format!("{} {}", icon(tool), tool.name()) } else { icon(tool).to_owned() };
+    let (response, _) =
+        MenuButton::from_button(Button::new(text).min_size(vec2(icons::WIDTH, 0.0))).ui(ui, |ui| {
+            for tool in Tool::ALL {
+                let button =
+                    Button::selectable(state.tool == tool, format!("{} {}", icon(tool), tool.name()));
+                let response = ui.add(button).on_hover_text(tool.hint());
+                icons::named(&response, tool.name(), state.tool == tool);
+                if response.clicked() {
+                    let before = std::mem::replace(&mut state.tool, tool);
+                    if tool == Tool::Edit && before != tool {
+                        edit::start_again(state, actions);
+                    }
+                }
+            }
+        });
+    described(&response, "Tool", &format!("{}. {}", tool.name(), tool.hint()));
+}
+
+fn views(ui: &mut Ui, state: &mut State, has_words: bool) {
+    let mode = state.look.mode;
+    let text = if has_words { format!("{} {}", icons::VIEW, mode.name()) } else { icons::VIEW.to_owned() };
+    let (response, _) =
+        MenuButton::from_button(Button::new(text).min_size(vec2(icons::WIDTH, 0.0))).ui(ui, |ui| {
+            for (number, mode) in DisplayMode::ALL.into_iter().enumerate() {
+                let is_possible = state.timeline.as_ref().is_none_or(|timeline| {
+                    if mode.needs_surface() { timeline.has_meshes } else { timeline.has_particles }
+                });
+                let text = format!("{}  {}", number + 1, mode.name());
+                let button = Button::selectable(state.look.mode == mode, text);
+                let response = ui
+                    .add_enabled(is_possible, button)
+                    .on_hover_text(mode.hint())
+                    .on_disabled_hover_text("The run has no files for this view");
+                icons::named(&response, mode.name(), state.look.mode == mode);
+                if response.clicked() {
+                    state.look.mode = mode;
+                }
+            }
+        });
+    described(&response, "View", &format!("{}. {}", mode.name(), mode.hint()));
+}
+
+/// The name and the hint of a button with a menu. The hint would cover the open menu.
+pub(super) fn described(response: &egui::Response, name: &str, hint: &str) {
+    icons::named(response, name, false);
+    if !Popup::is_id_open(&response.ctx, Popup::default_response_id(response)) {
+        response.clone().on_hover_text(format!("{name}: {hint}"));
+    }
+}
+
+fn icon(tool: Tool) -> &'static str {
+    match tool {
+        Tool::Orbit => icons::ORBIT,
+        Tool::Drag => icons::DRAG,
+        Tool::Tilt => icons::TILT,
+        Tool::Shake => icons::SHAKE,
+        Tool::Edit => icons::EDIT,
+    }
+}
+
+/// A name of at most this many characters.
+fn shortened(name: &str, limit: usize) -> String {
+    if name.chars().count() <= limit {
+        return name.to_owned();
+    }
+    name.chars().take(limit - 1).chain(['…']).collect()
 }

@@ -1,8 +1,10 @@
 //! The picture in the middle, and the mouse tools.
 
-use egui::{PointerButton, Rect, Response, Sense, TextureId, Ui};
+use egui::{Color32, PointerButton, Rect, Response, Sense, Stroke, TextureId, Ui};
 use glam::{Quat, Vec2, Vec3};
 
+use super::edit;
+use crate::mouse;
 use crate::state::{Action, Shaking, State, Tool};
 
 /// Degrees of tilt per point.
@@ -30,7 +32,7 @@ pub(super) fn show(
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     if let Some(picture) = picture {
         let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-        ui.painter().image(picture, rect, whole, egui::Color32::WHITE);
+        ui.painter().image(picture, rect, whole, Color32::WHITE);
     }
     zoom(ui, &response, state);
     let drag = response.drag_delta();
@@ -39,7 +41,12 @@ pub(super) fn show(
     if by(PointerButton::Secondary) || by(PointerButton::Middle) {
         state.orbit.pan(drag, size_of(rect));
     }
-    let tool = if ui.input(|input| input.modifiers.shift) { Tool::Drag } else { state.tool };
+    let tool = match (&state.timeline, ui.input(|input| input.modifiers.shift)) {
+        // The water of a finished run cannot be moved.
+        (Some(_), _) => Tool::Orbit,
+        (None, true) => Tool::Drag,
+        (None, false) => state.tool,
+    };
     let mut touched = None;
     match tool {
         Tool::Orbit if by(PointerButton::Primary) => state.orbit.orbit(drag),
@@ -52,7 +59,11 @@ pub(super) fn show(
             state.shaking.get_or_insert(Shaking { gravity, ..Shaking::default() }).target += motion;
         }
         Tool::Shake => {}
+        Tool::Edit => edit::interact(ui, &response, state, actions),
         Tool::Orbit => {}
+    }
+    if tool == Tool::Drag && state.grip.is_none() {
+        ring(ui, &response, state);
     }
     if tool != Tool::Drag && state.drag_point.take().is_some() {
         state.grip = None;
@@ -108,6 +119,16 @@ fn drag_fluid(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec
     let velocity = (ray.0 + depth * ray.1 - old.0 - depth * old.1) / seconds;
     actions.push(Action::Drag { ray, velocity });
     None
+}
+
+/// Shows the reach of the mouse force, at the distance of the camera's target.
+fn ring(ui: &Ui, response: &Response, state: &State) {
+    let Some(at) = response.hover_pos().or(response.interact_pointer_pos()) else { return };
+    let radius = mouse::radius(&state.scene) / state.orbit.metres_per_point(size_of(response.rect));
+    let painter = ui.painter_at(response.rect);
+    // Two colours, so that it is visible on water and on the sky.
+    painter.circle_stroke(at, radius, Stroke::new(3.0, Color32::from_black_alpha(110)));
+    painter.circle_stroke(at, radius, Stroke::new(1.5, Color32::WHITE));
 }
 
 /// Rotates gravity, which is equivalent to tilting the tank.

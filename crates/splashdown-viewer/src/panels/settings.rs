@@ -1,26 +1,42 @@
-//! The controls: fluid, gravity, interaction, solver, display, export.
+//! The settings of the simulation and of the view.
 
-use egui::{CollapsingHeader, ComboBox, ScrollArea, Slider, SliderClamping, Ui};
+use egui::{CollapsingHeader, ComboBox, Context, Rect, ScrollArea, Slider, SliderClamping, Ui, vec2};
 use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
 use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
-use super::gravity;
-use crate::look::DisplayMode;
+use super::{dialog, gravity};
+use crate::look::{DisplayMode, Look};
 use crate::state::{Action, State};
 
+/// Width of the panel, in points.
+const WIDTH: f32 = 290.0;
 /// The number of particles cannot be changed in scenes that start with fewer particles than this.
 const MIN_PARTICLES: u64 = 20;
 
-pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    ScrollArea::vertical().show(ui, |ui| {
-        section(ui, "Fluid", |ui| fluid(ui, state, actions));
-        section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
-        section(ui, "Interact", |ui| interact(ui, state, actions));
-        section(ui, "Solver", |ui| solver(ui, state, actions));
-        section(ui, "Display", |ui| display(ui, state, actions));
-        section(ui, "Export", |ui| export(ui, state, actions));
-    });
+/// The panel lies over the right side of the picture, `over`.
+pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, over: Rect) {
+    let mut is_open = state.shown.settings;
+    dialog::new("Settings", over)
+        .open(&mut is_open)
+        .default_pos(over.right_top() + vec2(-WIDTH, 0.0))
+        .default_size([WIDTH, over.height()])
+        .resizable([true, false])
+        .show(ctx, |ui| {
+            ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
+                if state.timeline.is_some() {
+                    // A finished run cannot be changed.
+                    view(ui, state, actions);
+                    return;
+                }
+                section(ui, "Fluid", |ui| fluid(ui, state, actions));
+                section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
+                section(ui, "Add", |ui| add(ui, state, actions));
+                section(ui, "Solver", |ui| solver(ui, state, actions));
+                section(ui, "View", |ui| view(ui, state, actions));
+            });
+        });
+    state.shown.settings = is_open;
 }
 
 fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
@@ -46,7 +62,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         state.scene.fluid.particle_spacing *= factor;
         state.scene.surface.cell_size *= factor;
         state.counted = splashdown::check::count(&state.scene);
-        actions.push(Action::Restart);
+        actions.push(Action::Reset);
     }
     ui.weak(format!("{:.2} mm apart", 1000.0 * state.scene.fluid.particle_spacing));
     let material = &mut state.scene.fluid.material;
@@ -83,7 +99,7 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
 }
 
-fn interact(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn add(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         if ui.button("Drop a ball").on_hover_text("A ball with half the density of water (B)").clicked() {
             actions.push(Action::DropBall);
@@ -150,97 +166,75 @@ fn name(method: Method) -> &'static str {
     }
 }
 
-fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn view(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let is_simulated = state.timeline.is_none();
+    if is_simulated {
+        foam(ui, state, actions);
+    }
+    let look = &mut state.look;
+    if look.mode.has_colours() {
+        colours(ui, look);
+    } else if look.mode.needs_surface() && is_simulated {
+        surface(ui, state, actions);
+    } else if !is_simulated {
+        ui.label("A run that is played has settings in the views Particles and Slice only.");
+    }
+}
+
+fn foam(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let foam = ui
         .checkbox(&mut state.scene.foam.enabled, "Foam and spray")
         .on_hover_text("Spray in the air, foam on the surface, bubbles in the water (Ihmsen et al. 2012)");
     if foam.changed() {
         actions.push(Action::Change);
     }
-    let look = &mut state.look;
-    if look.mode.has_colours() {
+}
+
+fn colours(ui: &mut Ui, look: &mut Look) {
+    ui.horizontal(|ui| {
+        ui.label("colour by");
+        for (quantity, text) in
+            [(ColourBy::Speed, "speed"), (ColourBy::Density, "density"), (ColourBy::Pressure, "pressure")]
+        {
+            ui.selectable_value(&mut look.colour_by, quantity, text);
+        }
+    });
+    ComboBox::from_label("colours").selected_text(look.map.name()).show_ui(ui, |ui| {
+        for map in [ColourMap::Water, ColourMap::Viridis, ColourMap::Inferno, ColourMap::BlueRed] {
+            ui.selectable_value(&mut look.map, map, map.name());
+        }
+    });
+    if look.mode == DisplayMode::Slice {
         ui.horizontal(|ui| {
-            ui.label("colour by");
-            for (quantity, text) in
-                [(ColourBy::Speed, "speed"), (ColourBy::Density, "density"), (ColourBy::Pressure, "pressure")]
-            {
-                ui.selectable_value(&mut look.colour_by, quantity, text);
+            for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
+                ui.selectable_value(&mut look.slice_axis, axis, name);
             }
+            ui.add(
+                Slider::new(&mut look.slice_at, 0.0..=1.0).clamping(SliderClamping::Edits).text("position"),
+            );
         });
-        ComboBox::from_label("colours").selected_text(look.map.name()).show_ui(ui, |ui| {
-            for map in [ColourMap::Water, ColourMap::Viridis, ColourMap::Inferno, ColourMap::BlueRed] {
-                ui.selectable_value(&mut look.map, map, map.name());
-            }
-        });
-        if look.mode == DisplayMode::Slice {
-            ui.horizontal(|ui| {
-                for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
-                    ui.selectable_value(&mut look.slice_axis, axis, name);
-                }
-                ui.add(
-                    Slider::new(&mut look.slice_at, 0.0..=1.0)
-                        .clamping(SliderClamping::Edits)
-                        .text("position"),
-                );
-            });
-        }
-    } else if look.mode.needs_surface() {
-        let surface = &mut state.scene.surface;
-        let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
-            .clamping(SliderClamping::Edits)
-            .text("smoothing");
-        let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
-        let spacing = state.scene.fluid.particle_spacing;
-        let mut cell = surface.cell_size / spacing;
-        let size = ui
-            .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
-            .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
-        if size.changed() {
-            surface.cell_size = cell * spacing;
-        }
-        let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
-        let blob = ui
-            .add(blob.text("smallest blob"))
-            .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
-        if size.changed() || iterations.changed() || blob.changed() {
-            actions.push(Action::Change);
-        }
     }
 }
 
-fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
-    ui.horizontal_wrapped(|ui| {
-        for (text, hint, action) in [
-            ("Picture", "Export the picture as PNG (T)", Action::Screenshot),
-            ("Scene", "Export the scene with its changes (Ctrl + S)", Action::SaveScene),
-            (
-                "Checkpoint",
-                "Export a checkpoint to resume from, here or on the command line (K). Drop the file onto the window to resume",
-                Action::SaveCheckpoint,
-            ),
-            ("Mesh", "Export the surface as a closed mesh in PLY (M)", Action::SaveMesh),
-        ] {
-            if ui.button(text).on_hover_text(hint).clicked() {
-                actions.push(action);
-            }
-        }
-        // Only a web page has an address that a link can open.
-        if cfg!(target_arch = "wasm32")
-            && ui.button("Link").on_hover_text("A link that opens the scene with its changes").clicked()
-        {
-            actions.push(Action::Share);
-        }
-    });
-    if cfg!(target_arch = "wasm32") {
-        return;
+fn surface(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let surface = &mut state.scene.surface;
+    let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
+        .clamping(SliderClamping::Edits)
+        .text("smoothing");
+    let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
+    let spacing = state.scene.fluid.particle_spacing;
+    let mut cell = surface.cell_size / spacing;
+    let size = ui
+        .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
+        .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
+    if size.changed() {
+        surface.cell_size = cell * spacing;
     }
-    let text = match state.recorded {
-        Some(frames) => format!("Stop recording ({frames} pictures)"),
-        None => "Film".to_owned(),
-    };
-    let hint = "Record a picture of every frame of the scene, and a film if ffmpeg is installed. The simulation advances frame \
-                by frame";
-    if ui.button(text).on_hover_text(hint).clicked() {
-        actions.push(Action::Record);
+    let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
+    let blob = ui
+        .add(blob.text("smallest blob"))
+        .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
+    if size.changed() || iterations.changed() || blob.changed() {
+        actions.push(Action::Change);
     }
 }

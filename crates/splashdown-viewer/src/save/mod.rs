@@ -1,15 +1,18 @@
 //! Writing a changed scene as a scene file.
 
-use glam::Vec3;
-use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene, Solver};
-use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
+mod things;
+mod values;
+
+use splashdown::scene::{Choice, Scene, Solver};
+use toml_edit::{DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
+use values::{number, vector};
 
 /// The text of the scene's file with the changes; comments and order are preserved.
 ///
 /// # Errors
-/// A message, if a scene file cannot express the changes, such as removed bodies.
+/// A message, if a scene file cannot express the changes, such as a block outside the domain.
 pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let source =
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
@@ -17,12 +20,9 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let mut document: DocumentMut = scene.text.parse().map_err(|error| format!("{source}: {error}"))?;
     numbers(&mut document, &old, scene);
     camera(&mut document, orbit);
-    for body in &scene.bodies[old.bodies.len().min(scene.bodies.len())..] {
-        tables(&mut document, "body").push(body_table(body)?);
-    }
-    for emitter in &scene.emitters[old.emitters.len().min(scene.emitters.len())..] {
-        tables(&mut document, "emitter").push(emitter_table(emitter)?);
-    }
+    things::blocks(&mut document, &old.fluid.blocks, &scene.fluid.blocks);
+    things::bodies(&mut document, &old.bodies, &scene.bodies)?;
+    things::emitters(&mut document, &old.emitters, &scene.emitters)?;
     let written = document.to_string();
     // Reading the text must give the same scene.
     let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
@@ -96,74 +96,14 @@ fn camera(document: &mut DocumentMut, orbit: &Orbit) {
     }
 }
 
-fn tables<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut ArrayOfTables {
-    let item = document.entry(name).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
-    if !item.is_array_of_tables() {
-        *item = Item::ArrayOfTables(std::mem::take(item).into_array_of_tables().unwrap_or_default());
-    }
-    item.as_array_of_tables_mut()
-        .unwrap_or_else(|| unreachable!("the item was just replaced by an array of tables"))
-}
-
-fn body_table(body: &Body) -> Result<Table, String> {
-    let mut table = Table::new();
-    table.insert("name", value(&body.name));
-    let mesh = match &body.mesh.shape {
-        MeshShape::Model(name) => name.clone(),
-        MeshShape::File(path) => path.to_str().ok_or("the path of a mesh is not valid text")?.to_owned(),
-    };
-    table.insert("mesh", value(mesh));
-    let scale = body.mesh.scale;
-    let uniform = scale == Vec3::splat(scale.x);
-    table.insert("scale", if uniform { number(scale.x) } else { vector(scale) });
-    table.insert("position", vector(body.mesh.position));
-    let Motion::Dynamic { density, .. } = body.motion else {
-        return Err("only dynamic bodies can be added to a scene file".to_owned());
-    };
-    table.insert("motion", value("dynamic"));
-    table.insert("density", number(density));
-    table.insert("friction", number(body.friction));
-    if let Some(colour) = body.colour {
-        table.insert("colour", vector(Vec3::from(colour)));
-    }
-    Ok(table)
-}
-
-fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
-    let Outlet::Disc { radius } = emitter.outlet else {
-        return Err("only disc emitters can be added to a scene file".to_owned());
-    };
-    let mut table = Table::new();
-    table.insert("name", value(&emitter.name));
-    table.insert("shape", value("disc"));
-    table.insert("radius", number(radius));
-    table.insert("position", vector(emitter.position));
-    table.insert("direction", vector(emitter.direction));
-    table.insert("speed", number(emitter.speed));
-    if let Some(max_particles) = emitter.max_particles {
-        table.insert("max_particles", value(i64::from(max_particles)));
-    }
-    Ok(table)
-}
-
-/// The number with the shortest decimal notation that gives the same `f32`.
-fn shortest(x: f32) -> f64 {
-    x.to_string().parse().unwrap_or(f64::from(x))
-}
-
-fn number(x: f32) -> Item {
-    value(shortest(x))
-}
-
-fn vector(v: Vec3) -> Item {
-    value(v.to_array().map(shortest).into_iter().collect::<Array>())
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::scene;
+    use crate::camera::Orbit;
     use crate::edit;
-    use splashdown::scene::{Method, presets};
+    use crate::items::Item;
+    use glam::Vec3;
+    use splashdown::scene::{Method, Scene, presets};
 
     #[test]
     fn changes_of_every_scene_are_saved() {
@@ -188,6 +128,42 @@ mod tests {
             // Comments are preserved.
             assert_eq!(text.lines().next(), saved.lines().next(), "{name}");
         }
+    }
+
+    #[test]
+    fn moved_removed_and_added_things_of_every_scene_are_saved() {
+        let mut saved = 0;
+        for (name, text) in presets() {
+            let original = Scene::parse(text, name).unwrap();
+            let all = Item::all(&original);
+            for &item in &all {
+                let mut changes = vec![original.clone(); 2];
+                // A small offset along the longest way to a wall stays inside the domain.
+                let up = Vec3::Y * original.fluid.particle_spacing;
+                item.move_by(&mut changes[0], if item.is_movable(&original) { up } else { Vec3::ZERO });
+                item.remove(&mut changes[1]);
+                edit::add_ball(&mut changes[1]);
+                for changed in changes {
+                    // Probes may name a body, and a scene needs some fluid.
+                    let Ok(text) = scene(&changed, &Orbit::of_scene(&changed)) else { continue };
+                    let read = Scene::parse(&text, name).unwrap();
+                    assert_eq!(read.fluid.blocks, changed.fluid.blocks, "{name}: {item:?}");
+                    assert_eq!(read.bodies, changed.bodies, "{name}: {item:?}");
+                    assert_eq!(read.emitters, changed.emitters, "{name}: {item:?}");
+                    saved += 1;
+                }
+            }
+        }
+        assert!(saved > 40, "only {saved} changes were saved");
+    }
+
+    #[test]
+    fn a_block_outside_the_domain_is_refused_with_the_reason() {
+        let (name, text) = presets()[0];
+        let mut changed = Scene::parse(text, name).unwrap();
+        Item::Block(0).move_by(&mut changed, Vec3::X * 100.0);
+        let refused = scene(&changed, &Orbit::of_scene(&changed));
+        assert!(refused.as_ref().is_err_and(|reason| reason.contains("domain")), "{refused:?}");
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The buffers that are drawn. Particles are copied, so that the window can draw them while the next step is computed.
 //! The surface is drawn from the buffers of the simulation by an indirect call.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod uploaded;
+
 use std::sync::Arc;
 
 use splashdown::Simulation;

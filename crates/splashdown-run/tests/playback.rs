@@ -1,0 +1,150 @@
+//! Reading the frames of a run for playback: what exists is read, what is missing is reported.
+
+use std::fs;
+use std::path::Path;
+
+use splashdown::Device;
+use splashdown::scene::{Format, Scene};
+use splashdown_io::{read_mesh, read_particles};
+use splashdown_run::{RunError, RunFrames, RunRequest, RunSettings, Stop, run, scene_of_run};
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+const SCENE: &str = r#"
+[scene]
+name = "floating"
+duration = 0.02
+frame_rate = 200
+[domain]
+min = [0, 0, 0]
+max = [0.6, 0.6, 0.3]
+[fluid]
+particle_spacing = 0.05
+[[fluid.block]]
+position = [0, 0, 0]
+size = [0.3, 0.2, 0.3]
+[foam]
+enabled = true
+[[body]]
+name = "ball"
+mesh = "sphere"
+position = [0.4, 0.4, 0.15]
+move = ["0", "-2 * t", "0"]
+[[body]]
+name = "post"
+mesh = "sphere"
+scale = 0.5
+position = [0.5, 0.1, 0.15]
+motion = "static"
+"#;
+
+/// A run of five frames in this folder.
+fn finish(out: &Path, formats: &[Format]) -> Outcome {
+    let mut settings = RunSettings::default();
+    settings.device = Some(Device::Cpu);
+    settings.pictures = Some(Vec::new());
+    settings.formats = Some(formats.to_vec());
+    settings.checkpoint_every = Some(2);
+    let mut request = RunRequest::new(Scene::parse(SCENE, "floating.toml")?, settings);
+    request.out = Some(out.to_owned());
+    let outcome = run(request, &mut (), &|| Stop::No)?;
+    assert_eq!(outcome.complete_frames, 5);
+    Ok(())
+}
+
+#[test]
+fn a_finished_run_is_read_as_it_was_written() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path();
+    finish(out, &[Format::Ply])?;
+    let frames = RunFrames::open(out, None)?;
+    assert_eq!(frames.numbers().collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
+    assert_eq!((frames.scene().name.as_str(), frames.has_checkpoint()), ("floating", true));
+    assert_eq!(frames.problems().collect::<Vec<_>>(), [""; 0]);
+    let names: Vec<String> = frames.body_meshes()?.into_iter().map(|body| body.name).collect();
+    assert_eq!(names, ["ball", "post"]);
+    let mut heights = Vec::new();
+    for number in frames.numbers() {
+        let frame = frames.read(number)?;
+        let written = read_particles(&out.join(format!("particles/particles_{number:04}.ply")))?;
+        assert_eq!(frame.particles.as_ref(), Some(&written));
+        let mesh = read_mesh(&out.join(format!("mesh/surface_{number:04}.ply")))?;
+        assert_eq!(frame.mesh.as_ref(), Some(&mesh));
+        assert_eq!((frame.number, frame.time), (number, f64::from(number) / 200.0));
+        assert!(frame.foam.is_some() && frame.problems.is_empty(), "{:?}", frame.problems);
+        assert!(frame.bytes() >= 24 * written.len() + 12 * mesh.triangles.len());
+        heights.push(frame.bodies[0].position.y);
+        assert_eq!(frame.bodies[1].position.y, 0.1);
+    }
+    assert!(heights.is_sorted_by(|a, b| a > b), "the ball falls: {heights:?}");
+    Ok(())
+}
+
+#[test]
+fn missing_mixed_and_truncated_files_are_reported_and_the_rest_is_read() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path();
+    finish(out, &[Format::Ply])?;
+    let truncate = |name: &str| -> Outcome {
+        let path = out.join(name);
+        let bytes = fs::read(&path)?;
+        fs::write(path, &bytes[..bytes.len() / 2])?;
+        Ok(())
+    };
+    for name in ["particles/particles_0001.ply", "mesh/surface_0001.ply", "mesh/surface_0002.ply"] {
+        fs::remove_file(out.join(name))?;
+    }
+    truncate("particles/particles_0003.ply")?;
+    truncate("particles/particles_0004.ply")?;
+    truncate("mesh/surface_0004.ply")?;
+    fs::remove_file(out.join("bodies/ball.csv"))?;
+    // The place of a dynamic body is known from its table only.
+    let dynamic = SCENE.replace("move = [\"0\", \"-2 * t\", \"0\"]", "motion = \"dynamic\"");
+    let frames = RunFrames::open(out, Some(Scene::parse(&dynamic, "floating.toml")?))?;
+    assert_eq!(frames.numbers().collect::<Vec<_>>(), [0, 2, 3, 4]);
+    let problems: Vec<String> = frames.problems().collect();
+    assert_eq!(problems[..2], ["frame 1 missing", "frame 2 without a mesh"], "{problems:?}");
+    assert!(problems[2].contains("\"ball\" is not shown"), "{problems:?}");
+    assert_eq!(frames.body_meshes()?.len(), 1);
+    let whole = frames.read(0)?;
+    assert!(whole.particles.is_some() && whole.mesh.is_some() && whole.problems.is_empty());
+    let without_mesh = frames.read(2)?;
+    assert!(without_mesh.particles.is_some() && without_mesh.mesh.is_none());
+    let truncated = frames.read(3)?;
+    assert!(truncated.particles.is_none() && truncated.mesh.is_some());
+    assert!(truncated.problems[0].contains("particles_0003.ply"), "{:?}", truncated.problems);
+    let Err(RunError::Input(reason)) = frames.read(4) else {
+        panic!("a frame without usable files was read")
+    };
+    assert!(reason.contains("particles_0004.ply") && reason.contains("surface_0004.ply"), "{reason}");
+    // A frame in a second format replaces a file that cannot be read.
+    let particles = whole.particles.ok_or("no particles")?;
+    splashdown_io::write_particles(&out.join("particles/particles_0003.vtu"), &particles)?;
+    let mixed = RunFrames::open(out, None)?.read(3)?;
+    assert!(mixed.particles.is_some() && mixed.problems.is_empty(), "{:?}", mixed.problems);
+    Ok(())
+}
+
+#[test]
+fn the_scene_comes_from_the_checkpoint_then_from_the_report() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("out");
+    finish(&out, &[Format::Ply])?;
+    let scene = Scene::parse(SCENE, "floating.toml")?;
+    assert_eq!(scene_of_run(&out)?.bodies, scene.bodies);
+    fs::remove_dir_all(out.join("checkpoints"))?;
+    // The report names a built-in scene of the same name.
+    assert_ne!(scene_of_run(&out)?.bodies, scene.bodies);
+    let report = out.join("run.json");
+    fs::write(&report, fs::read_to_string(&report)?.replace("\"floating\"", "\"nowhere\""))?;
+    let unknown = scene_of_run(&out);
+    assert!(
+        matches!(&unknown, Err(RunError::UnknownScene(reason)) if reason.contains("nowhere")),
+        "{unknown:?}"
+    );
+    assert!(RunFrames::open(&out, Some(scene)).is_ok());
+    let empty = tempfile::tempdir()?;
+    assert!(!RunFrames::exist_in(empty.path()));
+    assert!(matches!(RunFrames::open(empty.path(), None), Err(RunError::Input(_))));
+    Ok(())
+}

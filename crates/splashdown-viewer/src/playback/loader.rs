@@ -1,0 +1,109 @@
+//! A thread that reads the frames that are wanted next.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+use splashdown::BodyMesh;
+use splashdown_run::{PlayedFrame, RunFrames};
+
+/// Something that the thread has read.
+pub enum Loaded {
+    /// The meshes of the bodies, before the first frame.
+    Bodies(Result<Vec<BodyMesh>, String>),
+    /// A frame by its number, or why it cannot be read.
+    Frame(u32, Result<PlayedFrame, String>),
+}
+
+/// The two sides of the thread.
+#[derive(Default)]
+struct Exchange {
+    /// In the order in which they are read.
+    wanted: Vec<u32>,
+    reading: Option<u32>,
+    loaded: Vec<Loaded>,
+    ends: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    exchange: Mutex<Exchange>,
+    changed: Condvar,
+}
+
+/// Reads frames. Dropping it ends the thread after the file that it is reading.
+pub struct Loader {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Loader {
+    /// Starts the thread. `repaint` is called whenever something is loaded.
+    ///
+    /// # Errors
+    /// If the system starts no thread.
+    pub fn start(frames: Arc<RunFrames>, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let its = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("splashdown-frames".to_owned())
+            .spawn(move || read_all(&frames, &its, repaint))?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Replaces the frames that are wanted. One that is being read, or was read since the last call of
+    /// [`take`](Self::take), is not read again.
+    pub fn want(&self, mut wanted: Vec<u32>) {
+        let mut exchange = lock(&self.shared.exchange);
+        wanted.retain(|&number| {
+            let is_loaded = |loaded: &Loaded| matches!(loaded, Loaded::Frame(other, _) if *other == number);
+            exchange.reading != Some(number) && !exchange.loaded.iter().any(is_loaded)
+        });
+        exchange.wanted = wanted;
+        self.shared.changed.notify_one();
+    }
+
+    /// What was loaded since the last call.
+    pub fn take(&self) -> Vec<Loaded> {
+        std::mem::take(&mut lock(&self.shared.exchange).loaded)
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        lock(&self.shared.exchange).ends = true;
+        self.shared.changed.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // A panic is already reported.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn read_all(frames: &RunFrames, shared: &Shared, repaint: impl Fn()) {
+    let bodies = frames.body_meshes().map_err(|error| error.to_string());
+    lock(&shared.exchange).loaded.push(Loaded::Bodies(bodies));
+    repaint();
+    loop {
+        let mut exchange = lock(&shared.exchange);
+        while exchange.wanted.is_empty() && !exchange.ends {
+            exchange = shared.changed.wait(exchange).unwrap_or_else(PoisonError::into_inner);
+        }
+        if exchange.ends {
+            return;
+        }
+        let number = exchange.wanted.remove(0);
+        exchange.reading = Some(number);
+        drop(exchange);
+        let frame = frames.read(number).map_err(|error| error.to_string());
+        let mut exchange = lock(&shared.exchange);
+        exchange.reading = None;
+        exchange.loaded.push(Loaded::Frame(number, frame));
+        drop(exchange);
+        repaint();
+    }
+}
+
+/// A poisoned lock is still usable: every change is one assignment.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,121 @@
+//! Playing the frames of a finished run from its folder.
+//!
+//! A thread reads the frames that follow the position of the [`Timeline`], and a cache keeps them up to a limit of
+//! memory. None of it needs a device: the app uploads the frame that it shows.
+
+mod cache;
+mod loader;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use splashdown::BodyMesh;
+use splashdown_run::{PlayedFrame, RunFrames};
+
+use crate::timeline::Timeline;
+use cache::Cache;
+use loader::{Loaded, Loader};
+
+/// Bytes of the frames in memory.
+pub const MEMORY: usize = 512 << 20;
+
+/// A run that is played.
+pub struct Playback {
+    frames: Arc<RunFrames>,
+    loader: Loader,
+    cache: Cache<Arc<PlayedFrame>>,
+    bodies: Option<Arc<[BodyMesh]>>,
+    /// Frames that cannot be read.
+    failed: BTreeSet<u32>,
+    /// Whether a file that cannot be read was reported.
+    reported: bool,
+}
+
+impl Playback {
+    /// Starts to read the frames. At most `memory` bytes of them stay in memory, but always two frames. `repaint` is
+    /// called when there is something new to show. Returns also the timeline, and what is missing in the folder.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn start(
+        frames: RunFrames,
+        memory: usize,
+        repaint: impl Fn() + Send + 'static,
+    ) -> Result<(Self, Timeline, Option<String>), String> {
+        let frames = Arc::new(frames);
+        let (has_particles, has_meshes) = frames.has_particles_and_meshes();
+        let mut timeline = Timeline::new(frames.numbers().collect(), frames.scene().frame_rate)
+            .ok_or_else(|| format!("`{}` has no frames", frames.folder().display()))?;
+        timeline.can_continue = frames.has_checkpoint();
+        (timeline.has_particles, timeline.has_meshes) = (has_particles, has_meshes);
+        let problems: Vec<String> = frames.problems().collect();
+        let problem = (!problems.is_empty())
+            .then(|| format!("`{}`: {}", frames.folder().display(), problems.join("; ")));
+        let loader = Loader::start(Arc::clone(&frames), repaint)
+            .map_err(|error| format!("no thread could be started to read the frames: {error}"))?;
+        let playback = Self {
+            frames,
+            loader,
+            cache: Cache::new(memory),
+            bodies: None,
+            failed: BTreeSet::new(),
+            reported: false,
+        };
+        Ok((playback, timeline, problem))
+    }
+
+    /// Receives what was read and requests what is needed next. Returns the message about the first file that cannot be
+    /// read; later ones are only counted in [`Timeline::left_out`].
+    pub fn update(&mut self, timeline: &mut Timeline) -> Option<String> {
+        let mut message = None;
+        for loaded in self.loader.take() {
+            match loaded {
+                Loaded::Bodies(Ok(meshes)) => self.bodies = Some(meshes.into()),
+                Loaded::Bodies(Err(reason)) => {
+                    self.bodies = Some(Arc::from([]));
+                    message = Some(format!("the bodies are not shown: {reason}"));
+                }
+                Loaded::Frame(number, Ok(frame)) => {
+                    if let Some(problem) = frame.problems.first() {
+                        let problem = format!("frame {number} is shown without a file: {problem}");
+                        message = self.report(&problem).or(message);
+                    }
+                    let bytes = frame.bytes();
+                    let distance = |number| timeline.distance(number);
+                    self.cache.insert(number, Arc::new(frame), bytes, distance);
+                }
+                Loaded::Frame(number, Err(reason)) => {
+                    self.failed.insert(number);
+                    timeline.leave_out(number);
+                    let problem = format!("frame {number} is left out: {reason}");
+                    message = self.report(&problem).or(message);
+                }
+            }
+        }
+        let is_wanted = |&number: &u32| self.cache.get(number).is_none() && !self.failed.contains(&number);
+        self.loader.want(timeline.upcoming(self.cache.capacity()).filter(is_wanted).collect());
+        message
+    }
+
+    /// The message, unless one was reported.
+    fn report(&mut self, message: &str) -> Option<String> {
+        let is_first = !std::mem::replace(&mut self.reported, true);
+        is_first.then(|| format!("{message}. Others like it are not reported"))
+    }
+
+    /// A frame, if it is in memory and the meshes of the bodies are known.
+    pub fn frame(&self, number: u32) -> Option<Arc<PlayedFrame>> {
+        self.bodies.as_ref()?;
+        self.cache.get(number).map(Arc::clone)
+    }
+
+    /// The meshes of the bodies, in the order of the states in a frame.
+    pub fn bodies(&self) -> Option<Arc<[BodyMesh]>> {
+        self.bodies.clone()
+    }
+
+    /// The run.
+    pub fn run(&self) -> &RunFrames {
+        &self.frames
+    }
+}
