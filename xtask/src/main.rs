@@ -4,6 +4,7 @@
 mod api;
 mod bench;
 mod build_times;
+mod cycles;
 mod demo;
 mod fuzz;
 mod guide;
@@ -49,6 +50,10 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   build-times [--jobs N]
                     measure builds of the demo, the whole program and the library into an empty folder
   pictures [SCENE]  render the pictures of the README and the gallery
+  cycles [--samples N] [--again] [--dev]
+                    draw ten frames with the program and with Cycles, the path tracer of Blender, installed from PyPI,
+                    and write the pairs and their differences into the guide (--samples: of Cycles, 64 by default;
+                    --again: draw those of Cycles again; --dev: build without optimization)
   web [--build] [--port N]
                     build the web page and serve it on localhost (--build: build only)
   wheel [--quick]   build the Python package and test it in an empty environment (--quick: without optimization, window
@@ -96,6 +101,7 @@ fn main() -> ExitCode {
         "bench" => bench::run(rest),
         "build-times" => build_times::run(rest),
         "pictures" => pictures::run(rest),
+        "cycles" => cycles::run(rest),
         "web" => web::run(rest),
         "wheel" => wheel::run(rest),
         "validate" => validate::run(rest),

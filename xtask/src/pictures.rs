@@ -36,8 +36,17 @@ const PICTURES: [(&str, &[Shown]); 11] = [
 ];
 
 /// Scenes that appear only in the window's gallery, with the frame of the surface that is shown.
-const THUMBNAILS: [(&str, u32); 4] =
-    [("dam-break-small", 18), ("double-dam-break", 16), ("drum", 36), ("honey-coil", 20)];
+const THUMBNAILS: [(&str, u32); 9] = [
+    ("dam-break-small", 18),
+    ("double-dam-break", 16),
+    ("drum", 36),
+    ("honey-coil", 20),
+    ("thesis-8k", 16),
+    ("thesis-16k", 16),
+    ("thesis-32k", 16),
+    ("thesis-64k", 16),
+    ("thin-cup", 30),
+];
 
 /// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {

@@ -27,6 +27,21 @@ pub enum Tank {
     Hidden,
 }
 
+/// What is drawn around a domain, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Surroundings {
+    /// Height of the floor. It is slightly below the box, so that there is no z-fighting with the
+    /// underside of the fluid.
+    pub floor_height: f32,
+    /// Length of a tile of the floor.
+    pub tile_size: f32,
+    /// Distance from the domain at which haze replaces 63 % of the light of the floor.
+    pub fade_distance: f32,
+    /// Thickness of the panes of the tank.
+    pub glass_thickness: f32,
+}
+
 /// One edge of the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxEdge {
@@ -42,6 +57,17 @@ impl Domain {
     /// A box with walls on all sides except the top.
     pub fn closed(min: [f32; 3], max: [f32; 3]) -> Domain {
         Domain { min, max, closed: [true, true, true, false, true, true] }
+    }
+
+    /// Sizes of the floor and of the tank, which depend on those of the box.
+    pub fn surroundings(&self) -> Surroundings {
+        let extent = Vec3::from(self.max) - Vec3::from(self.min);
+        Surroundings {
+            floor_height: self.min[1] - 0.002 * extent.length(),
+            tile_size: round_tile_size(0.2 * extent.x.max(extent.z)),
+            fade_distance: 16.0 * extent.length(),
+            glass_thickness: 0.004 * extent.length(),
+        }
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
@@ -99,9 +125,27 @@ impl Domain {
     }
 }
 
+/// A round number of 1, 2 or 5 times a power of ten, at most `length`.
+fn round_tile_size(length: f32) -> f32 {
+    let power = 10f32.powf(length.log10().floor());
+    match length / power {
+        ratio if ratio >= 5.0 => 5.0 * power,
+        ratio if ratio >= 2.0 => 2.0 * power,
+        _ => power,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tile_sizes_are_round_numbers() {
+        for (length, tile) in [(0.4, 0.2), (0.99, 0.5), (1.0, 1.0), (7.0, 5.0), (23.0, 20.0)] {
+            let found = round_tile_size(length);
+            assert!((found - tile).abs() < 1e-5 * tile, "{length} gives {found}");
+        }
+    }
 
     #[test]
     fn there_are_twelve_different_edges_of_the_right_lengths() {

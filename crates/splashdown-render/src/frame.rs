@@ -164,7 +164,6 @@ impl<'a> Frame<'a> {
         self.sky.fill(globals)?;
         let usual = Sky::day().on_floor(Vec3::from(Frame::SUN).normalize_or_zero());
         let daylight = self.sky.on_floor(sun) / usual;
-        globals.daylight = daylight.into();
         globals.bounced = (BOUNCED * daylight).into();
         if let Some(floor) = &self.floor {
             floor.fill(globals)?;
@@ -186,8 +185,8 @@ impl<'a> Frame<'a> {
         let (low, high) = (Vec3::from(self.domain.min), Vec3::from(self.domain.max));
         let extent = high - low;
         let scale = height / 720.0;
-        // Slightly below the box, so that there is no z-fighting with the underside of the fluid.
-        let floor_height = low.y - 0.002 * extent.length();
+        let around = self.domain.surroundings();
+        let floor_height = around.floor_height;
         let (shadow_min, shadow_size) = shadow_rectangle(&self.domain, sun, floor_height);
         let mut globals = Globals {
             clip_from_world: view.clip_from_world.to_cols_array_2d(),
@@ -201,15 +200,16 @@ impl<'a> Frame<'a> {
             sun: sun.into(),
             floor_height,
             box_min: low.into(),
-            tile_size: round_tile_size(0.2 * extent.x.max(extent.z)),
+            tile_size: around.tile_size,
             box_max: high.into(),
-            fade_distance: 16.0 * extent.length(),
+            fade_distance: around.fade_distance,
             shadow_min: shadow_min.into(),
             shadow_size: shadow_size.into(),
             picture_size: [width, height],
             ray_offset: 2e-5 * extent.length(),
             contact_distance: 0.006 * extent.length(),
-            glass_thickness: 0.004 * extent.length(),
+            glass_thickness: around.glass_thickness,
+            has_panes: u32::from(self.tank == Tank::Glass),
             // Seen from inside, a pane would mirror the scene and hide nothing.
             glass: if self.domain.contains(view.eye) { [0; 4] } else { panes_of(&self.domain) },
             sample_count: 1,
@@ -284,16 +284,6 @@ fn shadow_rectangle(domain: &Domain, sun: Vec3, floor_height: f32) -> (Vec2, Vec
     (low - margin, high - low + 2.0 * margin)
 }
 
-/// The largest 1, 2 or 5 times a power of ten that does not exceed the given length.
-fn round_tile_size(length: f32) -> f32 {
-    let power = 10f32.powf(length.log10().floor());
-    match length / power {
-        ratio if ratio >= 5.0 => 5.0 * power,
-        ratio if ratio >= 2.0 => 2.0 * power,
-        _ => power,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -313,14 +303,6 @@ mod tests {
             let uv =
                 (Vec2::new(hit.x, hit.z) - Vec2::from(globals.shadow_min)) / Vec2::from(globals.shadow_size);
             assert!(uv.cmpgt(Vec2::ZERO).all() && uv.cmplt(Vec2::ONE).all(), "{uv}");
-        }
-    }
-
-    #[test]
-    fn tile_sizes_are_round_numbers() {
-        for (length, tile) in [(0.4, 0.2), (0.99, 0.5), (1.0, 1.0), (7.0, 5.0), (23.0, 20.0)] {
-            let found = round_tile_size(length);
-            assert!((found - tile).abs() < 1e-5 * tile, "{length} gives {found}");
         }
     }
 

@@ -62,7 +62,8 @@ pub(crate) struct Globals {
     pub foam_radius: f32,
     pub droplet_radius: f32,
     pub droplet_shutter: f32,
-    pub padding: [f32; 2],
+    pub water_root: u32,
+    pub body_root: u32,
     pub ray_shift: [f32; 3],
     pub linear_output: u32,
     pub glass: [u32; 4],
@@ -84,10 +85,8 @@ pub(crate) struct Globals {
     pub shutter_time: f32,
     pub floor_tint: [f32; 3],
     pub glass_thickness: f32,
-    pub daylight: [f32; 3],
-    pub water_root: u32,
     pub bounced: [f32; 3],
-    pub body_root: u32,
+    pub has_panes: u32,
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -125,10 +124,10 @@ mod tests {
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter padding ray_shift linear_output glass
+            slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter water_root body_root ray_shift linear_output glass
             zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
-            contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness daylight
-            water_root bounced body_root edges);
+            contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness bounced
+            has_panes edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

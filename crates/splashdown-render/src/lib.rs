@@ -94,7 +94,7 @@ pub use buffers::{
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 pub use colouring::{Colouring, Quantity};
-pub use domain::{Domain, Tank};
+pub use domain::{Domain, Surroundings, Tank};
 pub use droplets::DrawnDroplets;
 pub use error::RenderError;
 pub use floor::{Floor, FloorPattern};

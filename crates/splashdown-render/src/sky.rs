@@ -76,7 +76,8 @@ impl Sky {
             zenith: [0.07, 0.13, 0.34],
             horizon: [0.78, 0.40, 0.26],
             sun_light: [2.60, 1.05, 0.34],
-            sky_light: [0.30, 0.28, 0.38],
+            // The integral of what is drawn, weighted by the cosine, with the glow around the sun.
+            sky_light: [0.36, 0.24, 0.33],
             glow: [1.00, 0.34, 0.06],
             haze: [0.30, 0.20, 0.19],
             hills: [0.10, 0.075, 0.095],

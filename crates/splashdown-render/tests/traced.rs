@@ -176,6 +176,71 @@ fn light_is_absorbed_along_the_path() {
 }
 
 #[test]
+fn matte_surfaces_are_darker_in_water() {
+    let Some(mut harness) = common::harness() else { return };
+    let camera = Camera {
+        eye: [1.0, 2.5, 0.5],
+        target: [1.0, 0.0, 0.5],
+        up: [0.0, 0.0, -1.0],
+        field_of_view_deg: 30.0,
+    };
+    let plate = slab([0.6, 0.1, 0.2], [1.4, 0.2, 0.8]);
+    let mut measured = |albedo: f32| {
+        let plate = PlacedBody::new(&plate.vertices, &plate.triangles, [albedo; 3]).unwrap();
+        let mut seen = |index: f32, per_metre: f32| {
+            let liquid =
+                with(Liquid::water(), |l| (l.refractive_index, l.absorption) = (index, [per_metre; 3]));
+            let picture = draw(&mut harness, &tank(), liquid, Some(&plate), camera, one_sample());
+            light(picture.pixel([SIZE[0] / 2, SIZE[1] / 2])[1])
+        };
+        (seen(1.333, 0.0) - seen(1.333, 400.0)) / seen(1.0, 0.0)
+    };
+    // The surface reflects 2 % of light from above and 47.5 % of diffuse light from below. Of the latter the plate sends
+    // its albedo back.
+    let expected = |albedo: f64| 0.98 * (1.0 - 0.475) / (1.0 - 0.475 * albedo);
+    let dark_and_light = [0.2, 0.7].map(|albedo| {
+        let (measured, expected) = (measured(albedo), expected(f64::from(albedo)));
+        assert!((measured - expected).abs() < 0.03, "{measured}, expected {expected} for {albedo}");
+        measured
+    });
+    // Negative control: the same factor for all.
+    assert!(dark_and_light[1] - dark_and_light[0] > 0.06, "{dark_and_light:?}");
+}
+
+#[test]
+fn a_pane_takes_sunlight() {
+    let Some(mut harness) = common::harness() else { return };
+    let mesh = sample::ball([0.5, 0.2, 0.5], 0.1, 16);
+    // Straight down on a point whose ray of the sun passes the pane at the upper end of x.
+    let camera = Camera {
+        eye: [2.3, 2.5, 0.5],
+        target: [2.3, 0.0, 0.5],
+        up: [0.0, 0.0, -1.0],
+        field_of_view_deg: 30.0,
+    };
+    let Harness { device, .. } = &harness;
+    let surface = UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let meshes = TracedMeshes::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles, []).unwrap();
+    let mut brightness = |tank: Tank| {
+        let drawn = DrawnSurface::new(surface.buffers(), Liquid::water());
+        let mut frame = Frame::new(camera, domain()).with_surface(drawn).with_tracing(&meshes, one_sample());
+        frame.tank = tank;
+        light(harness.draw(SIZE, &frame).pixel([SIZE[0] / 2, SIZE[1] / 2])[1])
+    };
+    // Of the sun 84.3 % pass glass at 59 degrees; the light of the sky remains.
+    let sky = Sky::day();
+    let [x, y, z] = Frame::SUN;
+    let sun = f64::from(sky.sun_light[1] * y / (x * x + y * y + z * z).sqrt());
+    let sky = f64::from(sky.sky_light[1]);
+    let expected = (0.843 * sun + sky) / (sun + sky);
+    let measured = brightness(Tank::Glass) / brightness(Tank::Hidden);
+    // One step of a byte is two percent of this light.
+    assert!((measured - expected).abs() < 0.03, "{measured}, expected {expected}");
+    // Negative control: a pane without effect.
+    assert!(measured < 0.95, "{measured}");
+}
+
+#[test]
 fn a_ball_of_water_focuses_sunlight_on_the_floor() {
     let Some(mut harness) = common::harness() else { return };
     let mesh = sample::ball([1.0, 0.5, 0.5], 0.25, 48);

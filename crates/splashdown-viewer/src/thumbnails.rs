@@ -57,4 +57,24 @@ const PICTURES: &[(&str, &[u8])] = pictures![
     "paddle-wheel",
     "sloshing-tank",
     "spheric2",
+    "thesis-16k",
+    "thesis-32k",
+    "thesis-64k",
+    "thesis-8k",
+    "thin-cup",
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_has_a_thumbnail() {
+        for (name, _) in scenes() {
+            let (_, png) =
+                PICTURES.iter().find(|(scene, _)| *scene == name).unwrap_or_else(|| panic!("{name}"));
+            let picture = decode_png(png).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!((picture.width, picture.height), (192, 108), "{name}");
+        }
+    }
+}

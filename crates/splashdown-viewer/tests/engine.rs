@@ -121,6 +121,32 @@ fn a_refused_change_leaves_the_simulation_as_it_is() {
     until(&mut engine, |now| now.stats.time < time);
 }
 
+/// A camera may be moved into the water.
+#[test]
+fn a_camera_inside_the_water_draws_every_view() {
+    let Some(gpu) = testing::gpu_or_skip("a_camera_inside_the_water_draws_every_view") else { return };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    engine.send(Command::Surface(true));
+    let (snapshot, _) = until(&mut engine, |now| now.drawn.mesh().is_some());
+    let mut picture = Picture::new(Arc::clone(&gpu)).unwrap();
+    let mut means = Vec::new();
+    for mode in DisplayMode::ALL {
+        let look = Look { mode, ..Look::default() };
+        let mut mean = |camera: Camera| {
+            picture.draw([160, 90], &snapshot, &look, camera).unwrap();
+            let rgba = picture.read().unwrap();
+            rgba.chunks_exact(4).map(|pixel| u64::from(pixel[1])).sum::<u64>() / (160 * 90)
+        };
+        // The eye is in the middle of the block of water.
+        let inside = mean(Camera::orbit([0.25, 0.2, 0.15], 0.05, 90.0, 0.0, 35.0));
+        let outside = mean(Camera::orbit([0.5, 0.2, 0.15], 1.6, 20.0, 20.0, 35.0));
+        assert!(inside > 10, "{mode:?} is black inside the water: {inside}");
+        means.push((inside, outside));
+    }
+    // Control: the pictures are those of two places.
+    assert!(means.iter().any(|(inside, outside)| inside.abs_diff(*outside) > 5), "{means:?}");
+}
+
 /// Number of pixels with a clearly different colour.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     a.chunks_exact(4)

@@ -4,9 +4,8 @@
 // 1: the panes behind the liquid. 0: those in front of it.
 override BEHIND: u32 = 0u;
 
-const GLASS_INDEX = 1.5;
-// Where the edge of a pane shows the light that it guides, which is green from iron in the glass.
-const EDGE_COLOUR = vec3f(0.30, 0.56, 0.47);
+// Absorption of clear glass with little iron, 1/m.
+const ABSORPTION = vec3f(2.0, 0.8, 1.2);
 
 struct Varying {
     @builtin(position) position: vec4f,
@@ -19,9 +18,18 @@ fn is_glass(axis: u32, upper: u32) -> bool {
     return globals.glass[axis] != 0u && ((globals.glass[axis] >> upper) & 1u) == 1u;
 }
 
+// Smallest drawn thickness of a pane in pixels. Thinner panes are enlarged and made fainter, because narrow faces would
+// be drawn as dashes.
+const MIN_THICKNESS = 2.0;
+
+fn drawn_thickness() -> f32 {
+    let centre = 0.5 * (globals.box_min + globals.box_max);
+    return max(globals.glass_thickness, MIN_THICKNESS * globals.pixel_angle * distance(globals.eye, centre));
+}
+
 // The slab of a pane: the panes along x are between those along z.
 fn slab_corner(axis: u32, upper: u32, corner: vec3u) -> vec3f {
-    let t = globals.glass_thickness;
+    let t = drawn_thickness();
     var low = globals.box_min;
     var high = globals.box_max;
     low.y = globals.floor_height;
@@ -67,19 +75,29 @@ fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) pane:
     return out;
 }
 
+// Light that leaves the narrow face of a pane, which one looks into: total reflection at the large faces guides the
+// light of the opposite narrow face.
+fn guided_light(world: vec3f, from_eye: vec3f, normal: vec3f, cosine: f32) -> vec3f {
+    let size = vec3f(globals.box_max.x, globals.box_max.y, globals.box_max.z)
+        - vec3f(globals.box_min.x, globals.floor_height, globals.box_min.z);
+    let across = dot(abs(normal), size);
+    let bent = sqrt(1.0 - (1.0 - cosine * cosine) / (GLASS_INDEX * GLASS_INDEX));
+    let light = environment(world - across * normal, from_eye, 4.0 * globals.pixel_angle);
+    return light * exp(-ABSORPTION * (across / bent));
+}
+
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {
     let from_eye = normalize(in.world - globals.eye);
     let cosine = max(-dot(from_eye, in.normal), 0.0);
-    // Both faces of the pane reflect.
     let one = reflectance(cosine, 1.0 / GLASS_INDEX);
-    let mirrored = 2.0 * one / (1.0 + one);
     let reflection = environment(in.world, reflect(from_eye, in.normal), 4.0 * globals.pixel_angle);
     if in.is_edge == 1u {
-        let light = mix(EDGE_COLOUR, vec3f(0.75, 0.88, 0.84), 0.35 * max(in.normal.y, 0.0));
-        let opacity = 0.55;
-        let colour = mix(light * globals.daylight * (0.55 + 0.35 * max(dot(in.normal, globals.sun), 0.0)), reflection, one);
-        return vec4f(present(colour) * opacity, opacity);
+        let guided = guided_light(in.world, from_eye, in.normal, cosine);
+        let opacity = globals.glass_thickness / drawn_thickness();
+        return vec4f(present(mix(guided, reflection, one)) * opacity, opacity);
     }
+    // Both faces of the pane reflect.
+    let mirrored = 1.0 - through_pane(cosine);
     return vec4f(present(reflection) * mirrored, mirrored + (1.0 - mirrored) * 0.012);
 }

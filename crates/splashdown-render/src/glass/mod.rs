@@ -3,7 +3,8 @@
 //! # How it works
 //! Each of the four upright walls that is closed is a slab outside the box. Only faces towards the
 //! eye are drawn. The large faces reflect the environment (Fresnel equations, both faces of the
-//! pane); the narrow ones show the green light that glass guides to its edges. Panes behind the
+//! pane); the narrow ones show the light that the pane guides from its opposite end, green and dark
+//! from absorption on the way. Panes behind the
 //! liquid are drawn before it, the others after it. There is no lid: a pane that reflects the sky
 //! would hide the liquid in most views. The floor of the tank is that of the scene.
 //!

@@ -110,16 +110,21 @@ fn floor_albedo(p: vec2f, width: f32) -> vec3f {
     return globals.floor_tint * tone * (1.0 - 0.55 * joint);
 }
 
+// Light of the sun (first column) and of the sky (second column) on a point of the floor.
+fn light_on_floor(p: vec2f) -> mat2x3f {
+    return mat2x3f(globals.sun_light * globals.sun.y * sunlight_on_floor(p), globals.sky_light * sky_on_floor(p));
+}
+
 // Light from a point of the floor that a ray hits after `distance`. `spread`: angular width of the
 // ray.
 fn floor_colour(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> vec3f {
     let p = (origin + direction * distance).xz;
     let width = distance * spread / (max(-direction.y, 0.02) * globals.tile_size);
-    let light = globals.sun_light * globals.sun.y * sunlight_on_floor(p) + globals.sky_light * sky_on_floor(p);
+    let light = light_on_floor(p);
     let centre = 0.5 * (globals.box_min + globals.box_max).xz;
     let away = length(p - centre) / globals.fade_distance;
     let haze = 1.0 - exp(-away * away);
-    return mix(floor_albedo(p, width) * light, globals.haze, haze);
+    return mix(floor_albedo(p, width) * (light[0] + light[1]), globals.haze, haze);
 }
 
 // Light from the environment in the unit direction of a ray, without fluid and bodies.

@@ -53,7 +53,8 @@ struct Globals {
     foam_radius: f32,       // radius of the fluid's particles
     droplet_radius: f32,
     droplet_shutter: f32,   // s; time for which droplets are blurred
-    padding: vec2f,
+    water_root: u32,        // root of the tree of the liquid's triangles
+    body_root: u32,         // root of the tree of the bodies' triangles
     ray_shift: vec3f,       // moves every view ray: place in the pixel, and on the lens
     linear_output: u32,     // 1: the target stores linear light, without tone mapping
     glass: vec4u,           // per axis: bit 0: the lower side is a pane of glass, bit 1: the upper one
@@ -75,10 +76,8 @@ struct Globals {
     shutter_time: f32,      // s; time of the sample relative to the frame
     floor_tint: vec3f,      // factor on the reflectance of the floor
     glass_thickness: f32,   // m
-    daylight: vec3f,        // light on the floor relative to that of the default sky and sun
-    water_root: u32,        // root of the tree of the liquid's triangles
     bounced: vec3f,         // light from the floor on surfaces that face it
-    body_root: u32,         // root of the tree of the bodies' triangles
+    has_panes: u32,         // 1: the panes take sunlight
     edges: array<Edge, 12>,
 }
 

@@ -14,6 +14,31 @@ fn reflectance(cosine: f32, ratio: f32) -> f32 {
     return 0.5 * (s * s + p * p);
 }
 
+// Reflectance of the surface of a liquid for diffuse light from inside, most of which is reflected totally (fit of
+// Egan and Hilgeman 1979).
+fn internal_reflectance() -> f32 {
+    let n = globals.refractive_index;
+    return 0.668 + 0.0636 * n + 0.710 / n - 1.440 / (n * n);
+}
+
+// Factors on the light of the sun (first column) and of the sky (second column) that a matte surface in the liquid
+// sends out of it. Wet surfaces are darker (Lekner and Dorf 1988): light that leaves the liquid spreads over a larger
+// solid angle, and of what is reflected back inside, the matte surface absorbs a part.
+fn wet(albedo: vec3f) -> mat2x3f {
+    let inside = internal_reflectance();
+    let repeated = 1.0 / (1.0 - min(albedo, vec3f(1.0)) * inside);
+    let spread = 1.0 / (globals.refractive_index * globals.refractive_index);
+    return mat2x3f(spread * repeated, (1.0 - inside) * repeated);
+}
+
+// Fraction of the light that a pane of glass lets pass, with repeated reflection between its faces. `cosine`: of the
+// angle of incidence.
+const GLASS_INDEX = 1.5;
+fn through_pane(cosine: f32) -> f32 {
+    let one = reflectance(cosine, 1.0 / GLASS_INDEX);
+    return (1.0 - one) / (1.0 + one);
+}
+
 // Specular highlight of the sun on a slightly rough surface (GGX with its usual visibility term).
 fn sun_highlight(normal: vec3f, to_eye: vec3f, facing: f32) -> f32 {
     let half_way = normalize(globals.sun + to_eye);

@@ -4,15 +4,15 @@
 //! Fragment shaders follow rays through the trees of liquid and bodies (module `tree`).
 //!
 //! 1. *Sunlight on the floor*: every texel of a map of the floor follows one ray of the sun through
-//!    the liquid, with refraction, absorption and total internal reflection, and stores where it
-//!    arrives. Points with additive blending then collect the light where it arrives, which makes
+//!    the panes and the liquid, with refraction, absorption and total internal reflection, and stores
+//!    where it arrives. Points with additive blending then collect the light where it arrives, which makes
 //!    caustics and the shadows of bodies. A map of the visible fraction of the sky darkens the floor
 //!    around bodies.
 //! 2. *Samples*: background, bodies, liquid, droplets, foam and glass are drawn with one sample per pixel as
 //!    light without tone mapping. The depth of the liquid is drawn first, so that its shader runs
 //!    once per pixel. It follows the refracted ray from surface to surface (Fresnel equations, total
 //!    internal reflection, absorption by Beer-Lambert) until it meets a body, the floor or the sky,
-//!    and the reflected ray if it matters. Every sample shifts the place in the pixel, on the lens
+//!    and the reflected ray if it matters. Bodies and floor are darker in the liquid than outside. Every sample shifts the place in the pixel, on the lens
 //!    and in time; the samples are averaged.
 //! 3. *Tone mapping* of the average.
 //!
@@ -21,7 +21,7 @@
 //! pixel once for each triangle in it, which is three to four with cells of half a spacing, and
 //! would leave refraction and highlights aliased. A path tracer that chooses every direction at
 //! random needs hundreds of samples; here nothing is random below 17 samples per pixel, so that
-//! pictures with few samples have no noise.
+//! pictures with few samples have no noise. `cargo xtask cycles` compares both.
 //!
 //! # Things we might try
 //! Motion blur of the liquid; caustics on bodies; bubbles under water; droplets in reflections.

@@ -1,10 +1,29 @@
-// Where sunlight meets the floor: each pixel follows one ray of the sun through liquid and stores
+// Where sunlight meets the floor: each pixel follows one ray of the sun through panes and liquid and stores
+// where it arrives. Needs globals.wgsl, fullscreen.wgsl, optics.wgsl, trace.wgsl.
 
 override SIDE: u32 = 512u;
-// where it arrives. Needs globals.wgsl, fullscreen.wgsl, optics.wgsl, trace.wgsl.
 
 // Surfaces that a ray crosses before its light counts as lost.
 const CROSSINGS = 6;
+
+// Fraction of the light of a ray that the panes of the tank let pass up to a distance.
+fn through_tank(origin: vec3f, direction: vec3f, limit: f32) -> f32 {
+    var light = 1.0;
+    for (var pane = 0u; pane < 4u; pane++) {
+        let axis = 2u * (pane >> 1u);
+        let upper = pane & 1u;
+        let is_glass = globals.has_panes == 1u && ((globals.glass[axis] >> upper) & 1u) == 1u;
+        let plane = select(globals.box_min[axis], globals.box_max[axis], upper == 1u);
+        let distance = (plane - origin[axis]) / direction[axis];
+        let place = origin + distance * direction;
+        let other = 2u - axis;
+        let is_beside = place[other] < globals.box_min[other] || place[other] > globals.box_max[other];
+        if is_glass && distance > 0.0 && distance < limit && place.y < globals.box_max.y && !is_beside {
+            light *= through_pane(abs(direction[axis]));
+        }
+    }
+    return light;
+}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -27,6 +46,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             if to_floor < 0.0 {
                 return vec4f(-1.0, -1.0, 0.0, 0.0);
             }
+            light *= through_tank(origin, direction, to_floor);
             let arrived = (origin + direction * to_floor).xz;
             path += select(0.0, to_floor, inside);
             return vec4f((arrived - globals.shadow_min) / globals.shadow_size, path, light);
@@ -37,6 +57,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             return vec4f(-1.0, -1.0, 0.0, 0.0);
         }
         path += select(0.0, hit.distance, inside);
+        light *= through_tank(origin, direction, hit.distance);
         let leaving = dot(direction, found.face) > 0.0;
         if leaving && place.y - globals.floor_height < globals.contact_distance && found.face.y < 0.0 {
             return vec4f((place.xz - globals.shadow_min) / globals.shadow_size, path, light);

@@ -17,6 +17,14 @@ fn passed(path: f32) -> vec3f {
     return exp(-globals.liquid_absorption * path) * (1.0 - turbidity(path));
 }
 
+// Light that a point of the floor below the liquid sends out of it.
+fn wet_floor(p: vec2f) -> vec3f {
+    let albedo = floor_albedo(p, 0.0);
+    let light = light_on_floor(p);
+    let factors = wet(albedo);
+    return albedo * (light[0] * factors[0] + light[1] * factors[1]);
+}
+
 // Light along a ray that starts at the surface of the liquid, which has this normal there. A part of the light is reflected at
 // every surface: a picture of few samples follows the stronger part, one of many samples chooses.
 fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pixel: vec2u) -> vec3f {
@@ -43,13 +51,14 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             weight *= passed(hit.distance);
         }
         if found.is_body {
-            return scattered + weight * matte(place, found.normal, found.colour, -direction);
+            let light = matte(place, found.normal, found.colour, -direction);
+            return scattered + weight * light * select(vec3f(1.0), wet(found.colour)[1], inside);
         }
         let leaving = dot(direction, found.face) > 0.0;
         let is_on_floor = has_floor() && place.y - globals.floor_height < globals.contact_distance;
         if leaving && is_on_floor && found.face.y < 0.0 {
             // The liquid touches the floor without air between them.
-            return scattered + weight * floor_colour(place, direction, 0.0, spread);
+            return scattered + weight * wet_floor(place.xz);
         }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
         let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);

@@ -19,6 +19,16 @@ pub struct Beside {
     pub foam: Option<Arc<DiffuseParticles>>,
 }
 
+impl Beside {
+    /// Reads what belongs to the frame of a file in the folder of a finished run, such as `out/mesh/surface_0012.ply`.
+    ///
+    /// # Errors
+    /// [`RunError::Input`] that says which file is missing and how to draw without it; [`RunError::Io`].
+    pub fn of_file(path: &Path, scene: &Scene) -> Result<Self, RunError> {
+        FrameOfFile::of(path, scene).beside(scene)
+    }
+}
+
 /// The frame to which a file of a finished run belongs.
 #[derive(Debug)]
 pub(super) struct FrameOfFile {

@@ -50,7 +50,7 @@ pub fn install(ctx: &Context) -> bool {
         let family = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
         let data = FontData::from_static(include_bytes!("../../fonts/icons.ttf"));
         let families = vec![family(FontFamily::Proportional), family(FontFamily::Monospace)];
-        ctx.add_font(FontInsert { name: "icons".to_owned(), data: data.into(), families });
+        ctx.add_font(FontInsert { name: "icons".to_owned(), data, families });
     }
     is_there
 }

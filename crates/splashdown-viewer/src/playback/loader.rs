@@ -11,7 +11,7 @@ pub enum Loaded {
     /// The meshes of the bodies, before the first frame.
     Bodies(Result<Vec<BodyMesh>, String>),
     /// A frame by its number, or why it cannot be read.
-    Frame(u32, Result<PlayedFrame, String>),
+    Frame(u32, Result<Arc<PlayedFrame>, String>),
 }
 
 /// The two sides of the thread.
@@ -94,7 +94,7 @@ fn read_all(frames: &RunFrames, shared: &Shared, repaint: impl Fn()) {
         let number = exchange.wanted.remove(0);
         exchange.reading = Some(number);
         drop(exchange);
-        let frame = frames.read(number).map_err(|error| error.to_string());
+        let frame = frames.read(number).map(Arc::new).map_err(|error| error.to_string());
         let mut exchange = lock(&shared.exchange);
         exchange.reading = None;
         exchange.loaded.push(Loaded::Frame(number, frame));

@@ -82,7 +82,7 @@ impl Playback {
                     }
                     let bytes = frame.bytes();
                     let distance = |number| timeline.distance(number);
-                    self.cache.insert(number, Arc::new(frame), bytes, distance);
+                    self.cache.insert(number, frame, bytes, distance);
                 }
                 Loaded::Frame(number, Err(reason)) => {
                     self.failed.insert(number);
