@@ -1,7 +1,7 @@
 //! Writing a changed scene as a scene file.
 
 use glam::Vec3;
-use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene, Solver};
+use splashdown::scene::{Body, Choice, Emitter, MeshShape, Motion, Outlet, Scene, Solver, SurfaceTension};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
@@ -45,6 +45,11 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
         for key in numerical.iter().chain(&implicit).chain(&Solver::NOT_IMPLICIT) {
             table.remove(key);
         }
+    }
+    if new.solver.surface_tension != SurfaceTension::Csf
+        && let Some(table) = document.get_mut("solver").and_then(Item::as_table_like_mut)
+    {
+        table.remove("contact_angle");
     }
     let mut set = |section: &str, key: &str, differs: bool, item: Item| {
         if differs {
@@ -201,6 +206,20 @@ mod tests {
         let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
         let read = Scene::parse(&saved, "accurate.toml").unwrap();
         assert_eq!((&read.solver, read.solver.wall_friction), (&changed.solver, 0.5), "{saved}");
+    }
+
+    #[test]
+    fn another_surface_tension_is_saved_without_a_contact_angle() {
+        let keys = "\n[solver]\nsurface_tension = \"csf\"\ncontact_angle = 60\n";
+        let (_, floating) = presets().iter().find(|(name, _)| *name == "floating").unwrap();
+        let old = Scene::parse(&format!("{floating}{keys}"), "wet.toml").unwrap();
+        let saved = |method| {
+            let mut changed = old.clone();
+            changed.solver.select_method(method);
+            let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+            Scene::parse(&saved, "wet.toml").unwrap().solver.contact_angle
+        };
+        assert_eq!((saved(Method::Wcsph), saved(Method::Mueller2003)), (60.0, 90.0));
     }
 
     #[test]

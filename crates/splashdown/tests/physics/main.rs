@@ -5,10 +5,12 @@
 //! `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
 
 mod accelerated;
+mod capillary;
 mod cases;
 mod conservation;
 mod dam_break;
 mod disorder;
+mod drag;
 mod drop;
 mod figures;
 mod floating;
@@ -21,6 +23,8 @@ mod jet;
 mod meshes;
 mod patch;
 mod ritter;
+mod roll;
+mod sessile;
 mod shapes;
 mod spheric2;
 mod still_water;
@@ -41,8 +45,10 @@ use splashdown_io::Particles;
 /// All cases, module by module.
 const CASES: &[&[&cases::Case]] = &[
     accelerated::CASES,
+    capillary::CASES,
     conservation::CASES,
     dam_break::CASES,
+    drag::CASES,
     drop::CASES,
     floating::CASES,
     free_fall::CASES,
@@ -51,6 +57,8 @@ const CASES: &[&[&cases::Case]] = &[
     jet::CASES,
     patch::CASES,
     ritter::CASES,
+    roll::CASES,
+    sessile::CASES,
     spheric2::CASES,
     still_water::CASES,
     stretching::CASES,
