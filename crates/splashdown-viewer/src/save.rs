@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn another_surface_tension_is_saved_without_a_contact_angle() {
-        let keys = "\n[solver]\nsurface_tension = \"csf\"\ncontact_angle = 60\n";
+        let keys = "\n[solver]\nsurface_tension = \"csf\"\ncontact_angle = 120\n";
         let (_, floating) = presets().iter().find(|(name, _)| *name == "floating").unwrap();
         let old = Scene::parse(&format!("{floating}{keys}"), "wet.toml").unwrap();
         let saved = |method| {
@@ -219,7 +219,7 @@ mod tests {
             let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
             Scene::parse(&saved, "wet.toml").unwrap().solver.contact_angle
         };
-        assert_eq!((saved(Method::Wcsph), saved(Method::Mueller2003)), (60.0, 90.0));
+        assert_eq!((saved(Method::Wcsph), saved(Method::Mueller2003)), (120.0, 90.0));
     }
 
     #[test]

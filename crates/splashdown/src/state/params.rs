@@ -92,7 +92,7 @@ gpu_struct! {
         interface_depth: f32,
         /// Length of a normal without unit below which it has no direction.
         weakest_normal: f32,
-        /// Cosine of the contact angle at closed sides over half of the support radius, in 1/m.
+        /// Cosine of the contact angle at closed sides over half of the support radius, in 1/m; not above zero.
         wetting: f32,
         /// Padding.
         unused: f32,

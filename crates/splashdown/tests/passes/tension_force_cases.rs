@@ -21,17 +21,16 @@ pub fn cases() -> Vec<Case> {
         }
     };
     let open = Params { closed: 0b110111, ..surface(2.5) };
-    // The cosines of 60 and 120 degrees.
-    let wetting =
-        |params: Params, cosine: f32| Params { wetting: 2.0 * cosine / params.support_radius, ..params };
+    // 120 degrees.
+    let repelled = |params: Params| Params { wetting: -1.0 / params.support_radius, ..params };
     let mut cases = Vec::new();
     for kernels in [C2, CUBIC] {
         cases.push(smooth_normals("closed", kernels, surface(2.0)));
         for is_corrected in [false, true] {
             cases.push(tension_force("closed", kernels, surface(2.0), is_corrected));
             cases.push(tension_force("wider support, open above", kernels, open, is_corrected));
-            cases.push(tension_force("wetted", kernels, wetting(surface(2.0), 0.5), is_corrected));
-            cases.push(tension_force("repelled, open above", kernels, wetting(open, -0.5), is_corrected));
+            cases.push(tension_force("repelled, open above", kernels, repelled(open), is_corrected));
+            cases.push(tension_force("repelled", kernels, repelled(surface(2.0)), is_corrected));
         }
     }
     cases

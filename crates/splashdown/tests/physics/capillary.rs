@@ -2,6 +2,7 @@
 //!
 //! As the [gravity wave](super::waves), it starts as a level surface with the velocities of the potential. A tank of
 //! half a wave length in a slab six spacings thick contains the first mode, which shifts the centre of mass along the tank.
+//! The pressure under a trough is negative, so that `dfsph`, which has none, cannot show such a wave.
 
 use std::f64::consts::TAU;
 
@@ -17,6 +18,8 @@ const DENSITY: f64 = 1000.0;
 const SPACING: f64 = 0.0005;
 /// The amplitude over the wave length without damping.
 const STEEPNESS: f64 = 0.04;
+/// The duration in periods.
+const DURATION: f64 = 2.2;
 
 const ENGINEERING: &str = "accuracy = \"engineering\"";
 
@@ -26,7 +29,7 @@ static CASE: Case = Case {
     sizes: &[20, 40, 80],
     variants: &[
         Variant::new("engineering", ENGINEERING),
-        Variant::new("dfsph", "method = \"dfsph\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
         CONTROL,
     ],
 };
@@ -66,7 +69,7 @@ impl Wave {
         let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
         let (period, samples) = (TAU / omega, 60.0);
         let mut curve = vec![(0.0, 0.0)];
-        for _ in 0..(2.2 * samples) as u32 {
+        for _ in 0..(DURATION * samples) as u32 {
             let stats = simulation.advance((period / samples) as f32).unwrap();
             assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
             let particles = simulation.particles().unwrap();
@@ -76,7 +79,8 @@ impl Wave {
         Self { curve, period }
     }
 
-    /// The period over that of the theory, minus one, by the zeros after the start.
+    /// The period over that of the theory, minus one, by the zeros after the start. A wave that does not come back has a
+    /// period of at least twice the duration.
     fn error(&self) -> f64 {
         let zeros: Vec<f64> = self
             .curve
@@ -85,8 +89,8 @@ impl Wave {
             .filter(|pair| pair[0].1 * pair[1].1 < 0.0)
             .map(|pair| pair[0].0 + (pair[1].0 - pair[0].0) * pair[0].1 / (pair[0].1 - pair[1].1))
             .collect();
-        assert!(zeros.len() >= 2, "the wave does not oscillate: {zeros:?}");
-        2.0 * zeros[zeros.len() - 1] / zeros.len() as f64 / self.period - 1.0
+        let half = zeros.last().map_or(DURATION * self.period, |last| last / zeros.len() as f64);
+        2.0 * half / self.period - 1.0
     }
 
     /// The height lost per period, by the first two extremes.

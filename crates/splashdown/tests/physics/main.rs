@@ -10,7 +10,6 @@ mod cases;
 mod conservation;
 mod dam_break;
 mod disorder;
-mod drag;
 mod drop;
 mod figures;
 mod floating;
@@ -48,7 +47,6 @@ const CASES: &[&[&cases::Case]] = &[
     capillary::CASES,
     conservation::CASES,
     dam_break::CASES,
-    drag::CASES,
     drop::CASES,
     floating::CASES,
     free_fall::CASES,

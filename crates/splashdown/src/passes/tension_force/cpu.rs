@@ -130,7 +130,8 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
         let curvature = inner / (1.0 + 0.5 * params.interface_depth * inner).max(0.25);
         let strength = params.tension_factor * self.weight(self.normals[i]);
         // The force of each side acts along it.
-        let near = params.wetting * self.images.nearness(self.positions[i].xyz(), params.support_radius);
+        let [low, high] = self.images.nearness(self.positions[i].xyz(), params.support_radius);
+        let near = params.wetting * (low + high);
         let along = near - Vec3::splat(near.element_sum());
         (strength * (Vec3::splat(curvature) + along) * Vec3::new(a, b, c)).extend(0.0)
     }

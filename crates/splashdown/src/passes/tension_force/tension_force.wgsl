@@ -26,13 +26,16 @@ fn correction_of(j: u32) -> Symmetric {
     return Symmetric(vec3(1.0), vec3(0.0));
 }
 
-// For each axis the sum over its closed sides of a value that falls from 1 at the side to 0 at the support radius.
-fn nearness(x: vec3<f32>) -> vec3<f32> {
-    let scale = 1.0 / params.support_radius;
-    let low = clamp(vec3(1.0) - scale * (x - params.domain_min), vec3(0.0), vec3(1.0));
-    let high = clamp(vec3(1.0) - scale * (params.domain_max - x), vec3(0.0), vec3(1.0));
-    let is_closed = (vec3(params.closed) >> vec3(0u, 2u, 4u)) & vec3(3u);
-    return low * vec3<f32>(is_closed & vec3(1u)) + high * vec3<f32>(is_closed >> vec3(1u));
+// For the lower side of each axis a value that falls from 1 at the side to 0 at the support radius; 0 where it is open.
+fn nearness_low(x: vec3<f32>) -> vec3<f32> {
+    let near = vec3(1.0) - (x - params.domain_min) / params.support_radius;
+    return clamp(near, vec3(0.0), vec3(1.0)) * vec3<f32>((vec3(params.closed) >> vec3(0u, 2u, 4u)) & vec3(1u));
+}
+
+// The same for the upper sides.
+fn nearness_high(x: vec3<f32>) -> vec3<f32> {
+    let near = vec3(1.0) - (params.domain_max - x) / params.support_radius;
+    return clamp(near, vec3(0.0), vec3(1.0)) * vec3<f32>((vec3(params.closed) >> vec3(1u, 3u, 5u)) & vec3(1u));
 }
 
 @compute @workgroup_size(64)
@@ -88,7 +91,7 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     let inner = clamp(2.0 * turn / min(extent, -1e-3 * reach), -limit, limit);
     let curvature = inner / max(1.0 + 0.5 * params.interface_depth * inner, 0.25);
     // The force of each side acts along it.
-    let near = params.wetting * nearness(x);
+    let near = params.wetting * (nearness_low(x) + nearness_high(x));
     let along = near - vec3(near.x + near.y + near.z);
     accelerations[i] += vec4(params.tension_factor * own_weight * (vec3(curvature) + along) * gradient, 0.0);
 }

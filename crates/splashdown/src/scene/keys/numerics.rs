@@ -65,8 +65,8 @@ pub(super) static SOLVER: Table = Table {
             .default("\"none\""),
         key(
             "contact_angle",
-            a_number(1.0, 179.0, "degrees"),
-            "Angle between the surface and the closed sides of the domain, measured within the fluid: below 90 the sides attract the fluid. Requires surface_tension = \"csf\".",
+            a_number(90.0, 179.0, "degrees"),
+            "Angle between the surface and the closed sides of the domain, measured within the fluid: above 90 the sides repel the fluid. Requires surface_tension = \"csf\".",
         )
         .default("90.0")
         .also(&["wetting_angle", "wetting"]),
