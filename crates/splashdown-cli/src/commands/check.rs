@@ -167,8 +167,8 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
             (
                 "surface tension",
                 format!(
-                    "{} N/m, with a numerical viscosity of {numerical:.2e} m^2/s",
-                    fluid.material.surface_tension
+                    "{} N/m, contact angle {} degrees, numerical viscosity {numerical:.2e} m^2/s",
+                    fluid.material.surface_tension, scene.solver.contact_angle
                 ),
             ),
         );

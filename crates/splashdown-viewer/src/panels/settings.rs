@@ -1,7 +1,7 @@
 //! The settings of the simulation and of the view.
 
 use egui::{CollapsingHeader, ComboBox, Context, Rect, ScrollArea, Slider, SliderClamping, Ui, vec2};
-use splashdown::scene::{ColourBy, MATERIALS, Method, SurfaceTension};
+use splashdown::scene::{ColourBy, MATERIALS, Method, Solver, SurfaceTension};
 use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
@@ -130,6 +130,7 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     );
     if checkbox.changed() {
         solver.surface_tension = if tension { tension_of(solver.method) } else { SurfaceTension::None };
+        solver.contact_angle = Solver::NEUTRAL_ANGLE;
         changed = true;
     }
     let mut slider = |value: &mut f32, range, text: &str, hint: &str| {

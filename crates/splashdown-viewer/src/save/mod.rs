@@ -3,7 +3,7 @@
 mod things;
 mod values;
 
-use splashdown::scene::{Choice, Scene, Solver};
+use splashdown::scene::{Choice, Scene, Solver, SurfaceTension};
 use toml_edit::{DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
@@ -45,6 +45,11 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
         for key in numerical.iter().chain(&implicit).chain(&Solver::NOT_IMPLICIT) {
             table.remove(key);
         }
+    }
+    if new.solver.surface_tension != SurfaceTension::Csf
+        && let Some(table) = document.get_mut("solver").and_then(Item::as_table_like_mut)
+    {
+        table.remove("contact_angle");
     }
     let mut set = |section: &str, key: &str, differs: bool, item: Item| {
         if differs {
@@ -177,6 +182,20 @@ mod tests {
         let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
         let read = Scene::parse(&saved, "accurate.toml").unwrap();
         assert_eq!((&read.solver, read.solver.wall_friction), (&changed.solver, 0.5), "{saved}");
+    }
+
+    #[test]
+    fn another_surface_tension_is_saved_without_a_contact_angle() {
+        let keys = "\n[solver]\nsurface_tension = \"csf\"\ncontact_angle = 120\n";
+        let (_, floating) = presets().iter().find(|(name, _)| *name == "floating").unwrap();
+        let old = Scene::parse(&format!("{floating}{keys}"), "wet.toml").unwrap();
+        let saved = |method| {
+            let mut changed = old.clone();
+            changed.solver.select_method(method);
+            let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+            Scene::parse(&saved, "wet.toml").unwrap().solver.contact_angle
+        };
+        assert_eq!((saved(Method::Wcsph), saved(Method::Mueller2003)), (120.0, 90.0));
     }
 
     #[test]

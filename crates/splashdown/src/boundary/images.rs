@@ -65,6 +65,13 @@ impl Images {
             .sum()
     }
 
+    /// For the lower and the upper side of each axis a value that falls from 1 at the side to 0 at `reach` metres; 0 where it is
+    /// open.
+    #[inline(always)]
+    pub fn nearness(&self, x: Vec3, reach: f32) -> [Vec3; 2] {
+        [x - self.low, self.high - x].map(|distance| (1.0 - distance / reach).clamp(Vec3::ZERO, Vec3::ONE))
+    }
+
     /// The sides between two corners in metres, infinite or far away where open.
     pub fn between(low: Vec3, high: Vec3) -> Self {
         Self { low, high }
@@ -133,6 +140,16 @@ mod tests {
         assert!(images(Vec3::new(2.0, 4.9, 2.0), 1.0).is_empty());
         // Both sides of a narrow domain.
         assert_eq!(images(Vec3::new(2.0, 2.5, 3.0), 2.6).len(), 5);
+    }
+
+    #[test]
+    fn nearness_falls_from_one_at_a_side_to_zero_at_the_reach() {
+        let near = |x: f32, y: f32, z: f32, reach: f32| corner().nearness(Vec3::new(x, y, z), reach);
+        assert_eq!(near(0.0, 2.0, 5.5, 1.0), [Vec3::X, 0.5 * Vec3::Z]);
+        // Both sides of x, and y without its open side.
+        assert_eq!(near(2.0, 4.9, 3.0, 2.5), [0.2 * Vec3::X, 0.2 * Vec3::X]);
+        // A particle that is slightly outside.
+        assert_eq!(near(-0.1, 2.0, 3.0, 1.0), [Vec3::X, Vec3::ZERO]);
     }
 
     #[test]

@@ -41,7 +41,12 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         let message =
             "with surface_tension = \"csf\" bodies are not wetted: the contact angle is 180 degrees"
                 .to_owned();
-        solver.warn("surface_tension", message, "at the sides of the domain it is 90 degrees");
+        let sides = format!("at the closed sides of the domain it is {} degrees", scene.solver.contact_angle);
+        solver.warn("surface_tension", message, &sides);
+    }
+    if solver.has("contact_angle") && !scene.domain.closed.as_flattened().contains(&true) {
+        let message = "solver.contact_angle has no effect: all sides of the domain are open".to_owned();
+        solver.warn("contact_angle", message, "close a side, or leave it out");
     }
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(

@@ -91,6 +91,8 @@ pub struct Solver {
     pub density_diffusion: f32,
     /// The model of surface tension.
     pub surface_tension: SurfaceTension,
+    /// Angle in degrees between the surface and closed sides, measured within the fluid; requires `csf`.
+    pub contact_angle: f32,
     /// Friction at closed sides: 0 for free slip, 1 for no slip.
     pub wall_friction: f32,
     /// Time step divided by the time in which sound travels half the support radius; with `dfsph`, largest distance in
@@ -117,6 +119,9 @@ impl Solver {
     /// The support ratio of `accuracy = "engineering"`, and the smallest for the continuum surface force.
     pub const WIDE_SUPPORT: f32 = 3.0;
 
+    /// The contact angle in degrees of sides that neither attract nor repel the fluid, the default.
+    pub const NEUTRAL_ANGLE: f32 = 90.0;
+
     /// The defaults of a method and a computation of the density.
     pub fn with(method: Method, density: DensityMode) -> Self {
         // The continuity form damps impacts by a limited dissipation, and its time step is bounded by the stability of
@@ -138,6 +143,7 @@ impl Solver {
             artificial_viscosity,
             density_diffusion: 0.1,
             surface_tension: SurfaceTension::None,
+            contact_angle: Self::NEUTRAL_ANGLE,
             wall_friction: 0.0,
             cfl_factor,
             max_dt: if method == Method::Dfsph { 0.05 } else { 0.005 },
@@ -149,7 +155,8 @@ impl Solver {
     }
 
     /// Selects another method with its defaults. The support ratio, the friction at walls, `min_dt`, the sort and the use
-    /// of surface tension are kept, and the speed of sound unless the method is `dfsph`.
+    /// of surface tension are kept, the contact angle if the new method has one, and the speed of sound unless the method
+    /// is `dfsph`.
     pub fn select_method(&mut self, method: Method) {
         if method == self.method {
             return;
@@ -163,7 +170,20 @@ impl Solver {
         let sound_speed = self.sound_speed.filter(|_| method != Method::Dfsph);
         let Self { support_ratio, wall_friction, min_dt, sort, .. } = *self;
         let standard = Self::with(method, DensityMode::Summation);
-        *self = Self { support_ratio, sound_speed, surface_tension, wall_friction, min_dt, sort, ..standard };
+        let contact_angle = match surface_tension {
+            SurfaceTension::Csf => self.contact_angle,
+            _ => Self::NEUTRAL_ANGLE,
+        };
+        *self = Self {
+            support_ratio,
+            sound_speed,
+            surface_tension,
+            contact_angle,
+            wall_friction,
+            min_dt,
+            sort,
+            ..standard
+        };
     }
 
     /// The keys of the scene file that have no effect with `dfsph`.

@@ -3,7 +3,7 @@
 use super::{Scheme, dfsph, mueller2003, wcsph};
 use crate::boundary::solid_offset;
 use crate::passes::viscous;
-use crate::scene::{Derived, Method, NegativePressure, Scene, SurfaceTension};
+use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
 use crate::state::Params;
 
 /// The smallest alpha for the friction at bodies.
@@ -14,6 +14,15 @@ const SMALLEST_BOUNDARY_ALPHA: f32 = 0.05;
 const INTERFACE_DEPTH: f32 = 0.7;
 /// The length of a normal is about 1.3 in the first layer, and 0.1 to 0.2 inside by the irregular order of the particles.
 const WEAKEST_NORMAL: f32 = 0.2;
+
+/// The cosine of the contact angle, and zero without one: that of a right angle is not zero in single precision.
+fn wetting_cosine(solver: &Solver) -> f32 {
+    let is_neutral = solver.contact_angle == Solver::NEUTRAL_ANGLE;
+    if solver.surface_tension != SurfaceTension::Csf || is_neutral {
+        return 0.0;
+    }
+    solver.contact_angle.to_radians().cos()
+}
 
 /// The constants of a scene with this number of particles.
 pub fn params(scene: &Scene, particles: u32) -> Params {
@@ -109,5 +118,9 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         largest_curvature: 2.0 / scene.fluid.particle_spacing,
         interface_depth: INTERFACE_DEPTH * scene.fluid.particle_spacing,
         weakest_normal: WEAKEST_NORMAL,
+        wetting: 2.0 * wetting_cosine(solver) / support_radius,
+        unused: 0.0,
+        unused_2: 0.0,
+        unused_3: 0.0,
     }
 }

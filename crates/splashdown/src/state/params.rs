@@ -92,6 +92,14 @@ gpu_struct! {
         interface_depth: f32,
         /// Length of a normal without unit below which it has no direction.
         weakest_normal: f32,
+        /// Cosine of the contact angle at closed sides over half of the support radius, in 1/m; not above zero.
+        wetting: f32,
+        /// Padding.
+        unused: f32,
+        /// Padding.
+        unused_2: f32,
+        /// Padding.
+        unused_3: f32,
     }
 }
 

@@ -41,6 +41,10 @@ struct Params {
     largest_curvature: f32,
     interface_depth: f32,
     weakest_normal: f32,
+    wetting: f32,
+    unused: f32,
+    unused_2: f32,
+    unused_3: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -21,12 +21,16 @@ pub fn cases() -> Vec<Case> {
         }
     };
     let open = Params { closed: 0b110111, ..surface(2.5) };
+    // 120 degrees.
+    let repelled = |params: Params| Params { wetting: -1.0 / params.support_radius, ..params };
     let mut cases = Vec::new();
     for kernels in [C2, CUBIC] {
         cases.push(smooth_normals("closed", kernels, surface(2.0)));
         for is_corrected in [false, true] {
             cases.push(tension_force("closed", kernels, surface(2.0), is_corrected));
             cases.push(tension_force("wider support, open above", kernels, open, is_corrected));
+            cases.push(tension_force("repelled, open above", kernels, repelled(open), is_corrected));
+            cases.push(tension_force("repelled", kernels, repelled(surface(2.0)), is_corrected));
         }
     }
     cases
@@ -88,9 +92,24 @@ fn tension_force(name: &str, kernels: Kernels, params: Params, is_corrected: boo
     ]);
     let suffix = if is_corrected { "_corrected" } else { "" };
     let label = format!("tension_force.{}{suffix}", word(kernels));
-    expected.case_over(label, name, &world, input, Data::Vec4(before), |input| {
-        input[0].params().tension_factor *= 1.002;
-    })
+    let control: fn(&mut [Data]) = if params.wetting == 0.0 {
+        |input: &mut [Data]| input[0].params().tension_factor *= 1.002
+    } else {
+        |input: &mut [Data]| input[0].params().wetting *= 1.01
+    };
+    expected.case_over(label, name, &world, input, Data::Vec4(before), control)
+}
+
+/// The inner normal of each closed side, and the distance of a point from it.
+fn closed_sides(params: &Params, x: DVec3) -> impl Iterator<Item = (DVec3, f64)> {
+    let (min, max) = (params.domain_min.as_dvec3(), params.domain_max.as_dvec3());
+    let sides = DVec3::AXES.map(|axis| [(axis, axis.dot(x - min)), (-axis, axis.dot(max - x))]);
+    let closed = params.closed;
+    sides
+        .into_iter()
+        .flatten()
+        .enumerate()
+        .filter_map(move |(bit, side)| (closed >> bit & 1 == 1).then_some(side))
 }
 
 /// The accelerations by the surface force; see `passes::tension_force`.
@@ -137,10 +156,16 @@ fn forces(
         let curvature = inner / divisor;
         let curvature_size = (2.0 * turn.size + free.abs() * extent.size) * inverse.abs() / divisor.powi(2);
         let strength = factor * own_weight;
-        Sum {
-            value: strength * curvature * gradient.value,
-            size: strength * (curvature.abs() * gradient.size + curvature_size * gradient.value.length()),
+        let mut pull = DVec3::ZERO;
+        let mut reach = 0.0;
+        for (normal, distance) in closed_sides(p, world.positions[i].xyz().as_dvec3()) {
+            let share = f64::from(p.wetting) * (1.0 - distance / c.support).clamp(0.0, 1.0);
+            pull -= share * (gradient.value - gradient.value.dot(normal) * normal);
+            reach += share.abs();
         }
+        let force = curvature * gradient.value + pull;
+        let size = (curvature.abs() + reach) * gradient.size + curvature_size * gradient.value.length();
+        Sum { value: strength * force, size: strength * size }
     };
     (0..world.active()).map(force).collect()
 }

@@ -5,6 +5,7 @@
 //! `SPLASHDOWN_FIGURES=DIR` they write their figures there as JSON (`cargo xtask validate` sets both).
 
 mod accelerated;
+mod capillary;
 mod cases;
 mod conservation;
 mod dam_break;
@@ -21,6 +22,8 @@ mod jet;
 mod meshes;
 mod patch;
 mod ritter;
+mod roll;
+mod sessile;
 mod shapes;
 mod spheric2;
 mod still_water;
@@ -41,6 +44,7 @@ use splashdown_io::Particles;
 /// All cases, module by module.
 const CASES: &[&[&cases::Case]] = &[
     accelerated::CASES,
+    capillary::CASES,
     conservation::CASES,
     dam_break::CASES,
     drop::CASES,
@@ -51,6 +55,8 @@ const CASES: &[&[&cases::Case]] = &[
     jet::CASES,
     patch::CASES,
     ritter::CASES,
+    roll::CASES,
+    sessile::CASES,
     spheric2::CASES,
     still_water::CASES,
     stretching::CASES,

@@ -85,6 +85,15 @@ snapshot!(implicit_keys, changed("\"wcsph\"", "\"dfsph\"\nsound_speed = 20\ndens
 snapshot!(implicit_step, changed("\"wcsph\"", "\"dfsph\"\nmax_dt = 0.1"));
 snapshot!(tolerance_without_iterations, format!("{CUBE}tolerance = 0.001\n"));
 snapshot!(narrow_surface_force, format!("{CUBE}surface_tension = \"csf\"\nsupport_ratio = 2\n"));
+snapshot!(contact_angle_out_of_range, format!("{CUBE}surface_tension = \"csf\"\ncontact_angle = 60\n"));
+snapshot!(ignored_contact_angle, format!("{CUBE}contact_angle = 120\n"));
+snapshot!(
+    contact_angle_without_sides,
+    changed(
+        "[1, 1, 1]",
+        "[1, 1, 1]\nopen = [\"x_min\", \"x_max\", \"y_min\", \"y_max\", \"z_min\", \"z_max\"]"
+    ) + "surface_tension = \"csf\"\ncontact_angle = 120\n"
+);
 snapshot!(ignored_diffusion, format!("{CUBE}density_diffusion = 0.2\nsurface_tension = \"mueller2003\"\n"));
 snapshot!(
     output_without_surface,

@@ -29,6 +29,7 @@ pub(super) fn tension_force<K: Kernel, const CORRECTED: bool>(buffers: TensionFo
         normals,
         smooth_normals,
         corrections: corrections.as_chunks::<2>().0,
+        images: Images::new(params),
         scale: 1.0 / params.support_radius,
         kernel: PhantomData,
     };
@@ -43,6 +44,7 @@ struct TensionForce<'a, K, const CORRECTED: bool> {
     normals: &'a [Vec4],
     smooth_normals: &'a [Vec4],
     corrections: &'a [[Vec4; 2]],
+    images: Images,
     scale: f32,
     kernel: PhantomData<K>,
 }
@@ -126,7 +128,11 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
         let (limit, reach) = (params.largest_curvature, params.support_radius * params.support_radius);
         let inner = (2.0 * turn / extent.min(-1e-3 * reach)).clamp(-limit, limit);
         let curvature = inner / (1.0 + 0.5 * params.interface_depth * inner).max(0.25);
-        let strength = params.tension_factor * self.weight(self.normals[i]) * curvature;
-        (strength * Vec3::new(a, b, c)).extend(0.0)
+        let strength = params.tension_factor * self.weight(self.normals[i]);
+        // The force of each side acts along it.
+        let [low, high] = self.images.nearness(self.positions[i].xyz(), params.support_radius);
+        let near = params.wetting * (low + high);
+        let along = near - Vec3::splat(near.element_sum());
+        (strength * (Vec3::splat(curvature) + along) * Vec3::new(a, b, c)).extend(0.0)
     }
 }

@@ -15,7 +15,15 @@
 //! reduce the curvature. The particles that count lie at a mean depth z below the surface. There a ball has the curvature
 //! kappa, and 1 / (1 / kappa + z / 2) at its surface.
 //!
-//! Images have reflected normals, so that the surface meets walls at a right angle.
+//! Images have reflected normals, so that the surface meets walls at a right angle: without the energy of wetting, the
+//! surface and its image are one smooth surface.
+//!
+//! *Contact angle* from 90 degrees (Young 1805). Fluid that covers a side has the energy -sigma cos(theta) per area, so that the
+//! side pushes the contact line with this force per length, along the side and towards the fluid. As in the model of Huber et al.
+//! (2016), the force is distributed over the particles of the surface near the side: it is the force above with -cos(theta) f(z) in
+//! place of kappa, without its part across the side. f falls linearly from 2 / H at the side to zero at the support radius
+//! H, and its integral is one. The forces along a closed contact line add up to zero, except for the errors of the sum over
+//! neighbours. Below 90 degrees the force would pull particles off the fluid.
 
 mod cpu;
 

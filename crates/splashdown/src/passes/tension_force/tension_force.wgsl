@@ -26,6 +26,18 @@ fn correction_of(j: u32) -> Symmetric {
     return Symmetric(vec3(1.0), vec3(0.0));
 }
 
+// For the lower side of each axis a value that falls from 1 at the side to 0 at the support radius; 0 where it is open.
+fn nearness_low(x: vec3<f32>) -> vec3<f32> {
+    let near = vec3(1.0) - (x - params.domain_min) / params.support_radius;
+    return clamp(near, vec3(0.0), vec3(1.0)) * vec3<f32>((vec3(params.closed) >> vec3(0u, 2u, 4u)) & vec3(1u));
+}
+
+// The same for the upper sides.
+fn nearness_high(x: vec3<f32>) -> vec3<f32> {
+    let near = vec3(1.0) - (params.domain_max - x) / params.support_radius;
+    return clamp(near, vec3(0.0), vec3(1.0)) * vec3<f32>((vec3(params.closed) >> vec3(1u, 3u, 5u)) & vec3(1u));
+}
+
 @compute @workgroup_size(64)
 fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
@@ -78,5 +90,8 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     let limit = params.largest_curvature;
     let inner = clamp(2.0 * turn / min(extent, -1e-3 * reach), -limit, limit);
     let curvature = inner / max(1.0 + 0.5 * params.interface_depth * inner, 0.25);
-    accelerations[i] += vec4(params.tension_factor * own_weight * curvature * gradient, 0.0);
+    // The force of each side acts along it.
+    let near = params.wetting * (nearness_low(x) + nearness_high(x));
+    let along = near - vec3(near.x + near.y + near.z);
+    accelerations[i] += vec4(params.tension_factor * own_weight * (vec3(curvature) + along) * gradient, 0.0);
 }

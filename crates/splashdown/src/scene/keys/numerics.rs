@@ -63,6 +63,13 @@ pub(super) static SOLVER: Table = Table {
             .also(&["delta"]),
         key("surface_tension", Kind::Word(words::<SurfaceTension>), "Model of surface tension.")
             .default("\"none\""),
+        key(
+            "contact_angle",
+            a_number(90.0, 179.0, "degrees"),
+            "Angle between the surface and the closed sides of the domain, measured within the fluid: above 90 the sides repel the fluid. Requires surface_tension = \"csf\".",
+        )
+        .default("90.0")
+        .also(&["wetting_angle", "wetting"]),
         key("wall_friction", a_number(0.0, 1.0, ""), "0: the fluid slips along walls; 1: it sticks.")
             .default("0.0"),
         key(

@@ -17,6 +17,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let artificial_viscosity = section.number("artificial_viscosity");
     let density_diffusion = section.number("density_diffusion");
     let surface_tension = section.choice("surface_tension");
+    let contact_angle = section.number("contact_angle");
     let wall_friction = section.number("wall_friction");
     let cfl_factor = section.number("cfl_factor");
     let max_dt = section.number("max_dt");
@@ -46,6 +47,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         artificial_viscosity: artificial_viscosity?.unwrap_or(standard.artificial_viscosity),
         density_diffusion: density_diffusion?.unwrap_or(standard.density_diffusion),
         surface_tension,
+        contact_angle: contact_angle?.unwrap_or(standard.contact_angle),
         wall_friction: wall_friction?.unwrap_or(standard.wall_friction),
         cfl_factor: cfl_factor?.unwrap_or(standard.cfl_factor),
         max_dt: max_dt?.unwrap_or(standard.max_dt),
@@ -120,6 +122,14 @@ fn check_solver(section: &Section<'_>, solver: &Solver) -> Part<()> {
         );
         let allowed = format!("at least {}", Solver::WIDE_SUPPORT);
         result = Err(section.complain("support_ratio", message, &allowed, "leave it out"));
+    }
+    if solver.surface_tension != SurfaceTension::Csf && section.has("contact_angle") {
+        let message = format!(
+            "solver.contact_angle has no effect with surface_tension = \"{}\"",
+            solver.surface_tension
+        );
+        let advice = "leave it out, or use surface_tension = \"csf\"";
+        result = Err(section.complain("contact_angle", message, "", advice));
     }
     if solver.method == Method::Dfsph {
         for name in Solver::NOT_IMPLICIT.into_iter().filter(|name| section.has(name)) {
