@@ -203,7 +203,10 @@ impl Gpu {
         let trouble = Arc::new(Mutex::new(None));
         let report = Arc::clone(&trouble);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            note(&report, Trouble::Refused(error.to_string()));
+            let reason = error.to_string();
+            if !is_of_window(&reason) {
+                note(&report, Trouble::Refused(reason));
+            }
         }));
         let report = Arc::clone(&trouble);
         device.set_device_lost_callback(move |reason, message| {
@@ -301,6 +304,27 @@ fn note(trouble: &Mutex<Option<Trouble>>, new: Trouble) {
     }
 }
 
+/// Whether an error is about the surface of a window that shares the device. Its owner configures the surface again, for
+/// example after a change of its size, and no buffer of this program is affected.
+fn is_of_window(reason: &str) -> bool {
+    reason.contains("In Surface::")
+}
+
 fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({:?})", info.name, info.backend)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_of_window;
+
+    #[test]
+    fn errors_of_a_window_are_not_those_of_the_device() {
+        let error =
+            |context: &str| format!("Validation Error\n\nCaused by:\n  In {context}\n    it is refused\n");
+        assert!(is_of_window(&error("Surface::configure")));
+        assert!(is_of_window(&error("Surface::get_current_texture_view")));
+        assert!(!is_of_window(&error("Device::create_buffer, label = 'surface'")));
+        assert!(!is_of_window(&error("a CommandEncoder, label = 'surface vertices'")));
+    }
 }

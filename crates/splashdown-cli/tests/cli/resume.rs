@@ -189,3 +189,26 @@ fn the_window_reports_a_checkpoint_or_a_display_that_cannot_be_used() -> Outcome
     assert!(!stderr(&output).contains("driver"), "{}", stderr(&output));
     Ok(())
 }
+
+/// A folder with frames is played; its scene must be known.
+#[test]
+#[cfg(all(feature = "window", target_os = "linux"))]
+fn the_window_plays_a_run_whose_scene_is_known() -> Outcome {
+    let place = two_frames()?;
+    let view = |arguments: &[&str]| {
+        let mut command = place.splashdown(&[&["view"], arguments].concat());
+        for variable in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(variable);
+        }
+        command.output()
+    };
+    for folder in ["out", "out/checkpoints"] {
+        assert_refused(&view(&[folder])?, 4, &["no display"]);
+    }
+    std::fs::remove_dir_all(place.path("out/checkpoints"))?;
+    std::fs::remove_file(place.path("out/run.json"))?;
+    assert_refused(&view(&["out"])?, 2, &["run.json", "--scene FILE"]);
+    assert_refused(&view(&["out", "--scene", "small.toml"])?, 4, &["no display"]);
+    assert_refused(&view(&["small.toml", "--scene", "small.toml"])?, 2, &["--scene", "small.toml"]);
+    Ok(())
+}

@@ -1,6 +1,6 @@
 //! Icons: characters of a font with the icons of this program, with names for screen readers and tests.
 //!
-//! The font is a part of Phosphor Icons 2.1 (MIT), six kilobytes instead of five hundred, because the web page has to
+//! The font is a part of Phosphor Icons 2.1 (MIT), five kilobytes instead of five hundred, because the web page has to
 //! fetch it. `fonts/README.md` says how it is made.
 
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
