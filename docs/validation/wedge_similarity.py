@@ -1,4 +1,8 @@
-"""Similarity solution of a wedge that enters water at a constant speed: k of F = k rho V^3 t.
+"""Similarity solution of a wedge that enters water at a constant speed: k of F = k rho V^3 t (Dobrovol'skaya 1969).
+
+    python3 wedge_similarity.py DEGREES[,DEGREES ...]
+
+The arguments are deadrise angles. Needs numpy.
 
 Wagner's function h = int sqrt(W'') dz turns the half domain into a polygon, so that on the upper half plane of s
     W''(z) z_s^2 = C s^(-3/2) / (s - 1):

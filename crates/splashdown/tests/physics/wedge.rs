@@ -1,9 +1,9 @@
 //! A wedge enters still water at a constant speed, without gravity. The flow is similar to itself at all times, so that the
 //! force per length is k rho V^3 t. R. Zhao and O. Faltinsen, "Water entry of two-dimensional bodies", J. Fluid Mech. 246
 //! (1993) 593-612, give k = 14.139 for a deadrise angle of 30 degrees and 23.657 for 25, by the similarity solution of
-//! Dobrovol'skaya (1969). An independent solution of her integral equation for this case, on 750 points, gives 14.02 and
-//! 23.57, and 5.447 instead of 5.477 for 40 degrees: the reference is exact to one per cent. Wagner's theory, for small
-//! angles, gives pi^3 / (4 tan^2 a) = 23.3.
+//! Dobrovol'skaya (1969). A solution of her similarity problem
+//! (`python3 docs/validation/wedge_similarity.py 30,25,40`) gives 14.02 and 23.57, and 5.45 instead of 5.477 for 40 degrees: both
+//! agree within one per cent. Wagner's theory, for small angles, gives pi^3 / (4 tan^2 a) = 23.3.
 //!
 //! The slope of the force over time does not depend on the moment of the first contact. A slab four spacings thick represents
 //! two dimensions; the resolution is the number of spacings of the final depth of the apex.
