@@ -205,8 +205,8 @@ fn the_window_plays_a_run_whose_scene_is_known() -> Outcome {
     for folder in ["out", "out/checkpoints"] {
         assert_refused(&view(&[folder])?, 4, &["no display"]);
     }
-    std::fs::remove_dir_all(place.path("out/checkpoints"))?;
-    std::fs::remove_file(place.path("out/run.json"))?;
+    fs::remove_dir_all(place.path("out/checkpoints"))?;
+    fs::remove_file(place.path("out/run.json"))?;
     assert_refused(&view(&["out"])?, 2, &["run.json", "--scene FILE"]);
     assert_refused(&view(&["out", "--scene", "small.toml"])?, 4, &["no display"]);
     assert_refused(&view(&["small.toml", "--scene", "small.toml"])?, 2, &["--scene", "small.toml"]);
