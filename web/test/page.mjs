@@ -191,6 +191,42 @@ async function reportsMissingFeatures() {
   await wrong.page.close();
 }
 
+// Each failure of a start has a message that says what to do.
+async function explainsFailedStarts() {
+  const says = async (path, text, prepare) => {
+    const { page } = await open(path, prepare);
+    await until(`the message "${text}"`, 60, () => page.evaluate((text) => document.body.innerText.includes(text), text));
+    assert.equal(await page.evaluate(() => !!window.splashdown), false);
+    return page;
+  };
+  const script = "**/splashdown_web.js", program = "**/splashdown_web_bg.wasm";
+  const answer = (pattern, given) => (page) => page.route(pattern, (route) => route.fulfill(given));
+  await (await says("", "splashdown_web.js did not arrive", (page) => page.route(script, (route) => route.abort()))).close();
+  await (await says("", "the server answered 404", answer(program, { status: 404, body: "" }))).close();
+  await (await says("", "could not be loaded", answer(program, { contentType: "application/wasm", body: "no program" }))).close();
+  await (await says("?stalled=500", "the download stopped after 0.0 of", (page) => page.route(program, () => {}))).close();
+
+  // A link whose scene does not fit the device names a spacing that fits.
+  const large = scene.replace("particle_spacing = 0.05", "particle_spacing = 0.001");
+  const refused = await says("#toml=" + encodeURIComponent(large), "does not fit this device");
+  assert.match(await refused.evaluate(() => document.body.innerText), /Use a fluid\.particle_spacing of 0\.\d+ m or more/);
+  await refused.close();
+}
+
+// Without WebGPU the page shows a film, and fits a phone.
+async function showsAFilmOnAPhone() {
+  const hide = (page) => page.addInitScript(() => Object.defineProperty(navigator, "gpu", { value: undefined }));
+  const { page } = await open("", async (page) => {
+    await page.setViewportSize({ width: 390, height: 844 });
+    await hide(page);
+  });
+  const width = await until("a film", 20, () => page.evaluate(() => document.querySelector("#note img")?.naturalWidth));
+  assert(width > 100, `the film has a width of ${width}`);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await page.screenshot({ path: picture.replace(".png", "-phone.png") });
+  await page.close();
+}
+
 try {
   const begun = Date.now();
   await runs();
@@ -198,6 +234,10 @@ try {
   console.log(`ok: ${await compilesEveryPass()} passes compile`);
   await recoversFromALostDevice();
   console.log("ok: recovers from a lost device");
+  await explainsFailedStarts();
+  console.log("ok: explains failed starts and refuses scenes that do not fit");
+  await showsAFilmOnAPhone();
+  console.log("ok: shows a film without WebGPU");
   await reportsMissingFeatures();
   console.log(`ok: reports missing features (${((Date.now() - begun) / 1000).toFixed(0)} s in total)`);
 } finally {

@@ -1,4 +1,4 @@
-//! Renders the pictures of the README and of the window's gallery.
+//! Renders the pictures of the README and of the window's gallery, and the film of the web page.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,6 +48,9 @@ const THUMBNAILS: [(&str, u32); 9] = [
     ("thin-cup", 30),
 ];
 
+/// The film of the web page for browsers without WebGPU: scene and last frame.
+const FILM: (&str, u32) = ("dam-break-small", 47);
+
 /// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {
     let wanted = |scene: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == scene);
@@ -89,10 +92,14 @@ pub fn run(arguments: &[String]) -> Result<()> {
     }
     for (scene, frame) in THUMBNAILS.iter().filter(|(scene, _)| wanted(scene)) {
         let out = format!("out/pictures/{scene}");
+        let last = if *scene == FILM.0 { FILM.1 } else { *frame };
         let mut command = process::command(&binary);
-        command.args(["run", scene, "--out", &out, "--frames", &frame.to_string(), "--formats", "ply"]);
+        command.args(["run", scene, "--out", &out, "--frames", &last.to_string(), "--formats", "ply"]);
         process::run(command.args(["--no-film", "--no-pictures"]))?;
         thumbnail(&still(&binary, &out, *frame)?, scene)?;
+        if *scene == FILM.0 {
+            film(&binary, &out)?;
+        }
     }
     Ok(())
 }
@@ -107,6 +114,16 @@ fn still(binary: &Path, out: &str, frame: u32) -> Result<PathBuf> {
     command.args(["render", out, "--frames", &frame.to_string(), "--out"]).arg(&folder);
     process::run(&mut command)?;
     Ok(folder.join("picture_0000.png"))
+}
+
+/// Draws all frames of a finished run and writes the film of the web page.
+fn film(binary: &Path, out: &str) -> Result<()> {
+    let folder = process::root().join(out).join("film");
+    let mut command = process::command(binary);
+    process::run(command.args(["render", out, "--size", "384x216", "--out"]).arg(&folder))?;
+    let mut ffmpeg = process::command("ffmpeg");
+    ffmpeg.args(["-y", "-loglevel", "error", "-framerate", "12", "-i"]).arg(folder.join("picture_%04d.png"));
+    process::run(ffmpeg.args(["-c:v", "libwebp_anim", "-quality", "55", "-loop", "0", "web/film.webp"]))
 }
 
 /// A small picture for the gallery of the window. It has few colours, because all thumbnails are embedded in the program.

@@ -67,6 +67,7 @@ fn kind(file: &Path) -> &'static str {
         Some("html") => "text/html; charset=utf-8",
         Some("js") => "text/javascript",
         Some("wasm") => "application/wasm",
+        Some("webp") => "image/webp",
         _ => "application/octet-stream",
     }
 }

@@ -69,16 +69,28 @@ pub fn build(profile: &str) -> Result<PathBuf> {
     let module = target.join(TARGET).join(name).join("splashdown_web.wasm");
     let mut bindgen = cargo(["run", "--quiet", "--package", "splashdown-bindgen", "--"]);
     process::run(bindgen.arg(&module).arg(&folder))?;
-    fs::copy(process::root().join("web/index.html"), folder.join("index.html"))?;
+    write_page(&folder)?;
     if profile == PUBLISHED {
         check_size(&folder)?;
     }
     Ok(folder)
 }
 
+/// Copies the page and its film. The page contains the size of the program, which a server that compresses does not tell.
+fn write_page(folder: &Path) -> Result<()> {
+    const SIZE: &str = "@PROGRAM_BYTES@";
+    let page = fs::read_to_string(process::root().join("web/index.html"))?;
+    ensure!(page.contains(SIZE), "web/index.html does not contain {SIZE}");
+    let bytes = fs::metadata(folder.join("splashdown_web_bg.wasm"))?.len();
+    fs::write(folder.join("index.html"), page.replace(SIZE, &bytes.to_string()))?;
+    fs::copy(process::root().join("web/film.webp"), folder.join("film.webp"))?;
+    Ok(())
+}
+
 /// Compresses the files as a server would and checks their total size against the limit.
 fn check_size(folder: &Path) -> Result<()> {
     let mut sum = 0;
+    // The film is loaded only where the program cannot run.
     for name in ["splashdown_web_bg.wasm", "splashdown_web.js", "index.html"] {
         let file = folder.join(name);
         let packed = Command::new("gzip").args(["-9", "--stdout"]).arg(&file).output();

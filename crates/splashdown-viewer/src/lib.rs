@@ -16,6 +16,8 @@ mod edit;
 pub mod engine;
 mod error;
 mod export;
+#[cfg(any(target_arch = "wasm32", test))]
+mod fit;
 pub mod items;
 pub mod look;
 mod mouse;

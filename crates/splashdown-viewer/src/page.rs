@@ -8,7 +8,7 @@ use splashdown::scene::{Scene, presets};
 use splashdown_gpu::{DeviceRequest, Gpu, PassDesc, refused_passes};
 use wasm_bindgen::JsValue;
 
-use crate::{Viewer, browser};
+use crate::{Viewer, browser, fit};
 
 thread_local! {
     /// The runner of the canvas.
@@ -16,12 +16,18 @@ thread_local! {
 }
 
 /// Starts or restarts the program on a canvas. After the device was lost it resumes from the last backup, which is some
-/// seconds old. `scene` is the name of a built-in scene, or the text of a scene file.
+/// seconds old. `scene` is the name of a built-in scene, or the text of a scene file. `largest_buffer` and `memory` are those
+/// of the device in bytes; a memory of 0 is unknown.
 ///
 /// # Errors
-/// A message about the scene or the missing device.
-pub async fn start_on_page(canvas: web_sys::HtmlCanvasElement, scene: &str) -> Result<(), JsValue> {
+/// A message about the scene, which may need more memory than the device has, or about the missing device.
+pub async fn start_on_page(
+    canvas: web_sys::HtmlCanvasElement,
+    scene: &str,
+    [largest_buffer, memory]: [u64; 2],
+) -> Result<(), JsValue> {
     let scene = open(scene).map_err(|error| JsValue::from_str(&error))?;
+    fit::check(&scene, largest_buffer, memory).map_err(|error| JsValue::from_str(&error))?;
     let setup = WgpuSetupCreateNew {
         instance_descriptor: wgpu::InstanceDescriptor {
             backends: wgpu::Backends::BROWSER_WEBGPU,

@@ -146,8 +146,8 @@ mod tests {
     fn nearness_falls_from_one_at_a_side_to_zero_at_the_reach() {
         let near = |x: f32, y: f32, z: f32, reach: f32| corner().nearness(Vec3::new(x, y, z), reach);
         assert_eq!(near(0.0, 2.0, 5.5, 1.0), [Vec3::X, 0.5 * Vec3::Z]);
-        // Both sides of x, and y without its open side.
-        assert_eq!(near(2.0, 4.9, 3.0, 2.5), [0.2 * Vec3::X, 0.2 * Vec3::X]);
+        // Both sides of x and z, and y without its open side.
+        assert_eq!(near(2.0, 4.9, 3.0, 4.0), [Vec3::new(0.5, 0.0, 0.25); 2]);
         // A particle that is slightly outside.
         assert_eq!(near(-0.1, 2.0, 3.0, 1.0), [Vec3::X, Vec3::ZERO]);
     }
