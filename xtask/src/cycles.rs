@@ -61,7 +61,7 @@ const TABLE: &str = "docs/cycles.md";
 struct Options {
     /// Samples per pixel of Cycles.
     samples: u32,
-    /// Draw the pictures of Cycles again, which depend only on scenes and scripts.
+    /// Simulate and draw everything again.
     again: bool,
     /// Build without optimization of the dependencies, which is quicker than a first release build.
     dev: bool,
@@ -112,8 +112,14 @@ pub fn run(arguments: &[String]) -> Result<()> {
         let scene = folder.join(format!("{}.toml", case.scene));
         let is_new = write_scene(case, &scene)?;
         let run = folder.join(case.scene);
+        let light_of = |frame: u32| folder.join(format!("{}-{frame}.npy", case.scene));
         let last = case.frames.iter().max().context("a case without frames")?;
-        if is_new || !run.join(format!("mesh/surface_{last:04}.ply")).exists() {
+        if is_new || options.again {
+            // After an interruption nothing of an earlier scene may be left.
+            remove(&run)?;
+            case.frames.iter().try_for_each(|frame| remove(&light_of(*frame)))?;
+        }
+        if !run.join(format!("mesh/surface_{last:04}.ply")).exists() {
             let mut simulate = process::command(&splashdown);
             simulate.arg("run").arg(&scene).arg("--out").arg(&run).args(["--frames", &last.to_string()]);
             process::run(simulate.args(["--formats", "ply", "--no-pictures", "--no-film"]))?;
@@ -121,8 +127,8 @@ pub fn run(arguments: &[String]) -> Result<()> {
         for frame in case.frames {
             let name = format!("{}-{frame}", case.scene);
             draw(&splashdown, &scene, &run, *frame, &folder.join(format!("{name}.png")))?;
-            let light = folder.join(format!("{name}.npy"));
-            if is_new || options.again || !light.exists() {
+            let light = light_of(*frame);
+            if !light.exists() {
                 say(format!("Cycles: {name} ..."));
                 let description = folder.join(format!("{name}.json"));
                 let mut describe = process::command(&data);
@@ -136,6 +142,17 @@ pub fn run(arguments: &[String]) -> Result<()> {
         }
     }
     write_table(&compare(&python, &folder, &names)?)
+}
+
+/// Removes a file or folder, if it exists.
+fn remove(path: &Path) -> Result<()> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    match removed {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", path.display()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes the changed scene; whether it differs from that of an earlier call.

@@ -188,6 +188,7 @@ impl<'a> Frame<'a> {
         let around = self.domain.surroundings();
         let floor_height = around.floor_height;
         let (shadow_min, shadow_size) = shadow_rectangle(&self.domain, sun, floor_height);
+        let panes = panes_of(&self.domain);
         let mut globals = Globals {
             clip_from_world: view.clip_from_world.to_cols_array_2d(),
             eye: view.eye.into(),
@@ -209,9 +210,9 @@ impl<'a> Frame<'a> {
             ray_offset: 2e-5 * extent.length(),
             contact_distance: 0.006 * extent.length(),
             glass_thickness: around.glass_thickness,
-            has_panes: u32::from(self.tank == Tank::Glass),
+            sunlit_panes: if self.tank == Tank::Glass { panes[0] | panes[2] << 2 } else { 0 },
             // Seen from inside, a pane would mirror the scene and hide nothing.
-            glass: if self.domain.contains(view.eye) { [0; 4] } else { panes_of(&self.domain) },
+            glass: if self.domain.contains(view.eye) { [0; 4] } else { panes },
             sample_count: 1,
             line_width: (1.5 * scale).clamp(1.0, 8.0),
             ..Globals::default()

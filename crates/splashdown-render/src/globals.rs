@@ -86,7 +86,7 @@ pub(crate) struct Globals {
     pub floor_tint: [f32; 3],
     pub glass_thickness: f32,
     pub bounced: [f32; 3],
-    pub has_panes: u32,
+    pub sunlit_panes: u32,
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -127,7 +127,7 @@ mod tests {
             slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter water_root body_root ray_shift linear_output glass
             zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
             contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness bounced
-            has_panes edges);
+            sunlit_panes edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

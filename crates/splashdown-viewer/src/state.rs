@@ -313,7 +313,9 @@ impl State {
     pub fn open(&mut self, scene: Scene) {
         let old = std::mem::replace(self, Self::new(scene));
         (self.look.mode, self.look.map) = (old.look.mode, old.look.map);
-        (self.tool, self.shown, self.notes) = (old.tool, old.shown, old.notes);
+        // Editing belongs to time 0 of the scene that it began with.
+        self.tool = if old.tool == Tool::Edit { Tool::Orbit } else { old.tool };
+        (self.shown, self.notes) = (old.shown, old.notes);
         self.time_scale = old.time_scale;
         self.figures = old.figures;
     }

@@ -94,7 +94,7 @@ impl Timeline {
         // A slow picture advances by more than one frame, but never by more than half a second.
         self.position += f64::from(self.speed) * passed.min(0.5);
         let (first, last) = self.range();
-        let end = f64::from(last + 1) / self.frame_rate;
+        let end = (f64::from(last) + 1.0) / self.frame_rate;
         if self.position < end {
             return;
         }
@@ -108,8 +108,9 @@ impl Timeline {
 
     /// Seconds of wall time until the next frame is due.
     pub fn until_next(&self) -> f64 {
-        let next = self.frames.get(self.index() + 1).copied().unwrap_or(self.range().1 + 1);
-        ((f64::from(next) / self.frame_rate - self.position) / f64::from(self.speed)).max(0.0)
+        let next = self.frames.get(self.index() + 1).map(|&frame| f64::from(frame));
+        let next = next.unwrap_or_else(|| f64::from(self.range().1) + 1.0);
+        ((next / self.frame_rate - self.position) / f64::from(self.speed)).max(0.0)
     }
 
     /// Goes to a frame, or to the last one before it.

@@ -16,7 +16,7 @@ struct Solver {
     name: &'static str,
     /// Keys of `[solver]`.
     keys: &'static str,
-    /// Required speed relative to the peer in the first case.
+    /// Required speed relative to the peer in the first case, a goal that was set before it was measured.
     bar: f64,
     /// Whether it is explicit: a viscous liquid would take hours.
     is_explicit: bool,

@@ -37,10 +37,12 @@ pub struct RenderArguments {
     /// How carefully pictures are drawn
     #[arg(long, value_name = "QUALITY", value_parser = choice::<PictureQuality>(), default_value = "standard")]
     pub quality: PictureQuality,
-    /// Particles in blobs of fewer than N are drawn as droplets; 0: none [default: the scene's]
+    /// Particles in blobs of fewer than N are drawn as droplets; 0: only those of the run's droplet files
+    /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = limit())]
     pub min_blob: Option<u32>,
-    /// Particles with fewer than N others within 0.9 support radii are drawn as droplets; 0: none [default: the scene's]
+    /// Particles with fewer than N others within 0.9 support radii are drawn as droplets; 0: only those of the run's
+    /// droplet files [default: the scene's]
     #[arg(long, value_name = "N", value_parser = limit())]
     pub min_neighbours: Option<u32>,
     /// Width and height in pixels [default: the scene's]

@@ -77,7 +77,7 @@ struct Globals {
     floor_tint: vec3f,      // factor on the reflectance of the floor
     glass_thickness: f32,   // m
     bounced: vec3f,         // light from the floor on surfaces that face it
-    has_panes: u32,         // 1: the panes take sunlight
+    sunlit_panes: u32,      // panes that take sunlight: bits 0 and 1 for x, 2 and 3 for z
     edges: array<Edge, 12>,
 }
 

@@ -12,7 +12,7 @@ fn through_tank(origin: vec3f, direction: vec3f, limit: f32) -> f32 {
     for (var pane = 0u; pane < 4u; pane++) {
         let axis = 2u * (pane >> 1u);
         let upper = pane & 1u;
-        let is_glass = globals.has_panes == 1u && ((globals.glass[axis] >> upper) & 1u) == 1u;
+        let is_glass = ((globals.sunlit_panes >> pane) & 1u) == 1u;
         let plane = select(globals.box_min[axis], globals.box_max[axis], upper == 1u);
         let distance = (plane - origin[axis]) / direction[axis];
         let place = origin + distance * direction;

@@ -73,16 +73,16 @@ impl FileIndex {
     /// Missing numbers, and frames without particles or a mesh where others have them.
     pub fn problems(&self) -> Vec<String> {
         let (particles, meshes) = self.has_particles_and_meshes();
-        let without = |has: fn(&FilesOfFrame) -> bool| -> Vec<u32> {
-            self.0.iter().filter(|(_, files)| !has(files)).map(|(number, _)| *number).collect()
+        let without = |has: fn(&FilesOfFrame) -> bool| {
+            ranges(self.0.iter().filter(|(_, files)| !has(files)).map(|(number, _)| *number))
         };
-        let last = self.0.keys().next_back().copied().unwrap_or_default();
-        let first = self.0.keys().next().copied().unwrap_or_default();
-        let missing = (first..=last).filter(|number| !self.0.contains_key(number)).collect();
+        // Gaps between successive numbers, which may be far apart.
+        let pairs = self.numbers().zip(self.numbers().skip(1));
+        let missing = pairs.filter(|(a, b)| b - a > 1).map(|(a, b)| (a + 1, b - 1)).collect();
         let mut problems = Vec::new();
-        let mut report = |numbers: Vec<u32>, what: &str| {
-            if !numbers.is_empty() {
-                problems.push(format!("{} {what}", listed(&numbers)));
+        let mut report = |ranges: Vec<(u32, u32)>, what: &str| {
+            if !ranges.is_empty() {
+                problems.push(format!("{} {what}", listed(&ranges)));
             }
         };
         report(missing, "missing");
@@ -96,15 +96,20 @@ impl FileIndex {
     }
 }
 
-/// Numbers of frames in words, such as `frames 3, 7 to 9`.
-fn listed(numbers: &[u32]) -> String {
+/// The first and last numbers of the ranges in ascending numbers.
+fn ranges(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
     let mut ranges: Vec<(u32, u32)> = Vec::new();
-    for &number in numbers {
+    for number in numbers {
         match ranges.last_mut() {
-            Some((_, last)) if *last + 1 == number => *last = number,
+            Some((_, last)) if number - *last == 1 => *last = number,
             _ => ranges.push((number, number)),
         }
     }
+    ranges
+}
+
+/// Numbers of frames in words, such as `frames 3, 7 to 9`.
+fn listed(ranges: &[(u32, u32)]) -> String {
     let shown = ranges.iter().take(4).map(|&(first, last)| match last - first {
         0 => first.to_string(),
         _ => format!("{first} to {last}"),
@@ -113,17 +118,20 @@ fn listed(numbers: &[u32]) -> String {
     if ranges.len() > 4 {
         text.push_str(", ...");
     }
-    format!("{} {text}", if numbers.len() == 1 { "frame" } else { "frames" })
+    let is_one = ranges.len() == 1 && ranges[0].0 == ranges[0].1;
+    format!("{} {text}", if is_one { "frame" } else { "frames" })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::listed;
+    use super::{listed, ranges};
 
     #[test]
     fn successive_numbers_are_a_range() {
-        assert_eq!(listed(&[3]), "frame 3");
-        assert_eq!(listed(&[3, 7, 8, 9]), "frames 3, 7 to 9");
-        assert_eq!(listed(&[1, 3, 5, 7, 9]), "frames 1, 3, 5, 7, ...");
+        let words = |numbers: &[u32]| listed(&ranges(numbers.iter().copied()));
+        assert_eq!(words(&[3]), "frame 3");
+        assert_eq!(words(&[3, 7, 8, 9]), "frames 3, 7 to 9");
+        assert_eq!(words(&[1, 3, 5, 7, 9]), "frames 1, 3, 5, 7, ...");
+        assert_eq!(words(&[u32::MAX - 1, u32::MAX]), "frames 4294967294 to 4294967295");
     }
 }

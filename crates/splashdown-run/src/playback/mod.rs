@@ -59,7 +59,11 @@ impl PlayedFrame {
             4 * (particles.ids.len() + particles.densities.len() + particles.pressures.len() + attributes)
                 + 12 * (particles.positions.len() + particles.velocities.len())
         };
-        let mesh = self.mesh.as_ref().map_or(0, |mesh| 12 * (mesh.vertices.len() + mesh.triangles.len()));
+        let mesh = self.mesh.as_ref().map_or(0, |mesh| {
+            let attributes: usize = mesh.attributes.iter().map(|values| values.values.len()).sum();
+            let vectors = mesh.vertices.len() + mesh.normals.len() + mesh.velocities.len();
+            12 * (vectors + mesh.triangles.len()) + 4 * attributes
+        });
         let points = [&self.particles, &self.droplets].into_iter().flatten().map(particles).sum::<usize>();
         mesh + points + self.foam.as_ref().map_or(0, |foam| 40 * foam.positions.len())
     }

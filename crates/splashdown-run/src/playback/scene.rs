@@ -35,7 +35,7 @@ pub fn reported_scene(folder: &Path) -> Result<Scene, RunError> {
     let name = word("file").or_else(|| word("scene")).ok_or_else(unknown)?;
     let path = PathBuf::from(name);
     let invalid = |error: splashdown::scene::SceneErrors| RunError::UnknownScene(error.to_string());
-    if path.exists() {
+    if path.is_file() {
         return Scene::load(&path).map_err(invalid);
     }
     match presets().iter().find(|(preset, _)| *preset == name) {

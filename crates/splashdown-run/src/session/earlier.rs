@@ -34,11 +34,12 @@ impl Earlier {
                 let ending = format.ending();
                 if format.has_particles() {
                     missing.push(folder.particles(frame, ending));
+                }
+                if format.has_points() {
                     let kinds = DiffuseKind::ALL.iter().filter(|_| scene.foam.enabled);
                     missing.extend(kinds.map(|(_, name)| folder.points(name, frame, ending)));
-                }
-                if format.has_points() && scene.surface.separates() {
-                    missing.push(folder.droplets(frame, ending));
+                    let droplets = scene.surface.separates().then(|| folder.droplets(frame, ending));
+                    missing.extend(droplets);
                 }
                 if format.has_surface() && scene.surface.enabled {
                     missing.push(folder.mesh(frame, ending));

@@ -55,6 +55,10 @@ impl Viewer {
                 Ok(bytes) => self.open_bytes(path, &bytes, now),
                 Err(error) => self.state.notify(format!("{}: {error}", path.display()), true, now),
             },
+            _ if self.state.timeline.is_some() => {
+                let text = "a run that is played cannot be changed; continue it, or open a scene first";
+                self.state.notify(text, true, now);
+            }
             _ => match splashdown_io::read_mesh(path) {
                 Ok(mesh) => {
                     let corners = mesh.vertices.iter().map(|&v| Vec3::from(v));

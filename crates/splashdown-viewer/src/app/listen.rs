@@ -96,9 +96,9 @@ impl Viewer {
         }
     }
 
-    /// Replaces the scene with changes by the scene being simulated.
+    /// Replaces the scene with changes by the scene being simulated. That of a run that is played has no changes.
     fn revert_edits(&mut self) {
-        if let Some(snapshot) = self.engine.snapshot() {
+        if let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) {
             self.state.scene = snapshot.opened.scene.clone();
             self.state.pouring = edit::has_tap(&self.state.scene);
         }

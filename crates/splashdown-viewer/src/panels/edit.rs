@@ -1,6 +1,8 @@
 //! The tool Edit: selecting, moving, adding and removing blocks, bodies and emitters of the scene at time 0.
 
-use egui::{Color32, Context, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
+use egui::{
+    Color32, Context, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, ScrollArea, Stroke, Ui,
+};
 use glam::{Vec2, Vec3};
 use splashdown::scene::Scene;
 
@@ -11,6 +13,8 @@ use crate::{edit, save};
 
 /// Length of a handle, in points.
 const HANDLE: f32 = 70.0;
+/// Height of the buttons below the list, in points.
+const BUTTONS: f32 = 110.0;
 /// A handle is grabbed within this many points.
 const REACH: f32 = 9.0;
 
@@ -63,12 +67,15 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
     keys(ctx, state, actions);
     let mut is_open = true;
     dialog::new("Edit", over).open(&mut is_open).resizable(false).default_width(150.0).show(ctx, |ui| {
-        for item in Item::all(&state.scene) {
-            let name = item.name(&state.scene);
-            if ui.selectable_label(state.selected == Some(item), name).clicked() {
-                state.selected = Some(item);
+        let height = (dialog::inner_height(over) - BUTTONS).max(60.0);
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            for item in Item::all(&state.scene) {
+                let name = item.name(&state.scene);
+                if ui.selectable_label(state.selected == Some(item), name).clicked() {
+                    state.selected = Some(item);
+                }
             }
-        }
+        });
         ui.separator();
         let before = state.scene.clone();
         ui.horizontal(|ui| {
@@ -113,7 +120,8 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
 }
 
 fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
-    if ctx.egui_wants_keyboard_input() {
+    // A drag of a handle ends first.
+    if ctx.egui_wants_keyboard_input() || state.moving.is_some() {
         return;
     }
     let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
@@ -137,16 +145,24 @@ fn remove(state: &mut State, actions: &mut Vec<Action>, ctx: &Context) {
 
 fn undo(state: &mut State, actions: &mut Vec<Action>) {
     if let Some(scene) = state.history.undo(&state.scene) {
-        state.scene = scene;
+        restore(state, scene);
         start_again(state, actions);
     }
 }
 
 fn redo(state: &mut State, actions: &mut Vec<Action>) {
     if let Some(scene) = state.history.redo(&state.scene) {
-        state.scene = scene;
+        restore(state, scene);
         start_again(state, actions);
     }
+}
+
+/// Takes back what this tool changes, and nothing else: the settings remain.
+fn restore(state: &mut State, scene: Scene) {
+    state.scene.fluid.blocks = scene.fluid.blocks;
+    state.scene.bodies = scene.bodies;
+    state.scene.emitters = scene.emitters;
+    state.scene.duration = scene.duration;
 }
 
 /// Ends a change of the scene. One that a scene file could not contain, such as a block outside the domain, is taken

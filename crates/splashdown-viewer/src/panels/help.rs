@@ -9,13 +9,15 @@ use crate::state::{Action, State};
 use crate::timeline::Timeline;
 
 /// The lines of the help.
-const LINES: [(&str, &str); 21] = [
+const LINES: [(&str, &str); 23] = [
     ("drag", "orbit the camera (with the tool Orbit)"),
     ("right or middle drag", "pan"),
     ("wheel, pinch", "zoom"),
     ("W A S D, Q E", "fly"),
     ("F", "reset the camera"),
     ("Shift + drag", "drag water and dynamic bodies"),
+    ("Delete", "remove the selected thing (with the tool Edit)"),
+    ("Ctrl + Z, Ctrl + Shift + Z", "undo, redo (with the tool Edit)"),
     ("Space", "play, pause"),
     (".", "advance one frame"),
     ("arrows, Home, End", "frames of a run that is played"),
@@ -65,7 +67,7 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         (Key::M, Action::SaveMesh),
         (Key::K, Action::SaveCheckpoint),
     ] {
-        if is_simulated && pressed(key) {
+        if is_simulated && state.moving.is_none() && pressed(key) {
             actions.push(action);
         }
     }

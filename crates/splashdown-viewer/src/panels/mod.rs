@@ -45,6 +45,8 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
     edit::show(ui.ctx(), state, &mut actions, over);
     gallery::show(ui.ctx(), state, &mut actions, over);
     help::show(ui.ctx(), state, over);
+    // The statistics are those of a simulation.
+    state.shown.statistics &= state.timeline.is_none();
     figures::show_statistics(ui.ctx(), state, over);
     (viewport, actions)
 }

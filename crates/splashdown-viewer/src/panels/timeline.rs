@@ -57,7 +57,7 @@ fn position(ui: &mut Ui, timeline: &mut Timeline, width: f32) {
     ui.spacing_mut().slider_width = (width - label).max(60.0);
     let mut frame = timeline.current();
     // A run of one frame has no range.
-    let slider = Slider::new(&mut frame, first..=last.max(first + 1)).show_value(false);
+    let slider = Slider::new(&mut frame, first..=last.max(first.saturating_add(1))).show_value(false);
     let slider = ui.add(slider).on_hover_text("Drag to another frame");
     if slider.changed() {
         timeline.seek(frame);

@@ -44,8 +44,8 @@ pub(super) fn show(
     let tool = match (&state.timeline, ui.input(|input| input.modifiers.shift)) {
         // The water of a finished run cannot be moved.
         (Some(_), _) => Tool::Orbit,
-        (None, true) => Tool::Drag,
-        (None, false) => state.tool,
+        (None, true) if state.moving.is_none() => Tool::Drag,
+        (None, _) => state.tool,
     };
     let mut touched = None;
     match tool {

@@ -1,10 +1,12 @@
 //! A thread that reads the frames that are wanted next.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
 
 use splashdown::BodyMesh;
 use splashdown_run::{PlayedFrame, RunFrames};
+
+/// Frames that are read ahead of [`Loader::take`]. A window that is not drawn takes none.
+const AHEAD: usize = 2;
 
 /// Something that the thread has read.
 pub enum Loaded {
@@ -30,10 +32,9 @@ struct Shared {
     changed: Condvar,
 }
 
-/// Reads frames. Dropping it ends the thread after the file that it is reading.
+/// Reads frames. Dropping it ends the thread after the file that it is reading, without waiting for it.
 pub struct Loader {
     shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
 }
 
 impl Loader {
@@ -44,10 +45,10 @@ impl Loader {
     pub fn start(frames: Arc<RunFrames>, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let its = Arc::clone(&shared);
-        let thread = std::thread::Builder::new()
+        std::thread::Builder::new()
             .name("splashdown-frames".to_owned())
             .spawn(move || read_all(&frames, &its, repaint))?;
-        Ok(Self { shared, thread: Some(thread) })
+        Ok(Self { shared })
     }
 
     /// Replaces the frames that are wanted. One that is being read, or was read since the last call of
@@ -64,7 +65,9 @@ impl Loader {
 
     /// What was loaded since the last call.
     pub fn take(&self) -> Vec<Loaded> {
-        std::mem::take(&mut lock(&self.shared.exchange).loaded)
+        let loaded = std::mem::take(&mut lock(&self.shared.exchange).loaded);
+        self.shared.changed.notify_one();
+        loaded
     }
 }
 
@@ -72,10 +75,6 @@ impl Drop for Loader {
     fn drop(&mut self) {
         lock(&self.shared.exchange).ends = true;
         self.shared.changed.notify_one();
-        if let Some(thread) = self.thread.take() {
-            // A panic is already reported.
-            let _ = thread.join();
-        }
     }
 }
 
@@ -85,7 +84,7 @@ fn read_all(frames: &RunFrames, shared: &Shared, repaint: impl Fn()) {
     repaint();
     loop {
         let mut exchange = lock(&shared.exchange);
-        while exchange.wanted.is_empty() && !exchange.ends {
+        while (exchange.wanted.is_empty() || exchange.loaded.len() >= AHEAD) && !exchange.ends {
             exchange = shared.changed.wait(exchange).unwrap_or_else(PoisonError::into_inner);
         }
         if exchange.ends {

@@ -197,6 +197,16 @@ fn check_flow(scene: &Scene, root: &Section<'_>) {
             );
             root.warn("emitter", message, "use a finer particle_spacing, or an outlet of several spacings");
         }
+        let per_step = scene.solver.cfl_factor * spacing;
+        if scene.solver.method == Method::Dfsph && per_step > layer.interval {
+            let message = format!(
+                "emitter {name:?} adds at most one layer per step: with a cfl_factor of {} a step may be longer than the time \
+                 between layers, so that it emits too little",
+                scene.solver.cfl_factor
+            );
+            let hint = format!("use a cfl_factor of at most {:.2}", layer.interval / spacing - 0.005);
+            root.warn("emitter", message, &hint);
+        }
         if emitter.start >= scene.duration {
             let message = format!(
                 "emitter {name:?} starts at {} s, after the scene ends at {} s",

@@ -165,18 +165,21 @@ mod tests {
             let area = std::f32::consts::PI * radius * radius;
             assert!((layer.share_of(area, 0.01) - 1.0).abs() < 1e-5, "{radius}");
             assert!(layer.points.iter().all(|q| q.length() <= radius - 0.0024), "{radius}");
-            // At rest density, to the points at the rim.
+            // The lattice has the rest density; points at the rim are nearer to their neighbours.
             let volume = layer.pitch.element_product() * layer.interval;
             assert!((volume / 1e-6 - 1.0).abs() < 1e-5, "{radius}: {volume}");
             let adjusted = layer.interval / 0.01;
             assert!((0.8..1.43).contains(&adjusted), "{radius}: {adjusted}");
             assert!(radius < 0.03 || (adjusted - 1.0).abs() < 0.1, "{radius}: {adjusted}");
         }
-        for size in [[0.04, 0.03], [0.043, 0.026], [0.015, 0.2], [0.012, 0.01]] {
+        let squares = [0.015, 0.024, 0.0249, 0.0349].map(|edge| [edge, edge]);
+        for size in [[0.04, 0.03], [0.043, 0.026], [0.015, 0.2], [0.012, 0.01]].into_iter().chain(squares) {
             let layer = rectangle_layer(size, 0.01);
             assert!((layer.share_of(size[0] * size[1], 0.01) - 1.0).abs() < 1e-5, "{size:?}");
             let outside = |q: &Vec2| 2.0 * q.abs() + layer.pitch - Vec2::from(size);
             assert!(layer.points.iter().all(|q| outside(q).max_element() < 1e-6), "{size:?}");
+            let volume = layer.pitch.element_product() * layer.interval;
+            assert!((volume / 1e-6 - 1.0).abs() < 1e-5, "{size:?}: {volume}");
         }
         assert_eq!(rectangle_layer([0.04, 0.03], 0.01).points.len(), 12);
     }

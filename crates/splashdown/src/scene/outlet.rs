@@ -75,13 +75,25 @@ pub fn disc_layer(radius: f32, spacing: f32) -> Layer {
     Layer { points: layer.points.iter().map(|q| q.clamp_length_max(widest)).collect(), ..layer }
 }
 
-/// As [`disc_layer`], for a rectangle of this size in m. Each edge has the nearest whole number of particles.
+/// As [`disc_layer`], for a rectangle of this size in m. Each edge has one of the two nearest whole numbers of particles:
+/// with which the flow is exact, if any, and the lattice nearest to a square one.
 pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Layer {
-    let counts = size.map(|edge| ((edge / spacing).round() as i32).max(1));
+    let [across, up] = size.map(|edge| {
+        let fewer = (edge / spacing).floor() as i32;
+        [fewer.max(1), fewer + 1]
+    });
     let [least, most] = ADJUSTMENT;
-    let stretched = |k: usize| size[k] / (counts[k] as f32 * spacing);
-    let share = (stretched(0) * stretched(1)).clamp(least, most);
-    let pitch = [0, 1].map(|k| spacing * stretched(k).clamp(least, most));
+    let stretched = |counts: &[i32; 2]| [0, 1].map(|k| size[k] / (counts[k] as f32 * spacing));
+    let error = |counts: &[i32; 2]| {
+        let [a, b] = stretched(counts);
+        let flow = (a * b / (a * b).clamp(least, most)).ln().abs();
+        100.0 * flow + a.ln().abs() + b.ln().abs()
+    };
+    let pairs = [[across[0], up[0]], [across[0], up[1]], [across[1], up[0]], [across[1], up[1]]];
+    let counts = pairs.into_iter().min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or([1, 1]);
+    let [a, b] = stretched(&counts);
+    let share = (a * b).clamp(least, most);
+    let pitch = [a, b].map(|stretch| spacing * stretch.max(least));
     let place = |i: i32, k: usize| pitch[k] * (i as f32 - 0.5 * (counts[k] - 1) as f32);
     let points = (0..counts[1])
         .flat_map(|j| (0..counts[0]).map(move |i| Vec2::new(place(i, 0), place(j, 1))))

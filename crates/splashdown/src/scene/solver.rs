@@ -149,7 +149,7 @@ impl Solver {
             max_dt: if method == Method::Dfsph { 0.05 } else { 0.005 },
             min_dt: 1e-7,
             sort: Sort::Counting,
-            tolerance: 0.001,
+            tolerance: Self::usual_tolerance(method, SurfaceTension::None),
             max_iterations: 40,
         }
     }
@@ -179,11 +179,18 @@ impl Solver {
             sound_speed,
             surface_tension,
             contact_angle,
+            tolerance: Self::usual_tolerance(method, surface_tension),
             wall_friction,
             min_dt,
             sort,
             ..standard
         };
+    }
+
+    /// The default tolerance. With `csf` it is smaller for `dfsph`: the pressure of a drop is small compared with that of its
+    /// impacts.
+    pub(crate) fn usual_tolerance(method: Method, surface_tension: SurfaceTension) -> f32 {
+        if (method, surface_tension) == (Method::Dfsph, SurfaceTension::Csf) { 1e-4 } else { 0.001 }
     }
 
     /// The keys of the scene file that have no effect with `dfsph`.

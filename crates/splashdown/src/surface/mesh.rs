@@ -10,7 +10,7 @@ use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
 use super::{SurfaceError, anisotropy, blocks, field, march, smooth, volume};
 use crate::cells::Grid;
 use crate::marching_cubes;
-use crate::scene::SurfaceKernels;
+use crate::scene::{SurfaceKernels, SurfaceSettings};
 
 /// The particles of a surface, in the buffers of the simulation. The label of each buffer is the
 /// name of its field.
@@ -229,12 +229,20 @@ pub(crate) fn forecast(params: &SurfaceParams, grid: &Grid, particles: u32) -> R
         + triangles * 12;
     // Valences, one-ring starts, relaxed vertices; one-rings.
     let smoothing = vertices * (4 + 4 + 16) + triangles * 24;
-    // Moments, centres and matrices.
     // Flags, starts, positions that remain, droplets; the first particle of each cell.
     let separated =
         if params.separates() { 56 * u64::from(particles) + 4 * u64::from(grid.cell_count) } else { 0 };
+    // Moments, centres and matrices.
     let kernels = u64::from(particles) * if params.kernels == SurfaceKernels::Anisotropic { 96 } else { 0 };
     Ok(whole + kernels + separated + if params.smoothing_iterations > 0 { smoothing } else { 0 })
+}
+
+/// The bytes per particle of the largest buffer of the surface that has an entry per particle.
+pub(crate) fn largest_per_particle(settings: &SurfaceSettings) -> u64 {
+    let droplets = if settings.separates() { size_of::<Droplet>() as u64 } else { 0 };
+    // The moments are three vectors.
+    let is_anisotropic = settings.enabled && settings.kernels == SurfaceKernels::Anisotropic;
+    droplets.max(if is_anisotropic { 48 } else { 0 })
 }
 
 impl Surface {

@@ -70,8 +70,8 @@ pub use error::SurfaceError;
 pub use interpolate::interpolate;
 #[doc(hidden)]
 pub use mesh::SurfaceInput;
-pub(crate) use mesh::forecast;
 pub use mesh::{Surface, SurfaceStats};
+pub(crate) use mesh::{forecast, largest_per_particle};
 #[doc(hidden)]
 pub use params::Status;
 pub use params::SurfaceParams;

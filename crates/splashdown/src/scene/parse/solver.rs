@@ -53,7 +53,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         max_dt: max_dt?.unwrap_or(standard.max_dt),
         min_dt: min_dt?.unwrap_or(standard.min_dt),
         sort: sort?.unwrap_or(standard.sort),
-        tolerance: tolerance?.unwrap_or(if has_tension_force { 1e-4 } else { standard.tolerance }),
+        tolerance: tolerance?.unwrap_or(Solver::usual_tolerance(method, surface_tension)),
         max_iterations: max_iterations?.unwrap_or(standard.max_iterations),
         ..standard
     };
