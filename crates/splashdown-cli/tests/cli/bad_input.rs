@@ -108,7 +108,8 @@ fn more_particles_than_fit_into_a_buffer_are_refused_with_the_largest_count() ->
     }
     let place = Place::new()?;
     let scene = "[scene]\nname = \"big\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [3, 2, 2]\n\
-                 [fluid]\nparticle_spacing = 0.0093\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [2, 2, 2]\n";
+                 [fluid]\nparticle_spacing = 0.0093\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [2, 2, 2]\n\
+                 [surface]\nenabled = false\n";
     place.write("big.toml", scene)?;
     let words = ["at most 8388608 fit", "134 MB", "particle_spacing of 0.0099 m"];
     for arguments in [&["run", "big.toml"][..], &["check", "big.toml"], &["bench", "--scene", "big.toml"]] {
