@@ -41,7 +41,9 @@ fn fitting_spacing(scene: &Scene, allowed: u64) -> Option<f32> {
             return Some(coarser.fluid.particle_spacing);
         }
         let factor = (needed as f64 / allowed.max(1) as f64).cbrt().max(1.02);
-        coarser.fluid.particle_spacing = rounded_up(f64::from(coarser.fluid.particle_spacing) * factor);
+        let spacing = rounded_up(f64::from(coarser.fluid.particle_spacing) * factor);
+        coarser.surface.cell_size *= spacing / coarser.fluid.particle_spacing;
+        coarser.fluid.particle_spacing = spacing;
     }
     None
 }
