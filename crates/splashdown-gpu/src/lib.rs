@@ -59,7 +59,7 @@ pub use element::{Field, GpuElement, GpuMember, GpuStruct};
 pub use error::GpuError;
 pub use exec::{CpuExecutor, Executor, GpuExecutor, Readback, refused_passes};
 pub use host::{Slot, as_atomic};
-pub use pass::{CpuWork, PassDesc};
+pub use pass::{CpuWork, PassDesc, Scratch};
 pub use record::{Command, DispatchSize, Flag, Recording, Rounds, dispatch_groups};
 pub use timer::PassTimer;
 pub use timing::{PassTime, Timings};

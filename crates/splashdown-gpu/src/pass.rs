@@ -1,15 +1,34 @@
 //! One declaration per compute pass, read by the executors, the gate and the tests.
 
+use std::any::{Any, TypeId};
+use std::collections::HashMap;
+
 use crate::{Binding, Slot, WgslModule, wgsl};
 
+/// What the CPU code of passes keeps in an executor from one dispatch to the next: one value per type. A pass may not
+/// rely on it: it has to check that a value belongs to the contents of its buffers.
+#[derive(Default)]
+pub struct Scratch {
+    values: HashMap<TypeId, Box<dyn Any + Send + Sync>>,
+}
+
+impl Scratch {
+    /// The value of a type; the default one the first time.
+    pub fn get<T: Any + Send + Sync + Default>(&mut self) -> &mut T {
+        let value = self.values.entry(TypeId::of::<T>()).or_insert_with(|| Box::new(T::default()));
+        value.downcast_mut().expect("the key is the type of the value")
+    }
+}
+
 /// The amount of work of one dispatch, for the CPU code of a pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CpuWork {
+pub struct CpuWork<'a> {
     /// Number of invocations: the exact number of a [`DispatchSize::Items`](crate::DispatchSize::Items), otherwise
     /// workgroups times the size of a workgroup.
     pub items: u32,
     /// Number of workgroups.
     pub groups: u32,
+    /// Values that outlive the dispatch.
+    pub scratch: &'a mut Scratch,
 }
 
 /// A compute pass declared as data.
@@ -32,7 +51,7 @@ pub struct PassDesc {
     /// every browser grants.
     pub bindings: &'static [Binding],
     /// The same work in Rust. The slots convert into the [`bindings!`](crate::bindings) struct.
-    pub cpu: fn(CpuWork, &mut [Slot<'_>]),
+    pub cpu: fn(CpuWork<'_>, &mut [Slot<'_>]),
 }
 
 impl std::fmt::Debug for PassDesc {

@@ -114,7 +114,9 @@ pub use checkpoint::Checkpoint;
 pub use device::Device;
 pub use error::SimulationError;
 #[doc(hidden)]
-pub use memory::{check_particles, largest_particle_count, memory_forecast, memory_forecast_of};
+pub use memory::{
+    check_particles, largest_particle_count, memory_forecast, memory_forecast_of, neighbour_lists_forecast,
+};
 pub use mouse_force::MouseForce;
 pub use reconstruct::reconstruct;
 pub use run::{Event, Run, RunOptions};

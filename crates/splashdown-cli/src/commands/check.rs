@@ -7,7 +7,10 @@ use splashdown::check::{BodyWidths, Interpretation, Resolution, interpretations,
 use splashdown::run::ProgressFn;
 use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Method, Scene, SceneWarning};
-use splashdown::{Device, Packing, Simulation, SimulationError, check_particles, memory_forecast_of};
+use splashdown::{
+    Device, Packing, Simulation, SimulationError, check_particles, memory_forecast_of,
+    neighbour_lists_forecast,
+};
 
 use crate::args::CheckArguments;
 use crate::console::Verbosity;
@@ -116,6 +119,12 @@ fn prepare(scene: &Scene, progress: &ProgressFn) -> Result<(Inventory, Option<Pa
     Ok((splashdown::inventory(scene, &progress)?, splashdown::initial_packing(scene, &progress)?))
 }
 
+/// The memory of the buffers, and what the CPU takes in addition, in bytes.
+fn describe_memory(buffers: u64, on_cpu: u64) -> String {
+    let buffers = format!("about {}", human::bytes(buffers));
+    if on_cpu == 0 { buffers } else { format!("{buffers}, on the CPU {} more", human::bytes(on_cpu)) }
+}
+
 fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {
     let fluid = &scene.fluid;
     let size = scene.domain.size();
@@ -148,7 +157,7 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
                 scene.duration
             ),
         ),
-        ("memory", format!("about {}", human::bytes(memory))),
+        ("memory", describe_memory(memory, neighbour_lists_forecast(scene, inventory.particles))),
         (
             "expected time",
             format!(

@@ -8,8 +8,8 @@ use super::table::{Meta, Table};
 use super::{Readback, readback};
 use crate::host::{Bytes, HostBuffer};
 use crate::{
-    Access, BufferId, Command, CpuWork, DispatchSize, GpuElement, GpuError, PassDesc, Recording, Slot,
-    Timings,
+    Access, BufferId, Command, CpuWork, DispatchSize, GpuElement, GpuError, PassDesc, Recording, Scratch,
+    Slot, Timings,
 };
 
 /// Buffers in host memory; passes run by their Rust functions, parallel over rayon's threads.
@@ -21,6 +21,7 @@ pub struct CpuExecutor {
     buffers: Vec<HostBuffer>,
     table: Table,
     timings: Option<Timings>,
+    scratch: Scratch,
 }
 
 impl CpuExecutor {
@@ -129,19 +130,19 @@ impl CpuExecutor {
     }
 
     fn dispatch(&mut self, pass: &'static PassDesc, size: DispatchSize, ids: &[BufferId]) {
-        let work = match size {
-            DispatchSize::Items(items) => CpuWork { items, groups: items.div_ceil(pass.invocations()) },
-            DispatchSize::Groups(groups) => {
-                CpuWork { items: groups.saturating_mul(pass.invocations()), groups }
-            }
+        let per_group = pass.invocations();
+        let [items, groups] = match size {
+            DispatchSize::Items(items) => [items, items.div_ceil(per_group)],
+            DispatchSize::Groups(groups) => [groups.saturating_mul(per_group), groups],
             DispatchSize::Indirect { buffer, word } => {
                 let groups = (0..3).map(|i| self.word(buffer, word + i)).fold(1, u32::saturating_mul);
-                CpuWork { items: groups.saturating_mul(pass.invocations()), groups }
+                [groups.saturating_mul(per_group), groups]
             }
         };
-        if work.groups == 0 {
+        if groups == 0 {
             return;
         }
+        let work = CpuWork { items, groups, scratch: &mut self.scratch };
         let started = Instant::now();
         (pass.cpu)(work, &mut slots(&mut self.buffers, pass, ids));
         if let Some(timings) = &mut self.timings {

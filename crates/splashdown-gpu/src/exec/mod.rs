@@ -18,7 +18,6 @@ use crate::{Buffer, BufferId, GpuElement, GpuError, GpuStruct, Recording, Timing
 /// Owns buffers and runs [`Recording`]s over them, on a GPU or on the CPU.
 ///
 /// The same recording runs on both; see the crate's page for an example.
-#[expect(clippy::large_enum_variant, reason = "a process has a handful of executors")]
 pub enum Executor {
     /// In host memory, on the CPU cores.
     Cpu(CpuExecutor),

@@ -17,7 +17,7 @@ pub(super) fn copy(StreamBindings { values, results }: StreamBindings<'_>) {
     tasks.for_each(|(to, from)| to.copy_from_slice(from));
 }
 
-pub(super) fn madd(work: CpuWork, StreamBindings { values, results }: StreamBindings<'_>) {
+pub(super) fn madd(work: CpuWork<'_>, StreamBindings { values, results }: StreamBindings<'_>) {
     let n = values.len().min(results.len()).min(work.items as usize);
     let tasks = results[..n].par_chunks_mut(TOGETHER).zip(values[..n].par_chunks(TOGETHER)).with_min_len(64);
     tasks.for_each(|(to, from)| {

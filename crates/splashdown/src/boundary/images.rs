@@ -38,7 +38,7 @@ pub(crate) struct Reflection {
 }
 
 /// The closed sides at which the fluid is reflected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Images {
     /// Corners of the domain in metres, infinite where a side is open.
     low: Vec3,

@@ -92,6 +92,45 @@ impl<const F: usize> Candidates<F> {
         self.pad(count);
     }
 
+    /// Packs the images of the particles of `runs` that are in the region. `mark` changes the last columns of the images by
+    /// a reflection; only the positions are reflected.
+    #[inline(always)]
+    pub fn pack_only_images<V: Register>(
+        &mut self,
+        all: &Columns<F>,
+        runs: &[Range<usize>],
+        region: &Region,
+        reflections: impl Iterator<Item = Reflection> + Clone,
+        mark: impl Fn(&Reflection, &mut [f32]),
+    ) {
+        let particles: usize = runs.iter().map(|run| run.len()).sum();
+        self.reserve(particles * reflections.clone().count());
+        let mut count = 0;
+        for reflection in reflections {
+            let begin = count;
+            for run in runs {
+                let place = |x| reflected_point(&reflection, x);
+                let reflect = |mut values: [V; F]| {
+                    let [x, y, z] = place([values[0], values[1], values[2]]);
+                    values[..3].copy_from_slice(&[x, y, z]);
+                    values
+                };
+                count = self.append_with::<V>(all, run.clone(), region, count, place, reflect);
+            }
+            mark(&reflection, &mut self.columns[F - 1][begin..count]);
+        }
+        self.pad_unless_empty(count);
+    }
+
+    /// As [`pad`](Self::pad), without a block of padding alone.
+    #[inline(always)]
+    fn pad_unless_empty(&mut self, count: usize) {
+        self.count = 0;
+        if count > 0 {
+            self.pad(count);
+        }
+    }
+
     /// Packs the particles in the region and those of their images that are, from all cells within the support radius of
     /// a box. `reflect` computes all columns of an image.
     #[inline(always)]

@@ -5,7 +5,8 @@
 //! * [`for_each`]: sums at every particle ([`PairSum`]);
 //! * [`sums_at`]: sums at arbitrary points ([`PointSum`]);
 //! * [`for_each_box`]: the particles near a box, for passes with their own inner loop
-//!   ([`BoxPass`]).
+//!   ([`BoxPass`]);
+//! * [`NeighbourLists`]: lists with a vector for each neighbour, for passes that repeat.
 //!
 //! # How it works
 //! The particles' quantities are stored in columns, one array per quantity ([`Columns`]). The
@@ -20,13 +21,15 @@
 //! width of the registers.
 //!
 //! # Why not the other way
-//! * A list of neighbours per particle: gathering its quantities by index costs more than the
-//!   arithmetic it saves (measured, `docs/performance.md`).
+//! * A list of neighbours per particle for passes that visit them once: to make it costs more than the visit (measured,
+//!   `docs/performance.md`). Iterations over the same neighbours use [`NeighbourLists`].
 //! * Visiting each pair once: the sums would depend on the order of the threads.
 
 mod boxes;
 mod candidates;
 mod columns;
+mod lists;
+mod near;
 mod particles;
 mod points;
 #[cfg(test)]
@@ -40,6 +43,8 @@ use glam::Vec4;
 use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
+pub(crate) use lists::{NeighbourLists, Radial};
+pub(crate) use near::Near;
 pub(crate) use particles::{Added, Outputs, PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
 pub(crate) use vector::{

@@ -116,18 +116,32 @@ pub(super) fn for_each_with<const F: usize, const S: usize, P: PairSum<F, S>>(
 }
 
 /// The rows of cells that contain particles, each with the outputs of its particles.
-fn rows<T, O: Outputs<T>>(sorted: Sorted<'_>, mut outputs: O) -> Vec<(Range<usize>, O)> {
-    let mut rows = Vec::new();
-    let width = sorted.grid.size_x as usize;
-    for first in (0..sorted.grid.cell_count as usize).step_by(width) {
-        let particles = sorted.cell_start[first + width] - sorted.cell_start[first];
-        if particles > 0 {
-            let (piece, rest) = outputs.split_at(particles as usize);
+fn rows<T, O: Outputs<T>>(sorted: Sorted<'_>, outputs: O) -> Vec<(Range<usize>, O)> {
+    pieces(sorted, outputs, 1)
+}
+
+/// Divides the grid into consecutive rows of cells that contain at least `least` particles, except for the last ones, each
+/// with the outputs of its particles.
+pub(super) fn pieces<T, O: Outputs<T>>(
+    sorted: Sorted<'_>,
+    mut outputs: O,
+    least: usize,
+) -> Vec<(Range<usize>, O)> {
+    let mut pieces = Vec::new();
+    let (width, cells) = (sorted.grid.size_x as usize, sorted.grid.cell_count as usize);
+    let mut begin = 0;
+    for end in (width..=cells).step_by(width) {
+        let particles = sorted.run(begin, end - begin).len();
+        if particles >= least || end == cells && particles > 0 {
+            let (piece, rest) = outputs.split_at(particles);
             outputs = rest;
-            rows.push((first..first + width, piece));
+            pieces.push((begin..end, piece));
+            begin = end;
+        } else if particles == 0 {
+            begin = end;
         }
     }
-    rows
+    pieces
 }
 
 /// One row of cells.

@@ -2,9 +2,12 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::boxes::for_each_box_with;
+use super::lists::NeighbourLists;
 use super::particles::for_each_with;
 use super::points::sums_at_with;
 use super::*;
+use crate::boundary::Reflection;
+use crate::kernel::{Kernel, WendlandC2};
 use crate::simd::{Register, Simd};
 
 const SUPPORT: f32 = 0.1;
@@ -253,4 +256,112 @@ fn boxes_receive_all_particles_within_the_support() {
         for_each_box_with(simd, case.sorted(), counts.par_iter_mut(), &pass);
         assert_eq!(counts, expected, "{} registers", simd.name());
     }
+}
+
+/// Walls at three sides of the particles.
+fn images() -> Images {
+    Images::between(
+        Vec3::new(-0.01, 0.0, f32::NEG_INFINITY),
+        Vec3::new(f32::INFINITY, f32::INFINITY, 4.0 * SUPPORT),
+    )
+}
+
+/// The neighbours of particle `i` by brute force: gradients, signs of reflections and indices.
+fn listed(case: &Case, i: usize, images: Images) -> Vec<(Vec3, Vec3, usize)> {
+    let x = case.positions[i].xyz();
+    let itself = Reflection { sign: Vec3::ONE, shift: Vec3::ZERO };
+    let reflections: Vec<_> = [itself].into_iter().chain(images.near(x, x, SUPPORT)).collect();
+    let mut found = Vec::new();
+    for by in reflections {
+        for (j, other) in case.positions.iter().enumerate() {
+            let d = x - (by.sign * other.xyz() + by.shift);
+            if d.length_squared() < SUPPORT * SUPPORT && d != Vec3::ZERO {
+                found.push((WendlandC2::g(d.length() / SUPPORT) * d, by.sign, j));
+            }
+        }
+    }
+    found
+}
+
+/// For each particle the sums of [`Near`] over particles and images.
+fn sums_of_lists(simd: Simd, case: &Case, images: Images) -> Vec<[Vec4; 4]> {
+    let sorted = case.sorted().with_images(images);
+    let vectors: Vec<Vec4> = case.values.iter().map(|v| Vec4::new(*v, 1.0 - v, 0.5 * v * v, 0.0)).collect();
+    let mut lists = NeighbourLists::<WendlandC2>::default();
+    let lists = lists.of_with(simd, sorted);
+    let mut out = vec![[Vec4::ZERO; 4]; case.positions.len()];
+    lists.for_each(sorted, out.as_mut_slice(), |i, [particles, images]| {
+        let own = vectors[i];
+        let of_images = images.images().map(|(s, sign, j)| s * (own - sign * vectors[j])).sum::<Vec4>();
+        let sums = [
+            particles.sum_of_values(simd, case.values[i], &case.values),
+            particles.sum_of_differences(simd, own, &vectors),
+            particles.sum_of_projections(simd, own, &vectors),
+            of_images,
+        ];
+        sums.map(|sum| sum.xyz().extend(0.0))
+    });
+    out
+}
+
+#[test]
+fn lists_contain_the_neighbours_and_their_images() {
+    let case = Case::new(1.0);
+    let found = sums_of_lists(Simd::Portable, &case, images());
+    let vector = |j: usize| {
+        let v = case.values[j];
+        Vec3::new(v, 1.0 - v, 0.5 * v * v)
+    };
+    let mut seen_images = 0;
+    for (i, sums) in found.iter().enumerate() {
+        let near = listed(&case, i, images());
+        let (particles, reflected): (Vec<_>, Vec<_>) =
+            near.into_iter().partition(|(_, sign, _)| *sign == Vec3::ONE);
+        seen_images += reflected.len();
+        let values: Vec3 = particles.iter().map(|(g, _, j)| (case.values[i] + case.values[*j]) * *g).sum();
+        let differences: Vec3 = particles.iter().map(|(g, _, j)| *g * (vector(i) - vector(*j))).sum();
+        let of_images: Vec3 =
+            reflected.iter().map(|(g, sign, j)| *g * (vector(i) - *sign * vector(*j))).sum();
+        let bound = 1e-6 * 7.05 * SUPPORT * 20.0 * (particles.len() + reflected.len() + 1) as f32;
+        for (sum, expected) in [(sums[0], values), (sums[1], differences), (sums[3], of_images)] {
+            assert!(sum.xyz().abs_diff_eq(expected, bound), "particle {i}: {sum} and {expected}");
+        }
+    }
+    assert!(seen_images > 1000, "{seen_images}");
+    // Negative control: without the images the sums differ.
+    let without = sums_of_lists(Simd::Portable, &case, Images::NONE);
+    assert!(found.iter().zip(&without).any(|(a, b)| a[3].distance(b[3]) > 0.5 * SUPPORT));
+}
+
+#[test]
+fn every_register_makes_the_same_lists_and_sums() {
+    let case = Case::new(1.0);
+    let expected = sums_of_lists(Simd::Portable, &case, images());
+    assert!(expected.iter().any(|sums| sums[2].length() > 0.1 * SUPPORT));
+    for simd in kinds() {
+        assert!(
+            sums_of_lists(simd, &case, images()) == expected,
+            "{} registers give other bits",
+            simd.name()
+        );
+    }
+}
+
+#[test]
+fn lists_follow_the_particles() {
+    let mut case = Case::new(1.0);
+    let mut lists = NeighbourLists::<WendlandC2>::default();
+    let count = |lists: &NeighbourLists<WendlandC2>, case: &Case| {
+        let mut out = vec![0; case.positions.len()];
+        lists.for_each(case.sorted(), out.as_mut_slice(), |_, [near, _]| near.images().count());
+        out
+    };
+    let before = count(lists.of(case.sorted()), &case);
+    let first = before.iter().position(|count| *count > 0).expect("neighbours");
+    assert_eq!(before[first], listed(&case, first, Images::NONE).len());
+    // Within its cell, but elsewhere.
+    case.positions[first].x += 0.3 * SUPPORT;
+    let after = count(lists.of(case.sorted()), &case);
+    assert_eq!(after[first], listed(&case, first, Images::NONE).len());
+    assert_ne!(before, after);
 }

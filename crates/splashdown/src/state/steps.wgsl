@@ -1,6 +1,14 @@
 #import sph/step_counters
 // The end of a step; needs `params`, `state` and `counters` (not atomic). See state/end_step.
 
+// The longest step with a pressure over the rest density; see end_step/cpu.rs.
+fn pressure_limit(pressure: f32) -> f32 {
+    let spacing = params.particle_spacing;
+    let undamped = 0.5 * spacing / sqrt(max(pressure, 1e-20));
+    let damping = 0.25 * undamped * 3.0 * params.implicit_viscosity / (spacing * spacing);
+    return undamped * (damping + sqrt(damping * damping + 1.0));
+}
+
 fn finish_step() {
     if (counters[COUNTER_MOVED] == 0u) {
         return;
@@ -23,7 +31,7 @@ fn finish_step() {
     if (params.is_implicit == 1u) {
         stable = min(stable, select(1.5, 0.7, is_slow) * state.stable_dt);
         stable = min(stable, c * params.particle_spacing / max(speed, 1e-20));
-        stable = min(stable, 0.5 * params.particle_spacing / sqrt(max(pressure, 1e-20)));
+        stable = min(stable, pressure_limit(pressure));
     } else {
         stable = min(stable, 1.1 * state.stable_dt);
         stable = min(stable, c * h / (params.sound_speed + speed));

@@ -105,8 +105,9 @@ fn begin(name: &str, length: f32) -> Case {
 fn end_step_cases() -> Vec<Case> {
     let state = state(100);
     let calm = [0.5, 10.0, 0.002, 0.0];
-    let implicit = Params { is_implicit: 1, ..params(2.0) };
-    let ways: [(&str, StepState, [f32; 4], Params); 11] = [
+    let implicit = Params { is_implicit: 1, implicit_viscosity: 0.0, ..params(2.0) };
+    let viscous = Params { implicit_viscosity: 0.02, ..implicit };
+    let ways: [(&str, StepState, [f32; 4], Params); 12] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
         ("limited by sound", state, calm, params(2.0)),
         ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
@@ -115,6 +116,7 @@ fn end_step_cases() -> Vec<Case> {
         ("below the smallest", state, [0.5, 1e9, 0.0, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
         ("implicit, grown by half", state, [0.5, 1e6, 0.0, 4.0], implicit),
         ("implicit, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], implicit),
+        ("implicit and viscous, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], viscous),
         ("two steps before the last", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
         ("before the last", StepState { remaining: 7e-4, ..state }, calm, params(2.0)),
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
@@ -185,10 +187,14 @@ pub fn next_state(
         factor * 0.4 * p(params.particle_spacing) / speed,
         0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),
     ];
+    // Of x'' = -w^2 x - g x' with implicit damping: dt^2 w^2 = 4 + 2 g dt, where 2 / w is the limit without damping.
+    let undamped = 0.5 * p(params.particle_spacing) / pressure.sqrt();
+    let rate = 3.0 * p(params.implicit_viscosity) / p(params.particle_spacing).powi(2);
+    let half = 0.25 * rate * undamped * undamped;
     let implicit = [
         1.5 * p(state.stable_dt),
         factor * p(params.particle_spacing) / speed,
-        0.5 * p(params.particle_spacing) / pressure.sqrt(),
+        half + (half * half + undamped * undamped).sqrt(),
     ];
     let common = [p(params.max_dt), 0.125 * h * h / p(params.viscosity)];
     let limits = if params.is_implicit == 1 { &implicit[..] } else { &explicit[..] };

@@ -42,8 +42,9 @@
 //!
 //! In water deeper than five spacings the mean residual must be smaller: a residual of one sign lifts or lowers the
 //! surface by the depth times the residual in every step. For a depth of N spacings, which follows from the mean square of
-//! the pressure, it may be a tenth of the root mean square of the motions over N, or (5 / N)^2 times the tolerance if that
-//! is more; at least 0.02 times the tolerance and at most the tolerance.
+//! the pressure, it may be 100 times the root mean square of the motions over N times the tolerance, or (5 / N)^2 times it if
+//! that is more; at least 0.02 times the tolerance and at most the tolerance. With the default tolerance, 0.1 %, the first
+//! is a tenth of the motions over N.
 //!
 //! If the residual exceeds four times the best, the relaxation is halved and the directions restart. At the largest number
 //! of iterations the pressure is accepted, the next step is shorter and starts with half of the pressure.

@@ -2,11 +2,14 @@
 
 use splashdown_gpu::WgslModule;
 
-use crate::pairs::{difference, dot, scaled};
+use crate::pairs::{Radial, difference, dot, scaled};
 use crate::simd::Lanes;
 
 /// The WGSL side.
 pub const WGSL: WgslModule = WgslModule { name: "sph/viscous_pair", source: include_str!("pair.wgsl") };
+
+/// What is added to the square of a distance in support radii before a division.
+const SOFT: f32 = 1e-6;
 
 /// The weight of a pair in the operator at a distance q in support radii: (1 - q)(1 - 4/5 q), zero beyond the support.
 ///
@@ -19,6 +22,17 @@ fn weight<V: Lanes>(q: V) -> V {
     let one = V::splat(1.0);
     let t = (one - q).max(V::splat(0.0));
     t * (one - q * 0.8)
+}
+
+/// The square root of the weight over the distance in support radii, for lists of neighbours: with the vectors s = d times
+/// this, the force of a pair is s (s.(v - u)) over the square of the support radius.
+pub(super) struct Root;
+
+impl Radial for Root {
+    #[inline(always)]
+    fn factor<V: Lanes>(q: V) -> V {
+        (weight(q) / (q * q + SOFT)).sqrt()
+    }
 }
 
 /// The factor of the sums in 1/s, per m^2/s of viscosity and m^3 of volume, at a support radius in m: the continuum then
@@ -65,7 +79,7 @@ impl<V: Lanes> Law<V> {
     pub fn new(support_radius: f32, friction: f32) -> Self {
         Self {
             scale: V::splat(1.0 / support_radius),
-            soft: V::splat(1e-6 * support_radius * support_radius),
+            soft: V::splat(SOFT * support_radius * support_radius),
             friction: V::splat(friction),
         }
     }
@@ -76,20 +90,19 @@ impl<V: Lanes> Law<V> {
         weight(r2.sqrt() * self.scale) / (r2 + self.soft)
     }
 
-    /// The force of a pair without friction, for the velocity `v` of a particle and `u` of the other one or its image at
-    /// the distance `d`: the weight times d (d.(v - u)).
-    #[inline(always)]
-    pub fn slipping(&self, v: [V; 3], u: [V; 3], d: [V; 3]) -> [V; 3] {
-        scaled(self.weight(dot(d, d)) * dot(d, difference(v, u)), d)
-    }
-
-    /// The same with friction. `sign` are the signs of the reflection of the image, `u` is the velocity of the particle
-    /// itself. Without friction the image has the reflected velocity R u. With friction 1 it has the velocity -u behind one wall,
+    /// The force of a pair: the weight times d (d.(v - u)), for the velocity `v` of a particle and `u` of the other one at the
+    /// distance `d`. Of an image, `sign` are the signs of its reflection, and `u` is the velocity of the particle itself. Without friction the image has the reflected velocity R u. With friction 1 it has the velocity -u behind one wall,
     /// u behind an edge, -u behind a corner. The matrix is then the mean of d d' and of that for the reflected distance:
     /// products of components of which R changes one vanish. This makes the operator symmetric, which d d' alone would not
     /// be, and changes nothing for a flow along the wall.
     #[inline(always)]
     pub fn with_friction(&self, v: [V; 3], u: [V; 3], d: [V; 3], sign: [V; 3]) -> [V; 3] {
+        scaled(self.weight(dot(d, d)), self.unweighted(v, u, d, sign))
+    }
+
+    /// The same without the weight.
+    #[inline(always)]
+    pub fn unweighted(&self, v: [V; 3], u: [V; 3], d: [V; 3], sign: [V; 3]) -> [V; 3] {
         let image = [sign[0] * u[0], sign[1] * u[1], sign[2] * u[2]];
         let slipping = scaled(dot(d, difference(v, image)), d);
         let w = difference(v, scaled(sign[0] * sign[1] * sign[2], u));
@@ -101,8 +114,7 @@ impl<V: Lanes> Law<V> {
             d[1] * (a[1] + xy * a[0] + yz * a[2]),
             d[2] * (a[2] + xz * a[0] + yz * a[1]),
         ];
-        let weight = self.weight(dot(d, d));
-        std::array::from_fn(|k| weight * (slipping[k] + self.friction * (sticking[k] - slipping[k])))
+        std::array::from_fn(|k| slipping[k] + self.friction * (sticking[k] - slipping[k]))
     }
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
         let most = (if is_slow { 0.7 } else { 1.5 }) * state.stable_dt;
         most.min(params.max_dt)
             .min(c * params.particle_spacing / speed.max(1e-20))
-            .min(0.5 * params.particle_spacing / pressure.max(1e-20).sqrt())
+            .min(pressure_limit(params, pressure))
     } else {
         (1.1 * state.stable_dt)
             .min(params.max_dt)
@@ -51,4 +51,14 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
         state.remaining -= state.dt;
         state.dt = StepState::step_length(stable, state.remaining);
     }
+}
+
+/// The longest step in s with a pressure over the rest density. A particle that is displaced across its neighbours oscillates
+/// by the pressure at the rate w, and a step of 2 / w is the longest stable one. An implicit viscosity damps this motion at
+/// a rate g, and dt^2 w^2 = 4 + 2 g dt is stable. A lone particle is damped at 6 nu / spacing^2; half of it counts.
+fn pressure_limit(params: &Params, pressure: f32) -> f32 {
+    let spacing = params.particle_spacing;
+    let undamped = 0.5 * spacing / pressure.max(1e-20).sqrt();
+    let damping = 0.25 * undamped * 3.0 * params.implicit_viscosity / (spacing * spacing);
+    undamped * (damping + (damping * damping + 1.0).sqrt())
 }

@@ -56,8 +56,9 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
 }
 
 /// The part of the tolerance that deep water needs. A residual of one sign moves the surface by the depth times the
-/// residual in a step: at most by a tenth of the root mean square of the motions. `pressure2` is the mean square of the
-/// pressure over the rest density, of which the depth follows as if the fluid were at rest; `speed2` that of the speed.
+/// residual in a step: with the default tolerance of 0.1 %, at most by a tenth of the root mean square of the motions.
+/// `pressure2` is the mean square of the pressure over the rest density, of which the depth follows as if the fluid were at
+/// rest; `speed2` that of the speed.
 fn strictness(params: &Params, dt: f32, pressure2: f32, speed2: f32) -> f32 {
     let layer = params.gravity.length() * params.particle_spacing;
     if layer == 0.0 {
@@ -66,5 +67,5 @@ fn strictness(params: &Params, dt: f32, pressure2: f32, speed2: f32) -> f32 {
     let depth = ((3.0 * pressure2).sqrt() / layer).max(5.0);
     let moved = speed2.sqrt() * dt / params.particle_spacing;
     let shallow = 5.0 / depth;
-    (shallow * shallow).max(0.1 * moved / (depth * params.tolerance)).clamp(0.02, 1.0)
+    (shallow * shallow).max(100.0 * moved / depth).clamp(0.02, 1.0)
 }

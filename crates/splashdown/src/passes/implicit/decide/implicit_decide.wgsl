@@ -18,7 +18,7 @@ fn strictness(pressure2: f32, speed2: f32) -> f32 {
     let depth = max(sqrt(3.0 * pressure2) / layer, 5.0);
     let moved = sqrt(speed2) * state.dt / params.particle_spacing;
     let shallow = 5.0 / depth;
-    return clamp(max(shallow * shallow, 0.1 * moved / (depth * params.tolerance)), 0.02, 1.0);
+    return clamp(max(shallow * shallow, 100.0 * moved / depth), 0.02, 1.0);
 }
 
 // Adds two groups; the second component is the largest pressure.

@@ -1,16 +1,15 @@
-use std::marker::PhantomData;
-
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
+use splashdown_gpu::Scratch;
 
 use super::super::{GROUP, GROUPS};
 use super::PredictBindings;
-use crate::boundary::{Images, Reflection};
+use crate::boundary::Images;
 use crate::kernel::Kernel;
-use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected_point, scaled, splat};
-use crate::simd::Register;
+use crate::pairs::{NeighbourLists, Sorted};
+use crate::simd::Simd;
 
-pub(super) fn predict<K: Kernel, const BODIES: bool>(buffers: PredictBindings<'_>) {
+pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: PredictBindings<'_>) {
     let PredictBindings {
         params,
         grid,
@@ -30,22 +29,25 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(buffers: PredictBindings<'_
     }
     let scale = 1.0 / params.support_radius;
     let volume = params.summed_mass / params.rest_density;
-    let pass = Predict::<K, BODIES> {
+    let pass = Predict::<BODIES> {
         dt: state.dt,
         beta: solve.beta,
-        positions,
         velocities,
         accelerations,
         solid_gradients,
         iterates,
-        scale,
         factor: volume * (scale * scale) * (scale * scale) * scale,
-        kernel: PhantomData,
     };
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
-    pairs::for_each(sorted, &mut *predicted, &pass);
-    let predicted = &predicted[..sorted.active_count()];
+    let (n, simd) = (sorted.active_count(), Simd::in_use());
+    let pressures: Vec<f32> = (0..n).into_par_iter().with_min_len(4096).map(|j| pass.pressure(j)).collect();
+    let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
+    lists.for_each(sorted, &mut *predicted, |i, near| {
+        let [particles, images] = near.map(|near| near.sum_of_values(simd, pressures[i], &pressures));
+        pass.finish(i, pressures[i], pass.factor * (particles + images).xyz())
+    });
+    let predicted = &predicted[..n];
     let tasks = predicted.par_chunks(GROUP * GROUPS).zip(impulses.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (predicted, sums))| {
         for (group, (predicted, sum)) in predicted.chunks(GROUP).zip(sums).enumerate() {
@@ -62,20 +64,18 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(buffers: PredictBindings<'_
     });
 }
 
-struct Predict<'a, K, const BODIES: bool> {
+struct Predict<'a, const BODIES: bool> {
     dt: f32,
     beta: f32,
-    positions: &'a [Vec4],
     velocities: &'a [Vec4],
     accelerations: &'a [Vec4],
     solid_gradients: &'a [Vec4],
     iterates: &'a [Vec4],
-    scale: f32,
+    /// Factor of the sums.
     factor: f32,
-    kernel: PhantomData<K>,
 }
 
-impl<K, const BODIES: bool> Predict<'_, K, BODIES> {
+impl<const BODIES: bool> Predict<'_, BODIES> {
     #[inline(always)]
     fn pressure(&self, j: usize) -> f32 {
         (self.iterates[j].x + self.beta * self.iterates[j].y).max(0.0)
@@ -92,49 +92,15 @@ impl<K, const BODIES: bool> Predict<'_, K, BODIES> {
     fn is_driven(&self, i: usize) -> bool {
         self.accelerations[i].w == 1.0
     }
-}
 
-impl<K: Kernel, const BODIES: bool> PairSum<4, 3> for Predict<'_, K, BODIES> {
-    type Output = Vec4;
-
+    /// The velocity of a particle with the pressure `k`, from the sum of D' k over its neighbours.
     #[inline(always)]
-    fn load(&self, j: usize) -> [f32; 4] {
-        let p = self.positions[j];
-        [p.x, p.y, p.z, self.pressure(j)]
-    }
-
-    #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 4]) -> [V; 3] {
-        let (x, k) = (splat::<V>(self.positions[i]), V::splat(self.pressure(i)));
-        #[inline(always)]
-        move |[x_j, y_j, z_j, k_j]| {
-            let d = difference(x, [x_j, y_j, z_j]);
-            scaled(K::g(dot(d, d).sqrt() * self.scale) * (k + k_j), d)
-        }
-    }
-
-    #[inline(always)]
-    fn reflect<V: Register>(&self, by: &Reflection, [x, y, z, k]: [V; 4]) -> [V; 4] {
-        let [x, y, z] = reflected_point(by, [x, y, z]);
-        [x, y, z, k]
-    }
-
-    #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3]) -> Vec4 {
+    fn finish(&self, i: usize, k: f32, sum: Vec3) -> Vec4 {
         let v = self.without_pressure(i);
         if self.is_driven(i) {
             return v.extend(-1.0);
         }
-        let k = self.pressure(i);
-        let mut q = self.factor * Vec3::from(sums);
-        if BODIES {
-            q += k * self.solid_gradients[i].xyz();
-        }
-        (v - self.dt * q).extend(k)
-    }
-
-    #[inline(always)]
-    fn wants(&self, i: usize) -> bool {
-        !self.is_driven(i)
+        let solid = if BODIES { k * self.solid_gradients[i].xyz() } else { Vec3::ZERO };
+        (v - self.dt * (sum + solid)).extend(k)
     }
 }

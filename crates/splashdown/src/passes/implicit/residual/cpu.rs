@@ -1,16 +1,15 @@
-use std::marker::PhantomData;
-
 use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
+use splashdown_gpu::Scratch;
 
 use super::super::{GROUP, GROUPS};
 use super::ResidualBindings;
-use crate::boundary::{Images, Reflection};
+use crate::boundary::Images;
 use crate::kernel::Kernel;
-use crate::pairs::{self, Outputs, PairSum, Sorted, difference, dot, reflected, reflected_point, splat};
-use crate::simd::Register;
+use crate::pairs::{NeighbourLists, Outputs, Sorted};
+use crate::simd::Simd;
 
-pub(super) fn residual<K: Kernel, const BODIES: bool>(buffers: ResidualBindings<'_>) {
+pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: ResidualBindings<'_>) {
     let ResidualBindings {
         params,
         grid,
@@ -30,17 +29,18 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(buffers: ResidualBindings<
     }
     let scale = 1.0 / params.support_radius;
     let volume = params.summed_mass / params.rest_density;
-    let pass = Rate::<K> {
-        positions,
-        predicted,
-        scale,
-        factor: volume * (scale * scale) * (scale * scale) * scale,
-        kernel: PhantomData,
-    };
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
-    pairs::for_each(sorted, Last(&mut *iterates), &pass);
+    let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
+    let (simd, factor) = (Simd::in_use(), volume * (scale * scale) * (scale * scale) * scale);
+    lists.for_each(sorted, Last(&mut *iterates), |i, [particles, images]| {
+        let u = predicted[i];
+        let of_image = |(gradient, sign, j): (Vec4, Vec4, usize)| gradient * (u - sign * predicted[j]);
+        let sum =
+            particles.sum_of_differences(simd, u, predicted) + images.images().map(of_image).sum::<Vec4>();
+        factor * (sum.x + sum.y + sum.z)
+    });
 
     let update = |i: usize, iterate: &mut Vec4| {
         let excess = densities[i].x / params.rest_density - 1.0;
@@ -89,47 +89,5 @@ impl Outputs<f32> for Last<'_> {
     #[inline(always)]
     fn put(&mut self, i: usize, value: f32) {
         self.0[i].w = value;
-    }
-}
-
-/// The sum over the neighbours in the rate of the density.
-struct Rate<'a, K> {
-    positions: &'a [Vec4],
-    predicted: &'a [Vec4],
-    scale: f32,
-    factor: f32,
-    kernel: PhantomData<K>,
-}
-
-impl<K: Kernel> PairSum<6, 1> for Rate<'_, K> {
-    type Output = f32;
-
-    #[inline(always)]
-    fn load(&self, j: usize) -> [f32; 6] {
-        let (p, u) = (self.positions[j], self.predicted[j]);
-        [p.x, p.y, p.z, u.x, u.y, u.z]
-    }
-
-    #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 6]) -> [V; 1] {
-        let (x, u) = (splat::<V>(self.positions[i]), splat::<V>(self.predicted[i]));
-        #[inline(always)]
-        move |[x_j, y_j, z_j, u_j, v_j, w_j]| {
-            let d = difference(x, [x_j, y_j, z_j]);
-            [K::g(dot(d, d).sqrt() * self.scale) * dot(d, difference(u, [u_j, v_j, w_j]))]
-        }
-    }
-
-    #[inline(always)]
-    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 6]) -> [V; 6] {
-        let [x, y, z, u, v, w] = values;
-        let [x, y, z] = reflected_point(by, [x, y, z]);
-        let [u, v, w] = reflected(by, [u, v, w]);
-        [x, y, z, u, v, w]
-    }
-
-    #[inline(always)]
-    fn finish(&self, _: usize, [sum]: [f32; 1]) -> f32 {
-        self.factor * sum
     }
 }

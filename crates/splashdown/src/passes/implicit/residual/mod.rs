@@ -44,14 +44,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0)],
     bindings: ResidualBindings::LIST,
-    cpu: |_, slots| cpu::residual::<kernel::WendlandC2, false>(slots.into()),
+    cpu: |work, slots| cpu::residual::<kernel::WendlandC2, false>(work.scratch, slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "implicit.residual.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64)],
-    cpu: |_, slots| cpu::residual::<CubicSpline, false>(slots.into()),
+    cpu: |work, slots| cpu::residual::<CubicSpline, false>(work.scratch, slots.into()),
     ..WENDLAND_C2
 };
 
@@ -59,7 +59,7 @@ pub static CUBIC_SPLINE: PassDesc = PassDesc {
 pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
     label: "implicit.residual.wendland_c2.bodies",
     constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
-    cpu: |_, slots| cpu::residual::<kernel::WendlandC2, true>(slots.into()),
+    cpu: |work, slots| cpu::residual::<kernel::WendlandC2, true>(work.scratch, slots.into()),
     ..WENDLAND_C2
 };
 
@@ -67,6 +67,6 @@ pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
 pub static CUBIC_SPLINE_BODIES: PassDesc = PassDesc {
     label: "implicit.residual.cubic_spline.bodies",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("BODIES", 1.0)],
-    cpu: |_, slots| cpu::residual::<CubicSpline, true>(slots.into()),
+    cpu: |work, slots| cpu::residual::<CubicSpline, true>(work.scratch, slots.into()),
     ..WENDLAND_C2
 };

@@ -1,15 +1,15 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
+use splashdown_gpu::Scratch;
 
-use super::super::pair::Law;
+use super::super::pair::{Law, Root};
 use super::super::{GROUP, GROUPS};
 use super::ProductBindings;
-use crate::boundary::{Images, Reflection};
-use crate::pairs::{self, Outputs, PairSum, Sorted, difference, reflected, reflected_point, splat};
-use crate::simd::Register;
-use crate::state::Params;
+use crate::boundary::Images;
+use crate::pairs::{Near, NeighbourLists, Outputs, Sorted};
+use crate::simd::Simd;
 
-pub(super) fn product<const BODIES: bool>(buffers: ProductBindings<'_>) {
+pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: ProductBindings<'_>) {
     let ProductBindings {
         params,
         grid,
@@ -27,13 +27,20 @@ pub(super) fn product<const BODIES: bool>(buffers: ProductBindings<'_>) {
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
-    let (rate, images) = (state.dt * params.viscous_factor, Images::new(params));
-    let pass = Product { params, rate, images, positions, residuals: viscous_residuals };
-    // Without friction an image needs no more columns than a particle, and far from walls there are none.
-    pairs::for_each(sorted, Stored::<BODIES>(viscous_products), &Slipping(pass));
-    if params.wall_friction != 0.0 {
-        pairs::for_each(sorted, Stored::<BODIES>(viscous_products), &pass);
-    }
+    let lists = scratch.get::<NeighbourLists<Root>>().of(sorted);
+    let pass = Product {
+        rate: state.dt * params.viscous_factor / (params.support_radius * params.support_radius),
+        residuals: viscous_residuals,
+        preconditioned: (0..n)
+            .into_par_iter()
+            .with_min_len(4096)
+            .map(|j| (viscous_residuals[j].w * viscous_residuals[j].xyz()).extend(0.0))
+            .collect(),
+        friction: params.wall_friction,
+        law: Law::new(params.support_radius, params.wall_friction),
+        simd: Simd::in_use(),
+    };
+    lists.for_each(sorted, Stored::<BODIES>(viscous_products), |i, near| pass.result(i, near));
     let products = &viscous_products[..n];
     let tasks = products.par_chunks(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (products, sums))| {
@@ -52,137 +59,55 @@ pub(super) fn product<const BODIES: bool>(buffers: ProductBindings<'_>) {
     });
 }
 
-/// Stores the results of the particles that a pass is for, or adds them to what is there.
+/// Stores the results, or adds them to what is there.
 struct Stored<'a, const ADDS: bool>(&'a mut [Vec4]);
 
-impl<const ADDS: bool> Outputs<Option<Vec4>> for Stored<'_, ADDS> {
+impl<const ADDS: bool> Outputs<Vec4> for Stored<'_, ADDS> {
     fn split_at(self, middle: usize) -> (Self, Self) {
         let (first, second) = self.0.split_at_mut(middle);
         (Self(first), Self(second))
     }
 
     #[inline(always)]
-    fn put(&mut self, i: usize, value: Option<Vec4>) {
-        if let Some(value) = value {
-            self.0[i] = if ADDS { self.0[i] + value } else { value };
-        }
+    fn put(&mut self, i: usize, value: Vec4) {
+        self.0[i] = if ADDS { self.0[i] + value } else { value };
     }
 }
 
-#[derive(Clone, Copy)]
 struct Product<'a> {
-    params: &'a Params,
     /// Factor of the sums.
     rate: f32,
-    images: Images,
-    positions: &'a [Vec4],
     residuals: &'a [Vec4],
+    /// The preconditioned residuals; the fourth component is zero.
+    preconditioned: Vec<Vec4>,
+    friction: f32,
+    law: Law<f32>,
+    simd: Simd,
 }
 
 impl Product<'_> {
-    /// The preconditioned residual.
     #[inline(always)]
-    fn preconditioned(&self, j: usize) -> Vec4 {
-        let r = self.residuals[j];
-        (r.w * r.xyz()).extend(0.0)
-    }
-
-    #[inline(always)]
-    fn finished(&self, i: usize, sums: [f32; 3]) -> Vec4 {
-        if self.is_driven(i) {
+    fn result(&self, i: usize, [particles, images]: [Near<'_>; 2]) -> Vec4 {
+        // Where a nozzle determines the motion.
+        if self.residuals[i].w == 0.0 {
             return Vec4::ZERO;
         }
-        (self.preconditioned(i).xyz() + self.rate * Vec3::from(sums)).extend(0.0)
+        let own = self.preconditioned[i];
+        let of_particles = particles.sum_of_projections(self.simd, own, &self.preconditioned);
+        let of_images: Vec4 = images
+            .images()
+            .map(|(s, sign, j)| self.of_image(s.xyz(), sign.xyz(), own.xyz(), self.preconditioned[j].xyz()))
+            .sum();
+        (own + self.rate * (of_particles + of_images)).xyz().extend(0.0)
     }
 
-    /// True if the friction of walls acts on a particle.
+    /// The force of an image, for its vector `s` in the list and the vectors of the particle and of that which is reflected.
     #[inline(always)]
-    fn has_friction(&self, i: usize) -> bool {
-        self.params.wall_friction != 0.0
-            && self.images.sides_near(self.positions[i].xyz(), self.params.support_radius) > 0
-    }
-
-    /// True where a nozzle determines the motion.
-    #[inline(always)]
-    fn is_driven(&self, i: usize) -> bool {
-        self.residuals[i].w == 0.0
-    }
-}
-
-/// Near walls with friction. The last columns are the signs of the reflection.
-impl PairSum<9, 3> for Product<'_> {
-    type Output = Option<Vec4>;
-
-    #[inline(always)]
-    fn load(&self, j: usize) -> [f32; 9] {
-        let (p, z) = (self.positions[j], self.preconditioned(j));
-        [p.x, p.y, p.z, z.x, z.y, z.z, 1.0, 1.0, 1.0]
-    }
-
-    #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 9]) -> [V; 3] {
-        let (x, z) = (splat::<V>(self.positions[i]), splat::<V>(self.preconditioned(i)));
-        let law = Law::<V>::new(self.params.support_radius, self.params.wall_friction);
-        #[inline(always)]
-        move |[x_j, y_j, z_j, u, v, w, a, b, c]| {
-            law.with_friction(z, [u, v, w], difference(x, [x_j, y_j, z_j]), [a, b, c])
+    fn of_image(&self, s: Vec3, sign: Vec3, own: Vec3, other: Vec3) -> Vec4 {
+        if self.friction == 0.0 {
+            return (s * s.dot(own - sign * other)).extend(0.0);
         }
-    }
-
-    #[inline(always)]
-    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 9]) -> [V; 9] {
-        let [x, y, z, u, v, w, a, b, c] = values;
-        let [x, y, z] = reflected_point(by, [x, y, z]);
-        let [e, f, g] = by.sign.to_array().map(V::splat);
-        [x, y, z, u, v, w, a * e, b * f, c * g]
-    }
-
-    #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3]) -> Option<Vec4> {
-        self.has_friction(i).then(|| self.finished(i, sums))
-    }
-
-    #[inline(always)]
-    fn wants(&self, i: usize) -> bool {
-        self.has_friction(i) && !self.is_driven(i)
-    }
-}
-
-/// Far from walls, or without their friction.
-struct Slipping<'a>(Product<'a>);
-
-impl PairSum<6, 3> for Slipping<'_> {
-    type Output = Option<Vec4>;
-
-    #[inline(always)]
-    fn load(&self, j: usize) -> [f32; 6] {
-        let (p, z) = (self.0.positions[j], self.0.preconditioned(j));
-        [p.x, p.y, p.z, z.x, z.y, z.z]
-    }
-
-    #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 6]) -> [V; 3] {
-        let (x, z) = (splat::<V>(self.0.positions[i]), splat::<V>(self.0.preconditioned(i)));
-        let law = Law::<V>::new(self.0.params.support_radius, 0.0);
-        #[inline(always)]
-        move |[x_j, y_j, z_j, u, v, w]| law.slipping(z, [u, v, w], difference(x, [x_j, y_j, z_j]))
-    }
-
-    #[inline(always)]
-    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 6]) -> [V; 6] {
-        let [x, y, z, u, v, w] = values;
-        let [x, y, z] = reflected_point(by, [x, y, z]);
-        let [u, v, w] = reflected(by, [u, v, w]);
-        [x, y, z, u, v, w]
-    }
-
-    #[inline(always)]
-    fn finish(&self, i: usize, sums: [f32; 3]) -> Option<Vec4> {
-        (!self.0.has_friction(i)).then(|| self.0.finished(i, sums))
-    }
-
-    #[inline(always)]
-    fn wants(&self, i: usize) -> bool {
-        !self.0.is_driven(i) && !self.0.has_friction(i)
+        let [v, u, s, sign] = [own, other, s, sign].map(|v| v.to_array());
+        Vec3::from(self.law.unweighted(v, u, s, sign)).extend(0.0)
     }
 }

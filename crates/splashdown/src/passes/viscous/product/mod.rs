@@ -47,13 +47,13 @@ pub static PRODUCT: PassDesc = PassDesc {
     workgroup_size: [64, 1, 1],
     constants: &[],
     bindings: ProductBindings::LIST,
-    cpu: |_, slots| cpu::product::<false>(slots.into()),
+    cpu: |work, slots| cpu::product::<false>(work.scratch, slots.into()),
 };
 
 /// With bodies, whose friction the products contain before.
 pub static BODIES: PassDesc = PassDesc {
     label: "viscous.product.bodies",
     constants: &[("BODIES", 1.0)],
-    cpu: |_, slots| cpu::product::<true>(slots.into()),
+    cpu: |work, slots| cpu::product::<true>(work.scratch, slots.into()),
     ..PRODUCT
 };
