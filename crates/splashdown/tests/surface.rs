@@ -281,6 +281,7 @@ fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
         grid: executor.create_uniform("grid", &grid).unwrap(),
         grid_host: grid,
         particle_capacity: capacity,
+        solids: None,
     }
 }
 

@@ -1,12 +1,16 @@
 //! Interpolation of a body's map and sums over its boundary particles on the CPU; see
-//! [`boundary_lookup`](super::boundary_lookup).
+//! [`boundary_lookup`](super::boundary_lookup) and [`surface::solids`](crate::surface).
 
 use glam::{UVec3, Vec2, Vec3, Vec4};
+use splashdown_gpu::WgslModule;
 
 use super::types::Body;
 use crate::boundary::closed_bounds;
 use crate::kernel::Kernel;
 use crate::state::Params;
+
+/// The WGSL side of the maps, which imports [`BODY`](super::BODY).
+pub(crate) const MAP: WgslModule = WgslModule { name: "sph/body_map", source: include_str!("body_map.wgsl") };
 
 /// The inside of the closed sides of the domain.
 pub(super) struct Interior {
@@ -85,6 +89,18 @@ pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Fi
         distance_gradient: Vec3::new(dx.x, dy.x, dz.x),
         effective_gradient: Vec3::new(dx.y, dy.y, dz.y),
     })
+}
+
+/// The signed distance in m of a point from the nearest of some bodies, if one is nearer than `reach`.
+#[inline]
+pub(crate) fn nearest<'a>(
+    bodies: impl Iterator<Item = &'a Body>,
+    maps: &[Vec2],
+    x: Vec3,
+    reach: f32,
+) -> Option<f32> {
+    let distances = bodies.filter_map(|body| Some(at(body, maps, body.local(x), reach)?.distance));
+    distances.filter(|distance| *distance < reach).reduce(f32::min)
 }
 
 /// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction

@@ -31,6 +31,7 @@ mod types;
 mod viscous;
 
 pub(crate) use closed::{closed_solid, solid_of};
+pub(crate) use field::{MAP, nearest};
 pub(crate) use key::{BodiesChanged, BodyKey};
 pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, body_meshes, load, mesh_of};

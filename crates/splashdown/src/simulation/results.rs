@@ -8,7 +8,7 @@ use crate::bodies::BodyState;
 use crate::monitor::{Findings, Monitor, Observed};
 use crate::scene::{Probe, Quantity, SurfaceSettings};
 use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, Values};
-use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
+use crate::surface::{Solids, Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
 use crate::{SimulationError, Stats};
 
 impl Simulation {
@@ -165,6 +165,7 @@ impl Simulation {
             grid: self.cells.grid_uniform,
             grid_host: self.cells.grid,
             particle_capacity: self.params.particle_count,
+            solids: self.bodies.as_ref().map(|bodies| Solids { bodies: bodies.bodies, maps: bodies.maps }),
         };
         Ok(Surface::new(&mut self.executor, params, input)?)
     }

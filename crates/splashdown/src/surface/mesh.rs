@@ -1,13 +1,14 @@
 //! Surface extraction: buffers, list of passes, growth of the buffers.
 
-use glam::{UVec2, Vec4};
+use glam::{UVec2, Vec2, Vec4};
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, BufferId, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
 use splashdown_io::{Mesh, Particles};
 
 use super::droplets::{self, Droplet};
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
-use super::{SurfaceError, anisotropy, blocks, field, march, smooth, volume};
+use super::{SurfaceError, anisotropy, blocks, field, march, smooth, solids, volume};
+use crate::bodies::Body;
 use crate::cells::Grid;
 use crate::marching_cubes;
 use crate::scene::{SurfaceKernels, SurfaceSettings};
@@ -30,6 +31,24 @@ pub struct SurfaceInput {
     pub grid_host: Grid,
     /// Largest number of particles.
     pub particle_capacity: u32,
+    /// The bodies at which the surface ends.
+    pub solids: Option<Solids>,
+}
+
+/// The bodies of a simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct Solids {
+    /// Their states.
+    pub bodies: Buffer<Body>,
+    /// Their maps.
+    pub maps: Buffer<Vec2>,
+}
+
+impl Solids {
+    /// The buffers by name, for recordings.
+    fn buffers(&self) -> BufferSet {
+        buffer_set!(self => bodies, maps)
+    }
 }
 
 impl SurfaceInput {
@@ -386,6 +405,9 @@ impl Surface {
         recording.dispatch(&blocks::PLAN, DispatchSize::Groups(1), buffers);
         let field = if is_anisotropic { &field::STRETCHED_FIELD } else { &field::FIELD };
         recording.dispatch(field, self.per_block(), buffers);
+        if let Some(solids) = &self.input.solids {
+            recording.dispatch(&solids::CLIP, self.per_block(), &buffers.clone().and(&solids.buffers()));
+        }
     }
 
     fn record_march(&self, recording: &mut Recording, buffers: &BufferSet) {
@@ -406,6 +428,9 @@ impl Surface {
         let per_vertex = DispatchSize::indirect(b.vertex_groups);
         let per_triangle = DispatchSize::indirect(b.triangle_groups);
         recording.dispatch(&smooth::SMOOTHING_WEIGHTS, self.per_block(), buffers);
+        if let Some(solids) = &self.input.solids {
+            recording.dispatch(&solids::PIN, per_vertex, &buffers.clone().and(&solids.buffers()));
+        }
         recording.clear(b.valences);
         recording.dispatch(&smooth::VALENCE, per_triangle, buffers);
         scan.record(recording, b.valences, b.one_ring_starts);

@@ -10,7 +10,7 @@
 //!    the anisotropic field.
 //! 3. `blocks`: the blocks of 8x8x8 nodes within reach of particles are marked, numbered by a scan,
 //!    and listed.
-//! 4. `field`: the colour field and its signs at the nodes of these blocks.
+//! 4. `field`: the colour field and its signs at the nodes of these blocks; `solids`: the field ends at bodies.
 //! 5. `march`: cut edges are counted, numbered by scans, and converted into shared vertices with
 //!    normals and into triangles (marching cubes: Lorensen and Cline 1987). The arguments of the
 //!    indirect draw are written on the device.
@@ -57,6 +57,7 @@ mod params;
 mod parts;
 mod reconstruct;
 mod smooth;
+mod solids;
 #[cfg(test)]
 mod tests;
 mod volume;
@@ -69,7 +70,7 @@ pub use droplets::{MAX_BLOB, droplet_radius, droplets_of, isolated};
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
 #[doc(hidden)]
-pub use mesh::SurfaceInput;
+pub use mesh::{Solids, SurfaceInput};
 pub use mesh::{Surface, SurfaceStats};
 pub(crate) use mesh::{forecast, largest_per_particle};
 #[doc(hidden)]
@@ -96,6 +97,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &blocks::PLAN,
         &field::FIELD,
         &field::STRETCHED_FIELD,
+        &solids::CLIP,
+        &solids::PIN,
         &march::COUNT,
         &march::FINISH,
         &march::VERTICES,

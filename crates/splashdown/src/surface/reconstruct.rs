@@ -89,6 +89,7 @@ pub(super) fn upload(
         grid: executor.create_uniform("grid", &grid)?,
         grid_host: grid,
         particle_capacity: sorted.len() as u32,
+        solids: None,
     })
 }
 

@@ -66,3 +66,23 @@ fn wall_normal(x: vec3<f32>) -> vec3<f32> {
     }
     return vec3<f32>(0.0, 0.0, sides.z);
 }
+
+// The signs of a row of eight nodes, one bit each: inside the fluid and in front of the walls. `low` and `high` are the
+// values at its lower and upper four nodes.
+fn row_signs(node: vec3<i32>, low: vec4<f32>, high: vec4<f32>) -> u32 {
+    let aside = wall_distances(node_position(node));
+    if min(aside.y, aside.z) <= lattice.wall_margin {
+        return 0u;
+    }
+    let numbers = vec4<u32>(u32(node.x)) + vec4<u32>(0u, 1u, 2u, 3u);
+    let low_x = node_positions_x(numbers);
+    let high_x = node_positions_x(numbers + vec4<u32>(4u));
+    let low_front = min(low_x - lattice.wall_low.x, lattice.wall_high.x - low_x);
+    let high_front = min(high_x - lattice.wall_low.x, lattice.wall_high.x - high_x);
+    var inside = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        inside |= select(0u, 1u << i, low[i] >= lattice.iso_level && low_front[i] > lattice.wall_margin);
+        inside |= select(0u, 16u << i, high[i] >= lattice.iso_level && high_front[i] > lattice.wall_margin);
+    }
+    return inside;
+}

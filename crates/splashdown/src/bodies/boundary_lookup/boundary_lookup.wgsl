@@ -5,16 +5,9 @@
 #import sph/planes
 #import sph/images
 #import sph/body
+#import sph/body_map
 
 #bindings
-
-// The map at a point of the mesh's frame: distance, effective distance and their gradients.
-struct Field {
-    distance: f32,
-    effective: f32,
-    distance_gradient: vec3<f32>,
-    effective_gradient: vec3<f32>,
-}
 
 fn no_contact() -> Contact {
     return Contact(vec3(0.0), 0.0, vec3(0.0), 1e30, 0.0, 1e30, NO_BODY, 0u);
@@ -29,36 +22,6 @@ fn plane_through(q: f32) -> vec2<f32> {
 fn density_through(q: f32) -> f32 {
     let d = wall_plane(abs(q)).x;
     return select(d, 1.0 - d, q < 0.0);
-}
-
-fn field_at(b: u32, y: vec3<f32>) -> Field {
-    let size = vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z);
-    let inverse = 1.0 / bodies[b].cell_size;
-    let at = (y - bodies[b].field_min) * inverse;
-    let cell = min(vec3<u32>(at), size - vec3(2u));
-    let f = at - vec3<f32>(cell);
-    let row = size.x;
-    let plane = size.x * size.y;
-    let first = bodies[b].first_node + cell.z * plane + cell.y * row + cell.x;
-    let c000 = maps[first];
-    let c100 = maps[first + 1u];
-    let c010 = maps[first + row];
-    let c110 = maps[first + row + 1u];
-    let c001 = maps[first + plane];
-    let c101 = maps[first + plane + 1u];
-    let c011 = maps[first + plane + row];
-    let c111 = maps[first + plane + row + 1u];
-    let x00 = mix(c000, c100, f.x);
-    let x10 = mix(c010, c110, f.x);
-    let x01 = mix(c001, c101, f.x);
-    let x11 = mix(c011, c111, f.x);
-    let y0 = mix(x00, x10, f.y);
-    let y1 = mix(x01, x11, f.y);
-    let value = mix(y0, y1, f.z);
-    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z) * inverse;
-    let dy = mix(x10 - x00, x11 - x01, f.z) * inverse;
-    let dz = (y1 - y0) * inverse;
-    return Field(value.x, value.y, vec3(dx.x, dy.x, dz.x), vec3(dx.y, dy.y, dz.y));
 }
 
 // The q at which a plane wall has this kernel fraction.
@@ -146,10 +109,8 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         return no_contact();
     }
     let orientation = bodies[b].orientation;
-    let y = turned_back(orientation, away) + bodies[b].center;
-    let size = vec3<f32>(vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z) - vec3(1u));
-    let high = bodies[b].field_min + size * bodies[b].cell_size;
-    if (any(y <= bodies[b].field_min) || any(y >= high)) {
+    let y = body_point(b, x);
+    if (!is_in_map(b, y)) {
         return no_contact();
     }
     let field = field_at(b, y);

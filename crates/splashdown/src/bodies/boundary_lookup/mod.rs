@@ -22,6 +22,7 @@ mod cpu;
 use glam::{Vec2, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
+use super::field;
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair};
 use crate::kernel::{self, CubicSpline, Kernel, Poly6};
@@ -36,6 +37,7 @@ const IMPORTS: &[WgslModule] = &[
     boundary::PLANES,
     boundary::IMAGES,
     types::WGSL,
+    field::MAP,
 ];
 
 bindings! {

@@ -28,13 +28,10 @@ fn distance_outside(nodes: RowNodes, x: f32) -> f32 {
 // Evaluates a row of a block and writes its values and signs.
 fn evaluate_row(slot: u32, row: u32) {
     let node = block_place(block_list[slot]) * 8 + vec3<i32>(0, i32(row & 7u), i32(row >> 3u));
-    let place = node_position(node);
     let numbers = vec4<u32>(u32(node.x)) + vec4<u32>(0u, 1u, 2u, 3u);
-    let own_low_x = node_positions_x(numbers);
-    let own_high_x = node_positions_x(numbers + vec4<u32>(4u));
-    let low_x = folded_x(own_low_x);
-    let high_x = folded_x(own_high_x);
-    let start = folded(place);
+    let low_x = folded_x(node_positions_x(numbers));
+    let high_x = folded_x(node_positions_x(numbers + vec4<u32>(4u)));
+    let start = folded(node_position(node));
     let least = min(low_x, high_x);
     let most = max(low_x, high_x);
     let first_x = min(min(least.x, least.y), min(least.z, least.w));
@@ -59,17 +56,10 @@ fn evaluate_row(slot: u32, row: u32) {
             }
         }
     }
-    let aside = wall_distances(place);
-    let row_in_front = min(aside.y, aside.z) > lattice.wall_margin;
-    let low_front = min(own_low_x - lattice.wall_low.x, lattice.wall_high.x - own_low_x);
-    let high_front = min(own_high_x - lattice.wall_low.x, lattice.wall_high.x - own_high_x);
     let first = (slot * 64u + row) * 8u;
-    var inside = 0u;
     for (var i = 0u; i < 4u; i++) {
         field_values[first + i] = values.low[i];
         field_values[first + 4u + i] = values.high[i];
-        inside |= select(0u, 1u << i, values.low[i] >= lattice.iso_level && low_front[i] > lattice.wall_margin);
-        inside |= select(0u, 16u << i, values.high[i] >= lattice.iso_level && high_front[i] > lattice.wall_margin);
     }
-    signs[slot * 64u + row] = select(0u, inside, row_in_front);
+    signs[slot * 64u + row] = row_signs(node, values.low, values.high);
 }

@@ -22,7 +22,7 @@
 //! block read the same particles at about the same time, so the cache has the same effect.
 
 mod cpu;
-mod nodes;
+pub(super) mod nodes;
 mod stretched;
 
 pub(crate) use stretched::STRETCHED_FIELD;

@@ -1,17 +1,17 @@
-//! The nodes of a block for the passes of the field on the CPU.
+//! The nodes of a block for the passes that write the field on the CPU.
 
 use glam::Vec3;
 
 use crate::surface::Walls;
 use crate::surface::params::{Lattice, NODES, ROWS, SIDE};
 
-pub(super) const N: usize = SIDE as usize;
+pub(in crate::surface) const N: usize = SIDE as usize;
 /// Nodes of a layer of a block.
-pub(super) const LAYER: usize = N * N;
+pub(in crate::surface) const LAYER: usize = N * N;
 
 /// The nodes of the marked blocks.
 #[derive(Clone, Copy)]
-pub(super) struct Nodes<'a> {
+pub(in crate::surface) struct Nodes<'a> {
     pub lattice: &'a Lattice,
     /// The list of blocks.
     pub blocks: &'a [u32],

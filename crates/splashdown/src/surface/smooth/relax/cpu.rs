@@ -16,7 +16,11 @@ pub(super) fn relax(buffers: RelaxBindings<'_>) {
             let (sum, neighbours) = ring.iter().fold((Vec4::ZERO, 0_u32), |(sum, count), pair| {
                 let at = before[pair.x as usize];
                 // Relative to the vertex, which avoids cancellation far from the origin.
-                if walls.touch(at.truncate()) { (sum, count) } else { (sum + (at - own), count + 1) }
+                if at.w == 0.0 || walls.touch(at.truncate()) {
+                    (sum, count)
+                } else {
+                    (sum + (at - own), count + 1)
+                }
             });
             let step: Vec3 = sum.truncate() * (own.w / neighbours.max(1) as f32);
             *after = walls.slid(own.truncate(), step, lattice.wall_margin).extend(own.w);

@@ -16,10 +16,10 @@ fn relax(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups)
     var sum = vec3<f32>(0.0);
     var neighbours = 0u;
     for (var i = start; i < end; i++) {
-        let at = before[one_rings[i].x].xyz;
-        if !is_on_wall(at) {
+        let at = before[one_rings[i].x];
+        if at.w != 0.0 && !is_on_wall(at.xyz) {
             // Relative to the vertex, which avoids cancellation far from the origin.
-            sum += at - own.xyz;
+            sum += at.xyz - own.xyz;
             neighbours++;
         }
     }
