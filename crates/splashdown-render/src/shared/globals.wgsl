@@ -67,7 +67,7 @@ struct Globals {
     sun_light: vec3f,       // on a surface that faces the sun
     ray_offset: f32,        // m; rays ignore triangles nearer than this
     sky_light: vec3f,       // on a horizontal surface
-    contact_distance: f32,  // m; liquid within this distance of the floor touches it
+    contact_distance: f32,  // m; liquid within this distance of the floor or a body touches it
     glow: vec3f,            // near the horizon on the side of the sun
     sample: u32,            // index of the sample of a picture with many samples
     haze: vec3f,            // the distant ground, where floor and hills meet

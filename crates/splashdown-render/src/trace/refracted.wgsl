@@ -60,6 +60,15 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             // The liquid touches the floor without air between them.
             return scattered + weight * wet_floor(place.xz);
         }
+        if leaving {
+            // The liquid touches a body without air between them.
+            let beyond = nearest_of(globals.body_root, place, direction, no_hit(globals.contact_distance));
+            if beyond.triangle != NO_TRIANGLE {
+                let body = struck(beyond);
+                let at = place + direction * beyond.distance;
+                return scattered + weight * matte(at, body.normal, body.colour, -direction) * wet(body.colour)[1];
+            }
+        }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
         let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);
         let mirrored = reflectance(-dot(direction, normal), ratio);
