@@ -26,6 +26,8 @@ import pysplishsplash as sph  # noqa: E402
 from state import measure  # noqa: E402
 
 SAMPLED = 500
+# Distance between blocks and walls in spacings.
+GAP = 1.0
 
 
 def solid(box, size, centre, spacing):
@@ -51,7 +53,9 @@ def scene(case, folder):
     spacing = case["spacing"]
     scene["Configuration"]["particleRadius"] = spacing / 2
     box, domain = os.path.join(data, "models", "UnitBox.obj"), case["domain"]
-    walls = solid(box, domain, [length / 2 for length in domain], spacing)
+    # Water that touches the walls bursts: a block must keep a distance from them, as in the program's own scenes. The box is
+    # larger by this distance on every side, so that the block has the particles of ours.
+    walls = solid(box, [length + 2 * GAP * spacing for length in domain], [length / 2 for length in domain], spacing)
     walls.update(id=1, isDynamic=False, isWall=True, mapInvert=True, invertSDF=True)
     scene["RigidBodies"] = [walls]
     if case["cube"]:

@@ -87,8 +87,8 @@ impl Case {
         let Self { domain, block: [position, size], spacing, seconds, .. } = self;
         let mut text = format!(
             "[scene]\nname = {:?}\nduration = {seconds:?}\nframe_rate = 10\n[domain]\nmin = [0, 0, 0]\nmax = {domain:?}\n\
-             [fluid]\nparticle_spacing = {spacing:?}\nrest_density = 1000\n",
-            self.name
+             [fluid]\nparticle_spacing = {spacing:?}\ndensity = 1000\n",
+            self.name.replace(' ', "-")
         );
         if let Some(viscosity) = self.viscosity {
             text += &format!("viscosity = {viscosity:?}\n");
