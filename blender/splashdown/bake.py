@@ -32,7 +32,9 @@ class Job:
             return True
         spacing = self.scene.splashdown.spacing
         loaded = cache.load(self.scene, self.out, self.scene.splashdown.liquid, spacing)
-        lines = [*self.run.warnings, loaded.report()]
+        lines = [*self.run.warnings]
+        if loaded.frames or not self.run.error:
+            lines.append(loaded.report())
         if self.run.error:
             lines.insert(0, self.run.error)
         elif self.run.was_cancelled:
@@ -46,6 +48,14 @@ _job = None
 
 def is_baking():
     return _job is not None
+
+
+def stop():
+    """Stops a bake without loading its frames."""
+    global _job
+    if _job:
+        _job.run.cancel()
+        _job = None
 
 
 class SPLASHDOWN_OT_bake(bpy.types.Operator):
@@ -93,7 +103,13 @@ class SPLASHDOWN_OT_bake(bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    def cancel(self, _context):
+        """Called by Blender when another file is opened during a bake."""
+        stop()
+
     def modal(self, context, event):
+        if _job is None:
+            return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
             _job.run.cancel()
         if event.type != "TIMER":
@@ -156,9 +172,6 @@ def register():
 
 
 def unregister():
-    global _job
-    if _job:
-        _job.run.cancel()
-        _job = None
+    stop()
     for item in reversed(CLASSES):
         bpy.utils.unregister_class(item)

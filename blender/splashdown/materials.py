@@ -18,7 +18,8 @@ def liquid(name):
     if material:
         return material
     material = bpy.data.materials.new(f"Splashdown {name}")
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     tree = material.node_tree
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
@@ -41,7 +42,8 @@ def foam():
     if material:
         return material
     material = bpy.data.materials.new("Splashdown foam")
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     shader.inputs["Base Color"].default_value = (0.9, 0.93, 0.95, 1)
     shader.inputs["Roughness"].default_value = 0.9

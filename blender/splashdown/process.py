@@ -1,5 +1,6 @@
 """The program as a child process with its JSON events. Needs no Blender."""
 
+import atexit
 import json
 import os
 import queue
@@ -7,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import threading
+import time
 from pathlib import Path
 
 INSTALL = (
@@ -71,6 +73,9 @@ class Run:
         ]
         for thread in self._threads:
             thread.start()
+        self._kill_at = None
+        # Blender may end during a bake.
+        atexit.register(self._kill)
 
     def _read_events(self):
         for line in self.child.stdout:
@@ -89,9 +94,14 @@ class Run:
     def poll(self):
         """Handles the events so far. Returns whether the program still runs."""
         is_running = self.child.poll() is None
+        if is_running and self._kill_at is not None and time.monotonic() > self._kill_at:
+            self._kill()
         if not is_running:
+            atexit.unregister(self._kill)
             for thread in self._threads:
                 thread.join(timeout=5)
+            self.child.stdout.close()
+            self.child.stderr.close()
         while True:
             try:
                 self._handle(self.events.get_nowait())
@@ -118,13 +128,14 @@ class Run:
             self.progress = 1.0
 
     def cancel(self, timeout=20.0):
-        """Stops the program as Ctrl-C does, so that finished frames remain. Kills it after `timeout` seconds."""
-        if self.child.poll() is not None:
+        """Stops the program as Ctrl-C does, so that finished frames remain; `poll` kills it after `timeout` seconds."""
+        if self.child.poll() is not None or self._kill_at is not None:
             return
         self.was_cancelled = True
+        self._kill_at = time.monotonic() + timeout
         self.child.send_signal(signal.CTRL_BREAK_EVENT if os.name == "nt" else signal.SIGINT)
-        try:
-            self.child.wait(timeout)
-        except subprocess.TimeoutExpired:
+
+    def _kill(self):
+        if self.child.poll() is None:
             self.child.kill()
             self.child.wait()

@@ -1,7 +1,18 @@
 """Settings of objects and of the scene, in SI units."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+# Newer versions of Blender warn about paths that start with // without this option.
+RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 ROLES = [
     ("NONE", "None", "Not part of the simulation"),
@@ -28,7 +39,7 @@ class SplashdownObject(bpy.types.PropertyGroup):
     )
     # Of objects that show a run.
     kind: StringProperty(options={"HIDDEN"})
-    folder: StringProperty(options={"HIDDEN"}, subtype="DIR_PATH")
+    folder: StringProperty(options={"HIDDEN"} | RELATIVE, subtype="DIR_PATH")
     first_frame: IntProperty(
         name="First Frame", description="Frame of the timeline that shows frame 0 of the run", default=1
     )
@@ -56,8 +67,9 @@ class SplashdownScene(bpy.types.PropertyGroup):
         ],
     )
     cache: StringProperty(
-        name="Cache", description="Folder of the scene and the frames", default="//splashdown", subtype="DIR_PATH"
-    )
+        name="Cache", description="Folder of the scene and the frames", default="//splashdown", subtype="DIR_PATH",
+        options={"ANIMATABLE"} | RELATIVE,
+    )  # fmt: skip
     report: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     is_error: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
     progress: FloatProperty(options={"HIDDEN", "SKIP_SAVE"})
