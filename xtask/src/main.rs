@@ -3,6 +3,7 @@
 
 mod api;
 mod bench;
+mod blender;
 mod build_times;
 mod cycles;
 mod demo;
@@ -54,6 +55,9 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     draw ten frames with the program and with Cycles, the path tracer of Blender, installed from PyPI,
                     and write the pairs and their differences into the guide (--samples: of Cycles, 64 by default;
                     --again: draw those of Cycles again; --dev: build without optimization)
+  blender [--pictures]
+                    pack the Blender extension into target/blender and test it in Blender, installed from PyPI
+                    (--pictures: also draw those of the guide)
   web [--build] [--port N]
                     build the web page and serve it on localhost (--build: build only)
   wheel [--quick]   build the Python package and test it in an empty environment (--quick: without optimization, window
@@ -102,6 +106,7 @@ fn main() -> ExitCode {
         "build-times" => build_times::run(rest),
         "pictures" => pictures::run(rest),
         "cycles" => cycles::run(rest),
+        "blender" => blender::run(rest),
         "web" => web::run(rest),
         "wheel" => wheel::run(rest),
         "validate" => validate::run(rest),
