@@ -1,31 +1,30 @@
-"""Packs the extension: `python blender/package.py FOLDER` writes FOLDER/splashdown-VERSION.zip and prints its path."""
+"""Packs the extension: `package.py OUT.zip`. The same sources give the same bytes on every system."""
 
-import re
 import sys
 import zipfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent
+FOLDER = Path(__file__).resolve().parent / "splashdown"
+# The earliest time that a ZIP archive can store.
+TIME = (1980, 1, 1, 0, 0, 0)
 
 
-def pack(folder):
-    """Packs the extension with the version of the workspace. Raises OSError if a file cannot be read or written."""
-    cargo = (ROOT.parent / "Cargo.toml").read_text(encoding="utf-8")
-    version = re.search(r'^version = "([^"]+)"', cargo, re.MULTILINE)[1]
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"splashdown-{version}.zip"
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file in sorted((ROOT / "splashdown").glob("*")):
-            if file.suffix not in {".py", ".toml"}:
-                continue
-            text = file.read_text(encoding="utf-8")
-            if file.name == "blender_manifest.toml":
-                text = re.sub(r'^version = "[^"]*"', f'version = "{version}"', text, flags=re.MULTILINE)
-            archive.writestr(f"splashdown/{file.name}", text)
-        for licence in ("LICENSE-MIT", "LICENSE-APACHE"):
-            archive.write(ROOT.parent / licence, f"splashdown/{licence}")
-    return path
+def sources():
+    """Paths of the files of the extension, sorted by their names in the archive."""
+    files = [path for path in FOLDER.rglob("*") if path.is_file() and path.suffix in (".py", ".toml")]
+    return sorted(files, key=lambda path: path.relative_to(FOLDER).as_posix())
+
+
+def pack(path):
+    """Writes the archive. Nothing is compressed: the result of compression depends on the version of zlib."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
+        for source in sources():
+            entry = zipfile.ZipInfo(source.relative_to(FOLDER).as_posix(), TIME)
+            entry.external_attr = 0o644 << 16
+            entry.create_system = 3
+            # Git may convert the ends of lines.
+            archive.writestr(entry, source.read_bytes().replace(b"\r\n", b"\n"))
 
 
 if __name__ == "__main__":
-    print(pack(Path(sys.argv[1])))
+    pack(sys.argv[1])

@@ -1,8 +1,12 @@
-"""Splashdown in Blender: choose objects, bake, and play the surface and the foam of a run."""
+"""Blender extension of Splashdown: describes a scene, runs the program, and shows the frames of its runs.
 
-from . import bake, cache, panel, preferences, properties
+`properties` are what the user sets, `collect` turns objects into a scene of the program, `bake` runs the program,
+`playback` shows frames, `panels` draw the sidebar. The folder `core` needs no Blender.
+"""
 
-MODULES = (preferences, properties, cache, bake, panel)
+from . import bake, open_run, panels, playback, preferences, properties
+
+MODULES = (preferences, properties, playback, bake, open_run, panels)
 
 
 def register():

@@ -1,41 +1,41 @@
-"""The path of the program."""
+"""Preferences of the extension: the path of the program."""
 
 import bpy
 
-from . import process
+from .core import program
 
 
 class SplashdownPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
-    program: bpy.props.StringProperty(
+    path: bpy.props.StringProperty(
         name="Program",
-        description="Path of splashdown. Empty: search on PATH and in the folder of cargo",
+        description="Path of the program `splashdown`. Empty: it is searched on the PATH and in Cargo's folder",
         subtype="FILE_PATH",
     )
 
-    def draw(self, _context):
-        self.layout.prop(self, "program")
-        try:
-            self.layout.label(text=f"Found: {process.find_program(self.program)}", icon="CHECKMARK")
-        except process.ProgramMissing as error:
-            wrapped(self.layout, str(error), "ERROR")
+    def draw(self, context):
+        self.layout.prop(self, "path")
+        draw_program(self.layout)
 
 
-def wrapped(layout, text, icon="NONE", width=60):
-    """Draws a text as several labels."""
-    import textwrap
+def draw_program(layout):
+    """Shows the path of the program, or how to install it. Returns whether it was found."""
+    try:
+        layout.label(text=find_program(), icon="CHECKMARK")
+    except program.ProgramError as error:
+        column = layout.column()
+        for number, line in enumerate(str(error).splitlines()):
+            column.label(text=line, icon="BLANK1" if number else "ERROR")
+        return False
+    return True
 
-    for paragraph in text.splitlines():
-        for line in textwrap.wrap(paragraph, width) or [""]:
-            layout.label(text=line, icon=icon)
-            icon = "BLANK1" if icon != "NONE" else icon
 
-
-def program(context):
-    """The program. Raises process.ProgramMissing."""
-    addon = context.preferences.addons.get(__package__)
-    return process.find_program(addon.preferences.program if addon else "")
+def find_program():
+    """The path of the program. Raises [`program.ProgramError`] with instructions."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    given = addon.preferences.path if addon else ""
+    return program.find(bpy.path.abspath(given) if given else "")
 
 
 def register():

@@ -1,6 +1,6 @@
 //! `cargo xtask blender`: packs the Blender extension and tests the package in Blender, installed from PyPI.
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 
 use crate::process::{self, root, say, target};
 use crate::python;
@@ -20,21 +20,27 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let list = root().join("blender/requirements.txt");
     let python = python::environment(None, &folder.join("env"), &list)
         .context("cannot install Blender as a Python package, which exists for Python 3.11 only")?;
-    let output = process::command(&python).arg("blender/package.py").arg(&folder).output()?;
-    ensure!(
-        output.status.success(),
-        "cannot pack the extension:\n{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let zip = String::from_utf8(output.stdout)?.trim().to_owned();
-    process::run(process::command(&python).args(["-m", "unittest", "discover", "-s", "blender/tests"]))?;
+    let zip = folder.join(format!("splashdown-{}.zip", env!("CARGO_PKG_VERSION")));
+    process::run(process::command(&python).arg("blender/package.py").arg(&zip))?;
+    process::run(process::command(&python).args([
+        "-m",
+        "unittest",
+        "discover",
+        "-s",
+        "blender/tests",
+        "-p",
+        "test_*.py",
+    ]))?;
     let splashdown = process::build_release()?;
-    let mut tests = process::command(&python);
-    tests.arg("blender/tests/headless.py").arg(&zip).arg(&splashdown).arg(folder.join("work"));
+    let tests = || {
+        let mut tests = process::command(&python);
+        tests.arg("blender/tests/headless.py").arg(&zip).arg(&splashdown);
+        tests
+    };
+    process::run(&mut tests())?;
     if has_pictures {
-        tests.arg(root().join("docs/pictures/blender"));
+        process::run(tests().arg("--pictures").arg(root().join("docs/pictures/blender")))?;
     }
-    process::run(&mut tests)?;
-    say(format!("Written: {zip}"));
+    say(format!("Written: {}", zip.display()));
     Ok(())
 }

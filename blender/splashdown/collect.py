@@ -1,0 +1,250 @@
+"""Turns the objects of a Blender scene into a scene of the program."""
+
+import numpy as np
+
+from . import playback
+from .core import axes, geometry, scene as core
+
+# Poses that differ less are equal: metres, and entries of rotation matrices.
+SAME = 1e-6
+# Relative difference from a matrix without shear.
+SHEAR = 1e-3
+
+
+def metres_per_unit(scene):
+    """Metres per unit of length of a Blender scene."""
+    units = scene.unit_settings
+    return units.scale_length if units.system != "NONE" else 1.0
+
+
+def frame_rate(scene):
+    """Frames per second of the film."""
+    return scene.render.fps / scene.render.fps_base
+
+
+def objects_of(scene, role):
+    return [obj for obj in scene.objects if obj.splashdown.role == role]
+
+
+def describe(context):
+    """The [`core.Scene`] of the scene of `context`, and its problems as texts. Visits the frames of the animation if an
+    obstacle may move, and returns to the present one."""
+    scene = context.scene
+    present = scene.frame_current, scene.frame_subframe
+    with playback.suspended():
+        try:
+            if scene.frame_current != scene.frame_start or scene.frame_subframe:
+                scene.frame_set(scene.frame_start)
+            return _Collector(context).describe()
+        finally:
+            scene.frame_set(present[0], subframe=present[1])
+
+
+class _Collector:
+    def __init__(self, context):
+        self.context = context
+        self.scene = context.scene
+        self.settings = self.scene.splashdown
+        self.unit = metres_per_unit(self.scene)
+        self.rate = frame_rate(self.scene) / self.settings.time_scale
+        self.problems = []
+
+    def describe(self):
+        scene, settings = self.scene, self.settings
+        gravity = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+        described = core.Scene(
+            name=core.file_name(scene.name, set()),
+            duration=(scene.frame_end - scene.frame_start) / self.rate,
+            frame_rate=self.rate,
+            particle_spacing=settings.particle_spacing,
+            gravity=tuple(axes.to_program(gravity)),
+            domain=self.domain(),
+            settings=self.sections(),
+        )
+        described.fluids = self.fluids()
+        described.bodies = self.bodies(described.duration)
+        described.emitters = self.emitters()
+        described.sinks = [core.Sink(obj.name, self.world_mesh(obj)) for obj in objects_of(scene, "OUTFLOW")]
+        return described, self.problems + core.problems(described)
+
+    def sections(self):
+        settings = self.settings
+        if settings.material == "custom":
+            fluid = {name: getattr(settings, name) for name in ("density", "viscosity", "surface_tension")}
+        else:
+            fluid = {"material": settings.material}
+        solver = {"wall_friction": settings.wall_friction or None}
+        if settings.use_surface_tension:
+            solver["surface_tension"] = "akinci2013"
+        return {
+            "fluid": fluid,
+            "solver": solver,
+            "surface": {
+                "cell_size": settings.cell_ratio * settings.particle_spacing,
+                "smoothing_iterations": settings.smoothing,
+                "kernels": "anisotropic" if settings.use_anisotropic else None,
+            },
+            "foam": {"enabled": settings.use_foam},
+        }
+
+    def local_mesh(self, obj):
+        """The mesh with modifiers in the coordinates of the object, in the axes and units of Blender."""
+        evaluated = obj.evaluated_get(self.context.evaluated_depsgraph_get())
+        try:
+            mesh = evaluated.to_mesh()
+        except RuntimeError:
+            return geometry.Mesh([], [])
+        mesh.calc_loop_triangles()
+        vertices = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", vertices)
+        triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
+        mesh.loop_triangles.foreach_get("vertices", triangles)
+        evaluated.to_mesh_clear()
+        return geometry.Mesh(vertices, triangles)
+
+    def matrix(self, obj):
+        """The transformation of an object to the world, shape (4, 4)."""
+        return np.array(obj.evaluated_get(self.context.evaluated_depsgraph_get()).matrix_world, float)
+
+    def placed(self, mesh, matrix):
+        """A mesh under a transformation, shape (3, 3), in the axes of the program and metres."""
+        vertices = self.unit * axes.to_program(mesh.vertices @ matrix.T)
+        placed = geometry.Mesh(vertices, mesh.triangles)
+        return placed.flipped() if np.linalg.det(matrix) < 0 else placed
+
+    def world_mesh(self, obj):
+        """The mesh of an object in the world, in the axes of the program and metres."""
+        matrix = self.matrix(obj)
+        placed = self.placed(self.local_mesh(obj), matrix[:3, :3])
+        placed.vertices = placed.vertices + self.unit * axes.to_program(matrix[:3, 3])
+        return placed
+
+    def domain(self):
+        found = objects_of(self.scene, "DOMAIN")
+        if len(found) > 1:
+            names = ", ".join(f'"{obj.name}"' for obj in found)
+            self.problems.append(f"There are {len(found)} domains ({names}): keep one.")
+        if not found:
+            return None
+        obj = found[0]
+        mesh = self.world_mesh(obj)
+        if len(mesh.triangles) == 0:
+            self.problems.append(f'The domain "{obj.name}" has no faces: use a box.')
+            return None
+        if not geometry.is_box(mesh):
+            self.problems.append(
+                f'The domain "{obj.name}" is not a box along the axes: use a cube, and clear or apply its rotation '
+                "(Alt-R, or Object > Apply > Rotation)."
+            )
+        low, high = mesh.bounds()
+        sides = tuple(side for name, side, _ in axes.SIDES if name in self.settings.open_sides)
+        return core.Domain(low, high, sides)
+
+    def fluids(self):
+        return [
+            core.Fluid(obj.name, self.world_mesh(obj), tuple(axes.to_program(obj.splashdown.velocity)))
+            for obj in objects_of(self.scene, "FLUID")
+        ]
+
+    def emitters(self):
+        found = []
+        for obj in objects_of(self.scene, "EMITTER"):
+            outlet = geometry.flat_outlet(self.world_mesh(obj))
+            if outlet is None:
+                self.problems.append(
+                    f'The emitter "{obj.name}" is not flat or has no faces: use a plane or a filled circle; fluid flows '
+                    "along the normal of its faces."
+                )
+                continue
+            own = obj.splashdown
+            found.append(core.Emitter(obj.name, outlet, own.speed, own.start, own.end if own.use_end else None))
+        taken = set()
+        for emitter in found:
+            emitter.name = core.file_name(emitter.name, taken)
+        return found
+
+    def bodies(self, duration):
+        objects = objects_of(self.scene, "OBSTACLE")
+        moving = [obj for obj in objects if obj.splashdown.motion == "ANIMATED" and may_move(obj)]
+        meshes = {obj: self.local_mesh(obj) for obj in objects}
+        start = {obj: self.matrix(obj) for obj in objects}
+        tracks = self.tracks(moving) if duration > 0 else {}
+        taken, bodies = set(), []
+        for obj in objects:
+            own = obj.splashdown
+            own.body_name = core.file_name(obj.name, taken)
+            bodies.append(self.body(obj, meshes[obj], start[obj], tracks.get(obj, [])))
+        return bodies
+
+    def tracks(self, objects):
+        """The transformations of objects in each frame and in the one after the last. That one gives the curve through
+        the poses its slope at the end."""
+        tracks = {obj: [] for obj in objects}
+        if objects:
+            for frame in range(self.scene.frame_start, self.scene.frame_end + 2):
+                self.scene.frame_set(frame)
+                for obj in objects:
+                    tracks[obj].append(self.matrix(obj))
+        return {obj: matrices for obj, matrices in tracks.items() if not _same(matrices)}
+
+    def body(self, obj, mesh, start, matrices):
+        own = obj.splashdown
+        dynamic = own.motion == "DYNAMIC"
+        if dynamic and (obj.parent or obj.constraints):
+            self.problems.append(
+                f'The obstacle "{obj.name}" is moved by the fluid, but has a parent or constraints: clear them.'
+            )
+        if not matrices and not dynamic:
+            # A static obstacle may be sheared.
+            place = tuple(self.unit * axes.to_program(start[:3, 3]))
+            poses = [core.Pose(0.0, place, (0.0, 0.0, 0.0))]
+            return core.Body(own.body_name, self.placed(mesh, start[:3, :3]), poses, friction=own.friction)
+        rotation, stretch = split(start[:3, :3])
+        poses = []
+        for number, matrix in enumerate(matrices or [start]):
+            turned, stretched = split(matrix[:3, :3])
+            if stretched is None:
+                self.problems.append(f'The obstacle "{obj.name}" moves and is sheared or flat: apply its scale (Ctrl-A).')
+                break
+            if number and np.abs(stretched - stretch).max() > SHEAR * np.abs(stretch).max():
+                self.problems.append(f'The obstacle "{obj.name}" changes its size, which is not supported.')
+                break
+            place = tuple(self.unit * axes.to_program(matrix[:3, 3]))
+            poses.append(core.Pose(number / self.rate, place, axes.angles(axes.rotation_to_program(turned))))
+        poses = poses or [core.Pose(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
+        scaled = self.placed(mesh, np.eye(3) if stretch is None else stretch)
+        return core.Body(
+            own.body_name,
+            scaled,
+            poses,
+            own.density if dynamic else None,
+            tuple(axes.to_program(own.velocity)),
+            own.friction,
+        )
+
+
+def may_move(obj):
+    """True if an object or one of its parents has an animation, constraints or a rigid body."""
+    while obj:
+        if obj.animation_data or len(obj.constraints) or obj.rigid_body:
+            return True
+        obj = obj.parent
+    return False
+
+
+def split(matrix):
+    """Rotation and stretch, both of shape (3, 3), whose product is `matrix`. The stretch is diagonal; it is `None` if the
+    matrix has shear or is singular. A mirrored matrix has a negative stretch."""
+    lengths = np.linalg.norm(matrix, axis=0)
+    if lengths.min() < 1e-9 * max(lengths.max(), 1e-12):
+        return np.eye(3), None
+    rotation = matrix / lengths
+    if np.abs(rotation.T @ rotation - np.eye(3)).max() > SHEAR:
+        return np.eye(3), None
+    if np.linalg.det(rotation) < 0:
+        return -rotation, np.diag(-lengths)
+    return rotation, np.diag(lengths)
+
+
+def _same(matrices):
+    return all(np.abs(matrix - matrices[0]).max() < SAME for matrix in matrices)

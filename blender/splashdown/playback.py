@@ -1,0 +1,204 @@
+"""Shows the frames of runs: before Blender evaluates a frame, objects with a series get its mesh or points.
+
+Frames are read in `frame_change_pre`, so that playback, animation renders and motion blur see the mesh of the frame. The
+times within a frame at which Cycles samples motion blur keep that mesh: its vertices have velocities. The datablocks are
+saved with the .blend file, which therefore shows its last frame even without the extension.
+"""
+
+import contextlib
+import os
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+from .core import axes, ply
+from .core.run_folder import RunFolder
+
+_suspended = 0
+# The index of a folder is read again when a subfolder has changed.
+_folders = {}
+_reported = set()
+# The absolute path of the run that is being baked: it may have no frames yet.
+baked = None
+
+
+@contextlib.contextmanager
+def suspended():
+    """No frame is loaded within this context."""
+    global _suspended
+    _suspended += 1
+    try:
+        yield
+    finally:
+        _suspended -= 1
+
+
+def folder_of(obj):
+    """The absolute path of the run that an object shows."""
+    return bpy.path.abspath(obj.splashdown_cache.run)
+
+
+def run_folder(path):
+    """The [`RunFolder`] of a path, read again if files were added or removed."""
+    names = ("", "mesh", "particles", "droplets")
+    stamp = []
+    for name in names:
+        try:
+            stamp.append(os.stat(os.path.join(path, name)).st_mtime_ns)
+        except OSError:
+            stamp.append(None)
+    known = _folders.get(path)
+    if known is None or known[0] != stamp:
+        known = (stamp, RunFolder(path))
+        _folders[path] = known
+    return known[1]
+
+
+def shown_objects(scene):
+    return [obj for obj in scene.objects if obj.splashdown_cache.series != "NONE" and obj.type == "MESH"]
+
+
+def note(obj, text):
+    """Adds a problem to those that the panel shows. Returns whether it is new in this session."""
+    cache = obj.splashdown_cache
+    if text not in cache.note:
+        cache.note = (cache.note + "\n" + text).strip()
+    key = (folder_of(obj), text)
+    is_new = key not in _reported
+    _reported.add(key)
+    return is_new
+
+
+def report_once(obj, text):
+    """Adds a problem to those that the panel shows, and prints it the first time."""
+    if note(obj, text):
+        print(f"Splashdown: {folder_of(obj)}: {text}")
+
+
+def load(obj, scene, force=False):
+    """Gives an object the data of the present frame. Frames that are missing or cannot be read are replaced by the one
+    before; nothing is shown before the first one. Without any frame the object stays as it is."""
+    cache = obj.splashdown_cache
+    wanted = scene.frame_current - cache.start_frame
+    path = folder_of(obj)
+    run = run_folder(path)
+    if run.main_series() is None:
+        if path != baked:
+            report_once(obj, run.problems()[0])
+        return
+    # Velocities per second of the film.
+    pace = cache.frame_interval * scene.render.fps / scene.render.fps_base
+    # Droplets and foam of another frame would hang in the air.
+    holds = cache.series in ("surface", "particles")
+    number = wanted
+    while True:
+        found = run.at_or_before(cache.series, number) if holds or number in run.frames[cache.series] else None
+        if found is None:
+            key, frame = "", None
+        else:
+            number, path = found
+            rate = pace if number == wanted else 0.0
+            try:
+                key = f"{path}|{path.stat().st_mtime_ns}|{rate:.6g}|{cache.wall_overlap:.6g}"
+                if not force and obj.data.get("splashdown_frame") == key:
+                    return
+                frame = ply.read(path)
+            except (ply.FrameError, OSError) as error:
+                report_once(obj, f"{path.name}: {error}; the frame before is shown")
+                number -= 1
+                continue
+        break
+    if frame is None:
+        if force or obj.data.get("splashdown_frame") != "" or len(obj.data.vertices):
+            obj.data.clear_geometry()
+            obj.data["splashdown_frame"] = ""
+        return
+    if cache.series == "surface":
+        _fill_surface(obj.data, frame, cache, rate)
+    else:
+        _fill_points(obj.data, frame, cache, rate)
+    obj.data["splashdown_frame"] = key
+
+
+def _add_vector(mesh, name, values):
+    attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    attribute.data.foreach_set("vector", np.ascontiguousarray(values, np.float32).ravel())
+
+
+def _add_number(mesh, name, values):
+    attribute = mesh.attributes.new(name, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+
+
+def _fill_surface(mesh, frame, cache, rate):
+    positions = frame.positions
+    if cache.wall_overlap > 0:
+        positions = beyond_walls(positions, cache.wall_low, cache.wall_high, cache.wall_overlap)
+    unit = np.float32(cache.metres_per_unit)
+    mesh.clear_geometry()
+    mesh.vertices.add(len(positions))
+    mesh.vertices.foreach_set("co", (axes.to_blender(positions) / unit).ravel())
+    triangles = frame.triangles
+    mesh.loops.add(triangles.size)
+    mesh.loops.foreach_set("vertex_index", triangles.ravel())
+    mesh.polygons.add(len(triangles))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, triangles.size, 3, dtype=np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(triangles), bool))
+    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities()) * np.float32(rate) / unit)
+    mesh.update(calc_edges=True)
+
+
+def beyond_walls(positions, low, high, overlap):
+    """Positions, shape (N, 3), of which those on the sides of a box are moved outwards by `overlap` (m)."""
+    low, high = np.asarray(low, np.float32), np.asarray(high, np.float32)
+    near = np.float32(0.02 * overlap + 1e-6 * max(np.abs(low).max(), np.abs(high).max()))
+    moved = positions.copy()
+    moved[positions < low + near] -= np.float32(overlap)
+    moved[positions > high - near] += np.float32(overlap)
+    return moved
+
+
+def _fill_points(mesh, frame, cache, rate):
+    unit = np.float32(cache.metres_per_unit)
+    count = len(frame.positions)
+    mesh.clear_geometry()
+    mesh.vertices.add(count)
+    mesh.vertices.foreach_set("co", (axes.to_blender(frame.positions) / unit).ravel())
+    width = frame.values.get("width")
+    radius = np.full(count, cache.radius, np.float32) if width is None else 0.5 * width
+    _add_number(mesh, "radius", radius / unit)
+    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities()) * np.float32(rate) / unit)
+    if "lifetime" in frame.values:
+        _add_number(mesh, "lifetime", frame.values["lifetime"])
+    mesh.update()
+
+
+def load_all(scene, force=False):
+    for obj in shown_objects(scene):
+        load(obj, scene, force)
+
+
+@persistent
+def _on_frame(scene, _depsgraph=None):
+    # Cycles visits times within a frame for motion blur.
+    if not _suspended and not scene.frame_subframe:
+        load_all(scene)
+
+
+@persistent
+def _on_load(_path=None):
+    _folders.clear()
+    _reported.clear()
+    for scene in bpy.data.scenes:
+        load_all(scene)
+
+
+def register():
+    bpy.app.handlers.frame_change_pre.append(_on_frame)
+    bpy.app.handlers.load_post.append(_on_load)
+
+
+def unregister():
+    bpy.app.handlers.frame_change_pre.remove(_on_frame)
+    bpy.app.handlers.load_post.remove(_on_load)
