@@ -45,8 +45,9 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
                     Python package; --all: also all code for other systems, and the public API even if its tool has
                     to be installed; --only: the layers with this text in their name, for example `--only page`)
   bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)
-  bench --peers [--quick] [--particles FILE SPACING]
-                    compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md
+  bench --peers [--quick] [--rounds N] [--particles FILE SPACING]
+                    compare with SPlisHSPlasH and splashsurf, installed from PyPI, and write docs/peers.md (--rounds: of
+                    alternating measurements, 3 by default)
   guide             build the user guide as HTML into target/guide and check its links
   build-times [--jobs N]
                     measure builds of the demo, the whole program and the library into an empty folder

@@ -17,7 +17,7 @@ use crate::process::{self, root, say, target};
 use crate::report::Page;
 use crate::{python, report, setup};
 
-/// Number of alternating measurements of each program; the median is reported.
+/// Default number of alternating measurements of each program; the median is reported.
 const ROUNDS: usize = 3;
 
 /// The programs and the settings of a comparison.
@@ -37,6 +37,8 @@ struct Sides {
 #[derive(Debug, Default, PartialEq)]
 struct Options {
     quick: bool,
+    /// Number of alternating measurements.
+    rounds: Option<usize>,
     /// Particles for the surface reconstruction, and their spacing.
     particles: Option<(PathBuf, f64)>,
 }
@@ -48,6 +50,10 @@ impl Options {
         while let Some(word) = words.next() {
             match word.as_str() {
                 "--quick" => options.quick = true,
+                "--rounds" => {
+                    let rounds = words.next().and_then(|text| text.parse().ok()).filter(|rounds| *rounds > 0);
+                    options.rounds = Some(rounds.context("--rounds takes a number from 1 on")?);
+                }
                 "--particles" => {
                     let usage = "--particles takes a file (.npy, .npz) and the particle spacing";
                     let path = words.next().context(usage)?;
@@ -55,7 +61,7 @@ impl Options {
                     options.particles = Some((path.into(), spacing));
                 }
                 other => bail!(
-                    "bench --peers takes --quick and --particles FILE SPACING, got {other}; `cargo xtask help`"
+                    "bench --peers takes --quick, --rounds N and --particles FILE SPACING, got {other}; `cargo xtask help`"
                 ),
             }
         }
@@ -76,7 +82,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         python,
         folder: folder.join("work"),
         threads: report::threads(),
-        rounds: if options.quick { 1 } else { ROUNDS },
+        rounds: options.rounds.unwrap_or(if options.quick { 1 } else { ROUNDS }),
         quick: options.quick,
     };
     std::fs::create_dir_all(&sides.folder)?;
@@ -127,8 +133,14 @@ mod tests {
     fn unknown_and_incomplete_options_are_rejected() {
         assert_eq!(parse(&[]).unwrap(), Options::default());
         let options = parse(&["--particles", "a.npy", "0.05", "--quick"]).unwrap();
-        assert_eq!(options, Options { quick: true, particles: Some(("a.npy".into(), 0.05)) });
-        for wrong in [&["--particles", "a.npy"][..], &["--particles", "a.npy", "wide"], &["--fast"]] {
+        assert_eq!(options, Options { quick: true, rounds: None, particles: Some(("a.npy".into(), 0.05)) });
+        assert_eq!(parse(&["--rounds", "2"]).unwrap().rounds, Some(2));
+        for wrong in [
+            &["--rounds", "0"][..],
+            &["--particles", "a.npy"],
+            &["--particles", "a.npy", "wide"],
+            &["--fast"],
+        ] {
             assert!(parse(wrong).is_err(), "{wrong:?}");
         }
     }
