@@ -119,16 +119,7 @@ impl<const F: usize> Candidates<F> {
             }
             mark(&reflection, &mut self.columns[F - 1][begin..count]);
         }
-        self.pad_unless_empty(count);
-    }
-
-    /// As [`pad`](Self::pad), without a block of padding alone.
-    #[inline(always)]
-    fn pad_unless_empty(&mut self, count: usize) {
-        self.count = 0;
-        if count > 0 {
-            self.pad(count);
-        }
+        self.pad(count);
     }
 
     /// Packs the particles in the region and those of their images that are, from all cells within the support radius of

@@ -1,14 +1,14 @@
 //! Surface extraction: buffers, list of passes, growth of the buffers.
 
-use glam::{UVec2, Vec2, Vec4};
+use glam::{UVec2, Vec4};
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, BufferId, BufferSet, DispatchSize, Executor, Recording, block_on, buffer_set};
 use splashdown_io::{Mesh, Particles};
 
 use super::droplets::{self, Droplet};
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
+use super::solids::Solids;
 use super::{SurfaceError, anisotropy, blocks, field, march, smooth, solids, volume};
-use crate::bodies::Body;
 use crate::cells::Grid;
 use crate::marching_cubes;
 use crate::scene::{SurfaceKernels, SurfaceSettings};
@@ -33,22 +33,6 @@ pub struct SurfaceInput {
     pub particle_capacity: u32,
     /// The bodies at which the surface ends.
     pub solids: Option<Solids>,
-}
-
-/// The bodies of a simulation.
-#[derive(Clone, Copy, Debug)]
-pub struct Solids {
-    /// Their states.
-    pub bodies: Buffer<Body>,
-    /// Their maps.
-    pub maps: Buffer<Vec2>,
-}
-
-impl Solids {
-    /// The buffers by name, for recordings.
-    fn buffers(&self) -> BufferSet {
-        buffer_set!(self => bodies, maps)
-    }
 }
 
 impl SurfaceInput {

@@ -70,13 +70,15 @@ pub use droplets::{MAX_BLOB, droplet_radius, droplets_of, isolated};
 pub use error::SurfaceError;
 pub use interpolate::interpolate;
 #[doc(hidden)]
-pub use mesh::{Solids, SurfaceInput};
+pub use mesh::SurfaceInput;
 pub use mesh::{Surface, SurfaceStats};
 pub(crate) use mesh::{forecast, largest_per_particle};
 #[doc(hidden)]
 pub use params::Status;
 pub use params::SurfaceParams;
 pub use reconstruct::reconstruct_with;
+#[doc(hidden)]
+pub use solids::Solids;
 pub use walls::{Walls, remove_caps};
 
 use splashdown_gpu::PassDesc;
