@@ -228,9 +228,6 @@ impl<'a> Frame<'a> {
         }
         if let Some(bodies) = &self.bodies {
             bodies.check()?;
-            // The value for bodies alone. That of particles or of a liquid replaces it below; the shadow
-            // of bodies is opaque with each of them.
-            globals.shadow_absorption = [1.0; 3];
         }
         if let Some(particles) = &self.particles {
             particles.fill(&mut globals)?;

@@ -291,3 +291,38 @@ fn a_body_leaves_the_shadow_of_particles_as_it_is() {
     // The blurred outline of the shadow of the body is darker together with particles.
     assert!(changed < 100, "{changed} pixels");
 }
+
+#[test]
+fn the_shadow_of_a_body_does_not_depend_on_the_liquid() {
+    let Some(mut harness) = common::harness() else { return };
+    let domain = Domain::closed([0.0; 3], [2.0, 1.0, 1.0]);
+    let empty = Frame::new(Camera::framing(&domain, 28.0, 18.0, 35.0, 1.25), domain);
+    let ball = sample::ball([1.5, 0.5, 0.6], 0.2, 24);
+    let body = PlacedBody::new(&ball.vertices, &ball.triangles, [0.8, 0.1, 0.1]).unwrap();
+    let bodies = UploadedBodies::new(&harness.device, [(&body, [0.0; 3], [0.0, 0.0, 0.0, 1.0])]);
+    // The drop is far from the ball and its shadow.
+    let drop = sample::ball([0.3, 0.1, 0.3], 0.08, 16);
+    let drop = UploadedSurface::new(&harness.device, &drop.vertices, &drop.normals, &drop.triangles).unwrap();
+    let mut draw = |absorption: [f32; 3], has_body: bool| {
+        let liquid = with(Liquid::water(), |liquid| liquid.absorption = absorption);
+        let frame = empty.with_surface(DrawnSurface::new(drop.buffers(), liquid));
+        harness.draw(SIZE, &if has_body { frame.with_bodies(bodies.buffers()) } else { frame })
+    };
+    // The first liquid lets most of the blue light through a path of many metres.
+    let (blue, ink) = ([0.3, 0.05, 0.001], [40.0; 3]);
+    let (in_blue, in_ink) = (draw(blue, true), draw(ink, true));
+    let (blue, ink) = (draw(blue, false), draw(ink, false));
+    let differ =
+        |a: &Picture, b: &Picture, at| a.pixel(at).iter().zip(b.pixel(at)).any(|(a, b)| a.abs_diff(b) > 4);
+    let (mut of_body, mut changed, mut of_liquid) = (0, 0, 0);
+    for at in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+        if differ(&blue, &ink, at) {
+            of_liquid += 1;
+        } else if differ(&in_blue, &blue, at) {
+            of_body += 1;
+            changed += usize::from(differ(&in_blue, &in_ink, at));
+        }
+    }
+    assert!(of_body > 1000 && of_liquid > 20, "{of_body} and {of_liquid} pixels");
+    assert_eq!(changed, 0);
+}

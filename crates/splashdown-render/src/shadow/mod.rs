@@ -5,7 +5,7 @@
 //! particle is projected along the rays of the sun onto the floor, and blending sums the path
 //! length in fluid above each texel: a closed mesh adds the heights of its upper faces and
 //! subtracts those of its lower ones, a particle adds its volume divided by the area of the texel.
-//! The path becomes a fraction of sunlight by absorption (Beer-Lambert), so a clear liquid casts a
+//! A second channel counts the faces of bodies, which are opaque. The path becomes a fraction of sunlight by absorption (Beer-Lambert), so a clear liquid casts a
 //! bright and tinted shadow, and spheres a dark one. Two one-dimensional Gaussian blurs soften the
 //! edge.
 //!
@@ -26,14 +26,15 @@ use crate::targets::texture;
 use crate::texture::upload_texture;
 use crate::{DrawnLiquidParticles, DrawnParticles, DrawnSurface, Frame};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Color, Device, PrimitiveTopology, Queue, RenderPipeline,
-    TextureFormat, TextureUsages, TextureView,
+    BindGroup, BindGroupLayout, BindingResource, Color, ColorWrites, Device, PrimitiveTopology, Queue,
+    RenderPipeline, TextureFormat, TextureUsages, TextureView,
 };
 
 pub(crate) use blur::Blur;
 pub(crate) use floor_light::{FloorLight, SKY, SUNLIGHT};
 
-const FORMAT: TextureFormat = TextureFormat::R16Float;
+/// The path in fluid in m, and the number of faces of bodies.
+const FORMAT: TextureFormat = TextureFormat::Rg16Float;
 
 pub(crate) const FROM_SURFACE: Shader =
     Shader { label: "surface shadow", parts: &[GLOBALS, include_str!("surface_shadow.wgsl")] };
@@ -53,7 +54,7 @@ pub(crate) struct Shadow {
     absorb: RenderPipeline,
     absorb_source: BindGroup,
     blur: Blur,
-    /// The path in fluid.
+    /// The path in fluid and the faces of bodies.
     path: TextureView,
     /// The fraction of sunlight, and the intermediate result between the two blurs.
     maps: [TextureView; 2],
@@ -78,11 +79,10 @@ impl Shadow {
         let from_surface = PipelineDesc {
             blend: Some(ADD),
             vertex_buffers: 1,
+            write: ColorWrites::RED,
             ..PipelineDesc::new(FROM_SURFACE, &surface_layouts, FORMAT)
         };
-        // A body absorbs like a hundred times as much water, which makes it opaque.
-        let solid = [("WEIGHT", 100.0)];
-        let from_bodies = PipelineDesc { constants: &solid, ..from_surface };
+        let from_bodies = PipelineDesc { write: ColorWrites::GREEN, ..from_surface };
         let particles_layout = bind_group_layout(device, "particle shadow", &[Bind::Storage]);
         let particle_layouts = [globals, &particles_layout];
         let from_particles = PipelineDesc {

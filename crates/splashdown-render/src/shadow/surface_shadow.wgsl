@@ -1,8 +1,5 @@
-// Path length in liquid between the sun and each point of the floor, from a closed mesh. Needs
-// globals.wgsl.
-
-// Factor on the path length. It is larger for bodies, which are opaque.
-override WEIGHT: f32 = 1.0;
+// Path length in liquid between the sun and each point of the floor (x), and number of faces there (y), from a closed
+// mesh. The surface writes the first, bodies the second. Needs globals.wgsl.
 
 struct Varying {
     @builtin(position) position: vec4f,
@@ -23,5 +20,5 @@ fn vertex_main(@location(0) vertex: vec4f) -> Varying {
 @fragment
 fn fragment_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     // As seen from the sun, liquid begins at front faces and ends at back faces.
-    return vec4f(WEIGHT * select(-in.height, in.height, front), 0.0, 0.0, 0.0);
+    return vec4f(select(-in.height, in.height, front), 1.0, 0.0, 0.0);
 }
