@@ -102,6 +102,7 @@ pub use foam::DrawnFoam;
 pub use frame::Frame;
 pub use liquid::Liquid;
 pub use offscreen::Offscreen;
+pub use overlay::missing_characters;
 pub use particles::DrawnParticles;
 pub use quality::Quality;
 pub use renderer::{PassTime, Renderer};

@@ -7,7 +7,7 @@ use splashdown::scene::{
 use splashdown::surface::droplet_radius;
 use splashdown_render::{
     Camera, Colouring, Domain, DrawnDroplets, DropletBuffers, Floor, FloorPattern, Frame, Liquid, Quality,
-    Quantity, Sky, Tank,
+    Quantity, Sky, Tank, missing_characters,
 };
 
 /// The empty picture of the scene: its domain, its sky and its floor.
@@ -126,6 +126,20 @@ pub fn caption(scene: &Scene, time: f64) -> String {
     own_caption(scene, time).unwrap_or_else(|| format!("{}   t = {time:.3} s", scene.name))
 }
 
+/// What is wrong with the caption of the scene: characters that the font of pictures lacks; `None` if all are drawn.
+pub fn caption_problem(scene: &Scene) -> Option<String> {
+    let caption = scene.picture.caption.as_deref()?;
+    let missing = missing_characters(caption);
+    let list: Vec<String> = missing.iter().map(|character| format!("{character:?}")).collect();
+    (!list.is_empty()).then(|| {
+        format!(
+            "picture.caption has characters that the font of pictures lacks and that appear as boxes: {}. The font has Latin, \
+             Greek and Cyrillic letters",
+            list.join(", ")
+        )
+    })
+}
+
 /// How rays are traced for pictures of this quality; `None` without rays.
 pub fn quality(scene: &Scene, quality: PictureQuality) -> Option<Quality> {
     match quality {
@@ -229,5 +243,13 @@ mod tests {
     fn captions_contain_name_and_time() {
         assert_eq!(caption(&scene("caption = \"{name} at {time} s\""), 0.25), "cube at 0.250 s");
         assert_eq!(caption(&scene("caption = \"\""), 0.25), "");
+    }
+
+    #[test]
+    fn characters_that_captions_cannot_show_are_named_once() {
+        assert_eq!(caption_problem(&scene("")), None);
+        assert_eq!(caption_problem(&scene("caption = \"Überlauf α ≤ 3 m³/s – {time}\"")), None);
+        let problem = caption_problem(&scene("caption = \"水 and 水 ☂\"")).unwrap();
+        assert!(problem.contains("'水', '☂'."), "{problem}");
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use splashdown::Device;
 use splashdown::run::{Progress, Started};
-use splashdown::scene::{PictureKind, Scene};
+use splashdown::scene::{Format, PictureKind, Scene};
 use splashdown_run::{
     CompleteFrame, Reporter, RunEnd, RunError, RunOutcome, RunRequest, RunSettings, Session, Stop, run,
 };
@@ -169,5 +169,30 @@ fn pictures_of_the_surface_require_a_surface() -> Outcome {
     request.out = Some(folder.path().join("out"));
     assert!(matches!(Session::start(request, &mut ()), Err(RunError::SurfaceRequired)));
     assert!(!folder.path().join("out").exists());
+    Ok(())
+}
+
+#[test]
+fn droplets_that_no_file_contains_are_reported_once() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let warnings = |scene: &str, formats: &[Format]| -> Result<Vec<String>, Box<dyn std::error::Error>> {
+        let mut settings = settings();
+        settings.formats = Some(formats.to_vec());
+        let mut request = RunRequest::new(Scene::parse(scene, "small.toml")?, settings);
+        request.out = Some(folder.path().join("out"));
+        let mut log = Log::default();
+        assert_finished(&run(request, &mut log, &|| Stop::No)?);
+        Ok(log.warnings.into_iter().filter(|text| text.contains("droplets")).collect())
+    };
+    // One particle far from the water is a droplet.
+    let drop = format!("{SCENE}[[fluid.block]]\nposition = [0.7, 0.5, 0.1]\nsize = [0.05, 0.05, 0.05]\n");
+    let lost = warnings(&drop, &[Format::Obj])?;
+    assert!(lost.len() == 1 && lost[0].contains("glb"), "{lost:?}");
+    assert_eq!(warnings(&drop, &[Format::Stl, Format::Obj])?.len(), 1);
+    // Controls: without droplets, with a file of points, and with droplets in the mesh.
+    assert_eq!(warnings(SCENE, &[Format::Obj])?, [""; 0]);
+    assert_eq!(warnings(&drop, &[Format::Obj, Format::Glb])?, [""; 0]);
+    let whole = format!("{drop}[surface]\nmin_blob = 0\nmin_neighbours = 0\n");
+    assert_eq!(warnings(&whole, &[Format::Obj])?, [""; 0]);
     Ok(())
 }

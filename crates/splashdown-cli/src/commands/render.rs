@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use splashdown::scene::Scene;
-use splashdown_run::{FinishedRun, Orbit, Recorder, films, reported_scene};
+use splashdown_run::{FinishedRun, Orbit, Recorder, appearance, films, reported_scene};
 
 use crate::args::RenderArguments;
 use crate::exit::{Exit, Failure};
@@ -32,6 +32,9 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let (mut recorder, failure) = Recorder::start(&name, scene.output.picture_size, rate)?;
     if let Some(reason) = failure.filter(|_| frames.len() > 1) {
         console::note(format!("warning: {reason}"));
+    }
+    if let Some(problem) = appearance::caption_problem(&scene) {
+        console::note(format!("warning: {problem}"));
     }
     let begun = Instant::now();
     for (number, &frame) in frames.iter().enumerate() {

@@ -88,6 +88,24 @@ impl Canvas {
     }
 }
 
+/// The characters of a caption that the font of pictures lacks, each once; they are drawn as boxes.
+///
+/// ```
+/// use splashdown_render::missing_characters;
+/// assert_eq!(missing_characters("Dam break, t = 0.5 s, ρ = 1000 kg/m³"), []);
+/// assert_eq!(missing_characters("水 and 水"), ['水']);
+/// ```
+pub fn missing_characters(text: &str) -> Vec<char> {
+    let font = font();
+    let mut missing: Vec<char> = Vec::new();
+    for character in text.chars().filter(|&character| font.glyph_id(character).0 == 0) {
+        if !missing.contains(&character) {
+            missing.push(character);
+        }
+    }
+    missing
+}
+
 /// Width of a line of text in pixels.
 pub(crate) fn text_width(height: f32, text: &str) -> f32 {
     let font = font();

@@ -24,6 +24,7 @@ use crate::texture::upload_texture;
 use crate::{Frame, RenderError};
 use bytemuck::{Pod, Zeroable};
 use canvas::Canvas;
+pub use canvas::missing_characters;
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, BufferUsages, Device, PrimitiveTopology, Queue,
     RenderPipeline, TextureFormat, TextureView,

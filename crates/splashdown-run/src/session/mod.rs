@@ -52,6 +52,8 @@ pub struct Session {
     summary: Option<Summary>,
     /// Files of earlier frames of a resumed run.
     earlier: Vec<WrittenFile>,
+    /// Whether droplets are in no file, and this has not been reported.
+    loses_droplets: bool,
     /// Whether alarms of the monitor are warnings.
     warns_of_bursts: bool,
     /// Excludes other runs from the folder.
@@ -100,6 +102,14 @@ impl Session {
                 let pictures = self.pictures.as_ref().filter(|_| !self.pictures_failed);
                 let names = pictures.map(|pictures| pictures.names(frame.index)).unwrap_or_default();
                 self.frame = Some(frame.index);
+                let has_droplets = frame.droplets.as_ref().is_some_and(|droplets| !droplets.is_empty());
+                if has_droplets && std::mem::take(&mut self.loses_droplets) {
+                    reporter.warning(
+                        "isolated particles leave the surface and become droplets, which meshes in OBJ and STL files do not \
+                         contain. Add ply, glb or usd to the formats to write them, or set min_blob = 0 and min_neighbours = 0 \
+                         in [surface] to leave them in the mesh",
+                    );
+                }
                 self.tables.write(&frame)?;
                 if self.checkpoints.due(frame.index) {
                     self.tables.sync()?;
@@ -168,6 +178,7 @@ impl Session {
             mut last_complete,
             summary,
             earlier: mut written,
+            loses_droplets: _,
             warns_of_bursts: _,
             _lock,
         } = self;

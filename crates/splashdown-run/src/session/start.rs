@@ -15,7 +15,7 @@ use crate::pictures::{self, Pictures};
 use crate::report::{Report, alarms_until, is_finished};
 use crate::sequence::is_same;
 use crate::tables::Tables;
-use crate::{FoundCheckpoint, Reporter, RunError, RunFolder, RunRequest, films};
+use crate::{FoundCheckpoint, Reporter, RunError, RunFolder, RunRequest, appearance, films};
 
 impl Session {
     /// Locks the output folder, prepares the simulation and the device that draws, and removes the files of an earlier
@@ -101,6 +101,7 @@ impl Session {
             last_complete: None,
             summary: None,
             earlier: Vec::new(),
+            loses_droplets: loses_droplets(&scene),
             warns_of_bursts: on_burst != OnBurst::Ignore,
             folder,
             _lock: lock,
@@ -171,6 +172,9 @@ impl Session {
         if kinds.is_empty() {
             return Ok(());
         }
+        if let Some(problem) = appearance::caption_problem(scene) {
+            reporter.warning(&problem);
+        }
         // No device is needed if only the film is missing.
         let gpu = if draws { Some(pictures::drawing_device(self.run.gpu())?) } else { None };
         let mut films = Vec::new();
@@ -197,6 +201,13 @@ impl Session {
         self.pictures = Some(Pictures::start(gpu, scene, bodies, kinds, films, &self.folder, writer)?);
         Ok(())
     }
+}
+
+/// Whether isolated particles leave the surface, and no file of the run contains them: OBJ and STL files have no points.
+fn loses_droplets(scene: &Scene) -> bool {
+    let formats = &scene.output.formats;
+    let has_surface = formats.iter().any(|format| format.has_surface());
+    scene.surface.separates() && has_surface && !formats.iter().any(|format| format.has_points())
 }
 
 /// Whether a run whose frames are all complete lacks other files: it was killed or failed, or a film is missing.
