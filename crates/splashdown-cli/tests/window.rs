@@ -116,6 +116,8 @@ fn the_window_shows_water_and_reacts() {
     let folder = tempfile::tempdir().unwrap();
     let mut program = screen.command(env!("CARGO_BIN_EXE_splashdown"));
     program.args(["view", "dam-break-small", "--size", &format!("{}x{}", SIZE[0], SIZE[1])]);
+    // The list of recent files is that of this test.
+    program.env("XDG_STATE_HOME", folder.path());
     let _program = Running(program.current_dir(&folder).stdout(Stdio::null()).spawn().unwrap());
     screen.until("the window", |picture| differing(picture, &empty) > 0.5);
     let window = screen.tool(&["search", "--name", "Splashdown"]);

@@ -4,6 +4,8 @@
 use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
+#[cfg(not(target_arch = "wasm32"))]
+use splashdown::scene::FluidMesh;
 use splashdown::scene::{
     Body, BoundaryKind, Emitter, MeshShape, MeshSource, Motion, Outlet, Scene, SolidContact, UpAxis,
 };
@@ -29,18 +31,36 @@ pub fn add_ball(scene: &mut Scene) {
     add_body(scene, "ball", shape, scale, Vec3::ZERO, Some(colour));
 }
 
-#[cfg(not(target_arch = "wasm32"))]
 /// Adds a mesh from a file with this bounding box, in the file's units; it is scaled to fit and floats.
-pub fn add_mesh(scene: &mut Scene, file: PathBuf, low: Vec3, high: Vec3) {
-    let size = (high - low).max_element();
-    let scale = if size > 0.0 && size.is_finite() { 1.5 * added_size(scene) / size } else { 1.0 };
+#[cfg(not(target_arch = "wasm32"))]
+pub fn add_mesh(scene: &mut Scene, file: PathBuf, bounds: [Vec3; 2]) {
     let name = file.file_stem().map_or_else(|| "mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let name: String = name
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '-' })
         .collect();
-    let middle = scale * 0.5 * (low + high);
+    let (scale, middle) = fitted(scene, bounds);
     add_body(scene, &name, MeshShape::File(file), scale, middle, None);
+}
+
+/// Fills a closed mesh with fluid, from a file with this bounding box, in the file's units. It is scaled to fit into the
+/// upper middle of the domain.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn add_fluid_mesh(scene: &mut Scene, file: PathBuf, bounds: [Vec3; 2]) {
+    let (scale, middle) = fitted(scene, bounds);
+    let position = scene.domain.min + Vec3::new(0.5, 0.6, 0.5) * scene.domain.size() - middle;
+    let shape = MeshShape::File(file);
+    let mesh =
+        MeshSource { shape, scale: Vec3::splat(scale), up: UpAxis::Y, position, rotation: Quat::IDENTITY };
+    scene.fluid.meshes.push(FluidMesh::new(mesh));
+}
+
+/// The scale that fits a mesh with this bounding box into the domain, and the middle of the scaled mesh.
+#[cfg(not(target_arch = "wasm32"))]
+fn fitted(scene: &Scene, [low, high]: [Vec3; 2]) -> (f32, Vec3) {
+    let size = (high - low).max_element();
+    let scale = if size > 0.0 && size.is_finite() { 1.5 * added_size(scene) / size } else { 1.0 };
+    (scale, scale * 0.5 * (low + high))
 }
 
 /// Opens or closes a tap over the middle of the domain; returns whether it is open now.

@@ -1,5 +1,5 @@
-//! Exported files: on a desktop they are written into the current folder and never overwrite a file; on a web page they
-//! are downloads.
+//! Exported files: on a desktop they are written into the current folder and never overwrite a file, unless the user has
+//! chosen it; on a web page they are downloads.
 
 use splashdown::Checkpoint;
 use splashdown_io::{Mesh, Picture};
@@ -38,6 +38,16 @@ pub fn checkpoint(name: &str, checkpoint: &Checkpoint) -> Result<String, String>
 /// A message with the file's name.
 pub fn text(name: &str, text: &str) -> Result<String, String> {
     file(name, "text/plain", text.as_bytes())
+}
+
+/// Writes a file, also in place of an existing one; returns a description of its location.
+///
+/// # Errors
+/// A message with the file's name.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn replace(path: &std::path::Path, bytes: &[u8]) -> Result<String, String> {
+    let written = splashdown_io::atomic::write(path, |out| out.write_all(bytes));
+    written.map(|_| path.display().to_string()).map_err(|error| error.to_string())
 }
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -12,6 +12,8 @@ mod app;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 pub mod camera;
+#[cfg(not(target_arch = "wasm32"))]
+mod dialogs;
 mod edit;
 pub mod engine;
 mod error;
@@ -21,6 +23,8 @@ mod fit;
 pub mod items;
 pub mod look;
 mod mouse;
+#[cfg(not(target_arch = "wasm32"))]
+mod opening;
 #[cfg(target_arch = "wasm32")]
 mod page;
 pub mod panels;
@@ -29,8 +33,12 @@ pub mod picture;
 mod pixels;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod playback;
+#[cfg(not(target_arch = "wasm32"))]
+mod recent;
 pub mod save;
 pub mod state;
+#[cfg(not(target_arch = "wasm32"))]
+mod task;
 mod thumbnails;
 pub mod timeline;
 #[cfg(not(target_arch = "wasm32"))]

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
 
 use crate::camera::Orbit;
 use crate::edit;
 use crate::engine::Grip;
-use crate::items::{Axis3, BodyBounds, History, Item};
+use crate::items::{BodyBounds, Grab, History, Item};
 use crate::look::Look;
 use crate::timeline::Timeline;
 
@@ -26,7 +26,7 @@ pub enum Tool {
     Tilt,
     /// Shakes the domain.
     Shake,
-    /// Selects, moves, adds and removes things of the scene at time 0.
+    /// Selects, moves, rotates, resizes, adds and removes things of the scene at time 0.
     Edit,
 }
 
@@ -52,9 +52,48 @@ impl Tool {
             Self::Drag => "Drag water and dynamic bodies (also with Shift held)",
             Self::Tilt => "Drag to tilt the tank; double-click to set it upright",
             Self::Shake => "Drag to shake the tank",
-            Self::Edit => "Select, move, add and remove blocks, bodies and emitters at time 0",
+            Self::Edit => {
+                "Select, move, rotate, resize, add and remove blocks, bodies and emitters at time 0"
+            }
         }
     }
+}
+
+/// What a file dialog asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// A scene or a checkpoint to open.
+    Scene,
+    /// The folder of a run to open.
+    Run,
+    /// The file into which the scene with its changes is written.
+    SaveScene,
+    /// A mesh that is added as a body.
+    Body,
+    /// A closed mesh that is filled with fluid at time 0.
+    Fluid,
+}
+
+impl Ask {
+    /// The title of the dialog.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Scene => "Open a scene",
+            Self::Run => "Open the folder of a run",
+            Self::SaveScene => "Save the scene as",
+            Self::Body => "Add a mesh as a body",
+            Self::Fluid => "Fill a closed mesh with fluid",
+        }
+    }
+}
+
+/// A scene or a run that was opened before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecentFile {
+    /// Its file or folder.
+    pub path: PathBuf,
+    /// Whether it still exists.
+    pub exists: bool,
 }
 
 /// A request from a panel or the viewport.
@@ -97,10 +136,14 @@ pub enum Action {
     SaveMesh,
     /// Export a checkpoint.
     SaveCheckpoint,
-    /// Open a file.
+    /// Open a file or the folder of a run.
     OpenFile(PathBuf),
-    /// List recent checkpoints in `State::files`.
+    /// Open a dialog of the desktop.
+    Ask(Ask),
+    /// List recent checkpoints in `State::files`, and recent scenes and runs in `State::recent`.
     ShowFiles,
+    /// Clear the list of recent scenes and runs.
+    ForgetRecent,
     /// Make a link that contains the scene with its changes.
     Share,
     /// Start or stop recording.
@@ -124,19 +167,30 @@ pub struct Shaking {
     pub gravity: Vec3,
 }
 
-/// A thing of the scene that is being moved along an axis.
+/// A thing of the scene that is being changed by a handle.
 #[derive(Clone, Debug)]
 pub struct Moving {
     /// The thing.
     pub item: Item,
-    /// The axis of its handle.
-    pub axis: Axis3,
+    /// The handle.
+    pub grab: Grab,
     /// Its middle before, in m.
     pub middle: Vec3,
-    /// Where the handle was grabbed, along the axis from the middle, in m.
+    /// Where the handle was grabbed: along its axis from the middle in m, or about it in radians.
     pub from: f32,
+    /// The rotation since then.
+    pub turned: Quat,
     /// The scene before.
     pub before: Scene,
+}
+
+/// A number of a thing that is being dragged or typed.
+#[derive(Clone, Debug)]
+pub struct Typing {
+    /// The scene before.
+    pub before: Scene,
+    /// The point that rotations and scales leave in its place, in m.
+    pub pivot: Vec3,
 }
 
 /// The numbers in the status line.
@@ -265,12 +319,18 @@ pub struct State {
     pub pouring: bool,
     /// Checkpoints listed in the gallery.
     pub files: Vec<PathBuf>,
+    /// Recent scenes and runs listed in the gallery, the newest first.
+    pub recent: Vec<RecentFile>,
+    /// The name of the file that is being read.
+    pub reading: Option<String>,
     /// The position in the run that is played; `None` while a scene is simulated.
     pub timeline: Option<Timeline>,
     /// The selected thing of the scene.
     pub selected: Option<Item>,
-    /// The thing that is being moved.
+    /// The thing that is being changed by a handle.
     pub moving: Option<Moving>,
+    /// The number that is being dragged or typed.
+    pub typing: Option<Typing>,
     /// Changes of things that can be undone.
     pub history: History,
     /// The bounding boxes of the bodies at time 0.
@@ -300,9 +360,12 @@ impl State {
             recorded: None,
             pouring: edit::has_tap(&scene),
             files: Vec::new(),
+            recent: Vec::new(),
+            reading: None,
             timeline: None,
             selected: None,
             moving: None,
+            typing: None,
             history: History::default(),
             body_bounds: BodyBounds::new(),
             scene,
@@ -316,6 +379,7 @@ impl State {
         // Editing belongs to time 0 of the scene that it began with.
         self.tool = if old.tool == Tool::Edit { Tool::Orbit } else { old.tool };
         (self.shown, self.notes) = (old.shown, old.notes);
+        (self.files, self.recent) = (old.files, old.recent);
         self.time_scale = old.time_scale;
         self.figures = old.figures;
     }

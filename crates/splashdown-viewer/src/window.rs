@@ -65,7 +65,14 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
         let render_state =
             context.wgpu_render_state.as_ref().ok_or_else(|| no_window("the window has no device"))?;
         match start {
-            Start::Scene(_) => Viewer::new(&context.egui_ctx, render_state, scene, simulate),
+            Start::Scene(_) => {
+                let source = scene.source.clone();
+                let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
+                if let Some(source) = source {
+                    viewer.remember(&source, 0.0);
+                }
+                Ok(viewer)
+            }
             Start::Checkpoint(checkpoint) => {
                 let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
                 viewer.resume(checkpoint)?;
@@ -73,7 +80,9 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
             }
             Start::Run(run) => {
                 let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
+                let folder = run.folder().to_owned();
                 viewer.play(run, &context.egui_ctx).map_err(no_window)?;
+                viewer.remember(&folder, 0.0);
                 Ok(viewer)
             }
         }

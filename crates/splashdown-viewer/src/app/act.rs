@@ -9,9 +9,6 @@ use crate::engine::{Command, Purpose};
 use crate::mouse;
 use crate::state::Action;
 
-/// Number of recent checkpoints that the gallery lists.
-const MENU_FILES: usize = 8;
-
 impl Viewer {
     pub(super) fn act(&mut self, action: Action, ctx: &Context) {
         let now = ctx.input(|input| input.time);
@@ -79,17 +76,25 @@ impl Viewer {
                 self.engine.send(Command::Export);
             }
             Action::SaveCheckpoint => self.checkpoint(Purpose::Export, now),
-            #[cfg(not(target_arch = "wasm32"))]
-            Action::OpenFile(path) => self.open_file(&path, now),
-            #[cfg(target_arch = "wasm32")]
-            Action::OpenFile(_) => {}
-            Action::ShowFiles => self.state.files = splashdown_run::recent_checkpoints(MENU_FILES),
             Action::Share => self.share(now),
             Action::Record => self.toggle_recording(now),
             #[cfg(not(target_arch = "wasm32"))]
-            Action::Continue => self.continue_run(now),
+            Action::OpenFile(path) => self.want_file(&path, super::desktop::Purpose::Open),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::Ask(ask) => self.ask(ask, ctx),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::ShowFiles => self.list_files(ctx),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::ForgetRecent => self.forget_recent(ctx),
+            #[cfg(not(target_arch = "wasm32"))]
+            Action::Continue => self.continue_run(),
+            // A web page has no folders and no dialogs; files are dropped onto it.
             #[cfg(target_arch = "wasm32")]
-            Action::Continue => {}
+            Action::OpenFile(_)
+            | Action::Ask(_)
+            | Action::ShowFiles
+            | Action::ForgetRecent
+            | Action::Continue => {}
             Action::SwapTheme => {
                 let theme = match ctx.theme() {
                     egui::Theme::Dark => egui::Theme::Light,

@@ -54,6 +54,21 @@ impl Viewer {
         self.report_export("the scene", exported, now);
     }
 
+    /// Writes the scene into a file that the user has chosen, also in place of an existing one: the dialog has asked.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn save_scene_as(&mut self, mut path: std::path::PathBuf, now: f64) {
+        if path.extension().is_none() {
+            path.set_extension("toml");
+        }
+        let text = save::scene(&self.state.scene, &self.state.orbit)
+            .and_then(|text| save::moved_to(&text, &self.state.scene, &path));
+        let exported = text.and_then(|text| export::replace(&path, text.as_bytes()));
+        if exported.is_ok() {
+            self.remember(&path, now);
+        }
+        self.report_export("the scene", exported, now);
+    }
+
     /// Requests a checkpoint from the engine.
     pub(super) fn checkpoint(&mut self, purpose: Purpose, now: f64) {
         match save::scene(&self.state.scene, &self.state.orbit) {

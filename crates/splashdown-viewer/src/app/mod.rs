@@ -1,6 +1,8 @@
 //! The window: shows the panels and executes their actions.
 
 mod act;
+#[cfg(not(target_arch = "wasm32"))]
+mod desktop;
 mod exporting;
 mod files;
 mod listen;
@@ -46,6 +48,8 @@ pub struct Viewer {
     recording: Option<recording::Recording>,
     #[cfg(not(target_arch = "wasm32"))]
     player: Option<playing::Player>,
+    #[cfg(not(target_arch = "wasm32"))]
+    desktop: desktop::Desktop,
 }
 
 /// All data that determine the picture.
@@ -74,6 +78,8 @@ struct Requested {
     exporting: bool,
     /// When a backup was last requested, in s of the window's clock.
     rescue_requested: f64,
+    /// The caption whose characters were checked.
+    caption: Option<String>,
 }
 
 impl Viewer {
@@ -125,6 +131,8 @@ impl Viewer {
             recording: None,
             #[cfg(not(target_arch = "wasm32"))]
             player: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            desktop: desktop::Desktop::new(),
         })
     }
 
@@ -134,7 +142,11 @@ impl Viewer {
         self.dropped_files(&ctx);
         self.listen(&ctx);
         #[cfg(not(target_arch = "wasm32"))]
-        self.update_player(&ctx);
+        {
+            self.update_desktop(&ctx);
+            self.update_player(&ctx);
+        }
+        self.note_caption(&ctx);
         let (viewport, actions) = panels::show(ui, &mut self.state, self.texture);
         for action in actions {
             self.act(action, &ctx);
@@ -161,6 +173,17 @@ impl Viewer {
         self.requested.frames_per_second += 0.1 * (1.0 / passed - self.requested.frames_per_second);
         if self.state.playing {
             ctx.request_repaint();
+        }
+    }
+
+    /// Reports characters that the caption of the scene has and the font of pictures lacks, once per caption.
+    fn note_caption(&mut self, ctx: &Context) {
+        let caption = &self.state.scene.picture.caption;
+        if self.requested.caption != *caption {
+            self.requested.caption.clone_from(caption);
+            if let Some(note) = splashdown_run::appearance::caption_problem(&self.state.scene) {
+                self.state.notify(note, true, ctx.input(|input| input.time));
+            }
         }
     }
 

@@ -1,12 +1,12 @@
 //! Playing a finished run: its frames in place of the snapshots of the engine.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::Context;
 use splashdown::Stats;
 use splashdown_gpu::Timings;
-use splashdown_run::{FoundCheckpoint, PlayedFrame, RunFrames, find_checkpoint};
+use splashdown_run::{PlayedFrame, RunFrames};
 
 use super::Viewer;
 use crate::engine::{Command, Drawn, Opened, Snapshot};
@@ -52,7 +52,7 @@ impl Viewer {
     pub(super) fn update_player(&mut self, ctx: &Context) {
         let (Some(player), Some(timeline)) = (&mut self.player, &mut self.state.timeline) else { return };
         let now = ctx.input(|input| input.time);
-        let mut message = player.playback.update(timeline);
+        let mut messages = player.playback.update(timeline);
         timeline.tick(now, player.playback.frame(timeline.current()).is_some());
         let number = timeline.current();
         if player.shown.as_ref().is_none_or(|(shown, _)| *shown != number)
@@ -68,7 +68,7 @@ impl Viewer {
                 }
                 Err(reason) => {
                     timeline.leave_out(number);
-                    message = Some(format!("frame {number} is left out: {reason}"));
+                    messages.push(format!("frame {number} is left out: {reason}"));
                 }
             }
         }
@@ -76,53 +76,19 @@ impl Viewer {
         if timeline.playing {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(timeline.until_next().min(0.5)));
         }
-        if let Some(message) = message {
+        for message in messages {
             self.state.notify(message, true, now);
         }
     }
 
-    /// Continues the simulation of the run that is played from its newest checkpoint.
-    pub(super) fn continue_run(&mut self, now: f64) {
-        let Some(player) = &self.player else { return };
-        let found = find_checkpoint(player.playback.run().folder()).map_err(|error| error.to_string());
-        let resumed = found.and_then(|FoundCheckpoint { checkpoint, skipped, .. }| {
-            checkpoint.check().and_then(|()| self.resume(checkpoint)).map_err(|error| error.to_string())?;
-            Ok(skipped)
-        });
-        match resumed {
-            Ok(skipped) if skipped.is_empty() => {}
-            Ok(skipped) => {
-                self.state.notify(
-                    format!(
-                        "an older checkpoint is used, because newer ones cannot be: {}",
-                        skipped.join("; ")
-                    ),
-                    true,
-                    now,
-                );
-            }
-            Err(reason) => self.state.notify(format!("the run cannot be continued: {reason}"), true, now),
-        }
+    /// The folder of the run that is played.
+    pub(super) fn played_folder(&self) -> Option<PathBuf> {
+        self.player.as_ref().map(|player| player.playback.run().folder().to_owned())
     }
 
     fn stop_simulation(&mut self) {
         self.engine.send(Command::MouseForce(None));
         self.engine.send(Command::Play(false));
-    }
-
-    /// Opens the folder of a run: plays its frames, or continues from its checkpoint if it has no frames.
-    pub(super) fn open_folder(&mut self, path: &Path, ctx: &Context) {
-        let opened = if RunFrames::exist_in(path) {
-            RunFrames::open(path, None).map_err(|error| error.to_string()).and_then(|run| self.play(run, ctx))
-        } else {
-            find_checkpoint(path).map_err(|error| error.to_string()).and_then(|found| {
-                let checkpoint = found.checkpoint;
-                checkpoint.check().and_then(|()| self.resume(checkpoint)).map_err(|error| error.to_string())
-            })
-        };
-        if let Err(reason) = opened {
-            self.state.notify(reason, true, ctx.input(|input| input.time));
-        }
     }
 }
 

@@ -1,14 +1,16 @@
-//! The things of a scene that can be selected, moved and removed: blocks of fluid, bodies and emitters at time 0.
+//! The things of a scene that can be selected, moved, rotated, resized and removed: blocks of fluid, meshes filled with
+//! fluid, bodies and emitters at time 0.
 
 mod handle;
 mod history;
+mod pose;
 
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 use splashdown::scene::{Block, Motion, Outlet, Scene, Shape};
 
-pub use handle::{Axis3, along, handle_at};
+pub use handle::{Axis3, Grab, along, angle, handle_at, line_distance};
 pub use history::History;
 
 /// One thing of a scene.
@@ -16,6 +18,8 @@ pub use history::History;
 pub enum Item {
     /// A block of fluid, by its number in the scene.
     Block(usize),
+    /// A mesh filled with fluid, by its number in the scene.
+    FluidMesh(usize),
     /// A body, by its number in the scene.
     Body(usize),
     /// An emitter, by its number in the scene.
@@ -30,14 +34,16 @@ impl Item {
     /// All things of a scene.
     pub fn all(scene: &Scene) -> Vec<Self> {
         let blocks = (0..scene.fluid.blocks.len()).map(Self::Block);
+        let meshes = (0..scene.fluid.meshes.len()).map(Self::FluidMesh);
         let bodies = (0..scene.bodies.len()).map(Self::Body);
-        blocks.chain(bodies).chain((0..scene.emitters.len()).map(Self::Emitter)).collect()
+        blocks.chain(meshes).chain(bodies).chain((0..scene.emitters.len()).map(Self::Emitter)).collect()
     }
 
     /// Whether the scene still has it.
     pub fn is_in(self, scene: &Scene) -> bool {
         match self {
             Self::Block(index) => index < scene.fluid.blocks.len(),
+            Self::FluidMesh(index) => index < scene.fluid.meshes.len(),
             Self::Body(index) => index < scene.bodies.len(),
             Self::Emitter(index) => index < scene.emitters.len(),
         }
@@ -47,6 +53,7 @@ impl Item {
     pub fn name(self, scene: &Scene) -> String {
         match self {
             Self::Block(index) => format!("block {}", index + 1),
+            Self::FluidMesh(index) => format!("fluid mesh {}", index + 1),
             Self::Body(index) => scene.bodies.get(index).map_or_else(String::new, |body| body.name.clone()),
             Self::Emitter(index) => {
                 scene.emitters.get(index).map_or_else(String::new, |emitter| emitter.name.clone())
@@ -60,14 +67,16 @@ impl Item {
             Self::Body(index) => {
                 scene.bodies.get(index).is_some_and(|body| !matches!(body.motion, Motion::Scripted(_)))
             }
-            Self::Block(_) | Self::Emitter(_) => self.is_in(scene),
+            Self::Block(_) | Self::FluidMesh(_) | Self::Emitter(_) => self.is_in(scene),
         }
     }
 
-    /// Its bounding box in m; `None` for a body whose mesh is not known yet.
+    /// Its bounding box in m; `None` for a mesh that is not known: that of a body before the engine has read it, and those
+    /// filled with fluid, which the engine does not keep.
     pub fn bounds(self, scene: &Scene, bodies: &BodyBounds) -> Option<(Vec3, Vec3)> {
         match self {
             Self::Block(index) => scene.fluid.blocks.get(index).map(|block| block.shape.bounds()),
+            Self::FluidMesh(_) => None,
             Self::Body(index) => {
                 let body = scene.bodies.get(index)?;
                 let (low, high) = bodies.get(&body.name)?;
@@ -97,6 +106,11 @@ impl Item {
                     None => {}
                 }
             }
+            Self::FluidMesh(index) => {
+                if let Some(filled) = scene.fluid.meshes.get_mut(index) {
+                    filled.mesh.position += offset;
+                }
+            }
             Self::Body(index) => {
                 let Some(body) = scene.bodies.get_mut(index) else { return };
                 body.mesh.position += offset;
@@ -119,6 +133,7 @@ impl Item {
         match self {
             _ if !self.is_in(scene) => {}
             Self::Block(index) => drop(scene.fluid.blocks.remove(index)),
+            Self::FluidMesh(index) => drop(scene.fluid.meshes.remove(index)),
             Self::Body(index) => drop(scene.bodies.remove(index)),
             Self::Emitter(index) => drop(scene.emitters.remove(index)),
         }

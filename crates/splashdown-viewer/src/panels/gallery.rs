@@ -1,21 +1,33 @@
-//! The gallery of built-in scenes.
+//! The gallery: recent scenes and runs, built-in scenes, and checkpoints.
+
+use std::path::Path;
 
 use egui::{Button, Context, Grid, Rect, ScrollArea, Ui, vec2};
 
 use super::dialog;
-use crate::state::{Action, State};
+use crate::state::{Action, Ask, RecentFile, State};
 use crate::thumbnails;
 
 /// Space between two pictures, in points.
 const GAP: f32 = 12.0;
 /// Height of the list of checkpoints, in points.
 const FILES: f32 = 100.0;
+/// Height of the row of buttons that open a dialog, in points.
+const DIALOGS: f32 = 28.0;
+/// Length of the longest name in the list of recent files, in characters.
+const NAME: usize = 34;
 
 pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, over: Rect) {
     let (mut chosen, mut file) = (None, None);
+    let mut requests = Vec::new();
     let files = if state.files.is_empty() { 0.0 } else { FILES };
     dialog::new("Scenes", over).open(&mut state.shown.gallery).default_width(800.0).show(ctx, |ui| {
-        ScrollArea::vertical().max_height(dialog::inner_height(over) - files).show(ui, |ui| {
+        let dialogs = if cfg!(target_arch = "wasm32") { 0.0 } else { DIALOGS };
+        if dialogs > 0.0 {
+            ui.horizontal(|ui| open(ui, &mut requests));
+        }
+        ScrollArea::vertical().max_height(dialog::inner_height(over) - files - dialogs).show(ui, |ui| {
+            recent(ui, &state.recent, &mut requests);
             let columns =
                 ((ui.available_width() + GAP) / (thumbnails::WIDTH + GAP)).floor().max(1.0) as usize;
             let scenes: Vec<_> = thumbnails::scenes().collect();
@@ -44,6 +56,10 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
             });
         }
     });
+    if requests.iter().any(|request| matches!(request, Action::OpenFile(_))) {
+        state.shown.gallery = false;
+    }
+    actions.extend(requests);
     if let Some(path) = file {
         actions.push(Action::OpenFile(path));
         state.shown.gallery = false;
@@ -51,6 +67,51 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
     if let Some(name) = chosen {
         actions.push(Action::OpenPreset(name));
         state.shown.gallery = false;
+    }
+}
+
+/// The buttons that open a dialog of the desktop.
+fn open(ui: &mut Ui, requests: &mut Vec<Action>) {
+    for (text, hint, ask) in [
+        ("Open scene...", "A scene or a checkpoint (Ctrl + O)", Ask::Scene),
+        ("Open run...", "The folder of a finished or interrupted run, to play it", Ask::Run),
+    ] {
+        if ui.button(text).on_hover_text(hint).clicked() {
+            requests.push(Action::Ask(ask));
+        }
+    }
+}
+
+/// The recent scenes and runs. Those that no longer exist are grey.
+fn recent(ui: &mut Ui, files: &[RecentFile], requests: &mut Vec<Action>) {
+    if files.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Recent:");
+        for file in files {
+            let button = Button::new(short(&file.path)).truncate();
+            let path = file.path.display().to_string();
+            let response = ui.add_enabled(file.exists, button).on_hover_text(&path);
+            if response.on_disabled_hover_text(format!("{path} no longer exists")).clicked() {
+                requests.push(Action::OpenFile(file.path.clone()));
+            }
+        }
+        if ui.small_button("Clear list").on_hover_text("Forget the recent scenes and runs").clicked() {
+            requests.push(Action::ForgetRecent);
+        }
+    });
+    ui.separator();
+}
+
+/// The last two parts of a path, of limited length.
+fn short(path: &Path) -> String {
+    let parts: Vec<_> = path.iter().rev().take(2).map(|part| part.to_string_lossy()).collect();
+    let name = parts.into_iter().rev().collect::<Vec<_>>().join("/");
+    let length = name.chars().count();
+    match length > NAME {
+        true => std::iter::once('…').chain(name.chars().skip(length - NAME + 1)).collect(),
+        false => name,
     }
 }
 

@@ -5,11 +5,11 @@ use glam::Vec3;
 
 use super::dialog;
 use crate::look::DisplayMode;
-use crate::state::{Action, State};
+use crate::state::{Action, Ask, State};
 use crate::timeline::Timeline;
 
 /// The lines of the help.
-const LINES: [(&str, &str); 23] = [
+const LINES: [(&str, &str); 25] = [
     ("drag", "orbit the camera (with the tool Orbit)"),
     ("right or middle drag", "pan"),
     ("wheel, pinch", "zoom"),
@@ -32,6 +32,8 @@ const LINES: [(&str, &str); 23] = [
     ("M", "export the surface as a mesh"),
     ("K", "export a checkpoint to resume from"),
     ("Ctrl + S", "export the scene with its changes"),
+    ("Ctrl + Shift + S", "save the scene with its changes as a file to choose"),
+    ("Ctrl + O", "choose a scene or a checkpoint to open"),
     ("H", "this help"),
 ];
 
@@ -41,17 +43,18 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
         return;
     }
     // The modifiers are those of the key event. Those at the end of a slow frame may differ.
-    let struck = |wanted: Key, command: bool| {
+    let struck = |wanted: Key, command: bool, shift: Option<bool>| {
         ctx.input(|input| {
             input.events.iter().any(|event| match event {
                 Event::Key { key, pressed: true, repeat: false, modifiers, .. } => {
-                    *key == wanted && modifiers.command == command && !modifiers.alt
+                    let shifted = shift.is_none_or(|shift| shift == modifiers.shift);
+                    *key == wanted && modifiers.command == command && !modifiers.alt && shifted
                 }
                 _ => false,
             })
         })
     };
-    let pressed = |key| struck(key, false);
+    let pressed = |key| struck(key, false, None);
     let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
     if let Some(timeline) = &mut state.timeline {
         playback_keys(timeline, pressed);
@@ -74,8 +77,16 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     if pressed(Key::T) {
         actions.push(Action::Screenshot);
     }
-    if is_simulated && struck(Key::S, true) {
+    if is_simulated && struck(Key::S, true, Some(false)) {
         actions.push(Action::SaveScene);
+    }
+    if cfg!(not(target_arch = "wasm32")) {
+        if is_simulated && struck(Key::S, true, Some(true)) {
+            actions.push(Action::Ask(Ask::SaveScene));
+        }
+        if struck(Key::O, true, Some(false)) {
+            actions.push(Action::Ask(Ask::Scene));
+        }
     }
     if pressed(Key::H) || pressed(Key::F1) {
         state.shown.help = !state.shown.help;

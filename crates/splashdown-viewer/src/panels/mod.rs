@@ -2,9 +2,11 @@
 
 mod dialog;
 mod edit;
+mod fields;
 mod figures;
 mod gallery;
 mod gravity;
+mod handles;
 mod help;
 mod icons;
 mod more;
@@ -16,8 +18,9 @@ mod viewport;
 
 use egui::{Panel, Ui};
 
-use crate::state::{Action, State};
+use crate::state::{Action, Ask, State};
 
+pub use edit::finish as finish_edit;
 pub use viewport::Viewport;
 
 /// Shows all panels. `picture` is the texture in the middle. Returns the viewport, which determines the size of the next
@@ -49,4 +52,19 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
     state.shown.statistics &= state.timeline.is_none();
     figures::show_statistics(ui.ctx(), state, over);
     (viewport, actions)
+}
+
+/// The buttons that add a mesh from a file. A web page has no dialogs.
+fn add_mesh(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if cfg!(target_arch = "wasm32") {
+        return;
+    }
+    for (text, hint, ask) in [
+        ("Add mesh", "A floating body from an OBJ, STL, PLY or glTF file", Ask::Body),
+        ("Fill mesh", "Fluid in a closed mesh from a file, at time 0: the scene starts again", Ask::Fluid),
+    ] {
+        if ui.button(text).on_hover_text(hint).clicked() {
+            actions.push(Action::Ask(ask));
+        }
+    }
 }

@@ -4,7 +4,7 @@ use egui::containers::menu::MenuButton;
 use egui::{Button, Ui, vec2};
 
 use super::{icons, toolbar};
-use crate::state::{Action, State};
+use crate::state::{Action, Ask, State};
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: bool) {
     let button = Button::new(icons::MORE).min_size(vec2(icons::WIDTH, 0.0));
@@ -12,6 +12,10 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, ha
         let is_simulated = state.timeline.is_none();
         if is_simulated && !has_words {
             toolbar::speed(ui, state, actions);
+        }
+        if cfg!(not(target_arch = "wasm32")) {
+            files(ui, state, actions);
+            ui.separator();
         }
         export(ui, state, actions);
         ui.separator();
@@ -35,7 +39,27 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, ha
             state.shown.help = !state.shown.help;
         }
     });
-    toolbar::described(&response, "More", "Export, statistics and help");
+    toolbar::described(&response, "More", "Open, export, statistics and help");
+}
+
+/// The dialogs of a desktop.
+fn files(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
+    for (text, hint, ask) in [
+        ("Open scene...", "A scene or a checkpoint (Ctrl + O)", Ask::Scene),
+        ("Open run...", "The folder of a finished or interrupted run, to play it", Ask::Run),
+        (
+            "Save scene as...",
+            "The scene with its changes, as a file to choose (Ctrl + Shift + S)",
+            Ask::SaveScene,
+        ),
+        ("Add mesh...", "A floating body from an OBJ, STL, PLY or glTF file", Ask::Body),
+    ] {
+        // A run that is played cannot be changed.
+        let is_possible = state.timeline.is_none() || matches!(ask, Ask::Scene | Ask::Run);
+        if is_possible && ui.button(text).on_hover_text(hint).clicked() {
+            actions.push(Action::Ask(ask));
+        }
+    }
 }
 
 fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {

@@ -7,7 +7,7 @@ use crate::state::State;
 pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
     let now = ctx.input(|input| input.time);
     state.notes.retain(|note| note.until > now);
-    if state.notes.is_empty() && state.preparing.is_none() {
+    if state.notes.is_empty() && state.preparing.is_none() && state.reading.is_none() {
         return;
     }
     let mut closed = None;
@@ -18,6 +18,14 @@ pub(super) fn show(ctx: &Context, state: &mut State, over: Rect) {
             ui.set_max_width((over.width() - 20.0).clamp(120.0, 520.0));
             if let Some((what, part)) = &state.preparing {
                 ui.add(ProgressBar::new(*part).text(what).desired_width(240.0));
+            }
+            if let Some(name) = &state.reading {
+                Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.spinner();
+                        ui.label(format!("reading {name}"));
+                    });
+                });
             }
             for (number, note) in state.notes.iter().enumerate() {
                 Frame::popup(ui.style()).show(ui, |ui| {

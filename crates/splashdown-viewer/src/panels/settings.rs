@@ -108,6 +108,7 @@ fn add(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if ui.button(tap).on_hover_text("A stream from above (P)").clicked() {
             actions.push(Action::Pour);
         }
+        super::add_mesh(ui, actions);
     });
     ui.weak("Drop an OBJ, STL, PLY or glTF file onto the window to add it as a body.");
 }

@@ -3,7 +3,9 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use splashdown::BodyMesh;
-use splashdown_run::{PlayedFrame, RunFrames};
+use splashdown_run::PlayedFrame;
+
+use crate::task::caught;
 
 /// Frames that are read ahead of [`Loader::take`]. A window that is not drawn takes none.
 const AHEAD: usize = 2;
@@ -14,6 +16,17 @@ pub enum Loaded {
     Bodies(Result<Vec<BodyMesh>, String>),
     /// A frame by its number, or why it cannot be read.
     Frame(u32, Result<Arc<PlayedFrame>, String>),
+    /// Nothing: the thread has ended by a panic, with this message.
+    Stopped(String),
+}
+
+/// What the thread reads. Errors are messages.
+pub trait Source: Send + 'static {
+    /// The meshes of the bodies.
+    fn bodies(&self) -> Result<Vec<BodyMesh>, String>;
+
+    /// A frame.
+    fn frame(&self, number: u32) -> Result<PlayedFrame, String>;
 }
 
 /// The two sides of the thread.
@@ -42,12 +55,16 @@ impl Loader {
     ///
     /// # Errors
     /// If the system starts no thread.
-    pub fn start(frames: Arc<RunFrames>, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    pub fn start(source: impl Source, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let its = Arc::clone(&shared);
-        std::thread::Builder::new()
-            .name("splashdown-frames".to_owned())
-            .spawn(move || read_all(&frames, &its, repaint))?;
+        let body = move || {
+            if let Err(reason) = caught(|| read_all(&source, &its, &repaint)) {
+                lock(&its.exchange).loaded.push(Loaded::Stopped(reason));
+                repaint();
+            }
+        };
+        std::thread::Builder::new().name("splashdown-frames".to_owned()).spawn(body)?;
         Ok(Self { shared })
     }
 
@@ -78,8 +95,8 @@ impl Drop for Loader {
     }
 }
 
-fn read_all(frames: &RunFrames, shared: &Shared, repaint: impl Fn()) {
-    let bodies = frames.body_meshes().map_err(|error| error.to_string());
+fn read_all(source: &impl Source, shared: &Shared, repaint: &impl Fn()) {
+    let bodies = source.bodies();
     lock(&shared.exchange).loaded.push(Loaded::Bodies(bodies));
     repaint();
     loop {
@@ -93,7 +110,7 @@ fn read_all(frames: &RunFrames, shared: &Shared, repaint: impl Fn()) {
         let number = exchange.wanted.remove(0);
         exchange.reading = Some(number);
         drop(exchange);
-        let frame = frames.read(number).map(Arc::new).map_err(|error| error.to_string());
+        let frame = source.frame(number).map(Arc::new);
         let mut exchange = lock(&shared.exchange);
         exchange.reading = None;
         exchange.loaded.push(Loaded::Frame(number, frame));

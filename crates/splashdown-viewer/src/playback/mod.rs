@@ -14,10 +14,20 @@ use splashdown_run::{PlayedFrame, RunFrames};
 
 use crate::timeline::Timeline;
 use cache::Cache;
-use loader::{Loaded, Loader};
+use loader::{Loaded, Loader, Source};
 
 /// Bytes of the frames in memory.
 pub const MEMORY: usize = 512 << 20;
+
+impl Source for Arc<RunFrames> {
+    fn bodies(&self) -> Result<Vec<BodyMesh>, String> {
+        self.body_meshes().map_err(|error| error.to_string())
+    }
+
+    fn frame(&self, number: u32) -> Result<PlayedFrame, String> {
+        self.read(number).map_err(|error| error.to_string())
+    }
+}
 
 /// A run that is played.
 pub struct Playback {
@@ -43,6 +53,16 @@ impl Playback {
         repaint: impl Fn() + Send + 'static,
     ) -> Result<(Self, Timeline, Option<String>), String> {
         let frames = Arc::new(frames);
+        let source = Arc::clone(&frames);
+        Self::start_from(frames, source, memory, repaint)
+    }
+
+    fn start_from(
+        frames: Arc<RunFrames>,
+        source: impl Source,
+        memory: usize,
+        repaint: impl Fn() + Send + 'static,
+    ) -> Result<(Self, Timeline, Option<String>), String> {
         let (has_particles, has_meshes) = frames.has_particles_and_meshes();
         let mut timeline = Timeline::new(frames.numbers().collect(), frames.scene().frame_rate)
             .ok_or_else(|| format!("`{}` has no frames", frames.folder().display()))?;
@@ -51,7 +71,7 @@ impl Playback {
         let problems: Vec<String> = frames.problems().collect();
         let problem = (!problems.is_empty())
             .then(|| format!("`{}`: {}", frames.folder().display(), problems.join("; ")));
-        let loader = Loader::start(Arc::clone(&frames), repaint)
+        let loader = Loader::start(source, repaint)
             .map_err(|error| format!("no thread could be started to read the frames: {error}"))?;
         let playback = Self {
             frames,
@@ -64,21 +84,21 @@ impl Playback {
         Ok((playback, timeline, problem))
     }
 
-    /// Receives what was read and requests what is needed next. Returns the message about the first file that cannot be
-    /// read; later ones are only counted in [`Timeline::left_out`].
-    pub fn update(&mut self, timeline: &mut Timeline) -> Option<String> {
-        let mut message = None;
+    /// Receives what was read and requests what is needed next. Returns the messages to show. Of the files that cannot be
+    /// read only the first is reported; later ones are counted in [`Timeline::left_out`].
+    pub fn update(&mut self, timeline: &mut Timeline) -> Vec<String> {
+        let mut messages = Vec::new();
         for loaded in self.loader.take() {
             match loaded {
                 Loaded::Bodies(Ok(meshes)) => self.bodies = Some(meshes.into()),
                 Loaded::Bodies(Err(reason)) => {
                     self.bodies = Some(Arc::from([]));
-                    message = Some(format!("the bodies are not shown: {reason}"));
+                    messages.push(format!("the bodies are not shown: {reason}"));
                 }
                 Loaded::Frame(number, Ok(frame)) => {
                     if let Some(problem) = frame.problems.first() {
                         let problem = format!("frame {number} is shown without a file: {problem}");
-                        message = self.report(&problem).or(message);
+                        messages.extend(self.report(&problem));
                     }
                     let bytes = frame.bytes();
                     let distance = |number| timeline.distance(number);
@@ -88,13 +108,17 @@ impl Playback {
                     self.failed.insert(number);
                     timeline.leave_out(number);
                     let problem = format!("frame {number} is left out: {reason}");
-                    message = self.report(&problem).or(message);
+                    messages.extend(self.report(&problem));
+                }
+                Loaded::Stopped(reason) => {
+                    timeline.playing = false;
+                    messages.push(format!("no more frames are read: {reason}. Open the run again"));
                 }
             }
         }
         let is_wanted = |&number: &u32| self.cache.get(number).is_none() && !self.failed.contains(&number);
         self.loader.want(timeline.upcoming(self.cache.capacity()).filter(is_wanted).collect());
-        message
+        messages
     }
 
     /// The message, unless one was reported.
@@ -117,5 +141,47 @@ impl Playback {
     /// The run.
     pub fn run(&self) -> &RunFrames {
         &self.frames
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    /// A run whose first frame is damaged, and whose second frame reaches a bug of this program.
+    struct Broken;
+
+    impl Source for Broken {
+        fn bodies(&self) -> Result<Vec<BodyMesh>, String> {
+            Ok(Vec::new())
+        }
+
+        fn frame(&self, number: u32) -> Result<PlayedFrame, String> {
+            assert_eq!(number, 0, "this frame cannot be handled");
+            Err("it is damaged".to_owned())
+        }
+    }
+
+    #[test]
+    fn a_panic_of_the_loading_thread_is_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("particles")).unwrap();
+        for number in 0..3 {
+            let name = format!("particles/particles_{number:04}.ply");
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let (name, text) = splashdown::scene::presets()[0];
+        let scene = splashdown::scene::Scene::parse(text, name).unwrap();
+        let frames = Arc::new(RunFrames::open(folder.path(), Some(scene)).unwrap());
+        let (mut playback, mut timeline, _) = Playback::start_from(frames, Broken, MEMORY, || {}).unwrap();
+        let (begun, mut messages) = (Instant::now(), Vec::new());
+        while timeline.playing && begun.elapsed() < Duration::from_secs(30) {
+            messages.extend(playback.update(&mut timeline));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // Also after another problem was reported, which hides later problems of files.
+        assert!(messages.len() == 2 && messages[0].contains("it is damaged"), "{messages:?}");
+        assert!(messages[1].contains("bug") && messages[1].contains("cannot be handled"), "{messages:?}");
     }
 }

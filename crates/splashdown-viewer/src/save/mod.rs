@@ -1,7 +1,10 @@
 //! Writing a changed scene as a scene file.
 
+mod files;
 mod things;
 mod values;
+
+use std::path::Path;
 
 use splashdown::scene::{Choice, Scene, Solver, SurfaceTension};
 use toml_edit::{DocumentMut, Item, Table, value};
@@ -16,16 +19,26 @@ use values::{number, vector};
 pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let source =
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
-    let old = Scene::parse(&scene.text, &source).map_err(|error| error.to_string())?;
+    let folder = scene.source.as_deref().and_then(Path::parent);
+    let parse = |text: &str| -> Result<Scene, String> {
+        let mut scene = Scene::parse(text, &source).map_err(|error| error.to_string())?;
+        if let Some(folder) = folder {
+            files::resolve(&mut scene, folder);
+        }
+        Ok(scene)
+    };
+    let old = parse(&scene.text)?;
     let mut document: DocumentMut = scene.text.parse().map_err(|error| format!("{source}: {error}"))?;
     numbers(&mut document, &old, scene);
     camera(&mut document, orbit);
     things::blocks(&mut document, &old.fluid.blocks, &scene.fluid.blocks);
+    things::fluid_meshes(&mut document, &old.fluid.meshes, &scene.fluid.meshes)?;
     things::bodies(&mut document, &old.bodies, &scene.bodies)?;
     things::emitters(&mut document, &old.emitters, &scene.emitters)?;
     let written = document.to_string();
     // Reading the text must give the same scene.
-    let mut read = Scene::parse(&written, &source).map_err(|error| error.to_string())?;
+    let mut read = parse(&written)?;
+    things::adopt_rotations(&mut read, scene);
     read.camera = scene.camera;
     read.source.clone_from(&scene.source);
     read.warnings.clone_from(&scene.warnings);
@@ -34,6 +47,29 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
         return Err("this scene has changes that a scene file cannot express".to_owned());
     }
     Ok(written)
+}
+
+/// The text of a scene for a file in another folder than that of the scene, from which its meshes and other files are
+/// named.
+///
+/// # Errors
+/// A message, if the text is not that of a scene, or the files cannot be named from there.
+pub fn moved_to(text: &str, scene: &Scene, path: &Path) -> Result<String, String> {
+    let absolute = |folder: Option<&Path>| {
+        std::path::absolute(folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
+    };
+    let source = scene.source.as_deref();
+    let (from, to) = (absolute(source.and_then(Path::parent)), absolute(path.parent()));
+    let (Ok(from), Ok(to)) = (from, to) else { return Err(format!("`{}` is not a path", path.display())) };
+    if from == to {
+        return Ok(text.to_owned());
+    }
+    let mut document: DocumentMut = text.parse().map_err(|error| format!("{}: {error}", path.display()))?;
+    files::make_absolute(&mut document, &from);
+    let moved = document.to_string();
+    // The file must give the same scene there.
+    Scene::parse_beside(&moved, path).map_err(|error| error.to_string())?;
+    Ok(moved)
 }
 
 fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
@@ -169,6 +205,99 @@ mod tests {
         Item::Block(0).move_by(&mut changed, Vec3::X * 100.0);
         let refused = scene(&changed, &Orbit::of_scene(&changed));
         assert!(refused.as_ref().is_err_and(|reason| reason.contains("domain")), "{refused:?}");
+    }
+
+    #[test]
+    fn a_removed_thing_whose_name_is_used_again_is_saved() {
+        let body = |name: &str, mesh: &str| {
+            format!(
+                "[[body]]\nname = \"{name}\"\nmesh = \"{mesh}\"\nposition = [0.5, 0.5, 0.5]\nscale = 0.2\n"
+            )
+        };
+        let (name, text) = presets().iter().find(|(name, _)| *name == "dam-break-small").unwrap();
+        let emitter = "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.5, 0.5]\n\
+                       direction = [0, -1, 0]\nspeed = 1\n";
+        let text = format!("{text}\n{}{}{emitter}", body("ball-1", "cube"), body("post", "sphere"));
+        let mut changed = Scene::parse(&text, name).unwrap();
+        Item::Body(0).remove(&mut changed);
+        Item::Emitter(0).remove(&mut changed);
+        edit::add_ball(&mut changed);
+        edit::turn_tap(&mut changed);
+        changed.bodies[1].name = "ball-1".to_owned();
+        // The same thing again behind the others: it was removed, and added.
+        let text = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+        let mut reordered = Scene::parse(&format!("{text}\n{}", body("pillar", "cube")), name).unwrap();
+        assert_eq!(reordered.bodies[1].name, "ball-1");
+        let ball = reordered.bodies.remove(1);
+        reordered.bodies.push(ball);
+        for changed in [changed, reordered] {
+            let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+            let read = Scene::parse(&saved, name).unwrap();
+            assert_eq!((&read.bodies, &read.emitters), (&changed.bodies, &changed.emitters), "{saved}");
+        }
+    }
+
+    #[test]
+    fn resized_and_rotated_things_of_every_scene_are_saved() {
+        use glam::{EulerRot, Quat};
+        let mut saved = 0;
+        // Also at the poles of the angles, where two of them have the same axis.
+        let turns = [[0.0, 90.0, 0.0], [10.0, -90.0, 30.0], [33.0, 44.0, 55.0], [179.9, -12.5, -178.0]];
+        for (name, text) in presets() {
+            let original = Scene::parse(text, name).unwrap();
+            for (item, turn) in Item::all(&original).into_iter().zip(turns.into_iter().cycle()) {
+                if !item.is_movable(&original) {
+                    continue;
+                }
+                let mut changed = original.clone();
+                let [x, y, z] = turn.map(f32::to_radians);
+                item.rotate_by(&mut changed, Quat::from_euler(EulerRot::ZYX, z, y, x), Vec3::ZERO);
+                item.scale_by(
+                    &mut changed,
+                    0.875,
+                    item.bounds(&original, &Default::default()).unwrap_or_default().0,
+                );
+                edit::add_ball(&mut changed);
+                let ball = Item::Body(changed.bodies.len() - 1);
+                ball.rotate_by(&mut changed, Quat::from_rotation_z(1.0), Vec3::ONE);
+                let Ok(text) = scene(&changed, &Orbit::of_scene(&changed)) else { continue };
+                let read = Scene::parse(&text, name).unwrap();
+                assert_eq!(read.fluid.blocks, changed.fluid.blocks, "{name}: {item:?}");
+                for (a, b) in read.bodies.iter().zip(&changed.bodies) {
+                    assert!(a.mesh.rotation.dot(b.mesh.rotation).abs() > 1.0 - 1e-6, "{name}: {item:?}");
+                    assert_eq!((a.mesh.position, a.mesh.scale), (b.mesh.position, b.mesh.scale), "{name}");
+                }
+                saved += usize::from(changed != original);
+            }
+        }
+        assert!(saved > 15, "only {saved} changes were saved");
+    }
+
+    #[test]
+    fn the_files_of_a_scene_are_found_from_another_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
+        for folder in [&from, &to] {
+            std::fs::create_dir(folder).unwrap();
+        }
+        let (_, text) = presets().iter().find(|(name, _)| *name == "dam-break-small").unwrap();
+        let body = "\n[[body]]\nname = \"tent\"\nmesh = \"tent.obj\" # a tetrahedron\nposition = [0.5, 0.2, 0.3]\nscale = 0.1\n";
+        std::fs::write(from.join("a.toml"), format!("{text}{body}")).unwrap();
+        let tent = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+        std::fs::write(from.join("tent.obj"), tent).unwrap();
+        let mut changed = Scene::load(from.join("a.toml")).unwrap();
+        Item::Body(0).move_by(&mut changed, Vec3::Y * 0.1);
+        edit::add_fluid_mesh(&mut changed, from.join("tent.obj"), [Vec3::ZERO, Vec3::ONE]);
+        let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+        // In its own folder the scene still names the file as before.
+        assert!(saved.contains("\"tent.obj\" # a tetrahedron"), "{saved}");
+        assert_eq!(super::moved_to(&saved, &changed, &from.join("b.toml")).unwrap(), saved);
+        let moved = super::moved_to(&saved, &changed, &to.join("b.toml")).unwrap();
+        std::fs::write(to.join("b.toml"), moved).unwrap();
+        let read = Scene::load(to.join("b.toml")).unwrap();
+        assert_eq!((&read.bodies, &read.fluid), (&changed.bodies, &changed.fluid));
+        // Control: the same text does not find the file there.
+        assert!(Scene::parse_beside(&saved, &to.join("b.toml")).is_err());
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! Blocks of fluid, bodies and emitters of a changed scene.
 
-use glam::Vec3;
-use splashdown::scene::{Block, Body, Emitter, MeshShape, Motion, Outlet, Shape};
+use glam::{Quat, Vec3};
+use splashdown::scene::{
+    Block, Body, Emitter, FluidMesh, MeshShape, MeshSource, Motion, Outlet, Scene, Shape,
+};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TableLike, value};
 
-use super::values::{number, vector};
+use super::values::{degrees, number, vector};
 
 /// Writes moved, removed and added blocks.
 pub fn blocks(document: &mut DocumentMut, old: &[Block], new: &[Block]) {
@@ -60,20 +62,53 @@ fn write_block(table: &mut Table, block: &Block) {
     }
 }
 
-/// Writes moved, removed and added bodies.
+/// Writes moved, removed and added meshes that are filled with fluid.
+///
+/// # Errors
+/// A message, if a scene file cannot express an added one.
+pub fn fluid_meshes(document: &mut DocumentMut, old: &[FluidMesh], new: &[FluidMesh]) -> Result<(), String> {
+    if old == new {
+        return Ok(());
+    }
+    let fluid = document.entry("fluid").or_insert(Item::Table(Table::new()));
+    let fluid = fluid.as_table_like_mut().ok_or("`fluid` is not a table")?;
+    let is_same = |before: &FluidMesh, now: &FluidMesh| {
+        let mut before = before.clone();
+        adopt_pose(&mut before.mesh, &now.mesh);
+        before == *now
+    };
+    let moved = |table: &mut Table, before: &FluidMesh, now: &FluidMesh| pose(table, &before.mesh, &now.mesh);
+    differences(tables(fluid, "mesh"), (old, new), is_same, moved, |filled| mesh_table(&filled.mesh))
+}
+
+/// Writes moved, rotated, resized, removed and added bodies.
 ///
 /// # Errors
 /// A message, if a scene file cannot express an added body.
 pub fn bodies(document: &mut DocumentMut, old: &[Body], new: &[Body]) -> Result<(), String> {
-    let moved = |table: &mut Table, body: &Body| {
-        table.insert("position", vector(body.mesh.position));
+    let is_same = |before: &Body, now: &Body| {
+        let mut before = before.clone();
+        adopt_pose(&mut before.mesh, &now.mesh);
+        let hinges = (&mut before.motion, &now.motion);
+        if let (Motion::Dynamic { hinge: Some(before), .. }, Motion::Dynamic { hinge: Some(now), .. }) =
+            hinges
+        {
+            before.point = now.point;
+        }
+        before == *now
+    };
+    let moved = |table: &mut Table, before: &Body, now: &Body| {
+        pose(table, &before.mesh, &now.mesh);
         if let (true, Motion::Dynamic { hinge: Some(hinge), .. }) =
-            (table.contains_key("hinge_point"), &body.motion)
+            (table.contains_key("hinge_point"), &now.motion)
         {
             table.insert("hinge_point", vector(hinge.point));
         }
     };
-    named(document, "body", old, new, |body| &body.name, moved, body_table)
+    if old == new {
+        return Ok(());
+    }
+    differences(tables(document.as_table_mut(), "body"), (old, new), is_same, moved, body_table)
 }
 
 /// Writes moved, removed and added emitters.
@@ -81,43 +116,97 @@ pub fn bodies(document: &mut DocumentMut, old: &[Body], new: &[Body]) -> Result<
 /// # Errors
 /// A message, if a scene file cannot express an added emitter.
 pub fn emitters(document: &mut DocumentMut, old: &[Emitter], new: &[Emitter]) -> Result<(), String> {
-    let moved = |table: &mut Table, emitter: &Emitter| {
-        table.insert("position", vector(emitter.position));
+    let is_same = |before: &Emitter, now: &Emitter| {
+        let mut before = before.clone();
+        before.position = now.position;
+        if let (Outlet::Mesh(before), Outlet::Mesh(now)) = (&mut before.outlet, &now.outlet) {
+            before.position = now.position;
+        }
+        before == *now
     };
-    named(document, "emitter", old, new, |emitter| &emitter.name, moved, emitter_table)
-}
-
-/// Writes the differences of a list of things with unique names.
-fn named<T: PartialEq>(
-    document: &mut DocumentMut,
-    key: &str,
-    old: &[T],
-    new: &[T],
-    name: fn(&T) -> &str,
-    moved: impl Fn(&mut Table, &T),
-    table: fn(&T) -> Result<Table, String>,
-) -> Result<(), String> {
+    let moved = |table: &mut Table, _: &Emitter, now: &Emitter| {
+        table.insert("position", vector(now.position));
+    };
     if old == new {
         return Ok(());
     }
-    let list =
-        tables(document.as_table_mut(), key).ok_or_else(|| format!("`{key}` is not a list of tables"))?;
-    let now = |thing: &T| new.iter().find(|other| name(other) == name(thing));
-    for (index, thing) in old.iter().enumerate().rev() {
-        match now(thing) {
+    differences(tables(document.as_table_mut(), "emitter"), (old, new), is_same, moved, emitter_table)
+}
+
+/// Writes the differences of a list. `is_same` tells whether a thing has only been moved. The name does not: a removed thing
+/// may have left its name to another one.
+fn differences<T: PartialEq>(
+    list: Option<&mut ArrayOfTables>,
+    (old, new): (&[T], &[T]),
+    is_same: impl Fn(&T, &T) -> bool,
+    moved: impl Fn(&mut Table, &T, &T),
+    table: impl Fn(&T) -> Result<Table, String>,
+) -> Result<(), String> {
+    let list = list.ok_or("a section of the scene file is not a list of tables")?;
+    // What remains keeps its order, and what is added comes after it.
+    let (mut kept, mut added, mut next) = (vec![None; old.len()], Vec::new(), 0);
+    for thing in new {
+        match (next..old.len()).find(|&index| is_same(&old[index], thing)) {
+            Some(index) => {
+                kept[index] = Some(thing);
+                next = index + 1;
+            }
+            None => added.push(thing),
+        }
+    }
+    for (index, (before, now)) in old.iter().zip(kept).enumerate().rev() {
+        match now {
             None => drop(list.remove(index)),
-            Some(other) if other == thing => {}
-            Some(other) => {
+            Some(now) if now == before => {}
+            Some(now) => {
                 if let Some(table) = list.get_mut(index) {
-                    moved(table, other);
+                    moved(table, before, now);
                 }
             }
         }
     }
-    for thing in new.iter().filter(|thing| !old.iter().any(|other| name(other) == name(thing))) {
+    for thing in added {
         list.push(table(thing)?);
     }
     Ok(())
+}
+
+/// Gives a mesh the position, the rotation and the scale of another one.
+fn adopt_pose(mesh: &mut MeshSource, other: &MeshSource) {
+    (mesh.position, mesh.rotation, mesh.scale) = (other.position, other.rotation, other.scale);
+}
+
+/// Writes the position, the rotation and the scale of a mesh, as far as they have changed.
+fn pose(table: &mut Table, before: &MeshSource, now: &MeshSource) {
+    if before.position != now.position {
+        table.insert("position", vector(now.position));
+    }
+    if before.rotation != now.rotation {
+        table.insert("rotation", degrees(now.rotation));
+    }
+    if before.scale != now.scale {
+        table.insert("scale", scale(now));
+    }
+}
+
+fn scale(mesh: &MeshSource) -> Item {
+    let uniform = mesh.scale == Vec3::splat(mesh.scale.x);
+    if uniform { number(mesh.scale.x) } else { vector(mesh.scale) }
+}
+
+/// Replaces rotations that were read from angles by those of the scene from which the angles were made, up to rounding.
+pub fn adopt_rotations(read: &mut Scene, scene: &Scene) {
+    let adopt = |read: &mut MeshSource, scene: &MeshSource| {
+        if read.rotation.dot(scene.rotation).abs() > 1.0 - 1e-6 {
+            read.rotation = scene.rotation;
+        }
+    };
+    for (read, body) in read.bodies.iter_mut().zip(&scene.bodies) {
+        adopt(&mut read.mesh, &body.mesh);
+    }
+    for (read, filled) in read.fluid.meshes.iter_mut().zip(&scene.fluid.meshes) {
+        adopt(&mut read.mesh, &filled.mesh);
+    }
 }
 
 /// The tables `[[name]]`, also if the file writes them as inline tables.
@@ -129,18 +218,28 @@ fn tables<'a>(parent: &'a mut dyn TableLike, name: &str) -> Option<&'a mut Array
     item.as_array_of_tables_mut()
 }
 
-fn body_table(body: &Body) -> Result<Table, String> {
+/// A mesh with its pose.
+fn mesh_table(mesh: &MeshSource) -> Result<Table, String> {
     let mut table = Table::new();
-    table.insert("name", value(&body.name));
-    let mesh = match &body.mesh.shape {
+    let name = match &mesh.shape {
         MeshShape::Model(name) => name.clone(),
         MeshShape::File(path) => path.to_str().ok_or("the path of a mesh is not valid text")?.to_owned(),
     };
-    table.insert("mesh", value(mesh));
-    let scale = body.mesh.scale;
-    let uniform = scale == Vec3::splat(scale.x);
-    table.insert("scale", if uniform { number(scale.x) } else { vector(scale) });
-    table.insert("position", vector(body.mesh.position));
+    table.insert("mesh", value(name));
+    table.insert("scale", scale(mesh));
+    table.insert("position", vector(mesh.position));
+    if mesh.rotation != Quat::IDENTITY {
+        table.insert("rotation", degrees(mesh.rotation));
+    }
+    Ok(table)
+}
+
+fn body_table(body: &Body) -> Result<Table, String> {
+    let mut table = Table::new();
+    table.insert("name", value(&body.name));
+    for (key, item) in mesh_table(&body.mesh)? {
+        table.insert(&key, item);
+    }
     let Motion::Dynamic { density, .. } = body.motion else {
         return Err("only dynamic bodies can be added to a scene file".to_owned());
     };

@@ -192,6 +192,13 @@ pub struct FluidMesh {
     pub shell: Option<bool>,
 }
 
+impl FluidMesh {
+    /// Fluid at rest in a mesh.
+    pub fn new(mesh: MeshSource) -> Self {
+        Self { mesh, velocity: Vec3::ZERO, shell: None }
+    }
+}
+
 /// A file of particles at t = 0.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
