@@ -141,7 +141,7 @@ impl<'a> Frame<'a> {
         let view = self.camera.view(width / height)?;
         let target = Vec3::from(self.camera.target) - view.eye;
         let focus = quality.focus.unwrap_or_else(|| target.dot(view.forward).max(view.near));
-        let (pixel, lens, time) = quality.place(sample);
+        let (pixel, lens) = Quality::place(sample);
         let pixel = Vec2::new(2.0 * pixel[0] / width, 2.0 * pixel[1] / height);
         let (view, shift) = view.shifted(pixel, 0.5 * quality.aperture * Vec2::from(lens), focus);
         globals.clip_from_world = view.clip_from_world.to_cols_array_2d();
@@ -150,7 +150,7 @@ impl<'a> Frame<'a> {
         globals.linear_output = 1;
         globals.sample = sample;
         globals.sample_count = quality.samples;
-        globals.shutter_time = time * quality.shutter;
+        globals.shutter_time = quality.time(sample);
         if quality.shutter > 0.0 {
             // The samples move the droplets.
             globals.droplet_shutter = 0.0;

@@ -2,11 +2,13 @@
 
 use crate::renderer::check_size;
 use crate::{Frame, RenderError, Renderer, Ticket};
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use wgpu::{
-    Buffer, BufferAsyncError, BufferUsages, Device, Extent3d, MapMode, PollType, Queue, SubmissionIndex,
-    TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+    Buffer, BufferAsyncError, BufferUsages, CommandEncoder, Device, Extent3d, MapMode, PollType, Queue,
+    SubmissionIndex, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+    TextureView,
 };
 
 /// A texture to draw into, and buffers to read pictures back.
@@ -97,28 +99,59 @@ impl Offscreen {
     /// [`RenderError::DeviceLost`] if the device is lost or out of memory, and the errors of
     /// [`Renderer::draw`].
     pub fn submit(&mut self, renderer: &mut Renderer, frame: &Frame<'_>) -> Result<Ticket, RenderError> {
-        if renderer.format() != Offscreen::FORMAT {
-            return Err(RenderError::Format { renderer: renderer.format(), target: Offscreen::FORMAT });
-        }
-        let Some(buffer) = self.free.last() else {
+        self.submit_from(renderer, frame, 0)
+    }
+
+    /// Submits some samples of a picture with [traced rays](Frame::with_tracing), which
+    /// [`submit_from`](Self::submit_from) completes. The samples of a picture are drawn in order, and may show frames
+    /// that differ by what moves while the shutter is open: see [`Quality::time`](crate::Quality::time).
+    ///
+    /// # Errors
+    /// As [`submit`](Self::submit).
+    pub fn submit_samples(
+        &mut self,
+        renderer: &mut Renderer,
+        frame: &Frame<'_>,
+        samples: Range<u32>,
+    ) -> Result<(), RenderError> {
+        check_format(renderer)?;
+        with_error_scopes(&self.device, || {
+            // A submission per sample: drivers stop those that take seconds.
+            for sample in samples {
+                let mut encoder = self.encoder();
+                let range = sample..sample + 1;
+                renderer.draw_samples(&mut encoder, &self.view(), self.size, frame, range)?;
+                self.queue.submit([encoder.finish()]);
+            }
+            Ok(())
+        })
+    }
+
+    /// Submits the samples of a picture from number `first` on, which complete it. Without traced rays a picture has only
+    /// one.
+    ///
+    /// # Errors
+    /// As [`submit`](Self::submit).
+    pub fn submit_from(
+        &mut self,
+        renderer: &mut Renderer,
+        frame: &Frame<'_>,
+        first: u32,
+    ) -> Result<Ticket, RenderError> {
+        check_format(renderer)?;
+        let Some(buffer) = self.free.last().cloned() else {
             return Err(RenderError::FramesInFlight { limit: Offscreen::FRAMES_IN_FLIGHT });
         };
+        let last = frame.traced_samples().map(|samples| samples.saturating_sub(1));
+        if let Some(last) = last {
+            self.submit_samples(renderer, frame, first..last)?;
+        }
         let submission = with_error_scopes(&self.device, || {
-            let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-            let label = wgpu::CommandEncoderDescriptor { label: Some("picture") };
-            let mut encoder = self.device.create_command_encoder(&label);
-            match frame.traced_samples() {
+            let (view, mut encoder) = (self.view(), self.encoder());
+            match last {
                 None => renderer.draw(&mut encoder, &view, self.size, frame)?,
-                // A submission per sample: drivers stop those that take seconds.
-                Some(samples) => {
-                    for sample in 0..samples.max(1) {
-                        if sample > 0 {
-                            let next = self.device.create_command_encoder(&label);
-                            self.queue.submit([std::mem::replace(&mut encoder, next).finish()]);
-                        }
-                        let range = sample..sample + 1;
-                        renderer.draw_samples(&mut encoder, &view, self.size, frame, range)?;
-                    }
+                Some(last) => {
+                    renderer.draw_samples(&mut encoder, &view, self.size, frame, last..last + 1)?;
                 }
             }
             let layout = TexelCopyBufferLayout {
@@ -126,7 +159,7 @@ impl Offscreen {
                 bytes_per_row: Some(padded_row(self.size[0])),
                 rows_per_image: Some(self.size[1]),
             };
-            let destination = TexelCopyBufferInfo { buffer, layout };
+            let destination = TexelCopyBufferInfo { buffer: &buffer, layout };
             encoder.copy_texture_to_buffer(self.texture.as_image_copy(), destination, extent(self.size));
             Ok(self.queue.submit([encoder.finish()]))
         })?;
@@ -138,10 +171,17 @@ impl Offscreen {
         });
         let number = self.submitted;
         self.submitted += 1;
-        let buffer = buffer.clone();
         self.free.pop();
         self.in_flight.push(InFlight { number, buffer, submission, mapped });
         Ok(Ticket { target: self.identity, number })
+    }
+
+    fn view(&self) -> TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    fn encoder(&self) -> CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") })
     }
 
     /// Waits for a submitted picture. The result is 8-bit RGBA, sRGB-encoded, row by row from the
@@ -211,6 +251,13 @@ fn with_error_scopes<T>(
 #[cfg(target_arch = "wasm32")]
 fn with_error_scopes<T>(_: &Device, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
     work()
+}
+
+fn check_format(renderer: &Renderer) -> Result<(), RenderError> {
+    match renderer.format() == Offscreen::FORMAT {
+        true => Ok(()),
+        false => Err(RenderError::Format { renderer: renderer.format(), target: Offscreen::FORMAT }),
+    }
 }
 
 fn extent([width, height]: [u32; 2]) -> Extent3d {

@@ -322,3 +322,44 @@ fn invalid_meshes_and_qualities_are_refused() {
     let error = target.render_to_rgba(renderer, &frame).unwrap_err();
     assert!(error.to_string().contains("1 to 4096 samples"), "{error}");
 }
+
+#[test]
+fn samples_of_several_frames_are_averaged() {
+    let Some(mut harness) = common::harness() else { return };
+    let camera = Camera::orbit([1.0, 0.5, 0.5], 3.0, 0.0, 20.0, 40.0);
+    let quality = with(Quality::STANDARD, |q| q.samples = 4);
+    let (water, place) = (tank(), [0.0, 0.0, 0.0, 1.0]);
+    let body = ball([0.0; 3], 0.12, RED);
+    let device = harness.device.clone();
+    let surface = UploadedSurface::new(&device, &water.vertices, &water.normals, &water.triangles).unwrap();
+    let moment = |x: f32| {
+        let placed = || [(&body, [x, 0.85, 0.5], place)];
+        let meshes = TracedMeshes::new(&device, &water.vertices, &water.normals, &water.triangles, placed());
+        (meshes.unwrap(), UploadedBodies::new(&device, placed()))
+    };
+    let moments = [moment(0.6), moment(1.4)];
+    let [left, right] = moments.each_ref().map(|(meshes, bodies)| {
+        Frame::new(camera, domain())
+            .with_surface(DrawnSurface::new(surface.buffers(), Liquid::water()))
+            .with_bodies(bodies.buffers())
+            .with_tracing(meshes, quality)
+    });
+    let mut draw = |first: &Frame<'_>, second: &Frame<'_>| {
+        let Harness { device, queue, renderer } = &mut harness;
+        let mut target = Offscreen::new(device, queue, SIZE).unwrap();
+        target.submit_samples(renderer, first, 0..2).unwrap();
+        let ticket = target.submit_from(renderer, second, 2).unwrap();
+        Picture { size: SIZE, rgba: target.collect(ticket).unwrap() }
+    };
+    let (blurred, at_left) = (draw(&left, &right), draw(&left, &left));
+    let green = |picture: &Picture, x: f32| picture.pixel(pixel_of(camera, [x, 0.85, 0.5]))[1];
+    let (ball, sky) = (green(&at_left, 0.6), green(&at_left, 1.4));
+    assert!(sky > ball + 80, "{sky} {ball}");
+    // Both places show the ball for half of the time.
+    for x in [0.6, 1.4] {
+        let both = green(&blurred, x);
+        assert!(both > ball + 20 && both + 20 < sky, "{x}: {both} between {ball} and {sky}");
+    }
+    // From one frame, the parts give the picture of one call.
+    assert_eq!(at_left.rgba, harness.draw(SIZE, &left).rgba);
+}

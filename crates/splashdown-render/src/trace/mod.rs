@@ -13,7 +13,8 @@
 //!    once per pixel. It follows the refracted ray from surface to surface (Fresnel equations, total
 //!    internal reflection, absorption by Beer-Lambert) until it meets a body, the floor or the sky,
 //!    and the reflected ray if it matters. Bodies and floor are darker in the liquid than outside. Every sample shifts the place in the pixel, on the lens
-//!    and in time; the samples are averaged.
+//!    and in time; the samples are averaged. The samples of a picture in which liquid and bodies move are drawn from several
+//!    frames, each with its own trees.
 //! 3. *Tone mapping* of the average.
 //!
 //! # Why not the other way
@@ -24,7 +25,7 @@
 //! pictures with few samples have no noise. `cargo xtask cycles` compares both.
 //!
 //! # Things we might try
-//! Motion blur of the liquid; caustics on bodies; bubbles under water; droplets in reflections.
+//! Caustics on bodies; bubbles under water; droplets in reflections.
 
 mod floor;
 mod picture;

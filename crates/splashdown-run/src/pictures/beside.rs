@@ -82,7 +82,9 @@ impl FrameOfFile {
             Motion::Static => Ok(BodyState::at(body.mesh.position, body.mesh.rotation)),
             Motion::Scripted(script) => {
                 let pose = script.pose(self.time);
-                Ok(BodyState::at(pose.position, pose.orientation))
+                let mut state = BodyState::at(pose.position, pose.orientation);
+                (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
+                Ok(state)
             }
             Motion::Dynamic { .. } => Err(RunError::Input(format!(
                 "`{}` is missing, so the place of body {:?} is unknown; keep the files of a run in its folder, or remove the body \

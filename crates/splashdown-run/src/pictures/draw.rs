@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
-use splashdown::BodyMesh;
 use splashdown::scene::{Camera, PictureKind, Scene};
+use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
 use splashdown_render::{
-    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Liquid, Offscreen, PlacedBody, RenderError, Renderer,
-    TracedMeshes, UploadedBodies, UploadedDroplets, UploadedFoam, UploadedParticles, UploadedSurface,
+    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, Quality,
+    RenderError, Renderer, Ticket, TracedMeshes, UploadedBodies, UploadedDroplets, UploadedFoam,
+    UploadedParticles, UploadedSurface,
 };
 
-use super::FrameData;
+use super::{FrameData, motion};
 use crate::{RunError, appearance};
 
 /// Draws frames on a device.
@@ -66,77 +67,136 @@ impl FrameRenderer {
 
     /// One picture per kind. All are submitted before waiting for the first.
     fn pictures(&mut self, data: &FrameData) -> Result<Vec<Arc<Picture>>, RenderError> {
-        let device = &self.gpu.device;
-        let Particles { positions, velocities, densities, pressures, .. } = &*data.particles;
-        let particles = match self.kinds.contains(&PictureKind::Particles) {
-            true => Some(UploadedParticles::new(device, positions, velocities, densities, pressures)?),
-            false => None,
-        };
-        let mesh = data.mesh.as_ref().filter(|_| self.kinds.contains(&PictureKind::Surface));
-        let surface = match mesh {
-            Some(mesh) => Some(UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles)?),
-            None => None,
-        };
-        let droplets = match data.droplets.as_ref().filter(|_| mesh.is_some()) {
-            Some(droplets) => Some(UploadedDroplets::new(device, &droplets.positions, &droplets.velocities)?),
-            None => None,
-        };
-        let foam = match &data.foam {
-            Some(foam) => {
-                let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
-                let (positions, velocities) = (&foam.positions, &foam.velocities);
-                Some(UploadedFoam::moving(device, positions, velocities, &foam.lifetimes, &foam.ids, &kinds)?)
-            }
-            None => None,
-        };
-        let placed = self.bodies.iter().zip(&*data.bodies);
-        let bodies = (!self.bodies.is_empty()).then(|| {
-            UploadedBodies::new(
-                device,
-                placed.map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array())),
-            )
-        });
-        let quality = appearance::quality(&self.scene, self.scene.output.quality);
-        let traced = match (mesh, quality) {
-            (Some(mesh), Some(quality)) => {
-                let placed = self.bodies.iter().zip(&*data.bodies);
-                let bodies = placed
-                    .map(|(body, state)| (body, state.position.to_array(), state.orientation.to_array()));
-                let meshes =
-                    TracedMeshes::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles, bodies)?;
-                Some((meshes, quality))
-            }
-            _ => None,
-        };
-        let caption = appearance::caption(&self.scene, data.time);
-        let radius = self.scene.fluid.particle_radius();
-        let camera = appearance::camera(&self.scene, data.time);
-        let mut empty = appearance::empty_frame(&self.scene, camera).with_caption(&caption);
-        empty.bodies = bodies.as_ref().map(UploadedBodies::buffers);
-        empty.foam = foam.as_ref().map(|foam| DrawnFoam::new(foam.buffers(), radius));
         let mut tickets = Vec::new();
-        for kind in &self.kinds {
-            let mut frame = empty;
-            match kind {
-                PictureKind::Particles => {
-                    frame.particles = particles
-                        .as_ref()
-                        .map(|particles| DrawnParticles::new(particles.buffers(), radius, self.colouring));
-                }
-                PictureKind::Surface => {
-                    frame.surface =
-                        surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
-                    frame.droplets = droplets
-                        .as_ref()
-                        .map(|droplets| appearance::droplets(&self.scene, droplets.buffers(), self.liquid));
-                    frame.traced = traced.as_ref().map(|(meshes, quality)| (meshes, *quality));
-                }
-            }
-            tickets.push(self.target.submit(&mut self.renderer, &frame)?);
+        for kind in self.kinds.clone() {
+            tickets.push(match kind {
+                PictureKind::Particles => self.submit_particles(data)?,
+                PictureKind::Surface => self.submit_surface(data)?,
+            });
         }
         let [width, height] = self.target.size();
         let collect =
             |ticket| self.target.collect(ticket).map(|rgba| Arc::new(Picture { width, height, rgba }));
         tickets.into_iter().map(collect).collect()
     }
+
+    fn submit_particles(&mut self, data: &FrameData) -> Result<Ticket, RenderError> {
+        let Particles { positions, velocities, densities, pressures, .. } = &*data.particles;
+        let device = &self.gpu.device;
+        let particles = UploadedParticles::new(device, positions, velocities, densities, pressures)?;
+        let foam = upload_foam(&self.gpu, data)?;
+        let bodies = self.upload_bodies(&data.bodies, 0.0);
+        let caption = appearance::caption(&self.scene, data.time);
+        let radius = self.scene.fluid.particle_radius();
+        let mut frame = self.empty_frame(data, &caption, foam.as_ref());
+        frame.bodies = bodies.as_ref().map(UploadedBodies::buffers);
+        frame.particles = Some(DrawnParticles::new(particles.buffers(), radius, self.colouring));
+        self.target.submit(&mut self.renderer, &frame)
+    }
+
+    /// Submits the liquid. If it or bodies move while the shutter is open, the samples are drawn at several moments.
+    fn submit_surface(&mut self, data: &FrameData) -> Result<Ticket, RenderError> {
+        let device = &self.gpu.device;
+        let droplets = match data.droplets.as_ref().filter(|_| data.mesh.is_some()) {
+            Some(droplets) => Some(UploadedDroplets::new(device, &droplets.positions, &droplets.velocities)?),
+            None => None,
+        };
+        let foam = upload_foam(&self.gpu, data)?;
+        let caption = appearance::caption(&self.scene, data.time);
+        let quality = appearance::quality(&self.scene, self.scene.output.quality);
+        let quality = quality.filter(|_| data.mesh.is_some());
+        let parts = match (&data.mesh, quality) {
+            (Some(mesh), Some(Quality { shutter, samples, .. })) => {
+                let spacing = self.scene.fluid.particle_spacing;
+                motion::moments(mesh, &data.bodies, shutter, samples, spacing)
+            }
+            _ => 1,
+        };
+        let samples = quality.map_or(1, |quality| quality.samples);
+        let mut part = 0;
+        loop {
+            let [first, end] = [part, part + 1].map(|part| samples * part / parts);
+            let time = match quality {
+                Some(quality) if parts > 1 => 0.5 * (quality.time(first) + quality.time(end - 1)),
+                _ => 0.0,
+            };
+            let moment = self.moment(data, quality, time)?;
+            let mut frame = self.empty_frame(data, &caption, foam.as_ref());
+            frame.bodies = moment.bodies.as_ref().map(UploadedBodies::buffers);
+            frame.surface =
+                moment.surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
+            frame.droplets = droplets
+                .as_ref()
+                .map(|droplets| appearance::droplets(&self.scene, droplets.buffers(), self.liquid));
+            frame.traced = moment.traced.as_ref().zip(quality);
+            if end == samples {
+                return self.target.submit_from(&mut self.renderer, &frame, first);
+            }
+            self.target.submit_samples(&mut self.renderer, &frame, first..end)?;
+            part += 1;
+        }
+    }
+
+    /// Everything of a frame that liquid and particles have in common, without bodies.
+    fn empty_frame<'a>(
+        &self,
+        data: &FrameData,
+        caption: &'a str,
+        foam: Option<&'a UploadedFoam>,
+    ) -> Frame<'a> {
+        let camera = appearance::camera(&self.scene, data.time);
+        let mut frame = appearance::empty_frame(&self.scene, camera).with_caption(caption);
+        frame.foam = foam.map(|foam| DrawnFoam::new(foam.buffers(), self.scene.fluid.particle_radius()));
+        frame
+    }
+
+    /// Liquid and bodies at a time in s, relative to the frame.
+    fn moment(&self, data: &FrameData, quality: Option<Quality>, time: f32) -> Result<Moment, RenderError> {
+        let device = &self.gpu.device;
+        let bodies = self.upload_bodies(&data.bodies, time);
+        let Some(mesh) = &data.mesh else { return Ok(Moment { surface: None, bodies, traced: None }) };
+        let moved = (time != 0.0 && !mesh.velocities.is_empty())
+            .then(|| motion::moved(mesh, &appearance::domain(&self.scene), time));
+        let vertices = moved.as_deref().unwrap_or(&mesh.vertices);
+        let surface = UploadedSurface::new(device, vertices, &mesh.normals, &mesh.triangles)?;
+        let traced = match quality {
+            Some(_) => {
+                let bodies = placed(&self.bodies, &data.bodies, time);
+                Some(TracedMeshes::new(device, vertices, &mesh.normals, &mesh.triangles, bodies)?)
+            }
+            None => None,
+        };
+        Ok(Moment { surface: Some(surface), bodies, traced })
+    }
+
+    fn upload_bodies(&self, states: &[BodyState], time: f32) -> Option<UploadedBodies> {
+        let placed = placed(&self.bodies, states, time);
+        (!self.bodies.is_empty()).then(|| UploadedBodies::new(&self.gpu.device, placed))
+    }
+}
+
+/// Bodies with their places at a time in s, relative to that of the states.
+fn placed<'a>(
+    bodies: &'a [PlacedBody],
+    states: &'a [BodyState],
+    time: f32,
+) -> impl Iterator<Item = (&'a PlacedBody, [f32; 3], [f32; 4])> {
+    bodies.iter().zip(states).map(move |(body, state)| {
+        let (position, orientation) = motion::moved_body(state, time);
+        (body, position, orientation)
+    })
+}
+
+/// What is drawn of the liquid and bodies at one moment.
+struct Moment {
+    surface: Option<UploadedSurface>,
+    bodies: Option<UploadedBodies>,
+    traced: Option<TracedMeshes>,
+}
+
+fn upload_foam(gpu: &Gpu, data: &FrameData) -> Result<Option<UploadedFoam>, RenderError> {
+    let Some(foam) = &data.foam else { return Ok(None) };
+    let kinds: Vec<u32> = foam.kinds.iter().map(|&kind| kind as u32).collect();
+    let (positions, velocities) = (&foam.positions, &foam.velocities);
+    UploadedFoam::moving(&gpu.device, positions, velocities, &foam.lifetimes, &foam.ids, &kinds).map(Some)
 }

@@ -25,7 +25,7 @@ pub(super) fn separate(
     path: &Path,
     scene: &Scene,
 ) -> Result<(Mesh, Option<Particles>), RunError> {
-    let Some(file) = beside(path, "particles", "particles") else { return Ok((mesh, None)) };
+    let Some(file) = particles_beside(path) else { return Ok((mesh, None)) };
     let particles = read_particles(&file)?;
     let known = match beside(path, DROPLETS, DROPLETS).map(|path| read_particles(&path)) {
         Some(Ok(droplets)) => droplets.ids,
@@ -98,6 +98,11 @@ impl Places {
             cells.flat_map(|(_, points)| points).any(|p| p.cmpge(low).all() && p.cmple(high).all())
         })
     }
+}
+
+/// The file of the particles of the frame of a mesh file.
+pub(super) fn particles_beside(mesh: &Path) -> Option<PathBuf> {
+    beside(mesh, "particles", "particles")
 }
 
 /// The file in a folder of the run with the particles of the frame of a mesh file, in any format that can be read.

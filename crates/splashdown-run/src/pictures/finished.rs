@@ -12,6 +12,7 @@ use splashdown_io::{Format, Picture, read_mesh};
 use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
 use super::droplets::separate;
+use super::motion::{is_blurred, with_velocities};
 use super::{FrameData, drawing_device};
 use crate::RunError;
 use crate::folder::MESHES;
@@ -80,8 +81,10 @@ impl FinishedRun {
         let Some((_, path)) = self.meshes.iter().find(|(number, _)| *number == frame) else {
             return Err(RunError::Input(format!("frame {frame} has no mesh in `{}`", self.folder.display())));
         };
-        let mesh = read_mesh(path)?;
-        let (mesh, droplets) = separate(mesh, path, &self.scene)?;
+        let (mut mesh, droplets) = separate(read_mesh(path)?, path, &self.scene)?;
+        if is_blurred(&self.scene) {
+            mesh = with_velocities(mesh, path, &self.scene)?;
+        }
         let of_file = FrameOfFile::of(path, &self.scene);
         let time = of_file.time;
         let Beside { bodies, foam } = of_file.beside(&self.scene)?;

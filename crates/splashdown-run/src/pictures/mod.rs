@@ -4,6 +4,7 @@ mod beside;
 mod draw;
 mod droplets;
 mod finished;
+mod motion;
 mod painter;
 
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ use draw::FrameRenderer;
 
 pub use beside::Beside;
 pub use finished::{FinishedRun, Orbit};
+pub(crate) use motion::is_blurred;
 pub use painter::Painter;
 
 /// Number of frames that can wait while one is drawn.

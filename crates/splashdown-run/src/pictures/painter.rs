@@ -11,6 +11,7 @@ use splashdown_io::{Mesh, Particles, Picture, read_mesh, read_particles};
 use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
 use super::droplets::separate;
+use super::motion::{is_blurred, with_velocities};
 use super::{FrameData, drawing_device};
 use crate::RunError;
 
@@ -100,7 +101,10 @@ impl Painter {
                 self.particles(particles, &beside, time)
             }
             PictureKind::Surface => {
-                let (mesh, droplets) = separate(read_mesh(path)?, path, &self.scene)?;
+                let (mut mesh, droplets) = separate(read_mesh(path)?, path, &self.scene)?;
+                if is_blurred(&self.scene) {
+                    mesh = with_velocities(mesh, path, &self.scene)?;
+                }
                 let beside = frame.beside(&self.scene)?;
                 self.surface_with_droplets(mesh.into(), droplets.map(Arc::new), &beside, time)
             }

@@ -57,6 +57,7 @@ impl Session {
         (options.device, options.frames, options.timing) = (device, settings.frames, timing);
         let on_burst = settings.on_burst.unwrap_or(OnBurst::Stop);
         options.on_burst = on_burst;
+        options.vertex_velocities |= kinds.contains(&PictureKind::Surface) && pictures::is_blurred(&scene);
         options.progress = reporter.preparation();
         let run = match &found {
             Some(found) => Run::resume(&found.checkpoint, &scene, options)?,

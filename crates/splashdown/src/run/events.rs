@@ -32,7 +32,7 @@ pub struct RunOptions {
     pub surface: bool,
     /// Compute foam, spray and bubbles.
     pub foam: bool,
-    /// Interpolate the particles' velocities to the vertices of the surface, for motion blur in other programs.
+    /// Interpolate the particles' velocities to the vertices of the surface, for motion blur.
     pub vertex_velocities: bool,
     /// Measure the time of every pass.
     pub timing: bool,
