@@ -91,15 +91,17 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
 }
 
 /// The bytes that the CPU takes in addition to the buffers for the lists of neighbours of `dfsph`, for a number of
-/// particles: 16 per neighbour, of which a sphere of the support radius contains 33 at a support ratio of two. An implicit
+/// particles: 8 per neighbour, of which a sphere of the support radius contains 33 at a support ratio of two. An implicit
 /// viscosity has lists of its own. Other solvers and GPUs have none.
 pub fn neighbour_lists_forecast(scene: &Scene, particles: u64) -> u64 {
     let extras = Scheme::new(scene).extras(false);
+    // With those that emitters add.
+    let particles = Built::of(scene).flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
     let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
     let ratio = scene.solver.support_radius(scene.fluid.particle_spacing) / scene.fluid.particle_spacing;
     let neighbours = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);
-    // The positions are kept to compare them.
-    lists.saturating_mul(particles).saturating_mul(16 * neighbours as u64 + 16)
+    // The positions are kept to compare them, and with the pressures; the ends of the lists.
+    lists.saturating_mul(particles).saturating_mul(8 * neighbours as u64 + 48)
 }
 
 fn forecast(scene: &Scene, particles: u64) -> u64 {

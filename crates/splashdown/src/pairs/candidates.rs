@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::Sorted;
 use super::columns::Columns;
-use super::vector::reflected_point;
+use super::vector::{difference, dot, reflected_point};
 use crate::boundary::Reflection;
 use crate::simd::{BLOCK, Register, sum};
 
@@ -92,8 +92,8 @@ impl<const F: usize> Candidates<F> {
         self.pad(count);
     }
 
-    /// Packs the images of the particles of `runs` that are in the region. `mark` changes the last columns of the images by
-    /// a reflection; only the positions are reflected.
+    /// Packs the images of the particles of `runs` that are in the region. `reflect` computes all columns of an image; then
+    /// `mark` changes the last ones by the reflection.
     #[inline(always)]
     pub fn pack_only_images<V: Register>(
         &mut self,
@@ -101,6 +101,7 @@ impl<const F: usize> Candidates<F> {
         runs: &[Range<usize>],
         region: &Region,
         reflections: impl Iterator<Item = Reflection> + Clone,
+        reflect: impl Fn(&Reflection, [V; F]) -> [V; F],
         mark: impl Fn(&Reflection, &mut [f32]),
     ) {
         let particles: usize = runs.iter().map(|run| run.len()).sum();
@@ -110,16 +111,44 @@ impl<const F: usize> Candidates<F> {
             let begin = count;
             for run in runs {
                 let place = |x| reflected_point(&reflection, x);
-                let reflect = |mut values: [V; F]| {
-                    let [x, y, z] = place([values[0], values[1], values[2]]);
-                    values[..3].copy_from_slice(&[x, y, z]);
-                    values
-                };
+                let reflect = |values| reflect(&reflection, values);
                 count = self.append_with::<V>(all, run.clone(), region, count, place, reflect);
             }
             mark(&reflection, &mut self.columns[F - 1][begin..count]);
         }
         self.pad(count);
+    }
+
+    /// Packs those of some particles and of some images that are within the support radius of a point. Returns the number of
+    /// particles, which come first, and that of both.
+    #[inline(always)]
+    pub fn pack_near<V: Register>(&mut self, x: [V; 3], support: f32, from: [&Self; 2]) -> [usize; 2] {
+        self.reserve(from[0].count + from[1].count);
+        let reach2 = V::splat(support * support);
+        let (mut count, mut ends) = (0, [0; 2]);
+        // Not `map`: the compiler calls it, which passes registers in memory.
+        for (candidates, end) in from.into_iter().zip(&mut ends) {
+            let columns = candidates.columns();
+            assert!(count + candidates.count + BLOCK <= self.columns[0].len());
+            let to: [*mut f32; F] = std::array::from_fn(|f| self.columns[f].as_mut_ptr());
+            for k in (0..candidates.count).step_by(V::WIDTH) {
+                // SAFETY: the length is a multiple of the block, and the width divides the block.
+                let load = |f: usize| unsafe { V::load(columns[f].as_ptr().add(k)) };
+                let d = difference(x, [load(0), load(1), load(2)]);
+                let near = dot(d, d).less_bits(reach2);
+                if near == 0 {
+                    continue;
+                }
+                for (f, to) in to.iter().enumerate() {
+                    // SAFETY: at most the candidates were appended, and there is a block after them.
+                    unsafe { load(f).compress(near).store(to.add(count)) };
+                }
+                count += near.count_ones() as usize;
+            }
+            *end = count;
+        }
+        self.pad(count);
+        ends
     }
 
     /// Packs the particles in the region and those of their images that are, from all cells within the support radius of
@@ -249,7 +278,13 @@ impl<const F: usize> Candidates<F> {
     /// The columns, with the padding.
     #[inline(always)]
     pub fn columns(&self) -> [&[f32]; F] {
-        self.columns.each_ref().map(|column| &column[..self.count])
+        std::array::from_fn(|f| &self.columns[f][..self.count])
+    }
+
+    /// The columns, with padding of at least a block.
+    #[inline(always)]
+    pub fn columns_and_block(&self) -> [&[f32]; F] {
+        std::array::from_fn(|f| &self.columns[f][..self.count + BLOCK])
     }
 
     /// The sums of one target.

@@ -1,9 +1,11 @@
-//! Lists of the neighbours of every particle with a vector for each, such as the gradient of the kernel, for passes
+//! Lists of the neighbours of every particle with a factor for each, such as that of the gradient of the kernel, for passes
 //! that visit the same neighbours many times in a step.
 //!
 //! A visit of the candidates tests four times as many particles as there are neighbours, and computes a square root for
 //! each. To make a list costs as much as two of these visits, and a visit of a list costs less than half of one. A
-//! neighbour takes 16 bytes: three numbers and its index.
+//! neighbour takes 8 bytes: the factor and its index. Reading the list is what a visit waits for, so that subtracting the
+//! positions again costs less than reading their difference. Images behind walls are few and take 16 bytes: the vector, and
+//! bits for index and reflection.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -14,21 +16,24 @@ use rayon::prelude::*;
 use super::Sorted;
 use super::candidates::{Candidates, Region};
 use super::columns::Columns;
-use super::near::Near;
-use super::particles::{Outputs, pieces};
+use super::near::{Link, Near, NearImages};
+use super::particles::{Outputs, PairSum, pieces};
 use super::vector::{difference, dot, scaled, splat};
-use crate::boundary::Images;
+use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::simd::{BLOCK, Lanes, Leaf, Register, Simd, run_with};
 
-/// Number of lists, which is that of tasks.
+/// Number of lists, up to rounding, which is that of tasks.
 const LISTS: usize = 64;
+
+/// Positions per task that compares them.
+const CHUNK: usize = 1 << 14;
 
 /// Bits of the index of a neighbour. Above them are three bits, the axes of the reflection of an image.
 pub(super) const INDEX_BITS: u32 = 27;
 
-/// A bit that makes the index, which is stored with three numbers, a normal number: arithmetic with subnormal ones can take
-/// a hundred times as long.
+/// A bit that makes the index of an image, which is stored with three numbers, a normal number: arithmetic with subnormal
+/// ones can take a hundred times as long.
 const NORMAL: u32 = 1 << 30;
 
 /// More particles could make it infinite.
@@ -37,16 +42,11 @@ const MOST: usize = 15 << 23;
 /// The neighbours of the particles in some rows of cells.
 #[derive(Default)]
 struct List {
-    /// For each particle, the ends of its neighbours and of its images in the list.
-    ends: Vec<[u32; 2]>,
-    /// The vector of each neighbour, and the bits of its index as the fourth component.
-    neighbours: Vec<Vec4>,
-}
-
-impl List {
-    fn near(&self, range: Range<usize>) -> Near<'_> {
-        Near::new(&self.neighbours[range])
-    }
+    /// For each particle, the ends of its neighbours and of its images.
+    ends: Vec<[usize; 2]>,
+    neighbours: Vec<Link>,
+    /// The vector of each image, and the bits of its index and its reflection as the fourth component.
+    images: Vec<Vec4>,
 }
 
 /// A function of the distance that a list contains as a factor on the difference of the positions.
@@ -68,14 +68,32 @@ pub(crate) struct NeighbourLists<R> {
     lists: Vec<List>,
     /// The positions that the lists belong to.
     positions: Vec<Vec4>,
-    /// Support radius and images that they belong to.
-    made_for: Option<(f32, Images)>,
+    /// What else they belong to.
+    made_for: Option<Conditions>,
+    /// The registers of the sums.
+    simd: Simd,
     factor: PhantomData<R>,
+}
+
+/// What lists depend on besides the positions: support radius, images, and the origin and the size of the grid.
+type Conditions = (f32, Images, Vec3, [u32; 3]);
+
+fn conditions(sorted: Sorted<'_>) -> Conditions {
+    let Sorted { grid, support_radius, images, .. } = sorted;
+    (support_radius, images, grid.origin, [grid.size_x, grid.size_y, grid.size_z])
+}
+
+/// Whether all bits are equal.
+fn are_same(a: &[Vec4], b: &[Vec4]) -> bool {
+    let bits = |positions| bytemuck::cast_slice::<Vec4, u8>(positions);
+    let pairs = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
+    a.len() == b.len() && pairs.all(|(a, b)| bits(a) == bits(b))
 }
 
 impl<R> Default for NeighbourLists<R> {
     fn default() -> Self {
-        Self { lists: Vec::new(), positions: Vec::new(), made_for: None, factor: PhantomData }
+        let (lists, positions, factor) = (Vec::new(), Vec::new(), PhantomData);
+        Self { lists, positions, made_for: None, simd: Simd::Portable, factor }
     }
 }
 
@@ -86,39 +104,49 @@ impl<R: Radial> NeighbourLists<R> {
     }
 
     pub(super) fn of_with(&mut self, simd: Simd, sorted: Sorted<'_>) -> &Self {
-        assert!(sorted.active_count() <= MOST, "{} particles are more than {MOST}", sorted.active_count());
         let positions = &sorted.positions[..sorted.active_count()];
-        let made_for = Some((sorted.support_radius, sorted.images));
-        let bits = |positions| bytemuck::cast_slice::<Vec4, u8>(positions);
-        if self.made_for != made_for || bits(&self.positions) != bits(positions) {
-            self.make(simd, sorted);
-            self.positions.clear();
-            self.positions.extend_from_slice(positions);
-            self.made_for = made_for;
+        if self.made_for != Some(conditions(sorted)) || !are_same(&self.positions, positions) {
+            self.make_with(simd, sorted, Nothing, &NoSum { positions });
         }
         self
     }
 
-    fn make(&mut self, simd: Simd, sorted: Sorted<'_>) {
-        let columns = &Columns::new(sorted.active_count(), |j| {
-            let [x, y, z, _] = sorted.positions[j].to_array();
-            [x, y, z, f32::from_bits(NORMAL | j as u32)]
-        });
-        // The results are stored in the lists.
-        let cells = pieces(sorted, Nothing, least(sorted));
+    /// Makes the lists, and runs a pass over the neighbours in the same visit.
+    pub fn make<const F: usize, const S: usize, P: ListedSum<F, S>>(
+        &mut self,
+        sorted: Sorted<'_>,
+        outputs: impl Outputs<P::Output>,
+        pass: &P,
+    ) {
+        self.make_with(Simd::in_use(), sorted, outputs, pass);
+    }
+
+    pub(super) fn make_with<const F: usize, const S: usize, P: ListedSum<F, S>>(
+        &mut self,
+        simd: Simd,
+        sorted: Sorted<'_>,
+        outputs: impl Outputs<P::Output>,
+        pass: &P,
+    ) {
+        let count = sorted.active_count();
+        assert!(count <= MOST, "{count} particles are more than {MOST}");
+        let columns = &Columns::new(count, |j| pass.load(j));
+        let pieces = pieces(sorted, outputs, least(sorted));
         // Lists that are not needed now keep their memory.
-        self.lists.resize_with(self.lists.len().max(cells.len()), List::default);
-        self.lists.par_iter_mut().zip(cells).with_max_len(1).for_each_init(
-            || [Candidates::new(), Candidates::new()],
-            |candidates, (list, (cells, _))| {
+        self.lists.resize_with(self.lists.len().max(pieces.len()), List::default);
+        self.lists.par_iter_mut().zip(pieces).with_max_len(1).for_each_init(
+            || [Candidates::new(), Candidates::new(), Candidates::new()],
+            |candidates, (list, (cells, outputs))| {
                 list.ends.clear();
                 list.neighbours.clear();
-                for cell in cells {
-                    let cell = Cell::<R> { sorted, columns, candidates, cell, list, factor: PhantomData };
-                    run_with(simd, cell);
-                }
+                list.images.clear();
+                let factor = PhantomData::<R>;
+                run_with(simd, Cells { sorted, columns, candidates, cells, list, outputs, pass, factor });
             },
         );
+        self.positions.clear();
+        self.positions.extend_from_slice(&sorted.positions[..count]);
+        (self.made_for, self.simd) = (Some(conditions(sorted)), simd);
     }
 
     /// Computes the results of all particles from their index, their neighbours, and their images that are neighbours. All
@@ -127,16 +155,18 @@ impl<R: Radial> NeighbourLists<R> {
         &self,
         sorted: Sorted<'_>,
         outputs: impl Outputs<T>,
-        result: impl Fn(usize, [Near<'_>; 2]) -> T + Sync,
+        result: impl Fn(usize, Near<'_>, NearImages<'_>) -> T + Sync,
     ) {
         let pieces = pieces(sorted, outputs, least(sorted));
         self.lists.par_iter().zip(pieces).with_max_len(1).for_each(|(list, (cells, mut outputs))| {
             let first = sorted.cell_start[cells.start] as usize;
-            let mut begin = 0;
-            for (k, ends) in list.ends.iter().enumerate() {
-                let [middle, end] = ends.map(|end| end as usize);
-                outputs.put(k, result(first + k, [list.near(begin..middle), list.near(middle..end)]));
-                begin = end;
+            let mut begin = [0, 0];
+            for (k, &ends) in list.ends.iter().enumerate() {
+                let links = &list.neighbours[begin[0]..ends[0]];
+                // SAFETY: the lists were made from particles below this number, with these registers.
+                let near = unsafe { Near::new(first + k, links, self.positions.len(), self.simd) };
+                outputs.put(k, result(first + k, near, NearImages::new(&list.images[begin[1]..ends[1]])));
+                begin = ends;
             }
         });
     }
@@ -147,6 +177,35 @@ impl<R: Radial> NeighbourLists<R> {
 fn least(sorted: Sorted<'_>) -> usize {
     (sorted.active_count() / LISTS).max(1)
 }
+
+/// A pass that runs while lists are made. The last column must be the [place](Link::place_bits) of the particle.
+pub(crate) trait ListedSum<const F: usize, const S: usize>: PairSum<F, S> {}
+
+/// No sums.
+struct NoSum<'a> {
+    positions: &'a [Vec4],
+}
+
+impl PairSum<4, 0> for NoSum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 4] {
+        let [x, y, z, _] = self.positions[j].to_array();
+        [x, y, z, Link::place_bits(j)]
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, _: usize) -> impl Fn([V; 4]) -> [V; 0] {
+        #[inline(always)]
+        |_| []
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: usize, _: [f32; 0]) {}
+}
+
+impl ListedSum<4, 0> for NoSum<'_> {}
 
 /// No results.
 struct Nothing;
@@ -159,87 +218,147 @@ impl Outputs<()> for Nothing {
     fn put(&mut self, _: usize, (): ()) {}
 }
 
-/// One cell, whose neighbours are appended to a list.
-struct Cell<'a, R> {
+/// The cells of a list.
+struct Cells<'a, R, const F: usize, const S: usize, P, O> {
     sorted: Sorted<'a>,
-    /// Position and index.
-    columns: &'a Columns<4>,
-    /// Particles and images.
-    candidates: &'a mut [Candidates<4>; 2],
-    cell: usize,
+    columns: &'a Columns<F>,
+    /// Particles and images near a cell, and those near a particle.
+    candidates: &'a mut [Candidates<F>; 3],
+    cells: Range<usize>,
     list: &'a mut List,
+    outputs: O,
+    pass: &'a P,
     factor: PhantomData<R>,
 }
 
-impl<R: Radial> Leaf for Cell<'_, R> {
+impl<R: Radial, const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P::Output>> Leaf
+    for Cells<'_, R, F, S, P, O>
+{
     #[inline(always)]
     fn run<V: Register>(self) {
-        let Self { sorted, columns, candidates, cell, list, .. } = self;
-        let particles = sorted.run(cell, 1);
-        if particles.is_empty() {
-            return;
-        }
+        let Self { sorted, columns, candidates, cells, list, mut outputs, pass, .. } = self;
+        let [particles_near, images_near, near] = candidates;
         let support = sorted.support_radius;
-        let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
-        let region = Region::around(targets, support);
-        let runs = sorted.runs_around(cell);
-        let reflections = sorted.images.near(region.low.into(), region.high.into(), support);
-        let [particles_near, images_near] = candidates;
-        particles_near.pack::<V>(columns, &runs, &region);
-        images_near.pack_only_images::<V>(columns, &runs, &region, reflections, |by, indices| {
-            let axes = by.sign.cmplt(Vec3::ZERO).bitmask();
-            for index in indices {
-                *index = f32::from_bits(index.to_bits() | axes << INDEX_BITS);
+        let first = sorted.cell_start[cells.start] as usize;
+        for cell in cells {
+            let particles = sorted.run(cell, 1);
+            if particles.is_empty() {
+                continue;
             }
-        });
-        let most = particles_near.columns()[0].len() + images_near.columns()[0].len();
-        let List { ends, neighbours } = list;
-        neighbours.reserve(particles.len() * most + BLOCK);
-        for i in particles {
-            let x = splat::<V>(sorted.positions[i]);
-            append::<R, V>(x, support, particles_near.columns(), neighbours);
-            let middle = neighbours.len();
-            append::<R, V>(x, support, images_near.columns(), neighbours);
-            ends.push([middle as u32, neighbours.len() as u32]);
+            let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
+            let region = Region::around(targets, support);
+            let runs = sorted.runs_around(cell);
+            let reflections = sorted.images.near(region.low.into(), region.high.into(), support);
+            particles_near.pack::<V>(columns, &runs, &region);
+            let reflect = |by: &Reflection, values| pass.reflect(by, values);
+            images_near.pack_only_images::<V>(columns, &runs, &region, reflections, reflect, mark);
+            for i in particles {
+                let x = splat::<V>(sorted.positions[i]);
+                let [middle, end] = near.pack_near(x, support, [&*particles_near, &*images_near]);
+                let all = near.columns_and_block();
+                let position_and_place = [all[0], all[1], all[2], all[F - 1]];
+                append_links::<R, V>(x, support, position_and_place, 0..middle, &mut list.neighbours);
+                append_vectors::<R, V>(x, support, position_and_place, middle..end, &mut list.images);
+                list.ends.push([list.neighbours.len(), list.images.len()]);
+                let sums = if S == 0 { [0.0; S] } else { near.sum::<V, S>(pass.pair::<V>(i)) };
+                outputs.put(i - first, pass.finish(i, sums));
+            }
         }
     }
 }
 
-/// Appends those of the candidates that are within the support radius of a point. There must be room for all of them and a
-/// block.
+/// Replaces the places of particles by the bits of their images.
+fn mark(by: &Reflection, places: &mut [f32]) {
+    let axes = by.sign.cmplt(Vec3::ZERO).bitmask();
+    for place in places {
+        *place = f32::from_bits(NORMAL | place.to_bits() / 2 | axes << INDEX_BITS);
+    }
+}
+
+/// Visits registers of particles near a point: with the bits of those that are not at the point, the factors, the differences
+/// of the positions, and the fourth column. The columns must extend a block beyond the range.
 #[inline(always)]
-fn append<R: Radial, V: Register>(x: [V; 3], support: f32, from: [&[f32]; 4], neighbours: &mut Vec<Vec4>) {
-    let (reach2, inverse) = (V::splat(support * support), 1.0 / support);
-    let mut columns = [[0.0_f32; BLOCK]; 4];
-    for k in (0..from[0].len()).step_by(V::WIDTH) {
+fn visit<R: Radial, V: Register>(
+    x: [V; 3],
+    support: f32,
+    from: [&[f32]; 4],
+    range: Range<usize>,
+    mut found: impl FnMut(u32, V, [V; 3], V),
+) {
+    let inverse = 1.0 / support;
+    for k in range.clone().step_by(V::WIDTH) {
+        assert!(from.iter().all(|column| k + V::WIDTH <= column.len()));
         let mut values = [V::splat(0.0); 4];
         for (value, column) in values.iter_mut().zip(&from) {
-            // SAFETY: the length is a multiple of the block, and the width divides the block.
+            // SAFETY: the column is long enough, as just tested.
             *value = unsafe { V::load(column.as_ptr().add(k)) };
         }
-        let [x_j, y_j, z_j, index] = values;
+        let [x_j, y_j, z_j, place] = values;
         let d = difference(x, [x_j, y_j, z_j]);
         let r2 = dot(d, d);
-        // Without the particle itself.
-        let near = r2.less_bits(reach2) & V::splat(0.0).less_bits(r2);
-        if near == 0 {
-            continue;
-        }
-        let [gx, gy, gz] = scaled(R::factor(r2.sqrt() * inverse), d);
-        for (values, column) in [gx, gy, gz, index].into_iter().zip(&mut columns) {
-            // SAFETY: a block is at least as wide as a register.
-            unsafe { values.compress(near).store(column.as_mut_ptr()) };
-        }
-        let (count, begin) = (near.count_ones() as usize, neighbours.len());
-        assert!(begin + BLOCK <= neighbours.capacity());
-        let quads = columns.each_ref().map(|column| column.as_chunks::<4>().0);
+        let in_range = u32::MAX >> (32 - V::WIDTH.min(range.end - k));
+        let others = V::splat(0.0).less_bits(r2) & in_range;
+        found(others, R::factor(r2.sqrt() * inverse), d, place);
+    }
+}
+
+/// The lanes whose bit is set, at the front of a block.
+#[inline(always)]
+fn compressed<V: Register, const N: usize>(values: [V; N], bits: u32) -> [[Vec4; BLOCK / 4]; N] {
+    let mut columns = [[Vec4::ZERO; BLOCK / 4]; N];
+    for (value, column) in values.into_iter().zip(&mut columns) {
+        // SAFETY: a block is at least as wide as a register.
+        unsafe { value.compress(bits).store(column.as_mut_ptr().cast()) };
+    }
+    columns
+}
+
+/// Appends the particles in a range of columns, without one at the point itself.
+#[inline(always)]
+fn append_links<R: Radial, V: Register>(
+    x: [V; 3],
+    support: f32,
+    from: [&[f32]; 4],
+    range: Range<usize>,
+    links: &mut Vec<Link>,
+) {
+    links.reserve(range.len() + BLOCK);
+    visit::<R, V>(x, support, from, range, |near, factor, _, index| {
+        let (count, begin) = (near.count_ones() as usize, links.len());
+        assert!(begin + BLOCK <= links.capacity());
+        let [factors, indices] = compressed([factor, index], near);
         for quad in 0..count.div_ceil(4) {
-            let [gx, gy, gz, index] = quads.map(|column| Vec4::from(column[quad]));
-            let rows = Mat4::from_cols(gx, gy, gz, index).transpose();
-            // SAFETY: there is room for a block, as tested above.
-            unsafe { neighbours.as_mut_ptr().add(begin + 4 * quad).cast::<Mat4>().write(rows) };
+            let (f, i) = (factors[quad], indices[quad]);
+            let rows = [Vec4::new(f.x, i.x, f.y, i.y), Vec4::new(f.z, i.z, f.w, i.w)];
+            // SAFETY: there is room for a block, as tested above. Four links have the size of the rows.
+            unsafe { links.as_mut_ptr().add(begin + 4 * quad).cast::<[Vec4; 2]>().write_unaligned(rows) };
         }
         // SAFETY: this many have been written.
-        unsafe { neighbours.set_len(begin + count) };
-    }
+        unsafe { links.set_len(begin + count) };
+    });
+}
+
+/// As [`append_links`], with the vectors.
+#[inline(always)]
+fn append_vectors<R: Radial, V: Register>(
+    x: [V; 3],
+    support: f32,
+    from: [&[f32]; 4],
+    range: Range<usize>,
+    vectors: &mut Vec<Vec4>,
+) {
+    vectors.reserve(range.len() + BLOCK);
+    visit::<R, V>(x, support, from, range, |near, factor, d, index| {
+        let (count, begin) = (near.count_ones() as usize, vectors.len());
+        assert!(begin + BLOCK <= vectors.capacity());
+        let [sx, sy, sz] = scaled(factor, d);
+        let [sx, sy, sz, index] = compressed([sx, sy, sz, index], near);
+        for quad in 0..count.div_ceil(4) {
+            let rows = Mat4::from_cols(sx[quad], sy[quad], sz[quad], index[quad]).transpose();
+            // SAFETY: there is room for a block, as tested above.
+            unsafe { vectors.as_mut_ptr().add(begin + 4 * quad).cast::<Mat4>().write(rows) };
+        }
+        // SAFETY: this many have been written.
+        unsafe { vectors.set_len(begin + count) };
+    });
 }

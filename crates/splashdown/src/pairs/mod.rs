@@ -6,7 +6,7 @@
 //! * [`sums_at`]: sums at arbitrary points ([`PointSum`]);
 //! * [`for_each_box`]: the particles near a box, for passes with their own inner loop
 //!   ([`BoxPass`]);
-//! * [`NeighbourLists`]: lists with a vector for each neighbour, for passes that repeat.
+//! * [`NeighbourLists`]: lists with a factor for each neighbour, for passes that repeat.
 //!
 //! # How it works
 //! The particles' quantities are stored in columns, one array per quantity ([`Columns`]). The
@@ -43,8 +43,8 @@ use glam::Vec4;
 use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
-pub(crate) use lists::{NeighbourLists, Radial};
-pub(crate) use near::Near;
+pub(crate) use lists::{ListedSum, NeighbourLists, Radial};
+pub(crate) use near::{Link, Near, NearImages};
 pub(crate) use particles::{Added, Outputs, PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
 pub(crate) use vector::{

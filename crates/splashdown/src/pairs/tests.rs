@@ -290,13 +290,15 @@ fn sums_of_lists(simd: Simd, case: &Case, images: Images) -> Vec<[Vec4; 4]> {
     let mut lists = NeighbourLists::<WendlandC2>::default();
     let lists = lists.of_with(simd, sorted);
     let mut out = vec![[Vec4::ZERO; 4]; case.positions.len()];
-    lists.for_each(sorted, out.as_mut_slice(), |i, [particles, images]| {
+    let points: Vec<Vec4> =
+        case.positions.iter().zip(&case.values).map(|(x, v)| x.xyz().extend(*v)).collect();
+    lists.for_each(sorted, out.as_mut_slice(), |i, near, images| {
         let own = vectors[i];
-        let of_images = images.images().map(|(s, sign, j)| s * (own - sign * vectors[j])).sum::<Vec4>();
+        let of_images = images.iter().map(|(s, sign, j)| s * (own - sign * vectors[j])).sum::<Vec4>();
         let sums = [
-            particles.sum_of_values(simd, case.values[i], &case.values),
-            particles.sum_of_differences(simd, own, &vectors),
-            particles.sum_of_projections(simd, own, &vectors),
+            near.sum_of_values(&points),
+            near.sum_of_differences(&case.positions, &vectors),
+            near.sum_of_projections(&case.positions, &vectors),
             of_images,
         ];
         sums.map(|sum| sum.xyz().extend(0.0))
@@ -353,7 +355,7 @@ fn lists_follow_the_particles() {
     let mut lists = NeighbourLists::<WendlandC2>::default();
     let count = |lists: &NeighbourLists<WendlandC2>, case: &Case| {
         let mut out = vec![0; case.positions.len()];
-        lists.for_each(case.sorted(), out.as_mut_slice(), |_, [near, _]| near.images().count());
+        lists.for_each(case.sorted(), out.as_mut_slice(), |_, near, _| near.indices().count());
         out
     };
     let before = count(lists.of(case.sorted()), &case);

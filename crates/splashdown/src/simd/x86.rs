@@ -14,7 +14,7 @@ pub(super) fn has_avx2() -> bool {
 }
 
 pub(super) fn has_avx512() -> bool {
-    is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("popcnt")
+    has_avx2() && is_x86_feature_detected!("avx512f")
 }
 
 #[target_feature(enable = "avx2,popcnt")]

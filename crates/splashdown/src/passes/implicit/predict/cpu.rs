@@ -7,7 +7,13 @@ use super::PredictBindings;
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{NeighbourLists, Sorted};
-use crate::simd::Simd;
+
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+/// The position and the pressure of every particle. Kept from iteration to iteration, because new memory is slow.
+#[derive(Default)]
+struct Points(Vec<Vec4>);
 
 pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: PredictBindings<'_>) {
     let PredictBindings {
@@ -40,13 +46,23 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     };
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
-    let (n, simd) = (sorted.active_count(), Simd::in_use());
-    let pressures: Vec<f32> = (0..n).into_par_iter().with_min_len(4096).map(|j| pass.pressure(j)).collect();
-    let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
-    lists.for_each(sorted, &mut *predicted, |i, near| {
-        let [particles, images] = near.map(|near| near.sum_of_values(simd, pressures[i], &pressures));
-        pass.finish(i, pressures[i], pass.factor * (particles + images).xyz())
+    let n = sorted.active_count();
+    let mut points = std::mem::take(&mut scratch.get::<Points>().0);
+    points.resize(n, Vec4::ZERO);
+    let chunks = points.par_chunks_mut(CHUNK).zip(positions.par_chunks(CHUNK)).enumerate();
+    chunks.for_each(|(chunk, (points, positions))| {
+        for (k, (point, x)) in points.iter_mut().zip(positions).enumerate() {
+            *point = x.xyz().extend(pass.pressure(chunk * CHUNK + k));
+        }
     });
+    let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
+    lists.for_each(sorted, &mut *predicted, |i, near, images| {
+        let own = points[i].w;
+        let of_image = |(gradient, _, j): (Vec4, Vec4, usize)| (own + points[j].w) * gradient;
+        let sum = near.sum_of_values(&points) + images.iter().map(of_image).sum::<Vec4>();
+        pass.finish(i, own, pass.factor * sum.xyz())
+    });
+    scratch.get::<Points>().0 = points;
     let predicted = &predicted[..n];
     let tasks = predicted.par_chunks(GROUP * GROUPS).zip(impulses.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (predicted, sums))| {

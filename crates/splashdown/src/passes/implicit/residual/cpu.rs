@@ -7,7 +7,6 @@ use super::ResidualBindings;
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{NeighbourLists, Outputs, Sorted};
-use crate::simd::Simd;
 
 pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: ResidualBindings<'_>) {
     let ResidualBindings {
@@ -33,12 +32,12 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
     let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
-    let (simd, factor) = (Simd::in_use(), volume * (scale * scale) * (scale * scale) * scale);
-    lists.for_each(sorted, Last(&mut *iterates), |i, [particles, images]| {
+    let factor = volume * (scale * scale) * (scale * scale) * scale;
+    lists.for_each(sorted, Last(&mut *iterates), |i, near, images| {
         let u = predicted[i];
         let of_image = |(gradient, sign, j): (Vec4, Vec4, usize)| gradient * (u - sign * predicted[j]);
-        let sum =
-            particles.sum_of_differences(simd, u, predicted) + images.images().map(of_image).sum::<Vec4>();
+        let of_images: Vec4 = images.iter().map(of_image).sum();
+        let sum = near.sum_of_differences(positions, predicted) + of_images;
         factor * (sum.x + sum.y + sum.z)
     });
 

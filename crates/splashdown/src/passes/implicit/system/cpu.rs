@@ -1,15 +1,19 @@
 use std::marker::PhantomData;
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use splashdown_gpu::Scratch;
 
 use super::SystemBindings;
 use crate::boundary::{Images, Reflection, WallKernel, wall_friction};
 use crate::kernel::Kernel;
-use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
+use crate::pairs::{
+    Link, ListedSum, NeighbourLists, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled,
+    splat,
+};
 use crate::simd::Register;
 use crate::state::{Params, StepState};
 
-pub(super) fn system<K: Kernel + WallKernel>(buffers: SystemBindings<'_>) {
+pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: SystemBindings<'_>) {
     let SystemBindings {
         params,
         grid,
@@ -42,7 +46,9 @@ pub(super) fn system<K: Kernel + WallKernel>(buffers: SystemBindings<'_>) {
         kernel: PhantomData,
     };
     let sorted = Sorted::new(support, grid, cell_start, positions).with_images(images);
-    pairs::for_each(sorted, ((densities, accelerations), (stiffness, iterates)), &pass);
+    let outputs = ((densities, accelerations), (stiffness, iterates));
+    // The iterations use the lists.
+    scratch.get::<NeighbourLists<K>>().make(sorted, outputs, &pass);
 }
 
 struct System<'a, K> {
@@ -62,22 +68,22 @@ struct System<'a, K> {
 }
 
 /// The sums: kernel, gradient, squares of the gradients, viscous acceleration.
-impl<K: Kernel + WallKernel> PairSum<6, 8> for System<'_, K> {
+impl<K: Kernel + WallKernel> PairSum<7, 8> for System<'_, K> {
     type Output = ((Vec2, Vec4), (Vec4, Vec4));
 
     #[inline(always)]
-    fn load(&self, j: usize) -> [f32; 6] {
+    fn load(&self, j: usize) -> [f32; 7] {
         let (p, v) = (self.positions[j], self.velocities[j]);
-        [p.x, p.y, p.z, v.x, v.y, v.z]
+        [p.x, p.y, p.z, v.x, v.y, v.z, Link::place_bits(j)]
     }
 
     #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 6]) -> [V; 8] {
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 7]) -> [V; 8] {
         let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
         let (zero, separating, approaching) =
             (V::splat(0.0), V::splat(self.separating), V::splat(self.approaching));
         #[inline(always)]
-        move |[x_j, y_j, z_j, u_j, v_j, w_j]| {
+        move |[x_j, y_j, z_j, u_j, v_j, w_j, _]| {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
             let q = r2.sqrt() * self.scale;
@@ -89,11 +95,11 @@ impl<K: Kernel + WallKernel> PairSum<6, 8> for System<'_, K> {
     }
 
     #[inline(always)]
-    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 6]) -> [V; 6] {
-        let [x, y, z, u, v, w] = values;
+    fn reflect<V: Register>(&self, by: &Reflection, values: [V; 7]) -> [V; 7] {
+        let [x, y, z, u, v, w, place] = values;
         let [x, y, z] = reflected_point(by, [x, y, z]);
         let [u, v, w] = reflected(by, [u, v, w]);
-        [x, y, z, u, v, w]
+        [x, y, z, u, v, w, place]
     }
 
     #[inline(always)]
@@ -111,3 +117,5 @@ impl<K: Kernel + WallKernel> PairSum<6, 8> for System<'_, K> {
         ((density, acceleration.extend(0.0)), (stiffness, start))
     }
 }
+
+impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {}

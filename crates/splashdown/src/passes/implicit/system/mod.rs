@@ -53,13 +53,13 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     workgroup_size: [64, 1, 1],
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
     bindings: SystemBindings::LIST,
-    cpu: |_, slots| cpu::system::<kernel::WendlandC2>(slots.into()),
+    cpu: |work, slots| cpu::system::<kernel::WendlandC2>(work.scratch, slots.into()),
 };
 
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "implicit.system.cubic_spline",
     constants: &[("KERNEL", CubicSpline::ID as f64), ("WALL_KERNEL", KernelPair::CubicSpline.id() as f64)],
-    cpu: |_, slots| cpu::system::<CubicSpline>(slots.into()),
+    cpu: |work, slots| cpu::system::<CubicSpline>(work.scratch, slots.into()),
     ..WENDLAND_C2
 };

@@ -6,8 +6,7 @@ use super::super::pair::{Law, Root};
 use super::super::{GROUP, GROUPS};
 use super::ProductBindings;
 use crate::boundary::Images;
-use crate::pairs::{Near, NeighbourLists, Outputs, Sorted};
-use crate::simd::Simd;
+use crate::pairs::{Near, NearImages, NeighbourLists, Outputs, Sorted};
 
 pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: ProductBindings<'_>) {
     let ProductBindings {
@@ -29,6 +28,7 @@ pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: Produc
     let n = sorted.active_count();
     let lists = scratch.get::<NeighbourLists<Root>>().of(sorted);
     let pass = Product {
+        positions,
         rate: state.dt * params.viscous_factor / (params.support_radius * params.support_radius),
         residuals: viscous_residuals,
         preconditioned: (0..n)
@@ -38,9 +38,9 @@ pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: Produc
             .collect(),
         friction: params.wall_friction,
         law: Law::new(params.support_radius, params.wall_friction),
-        simd: Simd::in_use(),
     };
-    lists.for_each(sorted, Stored::<BODIES>(viscous_products), |i, near| pass.result(i, near));
+    lists
+        .for_each(sorted, Stored::<BODIES>(viscous_products), |i, near, images| pass.result(i, near, images));
     let products = &viscous_products[..n];
     let tasks = products.par_chunks(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (products, sums))| {
@@ -75,6 +75,7 @@ impl<const ADDS: bool> Outputs<Vec4> for Stored<'_, ADDS> {
 }
 
 struct Product<'a> {
+    positions: &'a [Vec4],
     /// Factor of the sums.
     rate: f32,
     residuals: &'a [Vec4],
@@ -82,20 +83,19 @@ struct Product<'a> {
     preconditioned: Vec<Vec4>,
     friction: f32,
     law: Law<f32>,
-    simd: Simd,
 }
 
 impl Product<'_> {
     #[inline(always)]
-    fn result(&self, i: usize, [particles, images]: [Near<'_>; 2]) -> Vec4 {
+    fn result(&self, i: usize, near: Near<'_>, images: NearImages<'_>) -> Vec4 {
         // Where a nozzle determines the motion.
         if self.residuals[i].w == 0.0 {
             return Vec4::ZERO;
         }
         let own = self.preconditioned[i];
-        let of_particles = particles.sum_of_projections(self.simd, own, &self.preconditioned);
+        let of_particles = near.sum_of_projections(self.positions, &self.preconditioned);
         let of_images: Vec4 = images
-            .images()
+            .iter()
             .map(|(s, sign, j)| self.of_image(s.xyz(), sign.xyz(), own.xyz(), self.preconditioned[j].xyz()))
             .sum();
         (own + self.rate * (of_particles + of_images)).xyz().extend(0.0)
