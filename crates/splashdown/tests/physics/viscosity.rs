@@ -263,3 +263,23 @@ fn a_light_body_is_carried_along_and_momentum_is_conserved() {
     figures.measure("speed over the common one", speed / common);
     figures.close();
 }
+
+/// How far honey has spread in 0.2 s depended on the tolerance by a tenth, when the pressures of many steps ago pushed it apart.
+#[test]
+fn honey_spreads_alike_with_every_tolerance() {
+    let (_, text) =
+        splashdown::scene::presets().iter().find(|(name, _)| *name == "honey").expect("a built-in scene");
+    let radius = |tolerance: f32| {
+        let keys = format!("method = \"dfsph\"\ntolerance = {tolerance}");
+        let scene = scene(&text.replacen("method = \"dfsph\"", &keys, 1));
+        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        simulation.advance(0.2).unwrap();
+        let positions = simulation.particles().unwrap().positions;
+        let square = |[x, _, z]: &[f32; 3]| f64::from((x - 0.07).powi(2) + (z - 0.07).powi(2));
+        (positions.iter().map(square).sum::<f64>() / positions.len() as f64).sqrt()
+    };
+    let (loose, strict) = (radius(1e-3), radius(1e-4));
+    assert!((loose / strict - 1.0).abs() < 0.02, "root mean squares of the radius: {loose} m and {strict} m");
+    // Control: the honey has spread, from a column whose root mean square is 16 mm.
+    assert!(strict > 0.024, "{strict} m");
+}

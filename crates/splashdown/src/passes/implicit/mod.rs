@@ -38,7 +38,8 @@
 //! * the accepted pressure is scaled by theta = 1 + k.r / k.A k, so that k.r = 0: the residual then does no work. k.A k is
 //!   the sum of (dt D' k)^2, and scaling k scales dt D' k, so this needs no visit of the neighbours;
 //! * the next step starts with a running mean of the pressures. The part of the new one is |v|max dt / spacing, at least
-//!   0.02, and more if the iterations were many for the residual.
+//!   0.02, and more if the iterations were many for the residual. With an implicit viscosity it is the whole: viscosity damps
+//!   the noise, and a pressure of many steps ago pushes the slow fluid apart, which then does not close its voids.
 //!
 //! In water deeper than five spacings the mean residual must be smaller: a residual of one sign lifts or lowers the
 //! surface by the depth times the residual in every step. For a depth of N spacings, which follows from the mean square of

@@ -32,7 +32,7 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         counters[StepCounters::MAX_PRESSURE] = (solve.scale * pressure).to_bits();
         let moved = state.max_speed * state.dt / params.particle_spacing;
         let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
-        solve.renewal = moved.max(late).clamp(0.02, 1.0);
+        solve.renewal = if params.implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
         if !has_converged {
             solve.warm_start = 0.5;
             counters[StepCounters::UNCONVERGED] += 1;

@@ -43,7 +43,7 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
         counters[COUNTER_MAX_PRESSURE] = bitcast<u32>(solve.scale * impulse.y);
         let moved = state.max_speed * state.dt / params.particle_spacing;
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;
-        solve.renewal = clamp(max(moved, late), 0.02, 1.0);
+        solve.renewal = select(clamp(max(moved, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
         solve.warm_start = select(0.5, 1.0, has_converged);
         if (!has_converged) {
             counters[COUNTER_UNCONVERGED] += 1u;
