@@ -363,3 +363,31 @@ fn samples_of_several_frames_are_averaged() {
     // From one frame, the parts give the picture of one call.
     assert_eq!(at_left.rgba, harness.draw(SIZE, &left).rgba);
 }
+
+/// Water with a cavity that a box fills but for rounding, as the surface of a simulation ends at bodies.
+fn tank_around(low: [f32; 3], high: [f32; 3]) -> sample::Mesh {
+    let (mut water, cavity) = (tank(), slab(low.map(|x| x - 1e-5), high.map(|x| x + 1e-5)));
+    let first = water.vertices.len() as u32;
+    water.vertices.extend(cavity.vertices);
+    water.normals.extend(cavity.normals.iter().map(|n| n.map(|x| -x)));
+    water.triangles.extend(cavity.triangles.iter().map(|&[a, b, c]| [first + a, first + c, first + b]));
+    water
+}
+
+#[test]
+fn a_box_that_fills_a_cavity_looks_like_a_box_in_water() {
+    let Some(mut harness) = common::harness() else { return };
+    let (low, high) = ([0.613, 0.117, 0.271], [1.237, 0.383, 0.719]);
+    let mesh = slab(low, high);
+    let body = PlacedBody::new(&mesh.vertices, &mesh.triangles, RED).unwrap();
+    let camera = Camera::orbit([0.925, 0.38, 0.495], 2.2, 20.0, 50.0, 30.0);
+    let mut drawn =
+        |water: &sample::Mesh| draw(&mut harness, water, Liquid::water(), Some(&body), camera, one_sample());
+    let (cavity, solid) = (drawn(&tank_around(low, high)), drawn(&tank()));
+    // The upper side of the box, well inside its outline.
+    let mut pixels = (0..40).flat_map(|x| (0..40).map(move |z| [x as f32 / 39.0, z as f32 / 39.0]));
+    assert!(pixels.all(|[x, z]| {
+        let pixel = pixel_of(camera, [0.73 + 0.4 * x, 0.46, 0.38 + 0.22 * z]);
+        cavity.pixel(pixel).iter().zip(solid.pixel(pixel)).all(|(a, b)| a.abs_diff(b) < 12)
+    }));
+}

@@ -62,6 +62,9 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if leaving && place.y - globals.floor_height < globals.contact_distance && found.face.y < 0.0 {
             return vec4f((place.xz - globals.shadow_min) / globals.shadow_size, path, light);
         }
+        if leaving && touched_body(place, direction).triangle != NO_TRIANGLE {
+            return vec4f(-1.0, -1.0, 0.0, 0.0);
+        }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
         let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);
         let mirrored = reflectance(-dot(direction, normal), ratio);

@@ -61,8 +61,7 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             return scattered + weight * wet_floor(place.xz);
         }
         if leaving {
-            // The liquid touches a body without air between them.
-            let beyond = nearest_of(globals.body_root, place, direction, no_hit(globals.contact_distance));
+            let beyond = touched_body(place, direction);
             if beyond.triangle != NO_TRIANGLE {
                 let body = struck(beyond);
                 let at = place + direction * beyond.distance;

@@ -117,6 +117,15 @@ fn nearest_hit(origin: vec3f, direction: vec3f) -> Hit {
     return nearest_of(globals.water_root, origin, direction, of_bodies);
 }
 
+// The body that liquid touches where a ray leaves the liquid, without air between them. The surface of the liquid lies on the
+// body, so the search begins before the place: rays ignore what is at their origin.
+fn touched_body(place: vec3f, direction: vec3f) -> Hit {
+    let back = 4.0 * globals.ray_offset;
+    var hit = nearest_of(globals.body_root, place - back * direction, direction, no_hit(back + globals.contact_distance));
+    hit.distance -= back;
+    return hit;
+}
+
 // Whether a body lies on a ray.
 fn meets_body(origin: vec3f, direction: vec3f) -> bool {
     return nearest_of(globals.body_root, origin, direction, no_hit(FAR)).triangle != NO_TRIANGLE;
