@@ -81,6 +81,37 @@ fn the_mesh_touches_bodies() {
     }
 }
 
+/// Number of edges at which two faces lie on each other.
+fn folds(mesh: &Mesh) -> usize {
+    let corner = |v: u32| Vec3::from(mesh.vertices[v as usize]);
+    let mut faces = std::collections::HashMap::new();
+    let mut count = 0;
+    for &[a, b, c] in &mesh.triangles {
+        let normal = (corner(b) - corner(a)).cross(corner(c) - corner(a)).normalize_or_zero();
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            if let Some(other) = faces.insert((from.min(to), from.max(to)), normal) {
+                count += usize::from(normal.dot(other) < -0.95);
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn smoothing_turns_few_triangles_over() {
+    for kernels in ["isotropic", "anisotropic"] {
+        let mut counts = Vec::new();
+        for (name, executor) in testing::executors("smoothing_turns_few_triangles_over") {
+            let keys = format!("kernels = \"{kernels}\"\nsmoothing_iterations = 5");
+            let (scene, mut simulation) = simulation(&keys, executor);
+            let mut surface = simulation.surface(&scene.surface).unwrap();
+            simulation.extract(&mut surface).unwrap();
+            counts.push((name, folds(&simulation.mesh(&surface).unwrap())));
+        }
+        assert!(counts.iter().all(|(_, folds)| *folds <= 4), "{kernels}: {counts:?}");
+    }
+}
+
 #[test]
 fn water_beside_a_body_is_level() {
     // A column through the surface.

@@ -13,16 +13,20 @@ pub(super) fn relax(buffers: RelaxBindings<'_>) {
         |(vertex, (after, range))| {
             let own = before[vertex];
             let ring = &one_rings[range[0] as usize..range[1] as usize];
-            let (sum, neighbours) = ring.iter().fold((Vec4::ZERO, 0_u32), |(sum, count), pair| {
+            let (mut sum, mut free, mut pinned) = (Vec4::ZERO, 0_u32, 0_u32);
+            for pair in ring {
                 let at = before[pair.x as usize];
-                // Relative to the vertex, which avoids cancellation far from the origin.
-                if at.w == 0.0 || walls.touch(at.truncate()) {
-                    (sum, count)
-                } else {
-                    (sum + (at - own), count + 1)
+                if at.w == 0.0 {
+                    pinned += 1;
+                } else if !walls.touch(at.truncate()) {
+                    // Relative to the vertex, which avoids cancellation far from the origin.
+                    sum += at - own;
+                    free += 1;
                 }
-            });
-            let step: Vec3 = sum.truncate() * (own.w / neighbours.max(1) as f32);
+            }
+            // Pinned neighbours hold the vertex, or it would move onto the few others and turn triangles over.
+            let share = free as f32 / (free + pinned).max(1) as f32;
+            let step: Vec3 = sum.truncate() * (own.w * share * share / free.max(1) as f32);
             *after = walls.slid(own.truncate(), step, lattice.wall_margin).extend(own.w);
         },
     );

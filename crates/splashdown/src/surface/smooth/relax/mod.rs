@@ -2,7 +2,8 @@
 //!
 //! Walls are planes of symmetry. A vertex beside a wall moves along it, the others do not reach it, and
 //! neighbours on walls do not count: the free surface is smoothed as if it continued in its mirror
-//! image, and the vertices on a wall follow it. Vertices of weight zero, such as those on bodies, do not count either.
+//! image, and the vertices on a wall follow it. Vertices of weight zero, which are those on bodies and those far from all
+//! particles, do not count either; they hold their neighbours in place.
 
 mod cpu;
 

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 use super::PinBindings;
 use crate::bodies;
 
-/// A vertex lies on a body if it is within this many cells of its surface.
-const ON_BODY: f32 = 0.1;
+/// A vertex lies on a body if it is within this many cells of its surface. At sharp edges, which the map rounds, vertices are
+/// a quarter of a cell away.
+const ON_BODY: f32 = 0.3;
 
 pub(super) fn pin(buffers: PinBindings<'_>) {
     let PinBindings { lattice, status, bodies, maps, vertex_positions } = buffers;

@@ -5,8 +5,9 @@
 
 #bindings
 
-// A vertex lies on a body if it is within this many cells of its surface.
-const ON_BODY: f32 = 0.1;
+// A vertex lies on a body if it is within this many cells of its surface. At sharp edges, which the map rounds, vertices are
+// a quarter of a cell away.
+const ON_BODY: f32 = 0.3;
 
 @compute @workgroup_size(64)
 fn pin(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
