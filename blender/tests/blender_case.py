@@ -9,6 +9,7 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -17,6 +18,8 @@ os.environ["BLENDER_USER_RESOURCES"] = str(WORK / "user")
 
 import bpy
 import numpy as np
+
+import support
 
 MODULE = "bl_ext.user_default.splashdown"
 ARGUMENTS = argparse.Namespace(zip=None, program=None, pictures=None)
@@ -64,6 +67,10 @@ def shown(scene, series="surface"):
     return next(obj for obj in scene.objects if obj.splashdown_cache.series == series)
 
 
+def shown_or_none(scene, series="surface"):
+    return next((obj for obj in scene.objects if obj.splashdown_cache.series == series), None)
+
+
 def ply_of(folder, series, number):
     run = part("core.run_folder").RunFolder(Path(folder) / "run")
     return part("core.ply").read(run.frames[series][number])
@@ -86,6 +93,27 @@ class Case(unittest.TestCase):
         with self.assertRaises(RuntimeError) as caught:
             operator(**arguments)
         return str(caught.exception)
+
+    def start(self, frames):
+        """A scene without foam, and its bake, which nobody watches."""
+        scene = support.dam_break(self.cache, frames=frames)
+        scene.splashdown.use_foam = False
+        return scene, part("bake").start(bpy.context)
+
+    def run_until(self, bake, condition=lambda: False):
+        """Watches a bake until a condition holds or it ends."""
+        end = time.monotonic() + 120
+        while not condition() and bake.update():
+            self.assertLess(time.monotonic(), end, "the bake does not go on")
+            time.sleep(0.005)
+
+    def script(self, text):
+        """The path of a program for the shell that has the version of the extension."""
+        path = self.cache / "program"
+        version = part("core.program").extension_version()
+        path.write_text(f'#!/bin/sh\n[ "$1" = --version ] && echo splashdown {version} && exit\n{text}\n')
+        path.chmod(0o755)
+        return path
 
     def bake(self):
         self.assertEqual(bpy.ops.splashdown.bake(), {"FINISHED"})

@@ -57,6 +57,53 @@ class Opening(Case):
         self.assertEqual(sorted(obj.name for obj in scene.objects), before)
         self.assertEqual(shown(scene).data.materials[0].name, "Mine")
 
+    def test_objects_and_runs_of_the_same_name_are_not_mixed(self):
+        other = self.cache / "more" / "dam" / "run"
+        shutil.copytree(self.run_folder, other)
+        scene = support.empty_scene(100)
+        camera = bpy.data.objects.new("dam Post", bpy.data.cameras.new("dam Post"))
+        scene.collection.objects.link(camera)
+        camera.location = (1, 2, 3)
+        camera.keyframe_insert("location", frame=1)
+        for folder in (self.run_folder, other, self.run_folder):
+            bpy.ops.splashdown.open_run(directory=str(folder))
+        self.assertEqual((tuple(camera.location), camera.rotation_mode), ((1, 2, 3), "XYZ"))
+        empties = [obj for obj in scene.objects if obj.type == "EMPTY"]
+        self.assertEqual(
+            sorted(obj.splashdown_cache.run for obj in empties), sorted([str(self.run_folder), str(other)])
+        )
+        self.assertEqual({obj.splashdown_cache.body for obj in empties}, {"Post"})
+
+    def test_an_obstacle_of_another_run_is_not_moved(self):
+        scene = support.dam_break(self.cache / "own", frames=2)
+        post = scene.objects["Post"]
+        post.splashdown.motion, post.splashdown.body_name = "DYNAMIC", "Post"
+        post.splashdown.body_run = str(self.cache / "own/run")
+        bpy.ops.splashdown.open_run(directory=str(self.run_folder))
+        self.assertIsNone(post.animation_data)
+        self.assertEqual(sum(obj.type == "EMPTY" for obj in scene.objects), 1)
+
+    def test_times_within_a_frame_show_the_frame_before(self):
+        scene, _ = self.open()
+        scene.frame_set(2)
+        counts = {number: len(ply_of(self.cache / "dam", "surface", number).positions) for number in (1, 5)}
+        self.assertNotEqual(counts[1], counts[5])
+        scene.frame_set(6, subframe=0.5)
+        self.assertEqual(len(shown(scene).data.vertices), counts[5])
+
+    def test_another_liquid_replaces_only_materials_of_the_extension(self):
+        scene = support.dam_break(self.cache / "honey", frames=1)
+        bpy.ops.splashdown.bake()
+        scene.splashdown.material = "honey"
+        bpy.ops.splashdown.bake()
+        self.assertEqual(shown(scene).data.materials[0].name, "Splashdown Honey")
+        modifier = shown(scene, "droplets").modifiers[0]
+        self.assertIn("Splashdown Honey Droplets", [getattr(modifier.get(key), "name", "") for key in modifier.keys()])
+        shown(scene).data.materials[0] = bpy.data.materials.new("Mine")
+        scene.splashdown.material = "water"
+        bpy.ops.splashdown.bake()
+        self.assertEqual(shown(scene).data.materials[0].name, "Mine")
+
     def test_damaged_runs_show_what_exists_and_report_once(self):
         (self.run_folder / "mesh/surface_0002.ply").unlink()
         broken = self.run_folder / "mesh/surface_0005.ply"

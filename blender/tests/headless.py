@@ -14,11 +14,12 @@ from pathlib import Path
 from blender_case import ARGUMENTS, WORK, clean_up, install
 from blender_baking import Baking
 from blender_control import Cancelling, Refusals
+from blender_obstacles import Obstacles
 from blender_rendering import Rendering
 from blender_runs import Opening
 
 # `unittest.main` finds the tests in this module.
-TESTS = (Baking, Cancelling, Refusals, Opening, Rendering)
+TESTS = (Baking, Cancelling, Refusals, Obstacles, Opening, Rendering)
 
 
 if __name__ == "__main__":
