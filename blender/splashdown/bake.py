@@ -91,12 +91,14 @@ class Bake(Simulation):
         surface = show.find(scene, run, "surface")
         if surface is not None:
             self.start_frame = surface.splashdown_cache.start_frame
+        names = collect.body_names(scene)
         for obj in collect.objects_of(scene, "OBSTACLE"):
-            own = obj.splashdown
-            if own.body_name and playback.same_folder(own.body_run, run):
-                self.bodies[playback.identity(obj)] = own.body_name
+            own, key = obj.splashdown, playback.identity(obj)
+            # An obstacle without a run: the file was not saved after the start of the bake.
+            if not own.body_run or playback.same_folder(own.body_run, run):
+                self.bodies[key] = own.body_name if own.body_run else names[key]
                 if own.motion == "DYNAMIC":
-                    self.floating.add(playback.identity(obj))
+                    self.floating.add(key)
         return settings
 
     def scene(self):
@@ -224,7 +226,7 @@ def _tick():
     if current is None:
         return None
     # The handlers of an animation render change the same meshes.
-    if bpy.app.is_job_running("RENDER"):
+    if playback.is_rendering():
         return INTERVAL
     going = current.update()
     for window in bpy.context.window_manager.windows:

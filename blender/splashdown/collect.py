@@ -26,6 +26,12 @@ def objects_of(scene, role):
     return [obj for obj in scene.objects if obj.splashdown.role == role]
 
 
+def body_names(scene):
+    """The names in a run of the obstacles of a scene, by their identities."""
+    taken = set()
+    return {playback.identity(obj): core.file_name(obj.name, taken) for obj in objects_of(scene, "OBSTACLE")}
+
+
 @dataclass
 class Description:
     """A scene of the program. `problems` prevent its simulation. `bodies`: the names in the run of obstacles, by their
@@ -209,10 +215,9 @@ class _Collector:
         meshes = {obj: self.local_mesh(obj) for obj in objects}
         start = {obj: self.matrix(obj) for obj in objects}
         tracks = self.tracks(moving) if duration > 0 else {}
-        taken, bodies = set(), []
+        self.names, bodies = body_names(self.scene), []
         for obj in objects:
-            name = core.file_name(obj.name, taken)
-            self.names[playback.identity(obj)] = name
+            name = self.names[playback.identity(obj)]
             if obj.splashdown.motion == "DYNAMIC":
                 self.floating.add(playback.identity(obj))
                 # The keyframes of the bake before may say something else.

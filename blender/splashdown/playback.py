@@ -189,6 +189,11 @@ def _fill_points(mesh, frame, cache, rate):
     mesh.update()
 
 
+def is_rendering():
+    """Whether a render runs beside the interface."""
+    return bpy.app.is_job_running("RENDER")
+
+
 def load_all(scene, force=False):
     for obj in shown_objects(scene):
         load(obj, scene, force)
@@ -228,6 +233,8 @@ def _on_save(path=None, _more=None):
 
 @persistent
 def _on_load(_path=None):
+    global _rendering
+    _rendering = False
     _folders.clear()
     _reported.clear()
     for scene in bpy.data.scenes:

@@ -1,6 +1,7 @@
 """Headless tests of starting, refusing, cancelling and resuming bakes."""
 
 import os
+import time
 from pathlib import Path
 
 import bpy
@@ -156,6 +157,41 @@ class Cancelling(Case):
         self.assertIn("Water", shown(scene).data.materials[0].name)
         self.assertIn("is finished", self.refused(bpy.ops.splashdown.resume))
 
+    def test_a_resumed_run_moves_obstacles_of_a_file_that_was_not_saved_since(self):
+        scene, bake = self.start(30)
+        post = scene.objects["Post"]
+        post.splashdown.motion = "DYNAMIC"
+        bake.cancel()
+        bake.cancel()
+        self.run_until(bake)
+        bake = part("bake").start(bpy.context)
+        self.run_until(bake, lambda: (bake.frame or 0) >= 11)
+        # As if Blender had been killed and the file from before the bake were open.
+        bake.abandon(30)
+        part("bake").current = None
+        post.splashdown.body_name = post.splashdown.body_run = ""
+        self.assertIsNone(post.animation_data)
+        self.assertEqual(bpy.ops.splashdown.resume(), {"FINISHED"})
+        self.assertIsNotNone(post.animation_data)
+
+    def test_the_timer_waits_while_a_render_reads_the_meshes(self):
+        scene, bake = self.start(3)
+        playback = part("playback")
+        original = playback.is_rendering
+        try:
+            playback.is_rendering = lambda: True
+            bake.job.wait(60)
+            self.assertEqual(part("bake")._tick(), part("bake").INTERVAL)
+            self.assertEqual((bake.state, bake.estimate), ("CHECKING", ""))
+        finally:
+            playback.is_rendering = original
+        end = time.monotonic() + 60
+        while part("bake")._tick() is not None:
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        self.assertEqual(bake.state, "FINISHED")
+        self.assertIsNotNone(shown_or_none(scene))
+
     def test_a_failed_run_moves_obstacles_as_far_as_it_came(self):
         scene = support.dam_break(self.cache, frames=2000)
         post = scene.objects["Post"]
@@ -278,6 +314,15 @@ class Refusals(Case):
         scene.frame_end = 2
         self.bake()
         self.assertNotEqual((self.cache / "scene.toml").read_bytes(), before)
+
+    def test_a_cache_in_the_home_folder_is_found(self):
+        before = os.environ["HOME"]
+        os.environ["HOME"] = str(self.cache)
+        self.addCleanup(os.environ.__setitem__, "HOME", before)
+        scene = support.dam_break("~/water", frames=1)
+        self.bake()
+        self.assertTrue((self.cache / "water/run/run.json").is_file())
+        self.assertEqual(Path(shown(scene).splashdown_cache.run), self.cache / "water/run")
 
     def test_a_relative_cache_needs_a_saved_file(self):
         support.dam_break("//cache")

@@ -12,9 +12,14 @@ LONGEST_TAIL = 40
 # Replaces itself by the program, which Linux then ends when Blender ends, even if Blender crashes or is killed. The call is
 # not made between fork and exec, where code of Python may deadlock in a process with threads.
 LAUNCHER = """
-import ctypes, os, signal, sys
-PR_SET_PDEATHSIG = 1
-ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+import os, signal, sys
+try:
+    import ctypes
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+except Exception:
+    # A Python without ctypes; the simulation is more important.
+    pass
 # Python ignores this signal, and a program inherits that.
 signal.signal(signal.SIGPIPE, signal.SIG_DFL)
 if os.getppid() == int(sys.argv[1]):
@@ -27,7 +32,8 @@ def bound_to_parent(command):
     python = sys.executable or ""
     # The signal comes when the thread that started the program ends.
     is_safe = threading.current_thread() is threading.main_thread()
-    if sys.platform != "linux" or not is_safe or not os.path.basename(python).startswith("python"):
+    is_python = os.path.basename(python).startswith("python") and os.path.isfile(python)
+    if sys.platform != "linux" or not is_safe or not is_python:
         return command
     return [python, "-I", "-S", "-c", LAUNCHER, str(os.getpid()), *command]
 
