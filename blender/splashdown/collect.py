@@ -9,6 +9,9 @@ from .core import axes, geometry, scene as core
 
 # Poses that differ less are equal: metres, and entries of rotation matrices.
 SAME = 1e-6
+# The largest turn from pose to pose that is exported as it is, in radians, and the most poses for a frame.
+LARGEST_TURN = 0.5 * np.pi
+MOST_STEPS = 64
 
 
 def metres_per_unit(scene):
@@ -228,28 +231,41 @@ class _Collector:
         return bodies
 
     def tracks(self, objects):
-        """The transformations of the objects that move, in each frame and in the one after the last. That one gives the
-        curve through the poses its slope at the end. All objects are sampled: constraints, drivers and parents may move
-        an object that has no animation of its own."""
-        tracks = {obj: [] for obj in objects}
-        fast, angles = {}, {}
-        if objects:
-            for frame in range(self.scene.frame_start, self.scene.frame_end + 2):
-                self.scene.frame_set(frame)
-                for obj in objects:
-                    tracks[obj].append(self.matrix(obj))
-                    turned = _angles(obj)
-                    if obj in angles and _turn(angles[obj], turned) > np.pi:
-                        fast.setdefault(obj, frame)
-                    angles[obj] = turned
-        for obj, frame in fast.items():
-            self.warnings.append(
-                f'The obstacle "{obj.name}" turns by more than 180° between frames {frame - 1} and {frame}: the simulation '
-                "turns it the shorter way. Increase the frame rate."
-            )
-        return {obj: matrices for obj, matrices in tracks.items() if not _same(matrices)}
+        """The times in s and transformations of the objects that move, in each frame and in the one after the last. That
+        one gives the curve through the poses its slope at the end. All objects are sampled: constraints, drivers and
+        parents may move an object that has no animation of its own."""
+        tracks, angles = self.sampled(objects, 1)
+        fast = {obj: turn for obj, turn in angles.items() if turn > LARGEST_TURN}
+        if fast:
+            # The program turns a body the shorter way from pose to pose.
+            steps = min(int(np.ceil(max(fast.values()) / LARGEST_TURN - 1e-3)), MOST_STEPS)
+            finer, angles = self.sampled(list(fast), steps)
+            tracks.update(finer)
+            for obj, turn in angles.items():
+                if turn > np.pi:
+                    self.warnings.append(
+                        f'The obstacle "{obj.name}" turns by {np.degrees(steps * turn):,.0f}° per frame, which is too fast to '
+                        "be exported: increase the frame rate."
+                    )
+        return {obj: track for obj, track in tracks.items() if not _same([matrix for _, matrix in track])}
 
-    def body(self, obj, name, mesh, start, matrices):
+    def sampled(self, objects, steps):
+        """The times and transformations of objects, `steps` for each frame, and the largest turns from one to the next in
+        radians."""
+        tracks, largest, last = {obj: [] for obj in objects}, {obj: 0.0 for obj in objects}, {}
+        count = self.scene.frame_end + 1 - self.scene.frame_start
+        for number in range(steps * count + 1 if objects else 0):
+            frame, step = divmod(number, steps)
+            self.scene.frame_set(self.scene.frame_start + frame, subframe=step / steps)
+            for obj in objects:
+                tracks[obj].append((number / steps / self.rate, self.matrix(obj)))
+                angles = _angles(obj)
+                if obj in last:
+                    largest[obj] = max(largest[obj], _turn(last[obj], angles))
+                last[obj] = angles
+        return tracks, largest
+
+    def body(self, obj, name, mesh, start, track):
         own = obj.splashdown
         dynamic = own.motion == "DYNAMIC"
         if dynamic and (obj.parent or obj.constraints):
@@ -261,14 +277,14 @@ class _Collector:
                 f'The obstacle "{obj.name}" is moved by the fluid, but its location or rotation is animated: clear these '
                 "keyframes or drivers."
             )
-        if not matrices and not dynamic:
+        if not track and not dynamic:
             # A static obstacle may be sheared.
             place = tuple(self.unit * axes.to_program(start[:3, 3]))
             poses = [core.Pose(0.0, place, (0.0, 0.0, 0.0))]
             return core.Body(name, self.placed(mesh, start[:3, :3]), poses, friction=own.friction)
         rotation, stretch = geometry.split(start[:3, :3])
         poses = []
-        for number, matrix in enumerate(matrices or [start]):
+        for number, (time, matrix) in enumerate(track or [(0.0, start)]):
             turned, stretched = geometry.split(matrix[:3, :3])
             if stretched is None:
                 self.problems.append(f'The obstacle "{obj.name}" moves and is sheared or flat: apply its scale (Ctrl-A).')
@@ -277,7 +293,7 @@ class _Collector:
                 self.problems.append(f'The obstacle "{obj.name}" changes its size, which is not supported.')
                 break
             place = tuple(self.unit * axes.to_program(matrix[:3, 3]))
-            poses.append(core.Pose(number / self.rate, place, axes.angles(axes.rotation_to_program(turned))))
+            poses.append(core.Pose(time, place, axes.angles(axes.rotation_to_program(turned))))
         poses = poses or [core.Pose(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
         scaled = self.placed(mesh, np.eye(3) if stretch is None else stretch)
         return core.Body(

@@ -172,17 +172,30 @@ class Obstacles(Case):
         _, positions, _ = table(self.cache / "run/bodies/Post.csv")
         self.assertAlmostEqual(np.ptp(positions[:, 0]), 0.1, delta=0.01)
 
-    def test_a_turn_of_more_than_half_a_circle_per_frame_is_reported(self):
-        for angle, is_fast in ((1.5, False), (4.0, True)):
+    def test_a_fast_turn_is_exported_between_frames(self):
+        # Radians per frame: slow, more than half a circle, a whole circle, too fast.
+        for angle, count, is_reported in ((1.5, 4, False), (4.0, 10, False), (2 * np.pi, 13, False), (400.0, 193, True)):
             scene = support.dam_break(self.cache, frames=2)
             axle = bpy.data.objects.new("Axle", None)
             scene.collection.objects.link(axle)
             scene.objects["Post"].parent = axle
-            for frame in range(1, 6):
+            for frame in (1, 6):
                 axle.rotation_euler.z = angle * frame
                 axle.keyframe_insert("rotation_euler", frame=frame)
+            for curve in part("motion")._curves(axle):
+                for key in curve.keyframe_points:
+                    key.interpolation = "LINEAR"
             described = part("collect").describe(bpy.context)
-            self.assertEqual(any('"Post" turns by more than 180°' in text for text in described.warnings), is_fast)
+            self.assertEqual(any("too fast" in text for text in described.warnings), is_reported)
+            poses = described.scene.bodies[0].poses
+            self.assertEqual(len(poses), count)
+            np.testing.assert_allclose([poses[0].time, poses[-1].time], [0, 3 / 24])
+            self.assertEqual(bpy.ops.splashdown.check(), {"FINISHED"})
+            if not is_reported:
+                # The post turns in the direction of its axle at every step: x towards -z of the program.
+                steps = np.diff([np.arctan2(-pose.position[2], pose.position[0]) for pose in poses])
+                steps = (steps + np.pi) % (2 * np.pi) - np.pi
+                np.testing.assert_allclose(steps, 3 * angle / (count - 1), atol=1e-4)
 
     def test_gravity_follows_the_unit_scale_as_in_the_interface(self):
         scene = support.dam_break(self.cache)
