@@ -1,10 +1,8 @@
-"""Runs the program: check, then simulation, as a child process whose events a timer reads.
+"""Bakes in Blender: copies the settings, watches the program with a timer, and shows the frames.
 
 A timer of the application, not a modal operator: Blender does not save automatically while one of these is active.
 """
 
-import atexit
-import subprocess
 import time
 from pathlib import Path
 
@@ -12,260 +10,175 @@ import bpy
 
 from . import collect, motion, playback, preferences, show
 from .core import program, scene as core
-from .core.job import Job
-from .core.run_folder import DIFFUSE
+from .core.run_folder import DIFFUSE, scene_of
+from .core.simulation import Failed, Simulation, refuse_resume
 
 # Seconds between two looks at the output of the program.
 INTERVAL = 0.2
 # How often a bake without the interface looks, in seconds.
 WAITING = 0.02
-# Warnings that are shown.
-MOST_WARNINGS = 8
+# How long the program may take to write its last frame when Blender quits, in seconds.
+QUIT_LIMIT = 5.0
 
-# The bake that runs or ran last in this session.
+# The bake that runs or ran last in this session, and why the last one did not start.
 current = None
+refusal = ""
 
 
-class Failed(Exception):
-    """A bake that cannot start or has failed. The text is for the user."""
-
-
-class Bake:
-    """One bake. `state`: CHECKING, RUNNING, STOPPING, then CHECKED, FINISHED, STOPPED or FAILED."""
+class Bake(Simulation):
+    """One bake of a scene. Everything it needs is copied at the start: undo may replace the scene and its objects."""
 
     def __init__(self, context, resume=False, only_check=False):
-        """Writes the scene and starts the program. Raises [`Failed`]."""
+        """Starts the program. Raises [`Failed`]."""
         scene = context.scene
         settings = scene.splashdown
-        self.scene_id = _identity(scene)
-        # Copies, because undo may replace the scene during the bake.
-        self.spacing, self.limit = settings.particle_spacing, settings.max_particles * 1e6
-        self.device, self.checkpoint_every = settings.device, settings.checkpoint_every
-        self.folder = cache_folder(scene)
-        self.run = self.folder / "run"
-        self.only_check = only_check
-        self.messages, self.estimate = [], ""
-        self.frame, self.frames, self.fraction = None, None, 0.0
-        self.job = None
-        self.started = time.monotonic()
+        self.scene_id, self.name = playback.identity(scene), scene.name
+        self.start_frame, self.metres_per_unit = scene.frame_start, collect.metres_per_unit(scene)
+        # The names in the run of the obstacles, by identity, and the identities of those that the fluid moves.
+        self.bodies, self.floating = {}, set()
         try:
-            self.program = preferences.find_program()
+            found = preferences.find_program()
+            program.require(found)
         except program.ProgramError as error:
             raise Failed(str(error)) from error
+        folder = None if only_check else cache_folder(scene)
+        common = {
+            "device": settings.device,
+            "checkpoint_every": settings.checkpoint_every,
+            "limit": settings.max_particles * 1e6,
+        }
+        self.saved_run = None if folder is None else _saved_path(settings.cache_folder, folder)
         if resume:
-            if not has_checkpoint(self.run):
-                raise Failed(f"There is nothing to resume in {self.run}: it has no checkpoint. Bake instead.")
-            self.frame_rate = collect.frame_rate(scene) / settings.time_scale
-            self.domain = saved_walls(scene)
-            self._start("RUNNING", ["run", "--resume", "run", *self._output()])
+            refuse_resume(folder / "run")
+            values = scene_of(folder / "run")
+            super().__init__(found, folder, **common, **self._settings_of_run(scene, values))
+            self.resume()
             return
-        described, problems = collect.describe(context)
-        if problems:
-            raise Failed("\n".join(problems))
-        self.frame_rate = described.frame_rate
-        self.domain = (described.domain.low, described.domain.high)
-        self._refuse_too_many(core.particles(described))
-        self._write(core.files(described))
-        self._start("CHECKING", ["check", "scene.toml", "--json", "--device", self.device])
+        described = collect.describe(context)
+        if described.problems:
+            raise Failed("\n".join(described.problems))
+        whole = described.scene
+        super().__init__(
+            found,
+            folder,
+            **common,
+            spacing=settings.particle_spacing,
+            frame_rate=whole.frame_rate,
+            names=core.names(whole),
+        )
+        self.liquid, self.use_foam = settings.material, settings.use_foam
+        self.domain = (whole.domain.low, whole.domain.high)
+        self.bodies, self.floating = described.bodies, described.floating
+        for warning in described.warnings:
+            self.warn(warning)
+        self.refuse_too_many(core.particles(whole))
+        self.check(core.files(whole))
 
-    def _output(self):
-        every = str(self.checkpoint_every)
-        return ["--json", "--formats", "ply", "--no-pictures", "--no-film", "--checkpoint-every", every]
-
-    def _refuse_too_many(self, particles):
-        if particles > self.limit:
-            raise Failed(
-                f"About {particles:,} particles at a spacing of {self.spacing:g} m are more than the "
-                f"limit of {int(self.limit):,}. Increase the spacing, or the limit if the device has the memory."
-            )
-
-    def _write(self, files):
-        for name, data in files.items():
-            path = self.folder / name
-            try:
-                path.parent.mkdir(parents=True, exist_ok=True)
-                # The program caches distance fields by the content of a mesh, not by its time.
-                path.write_bytes(data)
-            except OSError as error:
-                raise Failed(f"{path} cannot be written: {error.strerror}. Choose another cache folder.") from error
-
-    def _start(self, state, arguments):
+    def _settings_of_run(self, scene, values):
+        """Takes from a run what shows it; the settings of the scene may have changed since. Returns its frame rate and
+        spacing. Raises [`Failed`]."""
+        run = bpy.path.abspath(self.saved_run)
         try:
-            self.job = Job([self.program, *arguments], self.folder)
-        except OSError as error:
-            raise Failed(f"`{self.program}` cannot be started: {error}") from error
-        self.state = state
-
-    @property
-    def is_active(self):
-        return self.state in ("CHECKING", "RUNNING", "STOPPING")
+            settings = {
+                "frame_rate": float(values["scene"]["frame_rate"]),
+                "spacing": float(values["fluid"]["particle_spacing"]),
+            }
+            self.domain = tuple(tuple(map(float, values["domain"][key])) for key in ("min", "max"))
+        except (KeyError, TypeError, ValueError) as error:
+            raise Failed(f"The last checkpoint of {run} cannot be read. Bake instead.") from error
+        self.liquid = values["fluid"].get("material", "custom")
+        self.use_foam = bool(values.get("foam", {}).get("enabled"))
+        surface = show.find(scene, run, "surface")
+        if surface is not None:
+            self.start_frame = surface.splashdown_cache.start_frame
+        names = collect.body_names(scene)
+        for obj in collect.objects_of(scene, "OBSTACLE"):
+            own, key = obj.splashdown, playback.identity(obj)
+            # An obstacle without a run: the file was not saved after the start of the bake.
+            if not own.body_run or playback.same_folder(own.body_run, run):
+                self.bodies[key] = own.body_name if own.body_run else names[key]
+                if own.motion == "DYNAMIC":
+                    self.floating.add(key)
+        return settings
 
     def scene(self):
         """The scene of the bake; `None` if it was removed."""
-        return next((scene for scene in bpy.data.scenes if _identity(scene) == self.scene_id), None)
+        return next((scene for scene in bpy.data.scenes if playback.identity(scene) == self.scene_id), None)
 
     def update(self):
-        """Handles what the program has printed. Returns whether the bake goes on."""
-        if not self.is_active:
-            return False
-        events, code = self.job.poll()
-        for event in events:
-            self._handle(event)
-        if code is not None:
-            self._ended(code)
-            if not self.is_active:
-                playback.baked = None
-        return self.is_active
+        going = super().update()
+        if not going:
+            playback.baked = None
+        return going
 
-    def _handle(self, event):
-        kind = event["event"]
-        if kind == "check":
-            self._checked(event)
-        elif kind == "started":
-            self.frames = event.get("frames")
-            self.frame = event.get("frame")
-            self._show()
-        elif kind in ("progress", "frame"):
-            if self.frames and isinstance(event.get("time"), (int, float)):
-                self.fraction = min(event["time"] * self.frame_rate / self.frames, 1.0)
-            if kind == "frame":
-                self.frame = event.get("frame")
-                self._refresh()
-        elif kind == "warning":
-            if len(self.messages) < MOST_WARNINGS:
-                self.messages.append(str(event.get("message")))
-        elif kind == "error":
-            self.messages.append(_error_text(event))
+    def on_started(self):
+        playback.baked = str(self.run)
+        self._show(self.scene())
 
-    def _checked(self, event):
-        speed = event.get("speed") or {}
-        emitted = event.get("emitted") or 0
-        particles = (event.get("particles") or 0) + emitted
-        seconds = speed.get("expected_seconds") or 0
-        self.estimate = (
-            f"{particles:,} particles, {(event.get('memory_forecast') or 0) / 1e6:,.0f} MB, about {duration(seconds)} on "
-            f"{speed.get('device', 'this machine')}"
-        )
-        self.messages += [_warning_text(warning) for warning in (event.get("warnings") or [])[:MOST_WARNINGS]]
-        try:
-            self._refuse_too_many(particles)
-        except Failed as error:
-            self.messages.append(str(error))
-            self.state = "FAILED"
-            self.job.kill()
-
-    def _ended(self, code):
-        if self.state == "CHECKING" and code == 0 and not self.only_check:
-            try:
-                # Frames of the earlier bake are removed by the program.
-                self._start("RUNNING", ["run", "scene.toml", "--out", "run", "--device", self.device, *self._output()])
-            except Failed as error:
-                self.messages.append(str(error))
-                self.state = "FAILED"
-            return
-        stopping = self.state == "STOPPING"
-        if code == 0:
-            self.state = "CHECKED" if self.state == "CHECKING" else "FINISHED"
-        elif stopping or code == 130:
-            self.state = "STOPPED"
-        else:
-            self.state = "FAILED"
-            tail = self.job.tail()
-            if not any(self.messages) and tail:
-                self.messages.append(tail.removeprefix("error: "))
-            self.messages.append(f"The program ended with exit code {code}.")
-        if self.state == "FINISHED":
-            self.fraction = 1.0
-        if self.state in ("FINISHED", "STOPPED") and self.frames is not None:
-            self._refresh(bodies=True)
-
-    def _show(self):
+    def on_frame(self):
+        """Shows the frame. One that is already shown is not read again."""
         scene = self.scene()
         if scene is None:
             return
-        settings = scene.splashdown
-        run = f"{settings.cache_folder}run" if settings.cache_folder.endswith(("/", "\\")) else f"{settings.cache_folder}/run"
-        playback.baked = bpy.path.abspath(run)
+        if show.find(scene, self.run, "surface") is None:
+            # Undo has removed it.
+            self._show(scene)
+        playback.load_all(scene)
+
+    def on_end(self):
+        """Shows the result again, because undo during the bake removes objects and keyframes."""
+        scene = self.scene()
+        if scene is None:
+            return
+        playback.baked = None
+        self._show(scene)
+        moved = {obj: self.bodies[key] for key, obj in self._obstacles(scene).items() if key in self.floating}
+        for problem in show.move_bodies(str(self.run), moved, self.start_frame, 1 / self.frame_rate, self.metres_per_unit):
+            self.warn(problem)
+        _push_undo()
+
+    def _run_path(self):
+        """The path of the run as it is saved. It is absolute if the file was saved in another folder meanwhile."""
+        return self.saved_run if playback.same_folder(self.saved_run, self.run) else str(self.run)
+
+    def _obstacles(self, scene):
+        found = {playback.identity(obj): obj for obj in scene.objects}
+        return {key: found[key] for key in self.bodies if key in found}
+
+    def _show(self, scene):
+        if scene is None:
+            return
+        run = self._run_path()
+        for key, obj in self._obstacles(scene).items():
+            obj.splashdown.body_name, obj.splashdown.body_run = self.bodies[key], run
         show.show(
             scene,
             run,
-            ["surface", "droplets", *(DIFFUSE if settings.use_foam else ())],
-            name=scene.name,
-            start_frame=scene.frame_start,
+            ["surface", "droplets", *(DIFFUSE if self.use_foam else ())],
+            name=self.name,
+            start_frame=self.start_frame,
             frame_interval=1 / self.frame_rate,
             spacing=self.spacing,
-            metres_per_unit=collect.metres_per_unit(scene),
-            liquid=settings.material,
+            metres_per_unit=self.metres_per_unit,
+            liquid=self.liquid,
             domain=self.domain,
         )
 
-    def _refresh(self, bodies=False):
-        """Shows new frames. A frame that is already shown is not read again."""
-        scene = self.scene()
-        if scene is None:
-            return
-        if bodies:
-            problems = show.move_bodies(
-                scene, str(self.run), scene.frame_start, 1 / self.frame_rate, collect.metres_per_unit(scene)
-            )
-            self.messages += problems
-        playback.load_all(scene)
 
-    def cancel(self):
-        """Ends the bake after its frame; the second call ends it at once. Complete frames remain."""
-        if self.state == "STOPPING":
-            self.job.kill()
-        elif self.is_active:
-            self.job.stop()
-            self.state = "STOPPING"
-
-    def abandon(self):
-        """Asks the program to end, without watching it any more."""
-        if self.is_active:
-            self.job.stop()
-            self.state = "STOPPED"
-
-    def text(self):
-        """The state in words."""
-        if self.state == "CHECKING":
-            return "Checking the scene"
-        if self.state == "CHECKED":
-            return self.estimate
-        frames = f"frame {self.frame} of {self.frames}" if self.frames else "starting"
-        words = {
-            "RUNNING": f"Simulating: {frames}",
-            "STOPPING": f"Stopping after this frame ({frames})",
-            "FINISHED": f"Finished: {self.frames} frames",
-            "STOPPED": f"Stopped at {frames}",
-            "FAILED": "Failed",
-        }
-        return words[self.state]
+def _push_undo():
+    """Makes the result a step of its own, so that the next undo does not remove it with the step before."""
+    for window in bpy.context.window_manager.windows:
+        with bpy.context.temp_override(window=window):
+            if bpy.ops.ed.undo_push.poll():
+                bpy.ops.ed.undo_push(message="Splashdown Bake")
+        return
 
 
-def _identity(scene):
-    """A value that identifies a scene also after undo."""
-    return getattr(scene, "session_uid", scene.name)
-
-
-def _error_text(event):
-    """The message of the program and every problem of the scene."""
-    lines = [str(event.get("message"))]
-    for problem in event.get("problems") or []:
-        text = problem.get("message") if isinstance(problem, dict) else str(problem)
-        if text and text not in lines[0]:
-            lines.append(str(text))
-    return "\n".join(lines)
-
-
-def _warning_text(warning):
-    return str(warning.get("message", warning) if isinstance(warning, dict) else warning)
-
-
-def duration(seconds):
-    """A duration in s in words."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+def _saved_path(given, folder):
+    """The path of the run, relative to the .blend file if the cache folder is."""
+    if not given.startswith("//"):
+        return str(folder / "run")
+    return f"{given}run" if given.endswith(("/", "\\")) else f"{given}/run"
 
 
 def cache_folder(scene):
@@ -275,21 +188,7 @@ def cache_folder(scene):
         raise Failed("Choose a cache folder.")
     if given.startswith("//") and not bpy.data.filepath:
         raise Failed("Save the .blend file first, or choose an absolute cache folder: the present one is relative to the file.")
-    return Path(bpy.path.abspath(given))
-
-
-def saved_walls(scene):
-    """The corners of the domain of an earlier bake, from the objects that show it; `None` if there are none."""
-    for obj in playback.shown_objects(scene):
-        cache = obj.splashdown_cache
-        if cache.series == "surface" and cache.wall_overlap > 0:
-            return tuple(cache.wall_low), tuple(cache.wall_high)
-    return None
-
-
-def has_checkpoint(run):
-    """Whether a run can be resumed."""
-    return any(Path(run).glob("checkpoints/*.splashdown"))
+    return Path(bpy.path.abspath(given)).expanduser().absolute()
 
 
 def active():
@@ -298,10 +197,15 @@ def active():
 
 def start(context, **options):
     """Starts a bake and the timer that watches it. Raises [`Failed`]."""
-    global current
+    global current, refusal
     if active():
         raise Failed("A bake is in progress. Cancel it first.")
-    current = Bake(context, **options)
+    current, refusal = None, ""
+    try:
+        current = Bake(context, **options)
+    except Failed as error:
+        refusal = str(error)
+        raise
     if not bpy.app.background:
         bpy.app.timers.register(_tick, first_interval=INTERVAL, persistent=True)
     return current
@@ -321,6 +225,9 @@ def finish():
 def _tick():
     if current is None:
         return None
+    # The handlers of an animation render change the same meshes.
+    if playback.is_rendering():
+        return INTERVAL
     going = current.update()
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -420,19 +327,14 @@ class SPLASHDOWN_OT_restore(bpy.types.Operator):
 
 @bpy.app.handlers.persistent
 def _before_load(_path=None):
-    global current
+    _leave()
+
+
+def _leave(seconds=0.0):
+    global current, refusal
     if current is not None:
-        current.abandon()
-        current = None
-
-
-def _at_exit():
-    if active():
-        current.job.stop()
-        try:
-            current.job.wait(10)
-        except subprocess.TimeoutExpired:
-            current.job.kill()
+        current.abandon(seconds)
+    current, refusal = None, ""
 
 
 CLASSES = (SPLASHDOWN_OT_bake, SPLASHDOWN_OT_resume, SPLASHDOWN_OT_check, SPLASHDOWN_OT_cancel, SPLASHDOWN_OT_restore)
@@ -442,12 +344,11 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.app.handlers.load_pre.append(_before_load)
-    atexit.register(_at_exit)
 
 
 def unregister():
-    _before_load()
-    atexit.unregister(_at_exit)
+    # Blender disables extensions when it quits.
+    _leave(QUIT_LIMIT)
     bpy.app.handlers.load_pre.remove(_before_load)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -1,14 +1,17 @@
 """Turns the objects of a Blender scene into a scene of the program."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from . import playback
+from . import motion, playback
 from .core import axes, geometry, scene as core
 
 # Poses that differ less are equal: metres, and entries of rotation matrices.
 SAME = 1e-6
-# Relative difference from a matrix without shear.
-SHEAR = 1e-3
+# The largest turn from pose to pose that is exported as it is, in radians, and the most poses for a frame.
+LARGEST_TURN = 0.5 * np.pi
+MOST_STEPS = 64
 
 
 def metres_per_unit(scene):
@@ -26,9 +29,27 @@ def objects_of(scene, role):
     return [obj for obj in scene.objects if obj.splashdown.role == role]
 
 
+def body_names(scene):
+    """The names in a run of the obstacles of a scene, by their identities."""
+    taken = set()
+    return {playback.identity(obj): core.file_name(obj.name, taken) for obj in objects_of(scene, "OBSTACLE")}
+
+
+@dataclass
+class Description:
+    """A scene of the program. `problems` prevent its simulation. `bodies`: the names in the run of obstacles, by their
+    identities. `floating`: the identities of those that the fluid moves."""
+
+    scene: core.Scene
+    problems: list
+    warnings: list
+    bodies: dict
+    floating: set
+
+
 def describe(context):
-    """The [`core.Scene`] of the scene of `context`, and its problems as texts. Visits the frames of the animation if an
-    obstacle may move, and returns to the present one."""
+    """The [`Description`] of the scene of `context`. Visits the frames of the animation if there are obstacles that the
+    fluid does not move, and returns to the present one."""
     scene = context.scene
     present = scene.frame_current, scene.frame_subframe
     with playback.suspended():
@@ -47,17 +68,18 @@ class _Collector:
         self.settings = self.scene.splashdown
         self.unit = metres_per_unit(self.scene)
         self.rate = frame_rate(self.scene) / self.settings.time_scale
-        self.problems = []
+        self.problems, self.warnings = [], []
+        self.names, self.floating = {}, set()
 
     def describe(self):
         scene, settings = self.scene, self.settings
-        gravity = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+        self.refuse_hidden()
         described = core.Scene(
             name=core.file_name(scene.name, set()),
             duration=(scene.frame_end - scene.frame_start) / self.rate,
             frame_rate=self.rate,
             particle_spacing=settings.particle_spacing,
-            gravity=tuple(axes.to_program(gravity)),
+            gravity=self.gravity(),
             domain=self.domain(),
             settings=self.sections(),
         )
@@ -65,7 +87,33 @@ class _Collector:
         described.bodies = self.bodies(described.duration)
         described.emitters = self.emitters()
         described.sinks = [core.Sink(obj.name, self.world_mesh(obj)) for obj in objects_of(scene, "OUTFLOW")]
-        return described, self.problems + core.problems(described)
+        problems = self.problems + core.problems(described)
+        return Description(described, problems, self.warnings, self.names, self.floating)
+
+    def gravity(self):
+        """In m/s^2, in the axes of the program. The interface of Blender shows it with the unit scale."""
+        if not self.scene.use_gravity:
+            return (0.0, 0.0, 0.0)
+        gravity = self.unit * axes.to_program(self.scene.gravity)
+        if self.unit != 1:
+            strength = float(np.linalg.norm(gravity))
+            self.warnings.append(
+                f"The unit scale is {self.unit:g}, and the gravity is {strength:.3g} m/s², as the scene properties show it."
+            )
+        return tuple(gravity)
+
+    def refuse_hidden(self):
+        """Blender evaluates no modifiers, animation and constraints of these objects."""
+        graph = self.context.evaluated_depsgraph_get()
+        for obj in self.scene.objects:
+            if obj.splashdown.role == "NONE" or obj.type != "MESH":
+                continue
+            excluded = obj.name not in self.context.view_layer.objects
+            if excluded or obj.hide_viewport or not obj.evaluated_get(graph).is_evaluated:
+                self.problems.append(
+                    f'"{obj.name}" is disabled in viewports or in an excluded collection: enable it (monitor icon), '
+                    "or set its role to None."
+                )
 
     def sections(self):
         settings = self.settings
@@ -160,61 +208,96 @@ class _Collector:
             found.append(core.Emitter(obj.name, outlet, own.speed, own.start, own.end if own.use_end else None))
         taken = set()
         for emitter in found:
+            emitter.label = emitter.name
             emitter.name = core.file_name(emitter.name, taken)
         return found
 
     def bodies(self, duration):
         objects = objects_of(self.scene, "OBSTACLE")
-        moving = [obj for obj in objects if obj.splashdown.motion == "ANIMATED" and may_move(obj)]
+        moving = [obj for obj in objects if obj.splashdown.motion == "ANIMATED"]
         meshes = {obj: self.local_mesh(obj) for obj in objects}
         start = {obj: self.matrix(obj) for obj in objects}
         tracks = self.tracks(moving) if duration > 0 else {}
-        taken, bodies = set(), []
+        self.names, bodies = body_names(self.scene), []
         for obj in objects:
-            own = obj.splashdown
-            own.body_name = core.file_name(obj.name, taken)
-            bodies.append(self.body(obj, meshes[obj], start[obj], tracks.get(obj, [])))
+            name = self.names[playback.identity(obj)]
+            if obj.splashdown.motion == "DYNAMIC":
+                self.floating.add(playback.identity(obj))
+                # The keyframes of the bake before may say something else.
+                start[obj] = motion.rest_matrix(obj) if obj.splashdown.has_rest else start[obj]
+            body = self.body(obj, name, meshes[obj], start[obj], tracks.get(obj, []))
+            body.label = obj.name
+            bodies.append(body)
         return bodies
 
     def tracks(self, objects):
-        """The transformations of objects in each frame and in the one after the last. That one gives the curve through
-        the poses its slope at the end."""
-        tracks = {obj: [] for obj in objects}
-        if objects:
-            for frame in range(self.scene.frame_start, self.scene.frame_end + 2):
-                self.scene.frame_set(frame)
-                for obj in objects:
-                    tracks[obj].append(self.matrix(obj))
-        return {obj: matrices for obj, matrices in tracks.items() if not _same(matrices)}
+        """The times in s and transformations of the objects that move, in each frame and in the one after the last. That
+        one gives the curve through the poses its slope at the end. All objects are sampled: constraints, drivers and
+        parents may move an object that has no animation of its own."""
+        tracks, angles = self.sampled(objects, 1)
+        fast = {obj: turn for obj, turn in angles.items() if turn > LARGEST_TURN}
+        if fast:
+            # The program turns a body the shorter way from pose to pose.
+            steps = min(int(np.ceil(max(fast.values()) / LARGEST_TURN - 1e-3)), MOST_STEPS)
+            finer, angles = self.sampled(list(fast), steps)
+            tracks.update(finer)
+            for obj, turn in angles.items():
+                if turn > np.pi:
+                    self.warnings.append(
+                        f'The obstacle "{obj.name}" turns by {np.degrees(steps * turn):,.0f}° per frame, which is too fast to '
+                        "be exported: increase the frame rate."
+                    )
+        return {obj: track for obj, track in tracks.items() if not _same([matrix for _, matrix in track])}
 
-    def body(self, obj, mesh, start, matrices):
+    def sampled(self, objects, steps):
+        """The times and transformations of objects, `steps` for each frame, and the largest turns from one to the next in
+        radians."""
+        tracks, largest, last = {obj: [] for obj in objects}, {obj: 0.0 for obj in objects}, {}
+        count = self.scene.frame_end + 1 - self.scene.frame_start
+        for number in range(steps * count + 1 if objects else 0):
+            frame, step = divmod(number, steps)
+            self.scene.frame_set(self.scene.frame_start + frame, subframe=step / steps)
+            for obj in objects:
+                tracks[obj].append((number / steps / self.rate, self.matrix(obj)))
+                angles = _angles(obj)
+                if obj in last:
+                    largest[obj] = max(largest[obj], _turn(last[obj], angles))
+                last[obj] = angles
+        return tracks, largest
+
+    def body(self, obj, name, mesh, start, track):
         own = obj.splashdown
         dynamic = own.motion == "DYNAMIC"
         if dynamic and (obj.parent or obj.constraints):
             self.problems.append(
                 f'The obstacle "{obj.name}" is moved by the fluid, but has a parent or constraints: clear them.'
             )
-        if not matrices and not dynamic:
+        if dynamic and motion.is_animated(obj):
+            self.problems.append(
+                f'The obstacle "{obj.name}" is moved by the fluid, but its location or rotation is animated: clear these '
+                "keyframes or drivers."
+            )
+        if not track and not dynamic:
             # A static obstacle may be sheared.
             place = tuple(self.unit * axes.to_program(start[:3, 3]))
             poses = [core.Pose(0.0, place, (0.0, 0.0, 0.0))]
-            return core.Body(own.body_name, self.placed(mesh, start[:3, :3]), poses, friction=own.friction)
-        rotation, stretch = split(start[:3, :3])
+            return core.Body(name, self.placed(mesh, start[:3, :3]), poses, friction=own.friction)
+        rotation, stretch = geometry.split(start[:3, :3])
         poses = []
-        for number, matrix in enumerate(matrices or [start]):
-            turned, stretched = split(matrix[:3, :3])
+        for number, (time, matrix) in enumerate(track or [(0.0, start)]):
+            turned, stretched = geometry.split(matrix[:3, :3])
             if stretched is None:
                 self.problems.append(f'The obstacle "{obj.name}" moves and is sheared or flat: apply its scale (Ctrl-A).')
                 break
-            if number and np.abs(stretched - stretch).max() > SHEAR * np.abs(stretch).max():
+            if number and np.abs(stretched - stretch).max() > geometry.SHEAR * np.abs(stretch).max():
                 self.problems.append(f'The obstacle "{obj.name}" changes its size, which is not supported.')
                 break
             place = tuple(self.unit * axes.to_program(matrix[:3, 3]))
-            poses.append(core.Pose(number / self.rate, place, axes.angles(axes.rotation_to_program(turned))))
+            poses.append(core.Pose(time, place, axes.angles(axes.rotation_to_program(turned))))
         poses = poses or [core.Pose(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
         scaled = self.placed(mesh, np.eye(3) if stretch is None else stretch)
         return core.Body(
-            own.body_name,
+            name,
             scaled,
             poses,
             own.density if dynamic else None,
@@ -223,28 +306,21 @@ class _Collector:
         )
 
 
-def may_move(obj):
-    """True if an object or one of its parents has an animation, constraints or a rigid body."""
-    while obj:
-        if obj.animation_data or len(obj.constraints) or obj.rigid_body:
-            return True
-        obj = obj.parent
-    return False
-
-
-def split(matrix):
-    """Rotation and stretch, both of shape (3, 3), whose product is `matrix`. The stretch is diagonal; it is `None` if the
-    matrix has shear or is singular. A mirrored matrix has a negative stretch."""
-    lengths = np.linalg.norm(matrix, axis=0)
-    if lengths.min() < 1e-9 * max(lengths.max(), 1e-12):
-        return np.eye(3), None
-    rotation = matrix / lengths
-    if np.abs(rotation.T @ rotation - np.eye(3)).max() > SHEAR:
-        return np.eye(3), None
-    if np.linalg.det(rotation) < 0:
-        return -rotation, np.diag(-lengths)
-    return rotation, np.diag(lengths)
-
-
 def _same(matrices):
     return all(np.abs(matrix - matrices[0]).max() < SAME for matrix in matrices)
+
+
+def _angles(obj):
+    """The Euler angles of an object and of its parents; `None` for one that has no such angles."""
+    found = []
+    while obj:
+        has_angles = obj.rotation_mode not in motion.ROTATIONS
+        found.append(np.array(obj.rotation_euler) if has_angles else None)
+        obj = obj.parent
+    return found
+
+
+def _turn(before, after):
+    """The largest difference of an angle."""
+    pairs = [(a, b) for a, b in zip(before, after) if a is not None and b is not None]
+    return max((float(np.abs(b - a).max()) for a, b in pairs), default=0.0)

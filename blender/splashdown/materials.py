@@ -5,6 +5,7 @@ import bpy
 from .core.liquids import LIQUIDS
 
 FOAM = "Splashdown Foam"
+DROPLETS = " Droplets"
 
 
 def _empty(name):
@@ -14,6 +15,12 @@ def _empty(name):
     if hasattr(material, "use_raytrace_refraction"):
         material.use_raytrace_refraction = True
     return material, material.node_tree.nodes, material.node_tree.links
+
+
+def is_ours(material):
+    """Whether a material is one of a liquid that this extension makes."""
+    names = {f"Splashdown {known.label}{more}" for known in LIQUIDS.values() for more in ("", DROPLETS)}
+    return material is not None and material.name in names
 
 
 def liquid(name, metres_per_unit, with_volume=True):
@@ -26,7 +33,7 @@ def liquid(name, metres_per_unit, with_volume=True):
     too small to absorb.
     """
     known = LIQUIDS.get(name, LIQUIDS["water"])
-    full = f"Splashdown {known.label}" + ("" if with_volume else " Droplets")
+    full = f"Splashdown {known.label}" + ("" if with_volume else DROPLETS)
     if full in bpy.data.materials:
         return bpy.data.materials[full]
     material, nodes, links = _empty(full)

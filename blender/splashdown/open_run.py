@@ -51,7 +51,7 @@ def open_run(scene, path, fit_frames=True):
         liquid=_word(description, "fluid", "material") or "water",
         domain=_walls(description),
     )
-    problems += show.move_bodies(scene, str(run.path), scene.frame_start, interval, unit, empties=name)
+    problems += show.show_bodies(scene, path, name, scene.frame_start, interval, unit)
     if fit_frames:
         scene.frame_end = scene.frame_start + run.last()
     for problem in problems:

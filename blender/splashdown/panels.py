@@ -114,10 +114,13 @@ class SPLASHDOWN_PT_bake(_Panel, bpy.types.Panel):
             row.operator("splashdown.check")
             if bake.current is not None:
                 draw_text(layout, bake.current.text())
+        if bake.refusal:
+            draw_text(layout, bake.refusal, icon="ERROR")
         if bake.current is not None:
-            failed = bake.current.state == "FAILED"
-            for message in bake.current.messages:
-                draw_text(layout, message, icon="ERROR" if failed else "INFO")
+            for message in bake.current.errors:
+                draw_text(layout, message, icon="ERROR")
+            for message in bake.current.warnings:
+                draw_text(layout, message, icon="INFO")
 
 
 class SPLASHDOWN_PT_results(_Panel, bpy.types.Panel):
@@ -128,7 +131,7 @@ class SPLASHDOWN_PT_results(_Panel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("splashdown.open_run", icon="FILE_FOLDER")
         row.operator("splashdown.reload", icon="FILE_REFRESH")
-        if any(obj.splashdown.has_rest_pose for obj in context.scene.objects):
+        if any(obj.splashdown.has_rest for obj in context.scene.objects):
             layout.operator("splashdown.restore")
         _settings(layout.column()).prop(context.scene.render, "use_motion_blur")
         for obj in playback.shown_objects(context.scene):

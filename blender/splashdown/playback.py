@@ -1,7 +1,8 @@
 """Shows the frames of runs: before Blender evaluates a frame, objects with a series get its mesh or points.
 
 Frames are read in `frame_change_pre`, so that playback, animation renders and motion blur see the mesh of the frame. The
-times within a frame at which Cycles samples motion blur keep that mesh: its vertices have velocities. The datablocks are
+times within a frame at which Cycles samples motion blur keep that mesh: its vertices have velocities. Outside renders a
+time within a frame shows the frame before it. The datablocks are
 saved with the .blend file, which therefore shows its last frame even without the extension.
 """
 
@@ -16,6 +17,7 @@ from .core import axes, ply
 from .core.run_folder import RunFolder
 
 _suspended = 0
+_rendering = False
 # The index of a folder is read again when a subfolder has changed.
 _folders = {}
 _reported = set()
@@ -37,6 +39,16 @@ def suspended():
 def folder_of(obj):
     """The absolute path of the run that an object shows."""
     return bpy.path.abspath(obj.splashdown_cache.run)
+
+
+def identity(block):
+    """A value that identifies a scene or an object also after undo, which replaces it."""
+    return getattr(block, "session_uid", block.name)
+
+
+def same_folder(one, other):
+    """Whether two paths, which may be relative to the .blend file, name the same folder."""
+    return os.path.normpath(bpy.path.abspath(str(one))) == os.path.normpath(bpy.path.abspath(str(other)))
 
 
 def run_folder(path):
@@ -80,11 +92,14 @@ def load(obj, scene, force=False):
     """Gives an object the data of the present frame. Frames that are missing or cannot be read are replaced by the one
     before; nothing is shown before the first one. Without any frame the object stays as it is."""
     cache = obj.splashdown_cache
+    # Blender refuses to change a mesh in Edit Mode, or would discard the change.
+    if obj.data.is_editmode:
+        return
     wanted = scene.frame_current - cache.start_frame
     path = folder_of(obj)
     run = run_folder(path)
     if run.main_series() is None:
-        if path != baked:
+        if baked is None or not same_folder(path, baked):
             report_once(obj, run.problems()[0])
         return
     # Velocities per second of the film.
@@ -174,6 +189,11 @@ def _fill_points(mesh, frame, cache, rate):
     mesh.update()
 
 
+def is_rendering():
+    """Whether a render runs beside the interface."""
+    return bpy.app.is_job_running("RENDER")
+
+
 def load_all(scene, force=False):
     for obj in shown_objects(scene):
         load(obj, scene, force)
@@ -181,24 +201,62 @@ def load_all(scene, force=False):
 
 @persistent
 def _on_frame(scene, _depsgraph=None):
-    # Cycles visits times within a frame for motion blur.
-    if not _suspended and not scene.frame_subframe:
+    # A render visits times within a frame, and before it, for motion blur.
+    if not _suspended and not (_rendering and scene.frame_subframe):
         load_all(scene)
 
 
 @persistent
+def _on_render_start(_scene=None, _depsgraph=None):
+    global _rendering
+    _rendering = True
+
+
+@persistent
+def _on_render_end(_scene=None, _depsgraph=None):
+    global _rendering
+    _rendering = False
+
+
+@persistent
+def _on_save(path=None, _more=None):
+    """Makes relative paths absolute when the file is saved in another folder, because Blender does not adapt them."""
+    if not path or not bpy.data.filepath or os.path.dirname(path) == os.path.dirname(bpy.data.filepath):
+        return
+    for obj in bpy.data.objects:
+        if obj.library is None:
+            for owner, name in ((obj.splashdown_cache, "run"), (obj.splashdown, "body_run")):
+                saved = getattr(owner, name)
+                if saved.startswith("//"):
+                    setattr(owner, name, bpy.path.abspath(saved))
+
+
+@persistent
 def _on_load(_path=None):
+    global _rendering
+    _rendering = False
     _folders.clear()
     _reported.clear()
     for scene in bpy.data.scenes:
         load_all(scene)
 
 
+_HANDLERS = (
+    ("frame_change_pre", _on_frame),
+    ("load_post", _on_load),
+    ("save_pre", _on_save),
+    ("render_pre", _on_render_start),
+    ("render_post", _on_render_end),
+    ("render_complete", _on_render_end),
+    ("render_cancel", _on_render_end),
+)
+
+
 def register():
-    bpy.app.handlers.frame_change_pre.append(_on_frame)
-    bpy.app.handlers.load_post.append(_on_load)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
-    bpy.app.handlers.frame_change_pre.remove(_on_frame)
-    bpy.app.handlers.load_post.remove(_on_load)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)

@@ -2,6 +2,8 @@
 
 import bpy
 
+from . import materials
+
 NAME = "Splashdown Points"
 
 
@@ -39,11 +41,13 @@ def group():
 
 
 def add_to(obj, material):
-    """Adds the group to an object unless it has it."""
-    if any(modifier.type == "NODES" and modifier.node_group and modifier.node_group.name == NAME for modifier in obj.modifiers):
-        return
-    modifier = obj.modifiers.new(NAME, "NODES")
-    modifier.node_group = group()
+    """Adds the group to an object unless it has it. A material that the user has chosen remains."""
+    found = [m for m in obj.modifiers if m.type == "NODES" and m.node_group and m.node_group.name == NAME]
+    modifier = found[0] if found else obj.modifiers.new(NAME, "NODES")
+    if not found:
+        modifier.node_group = group()
     sockets = {item.name: item.identifier for item in modifier.node_group.interface.items_tree if item.in_out == "INPUT"}
-    modifier[sockets["Radius Factor"]] = 1.0
-    modifier[sockets["Material"]] = material
+    if not found:
+        modifier[sockets["Radius Factor"]] = 1.0
+    if not found or ("Material" in sockets and materials.is_ours(modifier.get(sockets["Material"]))):
+        modifier[sockets["Material"]] = material

@@ -38,10 +38,19 @@ OUTLINES = {"DOMAIN", "FLUID", "EMITTER", "OUTFLOW"}
 
 
 def _role_changed(self, _context):
-    """Shows domain, fluid, emitters and outflows as outlines, and hides them from renders."""
-    outline = self.role in OUTLINES
-    self.id_data.display_type = "WIRE" if outline else "TEXTURED"
-    self.id_data.hide_render = outline
+    """Shows domain, fluid, emitters and outflows as outlines, and hides them from renders. Other roles bring the user's
+    own settings back."""
+    obj, outline = self.id_data, self.role in OUTLINES
+    if outline and not self.is_outlined:
+        self.own_display_type, self.own_hide_render = obj.display_type, obj.hide_render
+        obj.display_type, obj.hide_render = "WIRE", True
+    elif self.is_outlined and not outline:
+        # What the user has changed since remains.
+        if obj.display_type == "WIRE":
+            obj.display_type = self.own_display_type
+        if obj.hide_render:
+            obj.hide_render = self.own_hide_render
+    self.is_outlined = outline
 
 
 def _start_changed(self, context):
@@ -149,9 +158,15 @@ class SplashdownObject(bpy.types.PropertyGroup):
     start: FloatProperty(name="Start (s)", description="Simulated time", default=0, min=0, max=3600)
     use_end: BoolProperty(name="Ends", description="The emitter stops before the end of the simulation")
     end: FloatProperty(name="End (s)", description="Simulated time", default=1, min=0, max=3600)
+    is_outlined: BoolProperty(options={"HIDDEN"})
+    own_display_type: StringProperty(default="TEXTURED", options={"HIDDEN"})
+    own_hide_render: BoolProperty(options={"HIDDEN"})
     body_name: StringProperty(name="Name in the run", options={"HIDDEN"})
-    rest_pose: FloatVectorProperty(name="Pose before the bake", size=16, options={"HIDDEN"})
-    has_rest_pose: BoolProperty(options={"HIDDEN"})
+    body_run: StringProperty(name="Run", subtype="DIR_PATH", options={"HIDDEN"} | RELATIVE.get("options", set()))
+    has_rest: BoolProperty(name="Has keyframes of a bake", options={"HIDDEN"})
+    rest_location: FloatVectorProperty(name="Location before the bake", size=3, options={"HIDDEN"})
+    rest_mode: StringProperty(name="Rotation mode before the bake", default="XYZ", options={"HIDDEN"})
+    rest_rotation: FloatVectorProperty(name="Rotation before the bake, in that mode", size=4, options={"HIDDEN"})
 
 
 class SplashdownCache(bpy.types.PropertyGroup):
@@ -160,6 +175,7 @@ class SplashdownCache(bpy.types.PropertyGroup):
     series: EnumProperty(
         name="Series", items=[("NONE", "None", "")] + [(series, series.capitalize(), "") for series in SERIES]
     )
+    body: StringProperty(name="Body of the run that an empty shows", options={"HIDDEN"})
     run: StringProperty(name="Run", description="Folder with `run.json`", subtype="DIR_PATH", **RELATIVE)
     start_frame: IntProperty(
         name="Start frame", description="The frame of Blender that shows frame 0 of the run", update=_start_changed

@@ -10,10 +10,19 @@ DIFFUSE_RADIUS = 0.08
 WALL_OVERLAP = 0.05
 
 
-def _find(scene, run, series):
-    absolute = bpy.path.abspath(run)
+def find(scene, run, series):
+    """The object that shows a series of a run; `None` if there is none."""
     for obj in playback.shown_objects(scene):
-        if obj.splashdown_cache.series == series and playback.folder_of(obj) == absolute:
+        cache = obj.splashdown_cache
+        if cache.series == series and playback.same_folder(cache.run, run):
+            return obj
+    return None
+
+
+def _find_empty(scene, run, body):
+    for obj in scene.objects:
+        cache = obj.splashdown_cache
+        if obj.type == "EMPTY" and cache.body == body and playback.same_folder(cache.run, run):
             return obj
     return None
 
@@ -34,7 +43,7 @@ def show(scene, run, series, *, name, start_frame, frame_interval, spacing, metr
     """
     shown = []
     for part in series:
-        obj = _find(scene, run, part)
+        obj = find(scene, run, part)
         if obj is None:
             obj = bpy.data.objects.new(f"{name} {part}", bpy.data.meshes.new(f"{name} {part}"))
             _collection(scene, name).objects.link(obj)
@@ -47,8 +56,7 @@ def show(scene, run, series, *, name, start_frame, frame_interval, spacing, metr
             cache.wall_low, cache.wall_high = domain
         cache.wall_overlap = WALL_OVERLAP * spacing if domain is not None and part == "surface" else 0.0
         if part == "surface":
-            if not obj.data.materials:
-                obj.data.materials.append(materials.liquid(liquid, metres_per_unit))
+            _give_material(obj.data.materials, materials.liquid(liquid, metres_per_unit))
         elif part in DIFFUSE:
             points.add_to(obj, materials.foam())
         else:
@@ -59,34 +67,52 @@ def show(scene, run, series, *, name, start_frame, frame_interval, spacing, metr
     if playback.run_folder(bpy.path.abspath(run)).main_series() is None:
         # A bake starts: nothing of the earlier one is left.
         for obj in shown:
+            if obj.data.is_editmode:
+                continue
             obj.data.clear_geometry()
             obj.data["splashdown_frame"] = ""
     playback.load_all(scene, force=True)
     return shown
 
 
-def move_bodies(scene, run_path, start_frame, frame_interval, metres_per_unit, empties=None):
-    """Moves objects as the bodies of a run.
+def _give_material(slots, material):
+    """Sets the material unless the user has chosen another one."""
+    if not slots:
+        slots.append(material)
+    elif materials.is_ours(slots[0]):
+        slots[0] = material
 
-    An obstacle that the fluid moves takes the body that its name in the run gives. With `empties`, a name, a body
-    without such an obstacle gets an empty in the collection of that name. Returns problems as texts.
+
+def move_bodies(run, obstacles, start_frame, frame_interval, metres_per_unit):
+    """Moves obstacles, a dictionary of objects and names in the run, as the bodies of a run. Returns problems as texts."""
+    places, problems = playback.run_folder(bpy.path.abspath(run)).bodies()
+    for obj, name in obstacles.items():
+        if name in places:
+            motion.apply(obj, places[name], start_frame, frame_interval, metres_per_unit)
+    return problems
+
+
+def show_bodies(scene, run, name, start_frame, frame_interval, metres_per_unit):
+    """Moves the obstacles of the scene that belong to a run, and makes an empty for each of its other bodies.
+
+    `run`: path as it is saved. `name`: of the run, for new objects. Returns problems as texts.
     """
-    run = playback.run_folder(run_path)
-    places, problems = run.bodies()
-    for name, rows in places.items():
-        matching = [
-            obj
-            for obj in scene.objects
-            if obj.splashdown.role == "OBSTACLE" and obj.splashdown.body_name == name
-        ]
-        if matching and matching[0].splashdown.motion == "DYNAMIC":
-            motion.remember(matching[0])
-            motion.apply(matching[0], rows, start_frame, frame_interval, metres_per_unit)
-        elif not matching and empties is not None:
-            label = f"{empties} {name}"
-            obj = bpy.data.objects.get(label) or bpy.data.objects.new(label, None)
+    places, problems = playback.run_folder(bpy.path.abspath(run)).bodies()
+    obstacles = {}
+    for obj in scene.objects:
+        own = obj.splashdown
+        if own.role == "OBSTACLE" and own.body_name in places and playback.same_folder(own.body_run, run):
+            obstacles[own.body_name] = obj
+    for body, rows in places.items():
+        obj = obstacles.get(body)
+        if obj is not None and obj.splashdown.motion != "DYNAMIC":
+            continue
+        if obj is None:
+            obj = _find_empty(scene, run, body)
+        if obj is None:
+            obj = bpy.data.objects.new(f"{name} {body}", None)
             obj.empty_display_type = "ARROWS"
-            if obj.name not in scene.objects:
-                _collection(scene, empties).objects.link(obj)
-            motion.apply(obj, rows, start_frame, frame_interval, metres_per_unit)
+            obj.splashdown_cache.run, obj.splashdown_cache.body = run, body
+            _collection(scene, name).objects.link(obj)
+        motion.apply(obj, rows, start_frame, frame_interval, metres_per_unit)
     return problems

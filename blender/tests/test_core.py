@@ -102,6 +102,17 @@ class Geometry(unittest.TestCase):
         self.assertFalse(geometry.is_box(geometry.Mesh(CUBE @ turn(1, 30).T, FACES)))
         self.assertFalse(geometry.is_box(geometry.Mesh(CUBE, FACES[2:])))
 
+    def test_a_matrix_is_split_into_rotation_and_stretch(self):
+        turned = turn(0, 20) @ turn(1, -50) @ turn(2, 130)
+        for scale in [(1, 1, 1), (2, 0.5, 3), (-1, 1, 1), (-1, -1, 1), (-1, -2, -0.5)]:
+            rotation, stretch = geometry.split(turned @ np.diag(scale))
+            np.testing.assert_allclose(rotation @ stretch, turned @ np.diag(scale), atol=1e-12)
+            self.assertAlmostEqual(np.linalg.det(rotation), 1)
+            self.assertEqual(np.linalg.det(stretch) < 0, np.prod(scale) < 0)
+        sheared = np.array([(1, 0.2, 0), (0, 1, 0), (0, 0, 1.0)])
+        for matrix in (sheared, np.diag([1.0, 1, 0])):
+            self.assertIsNone(geometry.split(matrix)[1])
+
     def test_a_flat_mesh_is_an_outlet_of_its_area(self):
         square = geometry.Mesh([(0, 1, 0), (2, 1, 0), (2, 1, 1), (0, 1, 1)], [(0, 2, 1), (0, 3, 2)])
         outlet = geometry.flat_outlet(square)
@@ -283,7 +294,9 @@ class Scenes(unittest.TestCase):
         holed = scene.Fluid("Holed", geometry.Mesh(0.5 * CUBE, FACES[2:]))
         pose = [scene.Pose(0, (0, 0, 0), (0, 0, 0))]
         light = scene.Body("Light", cube(), pose, density=10)
+        flat = scene.Emitter("T_p", geometry.flat_outlet(geometry.Mesh(CUBE[:4] + 5, [(0, 1, 2), (2, 1, 3)])), 1, label="Tüp")
         cases = [
+            ({"emitters": [flat]}, '"Tüp" is outside the domain'),
             ({"domain": None}, "no domain"),
             ({"fluids": []}, "no fluid"),
             ({"fluids": [far]}, '"Far" is outside the domain'),
@@ -291,7 +304,7 @@ class Scenes(unittest.TestCase):
             ({"fluids": [holed]}, '"Holed" is not closed: 4 edges'),
             ({"sinks": [scene.Sink("Drain", geometry.Mesh(CUBE, FACES[2:]))]}, '"Drain" is not closed'),
             ({"bodies": [light]}, '"Light" has a density of 10'),
-            ({"bodies": [scene.Body("None", geometry.Mesh([], []), pose)]}, '"None" has no faces'),
+            ({"bodies": [scene.Body("N_ne", geometry.Mesh([], []), pose, label="Näne")]}, '"Näne" has no faces'),
             ({"duration": 0.0}, "frame range is empty"),
             ({"frame_rate": 1e5}, "0.1 to 10000"),
             ({"particle_spacing": 0.6}, "less than two particle spacings"),
@@ -335,6 +348,27 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len({name.lower() for name in names}), 5)
         for name in names:
             self.assertRegex(name, r"^[A-Za-z0-9_-]{1,64}$")
+
+    def test_parts_have_the_names_of_the_users_objects(self):
+        described = simple_scene()
+        described.fluids += [scene.Fluid("Drop", octahedron()), scene.Fluid("Pool", cube())]
+        described.bodies = [scene.Body("W_rfel", cube(), [], label="Würfel"), scene.Body("Post", cube(), [])]
+        names = scene.names(described)
+        expected = {
+            "fluid.block[0]": 'fluid "water"',
+            "fluid.mesh[0]": 'fluid "Drop"',
+            "fluid.block[1]": 'fluid "Pool"',
+            "body[0]": 'obstacle "Würfel"',
+            'body "W_rfel"': 'obstacle "Würfel"',
+            "body[1]": 'obstacle "Post"',
+            'body "Post"': 'obstacle "Post"',
+        }
+        self.assertEqual(names, expected)
+        # The blocks and meshes of the file are counted in the same order.
+        described.bodies = []
+        fluid = tomllib.loads(scene.files(described)["scene.toml"].decode())["fluid"]
+        self.assertEqual([block["size"] for block in fluid["block"]], [[0.5, 0.5, 1], [1, 1, 1]])
+        self.assertEqual([part["mesh"] for part in fluid["mesh"]], ["meshes/Drop.ply"])
 
     def test_the_estimate_is_the_volume_over_that_of_a_particle(self):
         self.assertAlmostEqual(scene.particles(simple_scene()), 2000, delta=1)

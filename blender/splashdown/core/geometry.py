@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# Relative difference from a matrix without shear.
+SHEAR = 1e-3
+
 
 @dataclass
 class Mesh:
@@ -111,3 +114,17 @@ def flat_outlet(mesh):
         np.concatenate([mesh.triangles, mesh.triangles[:, ::-1] + count, sides]),
     )
     return Outlet(solid, centre, normal, float(areas.sum()))
+
+
+def split(matrix):
+    """Rotation and stretch, both of shape (3, 3), whose product is `matrix`. The stretch is diagonal; it is `None` if the
+    matrix has shear or is singular. A mirrored matrix has a negative stretch."""
+    lengths = np.linalg.norm(matrix, axis=0)
+    if lengths.min() < 1e-9 * max(lengths.max(), 1e-12):
+        return np.eye(3), None
+    rotation = matrix / lengths
+    if np.abs(rotation.T @ rotation - np.eye(3)).max() > SHEAR:
+        return np.eye(3), None
+    if np.linalg.det(rotation) < 0:
+        return -rotation, np.diag(-lengths)
+    return rotation, np.diag(lengths)

@@ -1,6 +1,7 @@
 """A child process that prints JSON lines. Reading them never waits."""
 
 import json
+import os
 import queue
 import subprocess
 import sys
@@ -8,6 +9,33 @@ import threading
 from collections import deque
 
 LONGEST_TAIL = 40
+# Replaces itself by the program, which Linux then ends when Blender ends, even if Blender crashes or is killed. The call is
+# not made between fork and exec, where code of Python may deadlock in a process with threads.
+LAUNCHER = """
+import os, signal, sys
+try:
+    import ctypes
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+except Exception:
+    # A Python without ctypes; the simulation is more important.
+    pass
+# Python ignores this signal, and a program inherits that.
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+if os.getppid() == int(sys.argv[1]):
+    os.execv(sys.argv[2], sys.argv[2:])
+"""
+
+
+def bound_to_parent(command):
+    """A command that runs `command` and, on Linux, ends with this process. Elsewhere `command` itself."""
+    python = sys.executable or ""
+    # The signal comes when the thread that started the program ends.
+    is_safe = threading.current_thread() is threading.main_thread()
+    is_python = os.path.basename(python).startswith("python") and os.path.isfile(python)
+    if sys.platform != "linux" or not is_safe or not is_python:
+        return command
+    return [python, "-I", "-S", "-c", LAUNCHER, str(os.getpid()), *command]
 
 
 class Job:
@@ -16,8 +44,11 @@ class Job:
     def __init__(self, command, folder):
         """Starts `command` (a list of words) in a folder. Raises `OSError` if it cannot be started."""
         flags = {"creationflags": subprocess.CREATE_NO_WINDOW} if sys.platform == "win32" else {}
+        # The launcher would report a missing program as its own failure.
+        if os.path.dirname(command[0]) and not os.path.isfile(command[0]):
+            raise FileNotFoundError(f"{command[0]} is not a file")
         self._process = subprocess.Popen(
-            command,
+            bound_to_parent(command),
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -84,6 +115,14 @@ class Job:
     def wait(self, seconds):
         """Waits for the end. Raises `subprocess.TimeoutExpired`."""
         self._process.wait(seconds)
+
+    def try_wait(self, seconds):
+        """Waits for the end. Returns whether it came in time."""
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
 
     def tail(self):
         """The last lines that are not events, as one text."""

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 INSTALL = (
@@ -24,7 +25,8 @@ class ProgramError(Exception):
 def candidates(given=""):
     """Paths to try, first that of the preferences. Blender that is started from a desktop often lacks the user's PATH."""
     if given:
-        return [given]
+        # A bake starts the program in another folder.
+        return [os.path.abspath(os.path.expanduser(given))]
     found = shutil.which(NAME)
     home = Path.home()
     places = [home / ".cargo/bin" / NAME, home / ".local/bin" / NAME, Path("/usr/local/bin") / NAME]
@@ -52,3 +54,19 @@ def version(path):
     if output.returncode != 0 or len(words) != 2 or words[0] != "splashdown":
         raise ProgramError(f"`{path}` is not the program `splashdown`: `--version` prints {output.stdout.strip()[:60]!r}.")
     return words[1]
+
+
+def extension_version():
+    """The version of this extension."""
+    manifest = Path(__file__).resolve().parent.parent / "blender_manifest.toml"
+    return tomllib.loads(manifest.read_text("utf-8"))["version"]
+
+
+def require(path):
+    """Raises [`ProgramError`] unless the program belongs to this extension: both have the same first two numbers in their
+    versions, so that events and options are known."""
+    theirs, ours = version(path), extension_version()
+    if theirs.split(".")[:2] != ours.split(".")[:2]:
+        raise ProgramError(
+            f"`{path}` has version {theirs}, and the extension has version {ours}: install the same version of both."
+        )

@@ -3,6 +3,8 @@
 import csv
 import json
 import re
+import tomllib
+import zipfile
 from pathlib import Path
 
 from . import ply
@@ -184,6 +186,27 @@ class RunFolder:
             if rows:
                 places[path.stem] = rows
         return places, found
+
+
+def newest_checkpoint(run):
+    """The path of the last checkpoint of a run; `None` if it has none."""
+    found = []
+    for path in Path(run).glob("checkpoints/*.splashdown"):
+        digits = re.search(r"(\d+)$", path.stem)
+        found.append((int(digits[1]) if digits else -1, path))
+    return max(found)[1] if found else None
+
+
+def scene_of(run):
+    """The scene of a run as a dictionary, from its last checkpoint; empty if there is none that can be read."""
+    path = newest_checkpoint(run)
+    if path is None:
+        return {}
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return tomllib.loads(archive.read("scene.toml").decode("utf-8"))
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile):
+        return {}
 
 
 def read_places(path):

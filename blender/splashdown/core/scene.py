@@ -10,6 +10,8 @@ from . import geometry, ply
 # Limits of the program.
 BODY_DENSITY = (50.0, 30000.0)
 FRAME_RATE = (0.1, 10000.0)
+# The first line of every scene file of this extension.
+HEADER = "# Written by the Blender extension of Splashdown."
 
 
 @dataclass
@@ -49,7 +51,7 @@ class Pose:
 @dataclass
 class Body:
     """An obstacle. `mesh`: relative to its origin. `poses`: one if it does not move, keyframes if it does. `density`:
-    kg/m^3; `None` unless the fluid moves the body."""
+    kg/m^3; `None` unless the fluid moves the body. `label`: the user's name of it."""
 
     name: str
     mesh: geometry.Mesh
@@ -57,17 +59,19 @@ class Body:
     density: float | None = None
     velocity: tuple = (0.0, 0.0, 0.0)
     friction: float = 0.0
+    label: str = ""
 
 
 @dataclass
 class Emitter:
-    """`speed`: m/s. `start`, `end`: s; an `end` of `None` is that of the scene."""
+    """`speed`: m/s. `start`, `end`: s; an `end` of `None` is that of the scene. `label`: the user's name of it."""
 
     name: str
     outlet: geometry.Outlet
     speed: float
     start: float = 0.0
     end: float | None = None
+    label: str = ""
 
 
 @dataclass
@@ -140,16 +144,16 @@ def problems(scene):
         found += _solid_problems("The outflow", sink.name, sink.mesh)
     for body in scene.bodies:
         if len(body.mesh.triangles) == 0:
-            found.append(f'The obstacle "{body.name}" has no faces.')
+            found.append(f'The obstacle "{body.label or body.name}" has no faces.')
         if body.density is not None and not BODY_DENSITY[0] <= body.density <= BODY_DENSITY[1]:
             found.append(
-                f'The obstacle "{body.name}" has a density of {body.density:g} kg/m^3; '
+                f'The obstacle "{body.label or body.name}" has a density of {body.density:g} kg/m^3; '
                 f"{BODY_DENSITY[0]:g} to {BODY_DENSITY[1]:g} are allowed."
             )
     for emitter in scene.emitters:
         position = emitter.outlet.position
         if domain is not None and domain.excess(position, position) > 0:
-            found.append(f'The emitter "{emitter.name}" is outside the domain: move it inside.')
+            found.append(f'The emitter "{emitter.label or emitter.name}" is outside the domain: move it inside.')
     return found
 
 
@@ -207,7 +211,7 @@ def files(scene):
         return path
 
     parts = [
-        "# Written by the Blender extension of Splashdown. SI units; y is up.\n",
+        f"{HEADER} SI units; y is up.\n",
         _table(
             "[scene]",
             {
@@ -255,6 +259,24 @@ def files(scene):
         if section != "fluid" and any(value is not None for value in values.values()):
             parts.append(_table(f"[{section}]", values))
     return {"scene.toml": "\n".join(parts).encode("utf-8"), **meshes}
+
+
+def names(scene):
+    """The user's names of parts of the scene, by the names that the program prints."""
+    found, counts = {}, {"block": 0, "mesh": 0}
+    for fluid in scene.fluids:
+        kind = "block" if geometry.is_box(fluid.mesh) else "mesh"
+        found[f"fluid.{kind}[{counts[kind]}]"] = f'fluid "{fluid.name}"'
+        counts[kind] += 1
+    for word, role, parts in (
+        ("body", "obstacle", scene.bodies),
+        ("emitter", "emitter", scene.emitters),
+        ("sink", "outflow", scene.sinks),
+    ):
+        for number, part in enumerate(parts):
+            ours = f'{role} "{getattr(part, "label", "") or part.name}"'
+            found[f"{word}[{number}]"] = found[f'{word} "{part.name}"'] = ours
+    return found
 
 
 def _body(body, store):
