@@ -271,7 +271,8 @@ impl<R: Radial, const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P
 fn mark(by: &Reflection, places: &mut [f32]) {
     let axes = by.sign.cmplt(Vec3::ZERO).bitmask();
     for place in places {
-        *place = f32::from_bits(NORMAL | place.to_bits() / 2 | axes << INDEX_BITS);
+        let index = place.to_bits() / 2;
+        *place = f32::from_bits(NORMAL | index | axes << INDEX_BITS);
     }
 }
 
