@@ -39,6 +39,7 @@ pub fn cases() -> Vec<Case> {
         decide("not enough for deep, calm water", solving(), 0.1, [25.0, 0.01]),
         decide("enough for deep water in motion", solving(), 0.1, [25.0, 0.4]),
         decide("the last iteration", SolveState { iteration: 4, ..solving() }, 1.0, [25.0, 0.01]),
+        decide_with(0.02, "converged in a viscous fluid", solving(), 0.1, [5.0, 0.01]),
     ]);
     cases.push(finish());
     cases
@@ -367,9 +368,19 @@ fn begin(name: &str, run_count: u32) -> Case {
     })
 }
 
+fn decide(name: &str, before: SolveState, scale: f32, motion: [f32; 2]) -> Case {
+    decide_with(0.0, name, before, scale, motion)
+}
+
 /// The mean square of the pressure is that of water `depth` spacings deep, which moves by `moved` spacings per step.
-fn decide(name: &str, before: SolveState, scale: f32, [depth, moved]: [f32; 2]) -> Case {
-    let world = world(params(2.0));
+fn decide_with(
+    implicit_viscosity: f32,
+    name: &str,
+    before: SolveState,
+    scale: f32,
+    [depth, moved]: [f32; 2],
+) -> Case {
+    let world = world(Params { implicit_viscosity, ..params(2.0) });
     let groups = world.active().div_ceil(64);
     let residuals: Vec<Vec4> = vectors(groups, 0).iter().map(|v| scale * v.abs()).collect();
     let layer = world.params.gravity.length() * world.params.particle_spacing;
@@ -406,7 +417,7 @@ fn decide(name: &str, before: SolveState, scale: f32, [depth, moved]: [f32; 2]) 
         counters[StepCounters::MAX_PRESSURE] = (solve.scale * layer * 2.0 * depth).to_bits();
         let moved = state.max_speed * state.dt / world.params.particle_spacing;
         let late = strictness as f32 * (solve.iteration as f32 - 3.0) / 8.0;
-        solve.renewal = moved.max(late).clamp(0.02, 1.0);
+        solve.renewal = if implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
         state.iterations += solve.iteration;
         state.most_iterations = state.most_iterations.max(solve.iteration);
         state.residual = state.residual.max(error as f32);
