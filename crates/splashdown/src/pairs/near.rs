@@ -50,6 +50,7 @@ pub(crate) struct Near<'a> {
     /// All indices are below this number.
     bound: usize,
     /// The processor has these registers.
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "other processors have one kind"))]
     simd: Simd,
 }
 
