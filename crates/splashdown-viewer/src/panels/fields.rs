@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) -> Option<Scene> {
             state.typing = Some(Typing { before, pivot });
         }
     }
-    // Also if the selection has changed meanwhile.
+    // Selecting another thing ends the change too.
     state.typing.take_if(|_| !changes.is_active).map(|typing| typing.before)
 }
 
