@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use splashdown::scene::Method;
 
-use super::{DeviceArgument, choice};
+use super::{DeviceArgument, choice, whole};
 use crate::human;
 
 const EXAMPLES: &str = "\
@@ -26,7 +26,7 @@ pub struct BenchArguments {
     #[command(flatten)]
     pub device: DeviceArgument,
     /// Number of steps to measure [default: as many as fit into about two seconds]
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(short, long, value_name = "N", value_parser = whole(1..=1_000_000))]
     pub steps: Option<u32>,
     /// Solver to measure: wcsph, dfsph or mueller2003 [default: wcsph, or the scene's]
     #[arg(short = 'm', long, value_parser = choice::<Method>())]

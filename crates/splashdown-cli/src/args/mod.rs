@@ -9,9 +9,10 @@ mod surface;
 mod view;
 
 use std::ffi::OsString;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, RangedI64ValueParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use splashdown::Device;
@@ -57,9 +58,17 @@ impl Arguments {
     }
 }
 
+/// A whole number in a range.
+fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("it is a whole number from {} to {}", range.start(), range.end()))
+    }
+}
+
 /// A limit of particles or neighbours below which particles become droplets.
-fn limit() -> RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(0..=i64::from(MAX_BLOB))
+fn limit() -> impl Fn(&str) -> Result<u32, String> + Clone {
+    whole(0..=MAX_BLOB)
 }
 
 /// A size in GiB, as bytes.

@@ -7,7 +7,7 @@ use splashdown::Device;
 use splashdown::scene::{self, OnBurst, PictureKind, PictureQuality};
 use splashdown_io::Format;
 
-use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file, limit};
+use super::{VerbosityArguments, choice, choice_or_none, is_mesh_file, limit, whole};
 
 /// The examples and the output files.
 fn after_help() -> String {
@@ -58,7 +58,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "DIR|FILE", conflicts_with = "scene")]
     pub resume: Option<PathBuf>,
     /// Write a checkpoint to resume from every N frames; only the last two are kept on disk
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=1_000_000))]
     pub checkpoint_every: Option<u32>,
     /// Output folder [default: out/ and the scene's name]
     #[arg(short, long, value_name = "DIR")]
@@ -68,7 +68,7 @@ pub struct RunArguments {
     #[arg(short, long, value_name = "auto|gpu|cpu|NAME", value_parser = clap::value_parser!(Device))]
     pub device: Option<Device>,
     /// Number of frames after the initial one [default: the scene's]
-    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(short = 'n', long, value_name = "N", value_parser = whole(1..=1_000_000))]
     pub frames: Option<u32>,
     /// File formats, separated by commas, overriding the scene; `none` writes no particles or meshes
     #[arg(short, long, value_name = "LIST", value_delimiter = ',', value_parser = choice_or_none::<scene::Format>())]

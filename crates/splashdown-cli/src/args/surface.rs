@@ -6,7 +6,7 @@ use clap::Args;
 use splashdown::scene::SurfaceKernels;
 use splashdown_io::Format;
 
-use super::{DeviceArgument, choice, is_mesh_file, limit};
+use super::{DeviceArgument, choice, is_mesh_file, limit, whole};
 
 /// The examples, and the formats in the order of their table.
 fn after_help() -> String {
@@ -66,10 +66,10 @@ pub struct SurfaceArguments {
     #[arg(long, value_name = "LEVEL", allow_negative_numbers = true, default_value_t = 0.6)]
     pub iso_level: f32,
     /// Iterations of smoothing; 15 to 25 remove the bumps of single particles and preserve the volume
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = whole(0..=1000))]
     pub smoothing: u32,
     /// Leave particles in blobs of fewer than N particles out of the mesh
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = whole(0..=1_000_000_000))]
     pub min_blob: u32,
     /// Leave particles with fewer than N others within 0.9 support radii out of the mesh
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = limit())]

@@ -35,6 +35,7 @@ mod points;
 #[cfg(test)]
 mod tests;
 mod vector;
+mod vectors;
 
 use std::ops::Range;
 
