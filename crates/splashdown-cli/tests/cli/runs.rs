@@ -141,7 +141,7 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
     for (command, limit) in [("run", "33"), ("render", "-1")] {
         let input = if command == "run" { "drop.toml" } else { "out" };
         let output = place.splashdown(&[command, input, "--min-blob", limit]).output()?;
-        assert_refused(&output, 2, &["--min-blob", "0..=32"]);
+        assert_refused(&output, 2, &["--min-blob", "from 0 to 32"]);
     }
     Ok(())
 }
