@@ -10,7 +10,7 @@ const MIDDLE: [u32; 2] = [100, 80];
 const SPRAY: u32 = 0;
 const FOAM: u32 = 1;
 const BUBBLE: u32 = 2;
-/// Half the particle spacing. The discs are smaller, 0.1 to 0.2 m.
+/// Half the particle spacing.
 const RADIUS: f32 = 0.25;
 
 fn frame() -> Frame<'static> {
@@ -55,7 +55,7 @@ fn dark(ball: &UploadedParticles, radius: f32) -> DrawnParticles<'_> {
 }
 
 #[test]
-fn each_kind_is_a_white_disc_and_fades() {
+fn each_kind_is_white_and_fades() {
     let Some(mut harness) = common::harness() else { return };
     let behind = backdrop(&harness);
     let frame = frame().with_particles(dark(&behind, 4.0));
@@ -66,11 +66,40 @@ fn each_kind_is_a_white_disc_and_fades() {
         assert!(here > 40, "kind {kind}: {here}");
         let [r, g, b] = picture.pixel(MIDDLE);
         assert!(r.abs_diff(b) < 60 && g > empty.pixel(MIDDLE)[1], "kind {kind}: {r} {g} {b}");
-        // A disc is faint shortly before the end of its lifetime, and does not change other pixels.
+        // A particle is faint shortly before the end of its lifetime, and does not change other pixels.
         let fading = draw(&mut harness, &[[0.0; 3]], 0.01, kind, frame);
         assert!(brighter(&fading, &empty, MIDDLE) < here / 3);
         assert!(brighter(&picture, &empty, [160, 80]).abs() < 6);
     }
+}
+
+/// Width and height of the box of brighter pixels, and their number.
+fn extent(a: &Picture, b: &Picture) -> ([u32; 2], u32) {
+    let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    let changed: Vec<_> = pixels.filter(|&pixel| brighter(a, b, pixel) > 12).collect();
+    let side = |axis: usize| {
+        let places = changed.iter().map(|pixel| pixel[axis]);
+        places.clone().max().unwrap_or(0) + 1 - places.min().unwrap_or(0)
+    };
+    ([side(0), side(1)], changed.len() as u32)
+}
+
+#[test]
+fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
+    let mut drawn = |kind| extent(&draw(&mut harness, &[[0.0; 3]], 3.0, kind, frame), &empty);
+    // Seen from the side.
+    let ([width, height], count) = drawn(SPRAY);
+    assert!(width > 10 && height.abs_diff(width) < width / 3, "{width} x {height}");
+    assert!(count < width * height / 2, "{count} of {width} x {height} pixels");
+    let ([width, height], _) = drawn(FOAM);
+    assert!(width > 15 && 2 * height < width, "{width} x {height}");
+    // Control: a bubble is a disc.
+    let ([width, height], count) = drawn(BUBBLE);
+    assert!(height.abs_diff(width) < 2 && 2 * count > width * height, "{count} of {width} x {height}");
 }
 
 #[test]
@@ -108,7 +137,7 @@ fn bubbles_are_visible_through_clear_liquid_and_hidden_by_opaque_liquid() {
 }
 
 #[test]
-fn the_surface_does_not_cut_the_discs_of_foam() {
+fn the_surface_does_not_cut_foam() {
     let Some(mut harness) = common::harness() else { return };
     let (ball, liquid) = liquid_ball(&harness, 0.8, false);
     let surface = DrawnSurface::new(ball.buffers(), liquid);

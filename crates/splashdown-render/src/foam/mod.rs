@@ -1,15 +1,17 @@
 //! Foam, spray and bubbles.
 //!
 //! # How it works
-//! Every diffuse particle is a soft white billboard, blended over the picture. All have nearly the
-//! same colour, so their order hardly matters and no sorting is necessary. Depth is tested and not
+//! Every diffuse particle is a white billboard, blended over the picture. All have nearly the same
+//! colour, so their order hardly matters and no sorting is necessary. Depth is tested and not
 //! written. If the frame has a liquid, bubbles are drawn before it, into the picture that the
 //! liquid refracts, so that the liquid also refracts, tints and hides them. Foam and spray are
 //! drawn after the liquid.
 //!
-//! Foam lies in the surface, which would cut each disc in two; a depth offset moves it slightly
-//! towards the eye. Discs smaller than a pixel are enlarged to one pixel and their opacity is
-//! reduced accordingly.
+//! A particle of spray stands for a cloud of drops, and one of foam for a patch of bubbles: the
+//! billboard shows a group of eight, turned by a random angle. Single discs look like gravel. Foam
+//! lies in the surface: its billboard is foreshortened like a horizontal disc, and a depth offset
+//! moves it slightly towards the eye, because the surface would cut it in two. Drops smaller than a
+//! pixel are enlarged to one pixel and their opacity is reduced accordingly.
 //!
 //! # Why not the other way
 //! Ray marching through a volume of foam density (used offline by Ihmsen et al. 2012) includes
