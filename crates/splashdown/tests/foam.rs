@@ -190,6 +190,34 @@ fn spray_is_ballistic() {
 }
 
 #[test]
+fn bodies_stop_spray() {
+    // A slab above the water, whose upper side is at 0.42 m.
+    let slab = "[[body]]\nname = \"slab\"\nmesh = \"cube\"\nscale = [0.16, 0.06, 0.1]\nposition = [0.1, 0.39, 0.0625]\n";
+    let last = |scene: &Scene, executor: Executor| {
+        let (mut simulation, mut foam) = start(scene, executor);
+        put(&mut simulation, &foam, [0.1, 0.5, 0.06], [0.1, -1.0, 0.0], DiffuseKind::Spray);
+        for _ in 0..25 {
+            simulation.advance(0.005).unwrap();
+            simulation.advance_foam(&foam).unwrap();
+        }
+        let diffuse = simulation.diffuse(&mut foam).unwrap();
+        (diffuse.positions[0], diffuse.velocities[0], diffuse.lifetimes[0])
+    };
+    let (with, without) = (scene(&format!("{CALM}{slab}")), scene(CALM));
+    let mut executors: Vec<Executor> = vec![CpuExecutor::new().into()];
+    executors.extend(testing::gpu_or_skip("bodies_stop_spray").map(|gpu| GpuExecutor::new(gpu).into()));
+    for executor in executors {
+        let ([x, y, _], [u, v, _], left) = last(&with, executor);
+        // It slides on the slab, and ages.
+        assert!((y - 0.42).abs() < 0.003 && v.abs() < 0.1, "{y} m, {v} m/s");
+        assert!((x - 0.1125).abs() < 0.002 && (u - 0.1).abs() < 1e-3, "{x} m, {u} m/s");
+        assert!(left < 0.99, "{left} s left");
+    }
+    // Control: without the slab it falls on.
+    assert!(last(&without, CpuExecutor::new().into()).0[1] < 0.4);
+}
+
+#[test]
 fn bubbles_rise_and_become_foam() {
     let scene = scene(CALM);
     let (mut simulation, mut foam) = cpu(&scene);

@@ -103,6 +103,18 @@ pub(crate) fn nearest<'a>(
     distances.filter(|distance| *distance < reach).reduce(f32::min)
 }
 
+/// The signed distance in m of a point inside a body, which is negative, and the unit normal of the nearest surface in the
+/// world; `None` outside.
+#[inline]
+pub(crate) fn penetration(body: &Body, maps: &[Vec2], x: Vec3) -> Option<(f32, Vec3)> {
+    if x.distance_squared(body.position) >= body.radius * body.radius {
+        return None;
+    }
+    let field = at(body, maps, body.local(x), 0.0).filter(|field| field.distance < 0.0)?;
+    let steepness = field.distance_gradient.length().max(1e-6);
+    Some((field.distance, body.rotation() * (field.distance_gradient / steepness)))
+}
+
 /// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction
 /// (xyz), and the fraction (w). What lies outside the domain does not count.
 pub(super) fn sampled<K: Kernel>(

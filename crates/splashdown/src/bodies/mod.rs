@@ -31,7 +31,7 @@ mod types;
 mod viscous;
 
 pub(crate) use closed::{closed_solid, solid_of};
-pub(crate) use field::{MAP, nearest};
+pub(crate) use field::{MAP, nearest, penetration};
 pub(crate) use key::{BodiesChanged, BodyKey};
 pub(crate) use load::forecast;
 pub use load::{BodyError, LoadedBody, body_meshes, load, mesh_of};
@@ -54,6 +54,22 @@ use rigid::Rigid;
 
 /// Numbers per body in a checkpoint: five vectors, a quaternion and the work.
 const MOTION_COLUMNS: usize = 20;
+
+/// The bodies of a simulation, for passes outside of its steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Solids {
+    /// Their states.
+    pub bodies: Buffer<Body>,
+    /// Their maps.
+    pub maps: Buffer<Vec2>,
+}
+
+impl Solids {
+    /// The buffers by name, for recordings.
+    pub(crate) fn buffers(&self) -> BufferSet {
+        buffer_set!(self => bodies, maps)
+    }
+}
 
 /// The shape of a body.
 #[derive(Clone, Debug)]
@@ -469,6 +485,11 @@ impl Bodies {
             });
             distances.min_by(|a, b| a.0.total_cmp(&b.0))
         }
+    }
+
+    /// The buffers that passes outside of the steps need.
+    pub(crate) fn solids(&self) -> Solids {
+        Solids { bodies: self.bodies, maps: self.maps }
     }
 
     /// The number of these particles that lie inside a body. Computed on the host.

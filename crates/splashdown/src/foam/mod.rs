@@ -2,8 +2,8 @@
 //! bubbles for particle-based fluids", The Visual Computer 28).
 //!
 //! *How it works.* Diffuse particles are generated where the fluid traps air or breaks (`normals`,
-//! `potentials`, `count`, `emit`), are advected (`advect`), and dissolve. The coupling is one-way:
-//! the fluid affects them and they do not affect the fluid. They are therefore computed after the
+//! `potentials`, `count`, `emit`), are advected (`advect`), stay outside of bodies (`collide`), and
+//! dissolve. The coupling is one-way: the fluid affects them and they do not affect the fluid. They are therefore computed after the
 //! fluid and not in its steps: [`Simulation::advance_foam`](crate::Simulation::advance_foam)
 //! advances them to the simulated time every few milliseconds or once per frame, at the cost of two
 //! neighbour loops. A simulation without foam has no overhead.
@@ -28,6 +28,7 @@
 mod advect;
 mod ambient;
 mod begin;
+mod collide;
 mod compact;
 mod count;
 mod emit;
@@ -47,6 +48,7 @@ use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Buffer, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, wgsl};
 use splashdown_io::{Attribute, Particles};
 
+use crate::bodies::Solids;
 use crate::cells::{Cells, GRID, ROWS};
 use crate::kernel;
 use crate::scene::FoamSettings;
@@ -81,6 +83,7 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &potentials::POTENTIALS,
         &count::COUNT,
         &advect::ADVECT,
+        &collide::COLLIDE,
         &plan::PLAN,
         &compact::COMPACT,
         &emit::EMIT,
@@ -166,6 +169,7 @@ impl Foam {
         constants: &FoamParams,
         fields: &Fields,
         cells: &Cells,
+        solids: Option<Solids>,
         particles: u32,
     ) -> Result<Self, GpuError> {
         let (n, capacity) = (particles as usize, constants.capacity);
@@ -211,6 +215,10 @@ impl Foam {
         scan.record(&mut r, counts, starts);
         r.clear(alive);
         r.dispatch(&advect::ADVECT, diffuse, &buffers);
+        if let Some(solids) = solids {
+            let buffers = buffers.clone().and(&solids.buffers());
+            r.dispatch(&collide::COLLIDE, diffuse, &buffers);
+        }
         compact.record(&mut r, alive, indices, counted);
         r.dispatch(&plan::PLAN, one, &buffers);
         r.dispatch(&compact::COMPACT, diffuse, &buffers);

@@ -4,6 +4,7 @@ use splashdown_gpu::{Recording, block_on};
 
 use super::Simulation;
 use crate::SimulationError;
+use crate::bodies::Bodies;
 use crate::foam::{self, DiffuseParticles, Foam, FoamParams, FoamState, KeptFoam};
 use crate::scene::{Derived, FoamSettings};
 
@@ -17,7 +18,8 @@ impl Simulation {
         let capacity = foam::capacity(settings, particles.into(), self.executor.largest_buffer())?;
         let speed = Derived::without_particles(&self.scene).reference_speed;
         let constants = FoamParams::new(settings, &self.params, speed, capacity);
-        let foam = Foam::new(&mut self.executor, &constants, &self.fields, &self.cells, particles)?;
+        let solids = self.bodies.as_ref().map(Bodies::solids);
+        let foam = Foam::new(&mut self.executor, &constants, &self.fields, &self.cells, solids, particles)?;
         // Sets the start of the first update's time step.
         self.executor.run(foam.recording())?;
         Ok(foam)

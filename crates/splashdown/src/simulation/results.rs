@@ -4,11 +4,11 @@ use splashdown_gpu::{GpuError, Recording, block_on};
 use splashdown_io::{Mesh, Particles};
 
 use super::Simulation;
-use crate::bodies::BodyState;
+use crate::bodies::{Bodies, BodyState};
 use crate::monitor::{Findings, Monitor, Observed};
 use crate::scene::{Probe, Quantity, SurfaceSettings};
 use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, Values};
-use crate::surface::{Solids, Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
+use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
 use crate::{SimulationError, Stats};
 
 impl Simulation {
@@ -165,7 +165,7 @@ impl Simulation {
             grid: self.cells.grid_uniform,
             grid_host: self.cells.grid,
             particle_capacity: self.params.particle_count,
-            solids: self.bodies.as_ref().map(|bodies| Solids { bodies: bodies.bodies, maps: bodies.maps }),
+            solids: self.bodies.as_ref().map(Bodies::solids),
         };
         Ok(Surface::new(&mut self.executor, params, input)?)
     }

@@ -7,8 +7,8 @@ use splashdown_io::{Mesh, Particles};
 
 use super::droplets::{self, Droplet};
 use super::params::{Lattice, MAX_TRIANGLES, NODES, ROWS, Status, SurfaceParams};
-use super::solids::Solids;
 use super::{SurfaceError, anisotropy, blocks, field, march, smooth, solids, volume};
+use crate::bodies::Solids;
 use crate::cells::Grid;
 use crate::marching_cubes;
 use crate::scene::{SurfaceKernels, SurfaceSettings};

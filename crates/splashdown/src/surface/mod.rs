@@ -63,6 +63,8 @@ mod tests;
 mod volume;
 mod walls;
 
+#[doc(hidden)]
+pub use crate::bodies::Solids;
 pub use components::{remove_small_components, retain_components, take_small_components};
 #[doc(hidden)]
 pub use droplets::Droplet;
@@ -77,8 +79,6 @@ pub(crate) use mesh::{forecast, largest_per_particle};
 pub use params::Status;
 pub use params::SurfaceParams;
 pub use reconstruct::reconstruct_with;
-#[doc(hidden)]
-pub use solids::Solids;
 pub use walls::{Walls, remove_caps};
 
 use splashdown_gpu::PassDesc;

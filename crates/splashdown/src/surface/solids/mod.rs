@@ -22,24 +22,3 @@ mod tests;
 
 pub(crate) use clip::CLIP;
 pub(crate) use pin::PIN;
-
-use glam::Vec2;
-use splashdown_gpu::{Buffer, BufferSet, buffer_set};
-
-use crate::bodies::Body;
-
-/// The bodies of a simulation.
-#[derive(Clone, Copy, Debug)]
-pub struct Solids {
-    /// Their states.
-    pub bodies: Buffer<Body>,
-    /// Their maps.
-    pub maps: Buffer<Vec2>,
-}
-
-impl Solids {
-    /// The buffers by name, for recordings.
-    pub(super) fn buffers(&self) -> BufferSet {
-        buffer_set!(self => bodies, maps)
-    }
-}

@@ -1,6 +1,7 @@
 //! Foam, spray and bubbles.
 
 mod births;
+mod bodies;
 mod fluid;
 mod moving;
 mod pool;
@@ -29,6 +30,7 @@ pub fn cases() -> Vec<Case> {
         fluid::potentials(),
         fluid::count(),
         moving::advect(),
+        bodies::collide(),
         births::plan("with room", 5000, 300),
         births::plan("with little room", 1000, 300),
         births::plan("full", 600, 300),
