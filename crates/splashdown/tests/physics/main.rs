@@ -25,6 +25,7 @@ mod ritter;
 mod roll;
 mod sessile;
 mod shapes;
+mod sloshing;
 mod spheric2;
 mod still_water;
 mod stretching;
@@ -57,6 +58,7 @@ const CASES: &[&[&cases::Case]] = &[
     ritter::CASES,
     roll::CASES,
     sessile::CASES,
+    sloshing::CASES,
     spheric2::CASES,
     still_water::CASES,
     stretching::CASES,
