@@ -10,6 +10,7 @@ mod cases;
 mod conservation;
 mod dam_break;
 mod disorder;
+mod drag;
 mod drop;
 mod figures;
 mod floating;
@@ -48,6 +49,7 @@ const CASES: &[&[&cases::Case]] = &[
     capillary::CASES,
     conservation::CASES,
     dam_break::CASES,
+    drag::CASES,
     drop::CASES,
     floating::CASES,
     free_fall::CASES,
