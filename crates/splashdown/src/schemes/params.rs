@@ -6,7 +6,7 @@ use crate::passes::viscous;
 use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
 use crate::state::Params;
 
-/// The smallest alpha for the friction at bodies.
+/// The alpha whose viscosity is the smallest in the friction at bodies where the density is integrated.
 const SMALLEST_BOUNDARY_ALPHA: f32 = 0.05;
 
 /// Mean depth in spacings of the particles on which the continuum surface force acts: mostly the first layer, half a
@@ -41,11 +41,15 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         Method::Wcsph | Method::Dfsph => Derived::capillary_viscosity(scene),
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
     };
-    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero.
-    let boundary_alpha = if scheme.is_density_integrated {
-        solver.artificial_viscosity.max(SMALLEST_BOUNDARY_ALPHA)
+    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero, and water would slip
+    // along bodies. The viscosity of the material counts towards the smallest one: added to it, it would exceed the
+    // viscosity of the fluid beside a body that resolves its boundary layer.
+    let per_alpha = derived.sound_speed * support_radius / 20.0;
+    let artificial = solver.artificial_viscosity * per_alpha;
+    let boundary_viscosity = if scheme.is_density_integrated {
+        artificial.max(SMALLEST_BOUNDARY_ALPHA * per_alpha - material.viscosity)
     } else {
-        solver.artificial_viscosity
+        artificial
     };
     let is_viscous = scheme.has_implicit_viscosity();
     let implicit_viscosity = if is_viscous { material.viscosity } else { 0.0 };
@@ -97,7 +101,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
             (f64::from(derived.particle_mass) / derived.lattice_sum) as f32
         },
         inverse_kernel_at_spacing: 1.0 / scheme.walls().w(1.0 / solver.support_ratio),
-        boundary_viscosity: boundary_alpha * derived.sound_speed * support_radius / 20.0,
+        boundary_viscosity,
         is_implicit: u32::from(scheme.is_implicit()),
         tolerance: solver.tolerance,
         max_iterations: solver.max_iterations,

@@ -69,3 +69,18 @@ fn a_plain_step_has_five_dispatches_or_six_with_many_cells() {
     assert_eq!(step(2.0, WCSPH, true).1.len(), 7);
     assert_eq!(step(2.0, "method = \"wcsph\"\nsurface_tension = \"akinci2013\"", false).1.len(), 7);
 }
+
+/// A drag that is 30 % too large was the result of adding them.
+#[test]
+fn the_numerical_viscosity_at_bodies_is_a_lower_limit_and_not_added() {
+    let friction = |viscosity: f32| {
+        let mut scene = scene(2.0, "accuracy = \"engineering\"\nsound_speed = 10");
+        scene.fluid.material.viscosity = viscosity;
+        let params = params(&scene, 64);
+        params.viscosity + params.boundary_viscosity
+    };
+    // alpha c0 H / 20 with alpha = 0.05 and H = 0.3 m.
+    for (viscosity, expected) in [(0.0, 0.0075), (0.005, 0.0075), (0.01, 0.01)] {
+        assert!((friction(viscosity) - expected).abs() < 1e-6, "{viscosity}: {}", friction(viscosity));
+    }
+}

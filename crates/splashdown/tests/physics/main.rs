@@ -10,6 +10,7 @@ mod cases;
 mod conservation;
 mod dam_break;
 mod disorder;
+mod drag;
 mod drop;
 mod figures;
 mod floating;
@@ -25,6 +26,7 @@ mod ritter;
 mod roll;
 mod sessile;
 mod shapes;
+mod sloshing;
 mod spheric2;
 mod still_water;
 mod stretching;
@@ -47,6 +49,7 @@ const CASES: &[&[&cases::Case]] = &[
     capillary::CASES,
     conservation::CASES,
     dam_break::CASES,
+    drag::CASES,
     drop::CASES,
     floating::CASES,
     free_fall::CASES,
@@ -57,6 +60,7 @@ const CASES: &[&[&cases::Case]] = &[
     ritter::CASES,
     roll::CASES,
     sessile::CASES,
+    sloshing::CASES,
     spheric2::CASES,
     still_water::CASES,
     stretching::CASES,
