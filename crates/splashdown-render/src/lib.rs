@@ -71,6 +71,7 @@ mod pipeline;
 mod quality;
 mod recorder;
 mod renderer;
+mod scene_copy;
 mod screen_space;
 mod shader;
 mod shadow;

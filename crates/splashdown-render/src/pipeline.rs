@@ -17,7 +17,8 @@ pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 pub(crate) struct PipelineDesc<'a> {
     pub shader: Shader,
     pub layouts: &'a [&'a BindGroupLayout],
-    pub format: TextureFormat,
+    /// Absent if only depths are written.
+    pub format: Option<TextureFormat>,
     pub samples: u32,
     pub topology: PrimitiveTopology,
     pub cull: Option<Face>,
@@ -42,12 +43,12 @@ impl<'a> PipelineDesc<'a> {
     pub fn new(
         shader: Shader,
         layouts: &'a [&'a BindGroupLayout],
-        format: TextureFormat,
+        format: impl Into<Option<TextureFormat>>,
     ) -> PipelineDesc<'a> {
         PipelineDesc {
             shader,
             layouts,
-            format,
+            format: format.into(),
             samples: 1,
             topology: PrimitiveTopology::TriangleList,
             cull: None,
@@ -82,6 +83,11 @@ impl<'a> PipelineDesc<'a> {
                 Some(VertexBufferLayout { array_stride: 16, step_mode: VertexStepMode::Vertex, attributes })
             })
             .collect();
+        let target = self.format.map(|format| wgpu::ColorTargetState {
+            format,
+            blend: self.blend,
+            write_mask: self.write,
+        });
         let compilation_options =
             wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -114,11 +120,7 @@ impl<'a> PipelineDesc<'a> {
                 module: &module,
                 entry_point: Some("fragment_main"),
                 compilation_options,
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.format,
-                    blend: self.blend,
-                    write_mask: self.write,
-                })],
+                targets: target.map(Some).as_slice(),
             }),
             multiview_mask: None,
             cache: None,
@@ -165,6 +167,14 @@ pub(crate) enum Bind {
     Texture,
     /// A texture of any float format, loaded without a sampler.
     Texels,
+    /// A texture of integers with 1 or several samples per pixel.
+    Integers {
+        multisampled: bool,
+    },
+    /// A depth buffer with 1 or several samples per pixel.
+    Depths {
+        multisampled: bool,
+    },
     Sampler,
 }
 
@@ -177,26 +187,34 @@ pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind])
             visibility: match bind {
                 Bind::Uniform => ShaderStages::VERTEX_FRAGMENT,
                 Bind::Storage | Bind::VertexTexture => ShaderStages::VERTEX,
-                Bind::FragmentStorage | Bind::Texture | Bind::Texels | Bind::Sampler => {
-                    ShaderStages::FRAGMENT
-                }
+                Bind::FragmentStorage
+                | Bind::Texture
+                | Bind::Texels
+                | Bind::Integers { .. }
+                | Bind::Depths { .. }
+                | Bind::Sampler => ShaderStages::FRAGMENT,
             },
             ty: match bind {
                 Bind::Uniform => buffer(BufferBindingType::Uniform),
                 Bind::Storage | Bind::FragmentStorage => {
                     buffer(BufferBindingType::Storage { read_only: true })
                 }
-                Bind::Texture | Bind::VertexTexture | Bind::Texels => BindingType::Texture {
-                    sample_type: TextureSampleType::Float { filterable: bind == &Bind::Texture },
-                    view_dimension: TextureViewDimension::D2,
-                    multisampled: false,
-                },
+                Bind::Texture => texture(TextureSampleType::Float { filterable: true }, false),
+                Bind::VertexTexture | Bind::Texels => {
+                    texture(TextureSampleType::Float { filterable: false }, false)
+                }
+                Bind::Integers { multisampled } => texture(TextureSampleType::Uint, *multisampled),
+                Bind::Depths { multisampled } => texture(TextureSampleType::Depth, *multisampled),
                 Bind::Sampler => BindingType::Sampler(SamplerBindingType::Filtering),
             },
             count: None,
         })
         .collect();
     device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+fn texture(sample_type: TextureSampleType, multisampled: bool) -> BindingType {
+    BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2, multisampled }
 }
 
 fn buffer(ty: BufferBindingType) -> BindingType {

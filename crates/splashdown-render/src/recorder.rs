@@ -91,6 +91,34 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Clear(clear)), Some((depth, operations)))
     }
 
+    /// A pass into a texture that is filled with zeros first, over the existing depths of a picture.
+    pub fn over_depth(
+        &mut self,
+        label: &'static str,
+        view: &TextureView,
+        depth: &TextureView,
+    ) -> RenderPass<'_> {
+        let operations = Operations { load: LoadOp::Load, store: StoreOp::Store };
+        self.begin(label, colour(view, LoadOp::Clear(Color::TRANSPARENT)), Some((depth, operations)))
+    }
+
+    /// A pass that marks pixels in a depth buffer by zeros among ones.
+    pub fn marks(&mut self, label: &'static str, depth: &TextureView) -> RenderPass<'_> {
+        let operations = Operations { load: LoadOp::Clear(1.0), store: StoreOp::Store };
+        self.begin(label, None, Some((depth, operations)))
+    }
+
+    /// A pass over the existing contents of a texture, at marked pixels.
+    pub fn over_marks(
+        &mut self,
+        label: &'static str,
+        view: &TextureView,
+        depth: &TextureView,
+    ) -> RenderPass<'_> {
+        let operations = Operations { load: LoadOp::Load, store: StoreOp::Discard };
+        self.begin(label, colour(view, LoadOp::Load), Some((depth, operations)))
+    }
+
     /// A pass of light with one sample per pixel and a depth buffer, both stored.
     pub fn light(
         &mut self,
@@ -118,15 +146,15 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Load), None)
     }
 
-    fn begin(
+    fn begin<'r>(
         &mut self,
         label: &'static str,
-        colour: RenderPassColorAttachment<'_>,
-        depth: Option<(&TextureView, Operations<f32>)>,
+        colour: impl Into<Option<RenderPassColorAttachment<'r>>>,
+        depth: Option<(&'r TextureView, Operations<f32>)>,
     ) -> RenderPass<'_> {
         self.encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some(label),
-            color_attachments: &[Some(colour)],
+            color_attachments: colour.into().map(Some).as_slice(),
             depth_stencil_attachment: depth.map(|(view, operations)| RenderPassDepthStencilAttachment {
                 view,
                 depth_ops: Some(operations),

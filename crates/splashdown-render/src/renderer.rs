@@ -11,6 +11,7 @@ use crate::overlay::Overlay;
 use crate::particles::Particles;
 use crate::pipeline::{Bind, bind_group, bind_group_layout};
 use crate::recorder::{End, Recorder, Start};
+use crate::scene_copy::SceneCopy;
 use crate::screen_space::{ScreenSpace, margin};
 use crate::shadow::Shadow;
 use crate::slice::Slice;
@@ -50,9 +51,12 @@ pub struct PassTime {
 /// 2. the sums of a slice;
 /// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid also bubbles,
 ///    and the result is resolved to a texture that the liquid refracts;
-/// 4. with a liquid, its thickness, and then its surface from a mesh or from smoothed distances;
-/// 5. wireframe, foam and spray, and the near edges; all samples are resolved into the target;
-/// 6. colour bar and caption.
+/// 4. with a liquid and one sample per pixel, a copy of that texture in the target;
+/// 5. with a liquid, its thickness; then for a mesh its normals, the pixels that it covers, and the
+///    shading of these pixels; for a liquid of particles, their distances and smoothing;
+/// 6. the picture: the shading of smoothed distances, wireframe, droplets, foam and spray, the near
+///    panes and edges; all samples are resolved into the target;
+/// 7. colour bar and caption.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
@@ -70,6 +74,7 @@ pub struct Renderer {
     foam: Foam,
     glass: Glass,
     surface: Surface,
+    scene_copy: SceneCopy,
     screen_space: ScreenSpace,
     overlay: Overlay,
     /// Created with the first picture that needs it.
@@ -110,6 +115,7 @@ impl Renderer {
             foam: Foam::new(device, layouts, format, sample_count),
             glass: Glass::new(device, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
+            scene_copy: SceneCopy::new(device, format),
             screen_space: ScreenSpace::new(device, layouts, format, sample_count),
             overlay: Overlay::new(device, format),
             shadow,
@@ -236,12 +242,15 @@ impl Renderer {
                 self.bodies.record_distance(&mut pass, bodies);
             }
         }
-        let liquid = if let Some(drawn) = &surface {
-            let mut pass = recorder.cleared("thickness", &targets.thickness, Color::TRANSPARENT);
-            pass.set_bind_group(0, &globals, &[]);
-            self.surface.record_thickness(&self.device, &mut pass, targets, &drawn.buffers);
-            Some(self.surface.bind(&self.device, targets))
-        } else if let Some(drawn) = &frame.liquid_particles {
+        if has_liquid && targets.samples.is_none() {
+            let mut pass = recorder.cleared("scene copy", target, Color::BLACK);
+            self.scene_copy.record(&self.device, &mut pass, targets);
+        }
+        if let Some(drawn) = &surface {
+            let groups = [&globals, &self.shadow.environment];
+            self.surface.record(&self.device, &mut recorder, targets, target, groups, &drawn.buffers);
+        }
+        let distances = if let Some(drawn) = &frame.liquid_particles {
             let chunks = self.screen_space.bind(&self.device, &drawn.buffers);
             {
                 let mut pass = recorder.cleared("particle thickness", &targets.thickness, Color::TRANSPARENT);
@@ -254,20 +263,15 @@ impl Renderer {
             None
         };
         {
-            // With several samples per pixel, the samples still contain the scene. With one sample,
-            // the scene was drawn into its own texture and is drawn again here.
-            let has_scene = liquid.is_some() && targets.samples.is_some();
-            let start = if has_scene { Start::Load } else { Start::Clear };
+            let start = if has_liquid { Start::Load } else { Start::Clear };
             let mut pass = recorder.picture("picture", targets, target, start, End::Discard);
-            if !has_scene {
+            if !has_liquid {
                 scene(&mut pass);
             }
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
-            match (&liquid, &surface) {
-                (Some(group), Some(drawn)) => self.surface.record(&mut pass, group, &drawn.buffers),
-                (Some(group), None) => self.screen_space.record(&mut pass, group),
-                (None, _) => {}
+            if let Some(distances) = &distances {
+                self.screen_space.record(&mut pass, distances);
             }
             if let Some(drawn) = &frame.surface {
                 self.surface.record_lines(&self.device, &mut pass, drawn);

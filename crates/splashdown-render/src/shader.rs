@@ -41,14 +41,20 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 32] = [
+    const ALL: [Shader; 38] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
         crate::edges::SHADER,
         crate::particles::SHADER,
         crate::surface::THICKNESS,
-        crate::surface::SHADER,
+        crate::surface::deferred::NORMALS,
+        crate::surface::deferred::COVER_ONE,
+        crate::surface::deferred::COVER_FOUR,
+        crate::surface::deferred::SHADE_ONE,
+        crate::surface::deferred::SHADE_FOUR,
+        crate::surface::deferred::OVER_SAMPLES,
+        crate::scene_copy::SHADER,
         crate::screen_space::SPLAT,
         crate::screen_space::PARTICLE_THICKNESS,
         crate::screen_space::SMOOTH,
@@ -119,8 +125,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 13,
-            "each shader has its own file, and thirteen more are shared: {files:?}"
+            ALL.len() + 15,
+            "each shader has its own file, and fifteen more are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

@@ -4,6 +4,8 @@ use crate::pipeline::DEPTH;
 use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
 
 pub(crate) const THICKNESS_FORMAT: TextureFormat = TextureFormat::R16Float;
+/// Two integers per normal: see `surface/normal_code.wgsl`.
+pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rg16Uint;
 
 #[derive(Debug)]
 pub(crate) struct Targets {
@@ -17,6 +19,12 @@ pub(crate) struct Targets {
     pub thickness: TextureView,
     /// Relative distance of the nearest body, at half resolution.
     pub solid: TextureView,
+    /// Normals of the liquid's surface, with as many samples as the picture.
+    pub normals: TextureView,
+    /// The pixels that the surface covers: a depth buffer of zeros among ones.
+    pub covered: TextureView,
+    /// The shaded liquid, with one sample per pixel; absent if the picture has only one sample too.
+    pub liquid: Option<TextureView>,
 }
 
 impl Targets {
@@ -28,10 +36,13 @@ impl Targets {
         Targets {
             size,
             samples: (sample_count > 1).then(|| make("samples", size, format, sample_count, drawn)),
-            depth: make("depth", size, DEPTH, sample_count, drawn),
+            depth: make("depth", size, DEPTH, sample_count, read),
             scene: make("scene", size, format, 1, read),
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
             solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
+            normals: make("normals", size, NORMAL_FORMAT, sample_count, read),
+            covered: make("covered", size, DEPTH, 1, drawn),
+            liquid: (sample_count > 1).then(|| make("liquid", size, format, 1, read)),
         }
     }
 }

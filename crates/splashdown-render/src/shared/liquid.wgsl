@@ -28,15 +28,18 @@ fn wall_ahead(origin: vec3f, direction: vec3f) -> vec2f {
     return nearest;
 }
 
-struct Seen {
-    light: vec3f,
-    path: f32,      // length in the liquid, m
+// A ray that leaves the liquid.
+struct Leaving {
+    origin: vec3f,
+    direction: vec3f,
+    path: f32,              // length in the liquid, m
+    is_straight: bool,      // whether it ends in the picture behind the liquid
 }
 
-// The light at the end of a ray that has entered the liquid. The exit through a free surface is not known: the ray
+// Follows a ray that has entered the liquid. The exit through a free surface is not known: the ray
 // goes straight on to the picture behind. At a wall of the tank it is refracted, or reflected totally up to three
 // times; the bottom of the tank ends it.
-fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
+fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
     var origin = world;
     var direction = bent;
     var travelled = 0.0;
@@ -57,7 +60,7 @@ fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
         let outward = sideways * sign(direction[axis]);
         let leaving = refract(direction, -outward, globals.refractive_index);
         if dot(leaving, leaving) > 0.0 {
-            return Seen(environment(origin, leaving, 6.0 * globals.pixel_angle), travelled);
+            return Leaving(origin, leaving, travelled, false);
         }
         direction -= 2.0 * direction * sideways;
         is_reflected = true;
@@ -66,11 +69,16 @@ fn behind_liquid(world: vec3f, bent: vec3f, path: f32) -> Seen {
     let left = max(path - travelled, 0.0);
     let rest = select(left, min(left, down), down > 0.0);
     if is_reflected {
-        return Seen(environment(origin, direction, 6.0 * globals.pixel_angle), travelled + rest);
+        return Leaving(origin, direction, travelled + rest, false);
     }
-    let leaving = globals.clip_from_world * vec4f(origin + direction * rest, 1.0);
-    let uv = clamp(leaving.xy / max(leaving.w, globals.near) * vec2f(0.5, -0.5) + 0.5, vec2f(0.001), vec2f(0.999));
-    return Seen(light_of(textureSampleLevel(scene_colour, scene_sampler, uv, 0.0).rgb), rest);
+    return Leaving(origin + direction * rest, direction, rest, true);
+}
+
+// The picture behind the liquid at a point of the scene.
+fn scene_at(world: vec3f) -> vec3f {
+    let clip = globals.clip_from_world * vec4f(world, 1.0);
+    let uv = clamp(clip.xy / max(clip.w, globals.near) * vec2f(0.5, -0.5) + 0.5, vec2f(0.001), vec2f(0.999));
+    return light_of(textureSampleLevel(scene_colour, scene_sampler, uv, 0.0).rgb);
 }
 
 // Colour of the liquid at the surface point `world`, with `path` metres of liquid behind it. The
@@ -83,12 +91,18 @@ fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
     let reflection = environment(world, reflect(-to_eye, normal), 6.0 * globals.pixel_angle);
 
     let bent = refract(-to_eye, normal, 1.0 / globals.refractive_index);
-    let seen = behind_liquid(world, bent, path);
-    let behind = seen.light;
+    let leaving = leaving_ray(world, bent, path);
+    // Here and not in the loop of leaving_ray: a software driver would evaluate it in every turn.
+    var behind: vec3f;
+    if leaving.is_straight {
+        behind = scene_at(leaving.origin);
+    } else {
+        behind = environment(leaving.origin, leaving.direction, 6.0 * globals.pixel_angle);
+    }
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
-    let transmittance = exp(-EMPHASIS * globals.liquid_absorption * seen.path);
-    let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(seen.path));
+    let transmittance = exp(-EMPHASIS * globals.liquid_absorption * leaving.path);
+    let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(leaving.path));
     let sun = sun_highlight(normal, to_eye, facing);
     return present(mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0));
 }

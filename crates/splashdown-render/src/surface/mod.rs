@@ -17,6 +17,8 @@
 //! In a closed mesh a constant cancels, so the distance of the middle of the box is subtracted
 //! first; 16-bit floats are then precise to about a millimetre per metre.
 //!
+//! The mesh only stores normals and depths; each pixel is shaded afterwards (module `deferred`).
+//!
 //! *Wireframe*: WebGPU only fills triangles. The vertex shader loads each corner by its index and
 //! outputs barycentric coordinates; these, divided by their gradient on the screen, are the
 //! distances to the three edges in pixels. The lines of small triangles are fainter; otherwise a
@@ -33,18 +35,20 @@
 //! # Things we might try
 //! A second refraction where the ray leaves the liquid through a free surface.
 
+pub(crate) mod deferred;
+
 use crate::globals::Globals;
-use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
-use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIQUID, OPTICS, Shader};
+use crate::pipeline::{ADD, Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout};
+use crate::recorder::Recorder;
+use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets};
 use crate::{Draw, Liquid, RenderError, SurfaceBuffers, SurfaceStyle};
+use deferred::Deferred;
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPass, RenderPipeline, Sampler,
-    TextureFormat,
+    BindGroup, BindGroupLayout, BindingResource, Color, Device, Face, RenderPass, RenderPipeline,
+    TextureFormat, TextureView,
 };
 
-pub(crate) const SHADER: Shader =
-    Shader { label: "surface", parts: &[GLOBALS, ENVIRONMENT, OPTICS, LIQUID, include_str!("surface.wgsl")] };
 pub(crate) const THICKNESS: Shader =
     Shader { label: "thickness", parts: &[GLOBALS, EYE_DISTANCE, include_str!("thickness.wgsl")] };
 pub(crate) const LINES: Shader =
@@ -83,14 +87,12 @@ impl<'a> DrawnSurface<'a> {
 
 #[derive(Debug)]
 pub(crate) struct Surface {
-    pipeline: RenderPipeline,
+    deferred: Deferred,
     thickness: RenderPipeline,
     lines_over: RenderPipeline,
     lines_alone: RenderPipeline,
     lines_layout: BindGroupLayout,
-    layout: BindGroupLayout,
     solid_layout: BindGroupLayout,
-    sampler: Sampler,
 }
 
 impl Surface {
@@ -100,15 +102,6 @@ impl Surface {
         format: TextureFormat,
         samples: u32,
     ) -> Surface {
-        let layout = bind_group_layout(device, "surface", &[Bind::Texture, Bind::Texture, Bind::Sampler]);
-        let layouts = [globals, environment, &layout];
-        let desc = PipelineDesc {
-            samples,
-            depth: Some(Depth::TestAndWrite),
-            cull: Some(Face::Back),
-            vertex_buffers: 2,
-            ..PipelineDesc::new(SHADER, &layouts, format)
-        };
         let solid_layout = bind_group_layout(device, "solid", &[Bind::Texture]);
         let thickness_layouts = [globals, &solid_layout];
         let thickness = PipelineDesc {
@@ -133,45 +126,35 @@ impl Surface {
         Surface {
             lines_over: lines(true),
             lines_alone: lines(false),
-            pipeline: desc.build(device),
+            deferred: Deferred::new(device, [globals, environment], format, samples),
             thickness: thickness.build(device),
-            sampler: linear_sampler(device),
             lines_layout,
             solid_layout,
-            layout,
         }
     }
 
-    pub fn bind(&self, device: &Device, targets: &Targets) -> BindGroup {
-        let resources = [
-            BindingResource::TextureView(&targets.scene),
-            BindingResource::TextureView(&targets.thickness),
-            BindingResource::Sampler(&self.sampler),
-        ];
-        bind_group(device, "surface", &self.layout, &resources)
-    }
-
-    /// Sums the thickness of the liquid on every view ray. Expects group 0 (globals) to be bound.
-    pub fn record_thickness(
+    /// Draws the liquid over the scene, and its depths: into the samples of `targets`, or with one
+    /// sample per pixel into `picture`. `groups`: globals and environment.
+    pub fn record(
         &self,
         device: &Device,
-        pass: &mut RenderPass<'_>,
+        recorder: &mut Recorder<'_>,
         targets: &Targets,
+        picture: &TextureView,
+        groups: [&BindGroup; 2],
         buffers: &SurfaceBuffers<'_>,
     ) {
-        let solid = [BindingResource::TextureView(&targets.solid)];
-        let group = bind_group(device, "solid", &self.solid_layout, &solid);
-        pass.set_pipeline(&self.thickness);
-        pass.set_bind_group(1, &group, &[]);
-        buffers.draw(pass);
-    }
-
-    /// Draws the liquid. Expects groups 0 (globals) and 1 (environment) to be bound.
-    pub fn record(&self, pass: &mut RenderPass<'_>, group: &BindGroup, buffers: &SurfaceBuffers<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(2, group, &[]);
-        pass.set_vertex_buffer(1, buffers.normals.slice(..));
-        buffers.draw(pass);
+        // Sums the thickness of the liquid on every view ray.
+        {
+            let mut pass = recorder.cleared("thickness", &targets.thickness, Color::TRANSPARENT);
+            let solid = [BindingResource::TextureView(&targets.solid)];
+            let group = bind_group(device, "solid", &self.solid_layout, &solid);
+            pass.set_pipeline(&self.thickness);
+            pass.set_bind_group(0, groups[0], &[]);
+            pass.set_bind_group(1, &group, &[]);
+            buffers.draw(&mut pass);
+        }
+        self.deferred.record(device, recorder, targets, picture, groups, buffers);
     }
 
     /// Draws the wireframe. Expects groups 0 (globals) and 1 (environment) to be bound.

@@ -1,0 +1,14 @@
+// The textures of the stored surface, with four samples per pixel.
+
+@group(3) @binding(0) var normals: texture_multisampled_2d<u32>;
+@group(3) @binding(1) var depths: texture_depth_multisampled_2d;
+
+const SAMPLES = 4u;
+
+fn stored_code(pixel: vec2u, sample: u32) -> vec2u {
+    return textureLoad(normals, pixel, sample).rg;
+}
+
+fn stored_depth(pixel: vec2u, sample: u32) -> f32 {
+    return textureLoad(depths, pixel, sample);
+}
