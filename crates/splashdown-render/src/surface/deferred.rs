@@ -13,7 +13,9 @@
 //!    Outlines are therefore as smooth as those of triangles. With one sample per pixel, the third
 //!    pass draws into the picture, and there is no fourth.
 //!
-//! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720: `docs/performance.md`.
+//! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples, the surface of a
+//! dam break with 231,000 triangles: normals 49 ms, cover 6, shade 36, over samples 16. The shader of
+//! the liquid in the pass of the mesh took about 350 ms.
 //!
 //! # Why not the other way
 //! The shader of the liquid in the pass of the mesh runs once for each triangle in a pixel, which is

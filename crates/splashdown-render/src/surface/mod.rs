@@ -24,9 +24,6 @@
 //! distances to the three edges in pixels. The lines of small triangles are fainter; otherwise a
 //! fine mesh would be black.
 //!
-//! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples, background
-//! and shadow: 298,000 triangles in 0.26 s, the empty box in 0.03 s.
-//!
 //! # Why not the other way
 //! Ray tracing the mesh would be correct for drops in front of drops, but is too slow without a
 //! GPU. Depth peeling needs a pass per layer. Here only the nearest layer is shaded; the layers
