@@ -96,7 +96,7 @@ fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
     assert!(width > 10 && height.abs_diff(width) < width / 3, "{width} x {height}");
     assert!(count < width * height / 2, "{count} of {width} x {height} pixels");
     let ([width, height], _) = drawn(FOAM);
-    assert!(width > 15 && 2 * height < width, "{width} x {height}");
+    assert!(width > 10 && 2 * height < width, "{width} x {height}");
     // Control: a bubble is a disc.
     let ([width, height], count) = drawn(BUBBLE);
     assert!(height.abs_diff(width) < 2 && 2 * count > width * height, "{count} of {width} x {height}");

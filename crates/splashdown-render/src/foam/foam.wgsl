@@ -13,13 +13,17 @@ const FOAM = 1u;
 const BUBBLE = 2u;
 // Particles fade out over the last seconds of their lifetime.
 const FADE_TIME = 0.5;
+// Smallest radius of a drop or bubble in pixels.
+const MIN_RADIUS = 0.7;
 // Least foreshortening of foam, which lies in the surface of the liquid.
 const FLATTEST = 0.35;
 
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the outline; turned by a random angle
-    @location(1) @interpolate(flat) appearance: vec4f,    // opacity, brightness, kind, pixels per radius
+    @location(1) @interpolate(flat) appearance: vec3f,    // opacity, brightness, kind
+    // Opacity of each member of a group, and one over the square of its radius in radii of the group.
+    @location(2) @interpolate(flat) members: vec2f,
 }
 
 // Pseudo-random number in [0, 1) from a particle's tag.
@@ -37,14 +41,20 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let kind = tag & 3u;
     let variation = random(tag);
     // In particle radii.
-    var size = 1.2;
+    var size = 1.0;
+    var member = 0.12;
+    var opaque = 0.85;
     var nearer = 0.0;
     if kind == FOAM {
-        size = 1.5;
+        size = 1.2;
+        member = 0.24;
+        opaque = 0.45;
         // The depth offset prevents the surface from cutting the patches in two.
         nearer = 2.5 * globals.foam_radius;
     } else if kind == BUBBLE {
         size = 0.32;
+        member = 1.0;
+        opaque = 0.30;
     }
     let opacity = clamp(particle.w / FADE_TIME, 0.0, 1.0);
     let radius = size * (0.6 + 0.8 * variation) * globals.foam_radius;
@@ -68,31 +78,25 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let angle = 6.2831853 * fract(61.0 * variation);
     let turn = vec2f(cos(angle), sin(angle));
     out.across = vec2f(dot(turn, corner.across), turn.x * corner.across.y - turn.y * corner.across.x);
+    // Members below a pixel would flicker; they are enlarged and made fainter.
     let pixel = globals.pixel_angle * distance(particle.xyz, globals.eye) / radius;
-    out.appearance = vec4f(opacity, 0.88 + 0.12 * variation, f32(kind), pixel);
+    let drawn = max(member, MIN_RADIUS * pixel);
+    out.members = vec2f(opaque * member * member, 1.0) / (drawn * drawn);
+    out.appearance = vec3f(opacity, 0.88 + 0.12 * variation, f32(kind));
     return out;
 }
 
-// How much of the light behind a drop at `centre` still arrives. Drops below a pixel would flicker; they are enlarged and
-// made fainter.
-fn past_drop(across: vec2f, centre: vec2f, radius: f32, opacity: f32, pixel: f32) -> f32 {
-    let drawn = max(radius, 0.7 * pixel);
-    let faint = opacity * radius * radius / (drawn * drawn);
-    let inside = 1.0 - dot(across - centre, across - centre) / (drawn * drawn);
-    return 1.0 - faint * smoothstep(0.0, 0.7, inside);
+// How much of the light from behind passes a drop at `centre`.
+fn past_drop(across: vec2f, centre: vec2f, members: vec2f) -> f32 {
+    let offset = across - centre;
+    return 1.0 - members.x * saturate(1.4 - 1.4 * members.y * dot(offset, offset));
 }
 
-// Opacity of a group of drops or bubbles in the unit circle; `scale` is the size of its members.
-fn group(across: vec2f, scale: f32, opacity: f32, pixel: f32) -> f32 {
-    var past = past_drop(across, vec2f(0.05, -0.08), 1.5 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(0.45, 0.30), 1.0 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(-0.38, 0.47), 1.2 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(-0.60, -0.12), 0.8 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(-0.25, -0.62), 1.1 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(0.38, -0.52), 0.7 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(0.75, -0.10), 0.6 * scale, opacity, pixel);
-    past *= past_drop(across, vec2f(0.12, 0.78), 0.7 * scale, opacity, pixel);
-    return 1.0 - past;
+// Opacity of a group of drops or bubbles in the unit circle.
+fn group(across: vec2f, members: vec2f) -> f32 {
+    let past = past_drop(across, vec2f(0.50, 0.30), members) * past_drop(across, vec2f(-0.32, 0.55), members);
+    let past_more = past_drop(across, vec2f(-0.56, -0.30), members) * past_drop(across, vec2f(0.26, -0.62), members);
+    return 1.0 - past * past_more * past_drop(across, vec2f(0.02, -0.08), members);
 }
 
 @fragment
@@ -101,18 +105,13 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     if inside <= 0.0 {
         discard;
     }
-    let pixel = in.appearance.w;
     let kind = u32(in.appearance.z + 0.5);
-    var cover = 0.0;
-    if kind == SPRAY {
-        cover = group(in.across, 0.08, 0.85, pixel);
-    } else if kind == FOAM {
-        cover = 0.05 * inside + group(in.across, 0.16, 0.45, pixel);
-    } else {
+    var cover: f32;
+    if kind == BUBBLE {
         // A bright rim.
-        cover = 0.30 * smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
-        let radius = max(1.0, 0.7 * pixel);
-        cover /= radius * radius;
+        cover = in.members.x * smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
+    } else {
+        cover = group(in.across, in.members);
     }
     let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
     return vec4f(present(in.appearance.y * light), in.appearance.x * cover);

@@ -8,7 +8,7 @@
 //! drawn after the liquid.
 //!
 //! A particle of spray stands for a cloud of drops, and one of foam for a patch of bubbles: the
-//! billboard shows a group of eight, turned by a random angle. Single discs look like gravel. Foam
+//! billboard shows a group of five, turned by a random angle. Single discs look like gravel. Foam
 //! lies in the surface: its billboard is foreshortened like a horizontal disc, and a depth offset
 //! moves it slightly towards the eye, because the surface would cut it in two. Drops smaller than a
 //! pixel are enlarged to one pixel and their opacity is reduced accordingly.
