@@ -9,8 +9,8 @@ and is then constant. Vorticity w and stream function psi of the symmetric half,
     d2psi/dxi2 + d2psi/dtheta2 = -r^2 w
 
 The stream function is a sine series in theta, with one tridiagonal system per mode and the exact condition of a potential
-flow at the outer boundary. The vorticity at the wall follows from the stream function (Thom). Time steps are those of Heun.
-Control: at Re = 40 the drag decreases to the steady 1.522 of Dennis and Chang (1970), for example 1.53 at t = 30.
+flow at the outer boundary. The vorticity at the wall follows from the stream function (Thom). Integrated in time by Heun's method.
+Control: at Re = 40 the drag decreases to the steady 1.522 of Dennis and Chang (1970), for example 1.54 at t = 30.
 """
 
 import sys

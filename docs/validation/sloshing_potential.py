@@ -6,8 +6,8 @@ The amplitudes are in m; 0.032 without an argument. The tank is 1.73 m long with
 after t = 0, where the water is at rest. Prints the crests 0.05 m from the wall.
 
 Elevation and surface potential are cosine series in x. The vertical velocity at the surface is an expansion in the elevation
-(B. West et al., J. Geophys. Res. 92 (1987) 11803-11824; D. Dommermuth and D. Yue, J. Fluid Mech. 184 (1987) 267-288). Time
-steps are those of Runge and Kutta. The first two crests differ by 1 % between the orders 3, 4 and 5 and between 6 and 12 modes.
+(B. West et al., J. Geophys. Res. 92 (1987) 11803-11824; D. Dommermuth and D. Yue, J. Fluid Mech. 184 (1987) 267-288). Integrated
+in time by a Runge-Kutta method. The first two crests differ by 1 % between the orders 3, 4 and 5 and between 6 and 12 modes.
 """
 
 import math

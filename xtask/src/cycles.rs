@@ -46,6 +46,7 @@ const CASES: [Case; 4] = [
         changes: &[
             ("particle_spacing = 0.02", "particle_spacing = 0.04"),
             ("liquid = \"sea\"", "liquid = \"water\""),
+            ("enabled = true", "enabled = false"),
         ],
         frames: &[12, 20],
     },

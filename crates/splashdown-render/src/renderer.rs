@@ -16,7 +16,7 @@ use crate::screen_space::{ScreenSpace, margin};
 use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
-use crate::targets::Targets;
+use crate::targets::{MeshTargets, Targets};
 use crate::trace::TracedPicture;
 use crate::{Frame, RenderError, SurfaceStyle};
 use splashdown_gpu::PassTimer;
@@ -190,6 +190,13 @@ impl Renderer {
         let globals = self.bind_globals(bytemuck::bytes_of(&globals));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
             self.targets = Some(Targets::new(&self.device, size, self.format, self.sample_count));
+        }
+        let has_mesh = frame.surface.is_some_and(|drawn| drawn.style != SurfaceStyle::Lines);
+        if let Some(targets) = &mut self.targets
+            && has_mesh
+            && targets.mesh.is_none()
+        {
+            targets.mesh = Some(MeshTargets::new(&self.device, size, self.format, self.sample_count));
         }
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
         // Collects the times read back so far, so that the timer can measure this picture.

@@ -19,7 +19,14 @@ pub(crate) struct Targets {
     pub thickness: TextureView,
     /// Relative distance of the nearest body, at half resolution.
     pub solid: TextureView,
-    /// Normals of the liquid's surface, with as many samples as the picture.
+    /// Created with the first mesh.
+    pub mesh: Option<MeshTargets>,
+}
+
+/// What a mesh of the liquid needs.
+#[derive(Debug)]
+pub(crate) struct MeshTargets {
+    /// Normals of the surface, with as many samples as the picture.
     pub normals: TextureView,
     /// The pixels that the surface covers: a depth buffer of zeros among ones.
     pub covered: TextureView,
@@ -40,9 +47,20 @@ impl Targets {
             scene: make("scene", size, format, 1, read),
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
             solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
-            normals: make("normals", size, NORMAL_FORMAT, sample_count, read),
-            covered: make("covered", size, DEPTH, 1, drawn),
-            liquid: (sample_count > 1).then(|| make("liquid", size, format, 1, read)),
+            mesh: None,
+        }
+    }
+}
+
+impl MeshTargets {
+    pub fn new(device: &Device, size: [u32; 2], format: TextureFormat, sample_count: u32) -> MeshTargets {
+        let drawn = TextureUsages::RENDER_ATTACHMENT;
+        let read = drawn | TextureUsages::TEXTURE_BINDING;
+        let shaded = || texture(device, "liquid", size, format, 1, read);
+        MeshTargets {
+            normals: texture(device, "normals", size, NORMAL_FORMAT, sample_count, read),
+            covered: texture(device, "covered", size, DEPTH, 1, drawn),
+            liquid: (sample_count > 1).then(shaded),
         }
     }
 }

@@ -103,6 +103,34 @@ fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
 }
 
 #[test]
+fn particles_below_a_pixel_do_not_vanish_or_flicker() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
+    // A pixel at the place of the particles is about 18 mm wide.
+    let pixel = 4.0 * 2.0 * 20.0_f32.to_radians().tan() / SIZE[1] as f32;
+    for (kind, smallest) in [(SPRAY, 0.7), (FOAM, 0.7), (BUBBLE, 1.5)] {
+        // The brightness per area and particle of some particles at one place.
+        let mut brightness = |count: usize, radius: f32, shift: f32| {
+            let places = vec![[shift * pixel, 0.6 * shift * pixel, 0.0]; count];
+            let (lifetimes, kinds) = (vec![3.0; count], vec![kind; count]);
+            let foam = UploadedFoam::new(&harness.device, &places, &lifetimes, &[], &kinds).unwrap();
+            let picture = harness.draw(SIZE, &frame.with_foam(DrawnFoam::new(foam.buffers(), radius)));
+            let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+            let sum: i32 = pixels.map(|place| brighter(&picture, &empty, place).max(0)).sum();
+            sum as f32 / (count as f32 * radius * radius)
+        };
+        let large = brightness(1, 20.0 * pixel, 0.0);
+        // Several, so that the light is not rounded away; rounding makes it more.
+        let ratios = [0.0, 0.2, 0.45, 0.7].map(|shift| brightness(8, smallest * pixel, shift) / large);
+        let (least, most) =
+            (ratios.into_iter().fold(f32::MAX, f32::min), ratios.into_iter().fold(0.0, f32::max));
+        assert!(least > 0.6 && most < 1.5 * least, "kind {kind}: {ratios:?} of the light of large ones");
+    }
+}
+
+#[test]
 fn spheres_hide_foam() {
     let Some(mut harness) = common::harness() else { return };
     let ball = UploadedParticles::new(&harness.device, &[[0.0; 3]], &[], &[], &[]).unwrap();

@@ -154,6 +154,15 @@ fn times_of_passes_are_read_back() {
     let sum: f32 = times.iter().map(|time| time.milliseconds).sum();
     assert!(sum > 0.0 && sum < wall, "{sum} ms in one of six pictures with a total of {wall} ms");
     // The passes of another picture replace them.
+    let ball = sample::ball([0.0; 3], 1.0, 8);
+    let ball = UploadedSurface::new(&device, &ball.vertices, &ball.normals, &ball.triangles).unwrap();
+    let mesh = frame().with_surface(DrawnSurface::new(ball.buffers(), Liquid::water()));
+    for _ in 0..6 {
+        target.render_to_rgba(&mut renderer, &mesh).unwrap();
+    }
+    let labels: Vec<&str> = renderer.pass_times().iter().map(|time| time.label).collect();
+    let of_mesh = ["thickness", "normals", "cover", "shade", "over samples", "picture"];
+    assert!(labels.ends_with(&of_mesh), "{labels:?}");
     for _ in 0..6 {
         target.render_to_rgba(&mut renderer, &frame()).unwrap();
     }

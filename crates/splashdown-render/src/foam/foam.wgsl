@@ -1,8 +1,6 @@
-// Foam and spray as groups of bubbles and drops, and bubbles under water, on white billboards. Needs globals.wgsl, environment.wgsl,
-// sphere.wgsl.
+// Foam and spray as groups of bubbles and drops, and bubbles under water, on white billboards.
+// Needs globals.wgsl, environment.wgsl, sphere.wgsl.
 
-// Two rows per particle: position and lifetime, velocity and tag. Declared as integers, because a
-// tag loaded as a float may be flushed to zero as a denormal.
 @group(2) @binding(0) var<storage, read> diffuse: array<vec4u>;
 
 // Bit k is set if kind k is drawn.
@@ -13,8 +11,10 @@ const FOAM = 1u;
 const BUBBLE = 2u;
 // Particles fade out over the last seconds of their lifetime.
 const FADE_TIME = 0.5;
-// Smallest radius of a drop or bubble in pixels.
-const MIN_RADIUS = 0.7;
+// Smallest radii of a billboard and of a member of a group, in pixels. Above sqrt(1/2) a disc always
+// contains the middle of a pixel.
+const MIN_BILLBOARD = 1.2;
+const MIN_RADIUS = 0.8;
 // Least foreshortening of foam, which lies in the surface of the liquid.
 const FLATTEST = 0.35;
 
@@ -22,7 +22,7 @@ struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the outline; turned by a random angle
     @location(1) @interpolate(flat) appearance: vec3f,    // opacity, brightness, kind
-    // Opacity of each member of a group, and one over the square of its radius in radii of the group.
+    // Opacity of a member of a group, and one over the square of its radius in radii of the group.
     @location(2) @interpolate(flat) members: vec2f,
 }
 
@@ -56,15 +56,22 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
         member = 1.0;
         opaque = 0.30;
     }
-    let opacity = clamp(particle.w / FADE_TIME, 0.0, 1.0);
-    let radius = size * (0.6 + 0.8 * variation) * globals.foam_radius;
+    let from_eye = particle.xyz - globals.eye;
+    let away = length(from_eye);
+    // Height over width on the screen.
+    let flatness = select(1.0, max(abs(from_eye.y) / away, FLATTEST), kind == FOAM);
+    // What is below a pixel would flicker; it is enlarged and made fainter.
+    let pixel = globals.pixel_angle * away / flatness;
+    let own_radius = size * (0.6 + 0.8 * variation) * globals.foam_radius;
+    let radius = max(own_radius, MIN_BILLBOARD * pixel);
+    let fainter = own_radius * own_radius / (radius * radius);
+    let opacity = fainter * clamp(particle.w / FADE_TIME, 0.0, 1.0);
     var corner = sphere_corner(vec4f(particle.xyz, 0.0), radius, index);
-    if kind == FOAM && corner.position.w > 0.0 {
+    if kind == FOAM && corner.centre.w > 0.0 {
         let axis = corner.centre.xyz / corner.centre.w;
         let above = normalize(globals.up - dot(globals.up, axis) * axis);
         let offset = corner.ray - corner.centre.xyz;
-        let flat_part = max(abs(axis.y), FLATTEST) - 1.0;
-        let place = globals.eye + corner.ray + above * (flat_part * dot(offset, above));
+        let place = globals.eye + corner.ray + above * ((flatness - 1.0) * dot(offset, above));
         corner.position = globals.clip_from_world * vec4f(place, 1.0);
     }
     var out: Varying;
@@ -78,9 +85,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let angle = 6.2831853 * fract(61.0 * variation);
     let turn = vec2f(cos(angle), sin(angle));
     out.across = vec2f(dot(turn, corner.across), turn.x * corner.across.y - turn.y * corner.across.x);
-    // Members below a pixel would flicker; they are enlarged and made fainter.
-    let pixel = globals.pixel_angle * distance(particle.xyz, globals.eye) / radius;
-    let drawn = max(member, MIN_RADIUS * pixel);
+    let drawn = max(member, MIN_RADIUS * pixel / radius);
     out.members = vec2f(opaque * member * member, 1.0) / (drawn * drawn);
     out.appearance = vec3f(opacity, 0.88 + 0.12 * variation, f32(kind));
     return out;
@@ -94,9 +99,12 @@ fn past_drop(across: vec2f, centre: vec2f, members: vec2f) -> f32 {
 
 // Opacity of a group of drops or bubbles in the unit circle.
 fn group(across: vec2f, members: vec2f) -> f32 {
-    let past = past_drop(across, vec2f(0.50, 0.30), members) * past_drop(across, vec2f(-0.32, 0.55), members);
-    let past_more = past_drop(across, vec2f(-0.56, -0.30), members) * past_drop(across, vec2f(0.26, -0.62), members);
-    return 1.0 - past * past_more * past_drop(across, vec2f(0.02, -0.08), members);
+    var past = past_drop(across, vec2f(0.50, 0.30), members);
+    past *= past_drop(across, vec2f(-0.32, 0.55), members);
+    past *= past_drop(across, vec2f(-0.56, -0.30), members);
+    past *= past_drop(across, vec2f(0.26, -0.62), members);
+    past *= past_drop(across, vec2f(0.02, -0.08), members);
+    return 1.0 - past;
 }
 
 @fragment

@@ -10,8 +10,8 @@
 //! A particle of spray stands for a cloud of drops, and one of foam for a patch of bubbles: the
 //! billboard shows a group of five, turned by a random angle. Single discs look like gravel. Foam
 //! lies in the surface: its billboard is foreshortened like a horizontal disc, and a depth offset
-//! moves it slightly towards the eye, because the surface would cut it in two. Drops smaller than a
-//! pixel are enlarged to one pixel and their opacity is reduced accordingly.
+//! moves it slightly towards the eye, because the surface would cut it in two. Drops and groups
+//! smaller than a pixel are enlarged to one pixel and their opacity is reduced accordingly.
 //!
 //! # Why not the other way
 //! Ray marching through a volume of foam density (used offline by Ihmsen et al. 2012) includes
@@ -38,7 +38,7 @@ pub(crate) const SHADER: Shader =
 pub struct DrawnFoam<'a> {
     /// The diffuse particles.
     pub buffers: FoamBuffers<'a>,
-    /// Half the particle spacing of the fluid in metres. The billboards are smaller.
+    /// Half the particle spacing of the fluid in metres. The size of the billboards is proportional to it.
     pub radius: f32,
 }
 

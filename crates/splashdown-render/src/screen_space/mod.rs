@@ -29,8 +29,8 @@
 //!
 //! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples and 63,000
 //! particles, in one run of `examples/modes.rs`: 1.4 times the time of the same particles as
-//! spheres, 1.2 times that of a mesh of 298,000 triangles; thickness, splats and smoothing take a
-//! quarter each. With one sample, where spheres take half the time, the ratios are 2.7 and 2.4.
+//! spheres; thickness, splats and smoothing take a quarter each. With one sample, where spheres take
+//! half the time, the ratio is 2.7.
 //!
 //! # Why not the other way
 //! Curvature flow (van der Laan et al. 2009) needs about fifty passes for the same smoothness. A

@@ -17,7 +17,7 @@
 //! In a closed mesh a constant cancels, so the distance of the middle of the box is subtracted
 //! first; 16-bit floats are then precise to about a millimetre per metre.
 //!
-//! The mesh only stores normals and depths; each pixel is shaded afterwards (module `deferred`).
+//! A pass stores normals and depths of the mesh; each pixel is shaded afterwards (module `deferred`).
 //!
 //! *Wireframe*: WebGPU only fills triangles. The vertex shader loads each corner by its index and
 //! outputs barycentric coordinates; these, divided by their gradient on the screen, are the

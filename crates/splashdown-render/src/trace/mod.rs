@@ -18,9 +18,8 @@
 //! 3. *Tone mapping* of the average.
 //!
 //! # Why not the other way
-//! Ray-tracing extensions are not part of WebGPU. Four hardware samples per pixel would shade a
-//! pixel once for each triangle in it, which is three to four with cells of half a spacing, and
-//! would leave refraction and highlights aliased. A path tracer that chooses every direction at
+//! Ray-tracing extensions are not part of WebGPU. Four hardware samples per pixel, shaded
+//! once as in pictures without traced rays, would leave refraction and highlights aliased. A path tracer that chooses every direction at
 //! random needs hundreds of samples; here nothing is random below 17 samples per pixel, so that
 //! pictures with few samples have no noise. `cargo xtask cycles` compares both.
 //!

@@ -83,10 +83,10 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &potentials::POTENTIALS,
         &count::COUNT,
         &advect::ADVECT,
-        &collide::COLLIDE,
         &plan::PLAN,
         &compact::COMPACT,
         &emit::EMIT,
+        &collide::COLLIDE,
     ]
 }
 
@@ -215,14 +215,14 @@ impl Foam {
         scan.record(&mut r, counts, starts);
         r.clear(alive);
         r.dispatch(&advect::ADVECT, diffuse, &buffers);
-        if let Some(solids) = solids {
-            let buffers = buffers.clone().and(&solids.buffers());
-            r.dispatch(&collide::COLLIDE, diffuse, &buffers);
-        }
         compact.record(&mut r, alive, indices, counted);
         r.dispatch(&plan::PLAN, one, &buffers);
         r.dispatch(&compact::COMPACT, diffuse, &buffers);
         r.dispatch(&emit::EMIT, all, &buffers);
+        if let Some(solids) = solids {
+            let buffers = buffers.and(&solids.buffers());
+            r.dispatch(&collide::COLLIDE, DispatchSize::Items(capacity), &buffers);
+        }
         Ok(Self { params, capacity, state, pool, potentials, recording: r, has_warned: false })
     }
 

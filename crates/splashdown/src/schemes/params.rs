@@ -6,7 +6,7 @@ use crate::passes::viscous;
 use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
 use crate::state::Params;
 
-/// The alpha whose viscosity is the smallest in the friction at bodies where the density is integrated.
+/// Lower limit of the viscosity in the friction at bodies where the density is integrated, as an alpha.
 const SMALLEST_BOUNDARY_ALPHA: f32 = 0.05;
 
 /// Mean depth in spacings of the particles on which the continuum surface force acts: mostly the first layer, half a
@@ -41,22 +41,20 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         Method::Wcsph | Method::Dfsph => Derived::capillary_viscosity(scene),
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
     };
-    // The viscosity of alpha (Monaghan 2005). Where the density is integrated, alpha is usually zero, and water would slip
-    // along bodies. The viscosity of the material counts towards the smallest one: added to it, it would exceed the
-    // viscosity of the fluid beside a body that resolves its boundary layer.
+    // The artificial viscosity acts as the viscosity alpha c0 H / 20 (Monaghan 2005). Where the density is integrated, alpha
+    // is usually zero, and water would slip along bodies without a lower limit. The limit applies to the sum with the
+    // viscosity of the fluid: added to that, it would be too much beside a body that resolves its boundary layer.
     let per_alpha = derived.sound_speed * support_radius / 20.0;
     let artificial = solver.artificial_viscosity * per_alpha;
     let boundary_viscosity = if scheme.is_density_integrated {
-        artificial.max(SMALLEST_BOUNDARY_ALPHA * per_alpha - material.viscosity)
+        artificial.max(SMALLEST_BOUNDARY_ALPHA * per_alpha - material.viscosity - numerical_viscosity)
     } else {
         artificial
     };
     let is_viscous = scheme.has_implicit_viscosity();
     let implicit_viscosity = if is_viscous { material.viscosity } else { 0.0 };
     let volume = derived.particle_mass / rest_density;
-    // The artificial viscosity acts as the viscosity alpha c0 H / 20 (Monaghan 2005).
     let max_dt = if scheme.is_implicit() {
-        let artificial = solver.artificial_viscosity * derived.sound_speed * support_radius / 20.0;
         let half = 0.5 * support_radius;
         let explicit = numerical_viscosity + if is_viscous { 0.0 } else { material.viscosity };
         let by_viscosity = 0.125 * half * half / (explicit + artificial).max(1e-20);

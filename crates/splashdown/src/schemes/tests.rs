@@ -70,7 +70,7 @@ fn a_plain_step_has_five_dispatches_or_six_with_many_cells() {
     assert_eq!(step(2.0, "method = \"wcsph\"\nsurface_tension = \"akinci2013\"", false).1.len(), 7);
 }
 
-/// A drag that is 30 % too large was the result of adding them.
+/// Adding them made the drag of a sphere 30 % too large.
 #[test]
 fn the_numerical_viscosity_at_bodies_is_a_lower_limit_and_not_added() {
     let friction = |viscosity: f32| {

@@ -1,7 +1,7 @@
 //! Drag of a cylinder and of a sphere that are towed through a fluid at rest, without gravity.
 //!
 //! *References.* The drag of a cylinder that starts to move is not steady yet: `docs/validation/cylinder_drag.py` solves the
-//! equations of Navier and Stokes for the same motion without bound. It has 1.34 at a Reynolds number of 100 as the mean
+//! Navier-Stokes equations for the same motion without bound. It has 1.34 at a Reynolds number of 100 as the mean
 //! over the time of the comparison, where the steady symmetric flow has 1.06 (S. Dennis and G.-Z. Chang, J. Fluid Mech. 42
 //! (1970) 471-489). The drag of a sphere is that of L. Schiller and A. Naumann (1933), 24 / Re (1 + 0.15 Re^0.687).
 //!
@@ -154,7 +154,7 @@ impl Towed {
         }
     }
 
-    /// Measures the drag over a reference, and the same without friction.
+    /// Measures the drag over a reference.
     fn compare(&self, figures: &mut Figures, reference: f64) {
         let mut drag = self.tow();
         let raw = mean(&drag);

@@ -11,7 +11,8 @@
 //! * where the density is summed, the approach is damped, because the pressure of the image does work that the density
 //!   does not account for;
 //! * friction is 2 nu A / (H d), where nu is the sum of the material's viscosity and the artificial one
-//!   (alpha c0 H / 20, Monaghan 2005), so that no slip drags water at any resolution;
+//!   (alpha c0 H / 20, Monaghan 2005), so that no slip drags water at any resolution; where the density is integrated, nu is
+//!   at least 0.05 c0 H / 20;
 //! * adhesion follows the spline of Akinci et al. (2013);
 //! * a limit on the velocity (the contact) stops particles without pressure a quarter of a spacing away.
 //!

@@ -11,7 +11,7 @@ fn collide(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     if (foam_state.is_due == 0u || i >= foam_state.count) {
         return;
     }
-    var p = foam_moved[i];
+    var p = foam_pool[i];
     for (var b = 0u; b < arrayLength(&bodies); b++) {
         let away = p.position - bodies[b].position;
         if (dot(away, away) >= bodies[b].radius * bodies[b].radius) {
@@ -32,11 +32,8 @@ fn collide(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
         let relative = p.velocity - bodies[b].velocity - cross(bodies[b].angular_velocity, arm);
         p.velocity -= min(dot(relative, normal), 0.0) * normal;
         if ((p.tag & 3u) == SPRAY) {
-            p.lifetime -= foam_state.dt;
-            if (p.lifetime <= 0.0) {
-                foam_alive[i] = 0u;
-            }
+            p.lifetime = max(p.lifetime - foam_state.dt, 0.0);
         }
     }
-    foam_moved[i] = p;
+    foam_pool[i] = p;
 }

@@ -5,12 +5,12 @@ use crate::bodies;
 use crate::foam::DiffuseKind;
 
 pub(super) fn collide(buffers: CollideBindings<'_>) {
-    let CollideBindings { foam_state, bodies, maps, foam_moved: moved, foam_alive: alive } = buffers;
+    let CollideBindings { foam_state, bodies, maps, foam_pool: pool } = buffers;
     if foam_state.is_due == 0 {
         return;
     }
     let n = foam_state.count as usize;
-    moved[..n].par_iter_mut().zip(&mut alive[..n]).with_min_len(1024).for_each(|(particle, alive)| {
+    pool[..n].par_iter_mut().with_min_len(1024).for_each(|particle| {
         for body in bodies {
             let Some((distance, normal)) = bodies::penetration(body, maps, particle.position) else {
                 continue;
@@ -19,8 +19,7 @@ pub(super) fn collide(buffers: CollideBindings<'_>) {
             let relative = particle.velocity - body.velocity_at(particle.position);
             particle.velocity -= relative.dot(normal).min(0.0) * normal;
             if particle.kind() == DiffuseKind::Spray {
-                particle.lifetime -= foam_state.dt;
-                *alive = u32::from(*alive == 1 && particle.lifetime > 0.0);
+                particle.lifetime = (particle.lifetime - foam_state.dt).max(0.0);
             }
         }
     });

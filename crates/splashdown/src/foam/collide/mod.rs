@@ -1,8 +1,9 @@
-//! Keeps diffuse particles out of bodies.
+//! Keeps diffuse particles out of bodies, at the end of an update.
 //!
-//! A particle inside a body is moved to the nearest point of its surface and loses the velocity with which it enters the
-//! body. Spray that touches a body ages, like spray that touches a side of the domain. A body that is thinner than the way
-//! of a particle in one update, 2 cm at 5 m/s, does not stop it.
+//! A particle inside a body, also one that has just been generated there, is moved to the nearest point of its surface and loses the velocity with which it enters the
+//! body. Spray that touches a body ages, like spray that touches a side of the domain; it is removed in the next update.
+//! A body that is thinner than the distance that a particle travels in one update, or than a cell of its map, does not stop
+//! it.
 
 mod cpu;
 
@@ -18,8 +19,7 @@ bindings! {
         foam_state: read FoamState,
         bodies: read [Body],
         maps: read [Vec2],
-        foam_moved: write [Diffuse],
-        foam_alive: write [u32],
+        foam_pool: write [Diffuse],
     }
 }
 
