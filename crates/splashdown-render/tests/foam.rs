@@ -90,15 +90,17 @@ fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
     let behind = backdrop(&harness);
     let frame = frame().with_particles(dark(&behind, 4.0));
     let empty = harness.draw(SIZE, &frame);
-    let mut drawn = |kind| extent(&draw(&mut harness, &[[0.0; 3]], 3.0, kind, frame), &empty);
-    // Seen from the side.
-    let ([width, height], count) = drawn(SPRAY);
+    let mut drawn =
+        |count: usize, kind| extent(&draw(&mut harness, &vec![[0.0; 3]; count], 3.0, kind, frame), &empty);
+    // Seen from the side. Each group is another one; together they fill a circle or an ellipse.
+    let ([width, height], count) = drawn(1, SPRAY);
+    assert!(width.min(height) > 5 && 2 * count < width * height, "{count} of {width} x {height} pixels");
+    let ([width, height], _) = drawn(60, SPRAY);
     assert!(width > 10 && height.abs_diff(width) < width / 3, "{width} x {height}");
-    assert!(count < width * height / 2, "{count} of {width} x {height} pixels");
-    let ([width, height], _) = drawn(FOAM);
+    let ([width, height], _) = drawn(60, FOAM);
     assert!(width > 10 && 2 * height < width, "{width} x {height}");
     // Control: a bubble is a disc.
-    let ([width, height], count) = drawn(BUBBLE);
+    let ([width, height], count) = drawn(1, BUBBLE);
     assert!(height.abs_diff(width) < 2 && 2 * count > width * height, "{count} of {width} x {height}");
 }
 

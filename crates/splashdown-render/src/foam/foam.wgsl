@@ -97,12 +97,15 @@ fn past_drop(across: vec2f, centre: vec2f, members: vec2f) -> f32 {
     return 1.0 - members.x * saturate(1.4 - 1.4 * members.y * dot(offset, offset));
 }
 
-// Opacity of a group of drops or bubbles in the unit circle.
-fn group(across: vec2f, members: vec2f) -> f32 {
-    var past = past_drop(across, vec2f(0.50, 0.30), members);
-    past *= past_drop(across, vec2f(-0.32, 0.55), members);
-    past *= past_drop(across, vec2f(-0.56, -0.30), members);
-    past *= past_drop(across, vec2f(0.26, -0.62), members);
+// Opacity of a group of drops or bubbles in the unit circle. Equal groups would look like flakes of
+// snow: `variation` moves the members in and out.
+fn group(across: vec2f, members: vec2f, variation: f32) -> f32 {
+    let near = 0.6 + 0.5 * variation;
+    let far = 1.1 - 0.5 * variation;
+    var past = past_drop(across, near * vec2f(0.50, 0.30), members);
+    past *= past_drop(across, far * vec2f(-0.22, 0.60), members);
+    past *= past_drop(across, near * vec2f(-0.62, -0.22), members);
+    past *= past_drop(across, far * vec2f(0.36, -0.55), members);
     past *= past_drop(across, vec2f(0.02, -0.08), members);
     return 1.0 - past;
 }
@@ -119,7 +122,7 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
         // A bright rim.
         cover = in.members.x * smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
     } else {
-        cover = group(in.across, in.members);
+        cover = group(in.across, in.members, (in.appearance.y - 0.88) / 0.12);
     }
     let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
     return vec4f(present(in.appearance.y * light), in.appearance.x * cover);
