@@ -22,12 +22,9 @@ struct StepState {
     unused: u32,
 }
 
-// The length of a step. Near the end of a frame the remaining time is split evenly, so that the last step is not tiny.
+// The length of a step; see StepState::step_length.
 fn step_length(stable: f32, remaining: f32) -> f32 {
-    if (remaining >= 2.0 * stable) {
-        return stable;
-    }
-    return select(0.5 * remaining, remaining, remaining <= stable);
+    return remaining / max(ceil(0.9999 * remaining / stable), 1.0);
 }
 
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.
