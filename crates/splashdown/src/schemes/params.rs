@@ -121,7 +121,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         interface_depth: INTERFACE_DEPTH * scene.fluid.particle_spacing,
         weakest_normal: WEAKEST_NORMAL,
         wetting: 2.0 * wetting_cosine(solver) / support_radius,
-        unused: 0.0,
+        relaxation: dfsph::relaxation(solver.support_ratio),
         unused_2: 0.0,
         unused_3: 0.0,
     }

@@ -159,7 +159,7 @@ impl Fields {
             corrections: executor.create("corrections", some(extras.corrections, 2 * n))?,
             shifts: executor.create("shifts", some(extras.corrections, n))?,
             boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
-            solve: executor.create_small("solve", &[SolveState::new(true)])?,
+            solve: executor.create_small("solve", &[SolveState::new(true, 0.0)])?,
             stiffness: executor.create("stiffness", some(extras.implicit, n))?,
             iterates: executor.create("iterates", some(extras.implicit, n))?,
             predicted: executor.create("predicted", some(extras.implicit, n))?,

@@ -94,8 +94,8 @@ gpu_struct! {
         weakest_normal: f32,
         /// Cosine of the contact angle at closed sides over half of the support radius, in 1/m; not above zero.
         wetting: f32,
-        /// Padding.
-        unused: f32,
+        /// Relaxation of the Jacobi map of the implicit pressure at the beginning of a step.
+        relaxation: f32,
         /// Padding.
         unused_2: f32,
         /// Padding.

@@ -42,7 +42,7 @@ struct Params {
     interface_depth: f32,
     weakest_normal: f32,
     wetting: f32,
-    unused: f32,
+    relaxation: f32,
     unused_2: f32,
     unused_3: f32,
 }

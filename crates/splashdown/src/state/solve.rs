@@ -36,18 +36,13 @@ gpu_struct! {
 }
 
 impl SolveState {
-    /// Relaxation of the Jacobi map at the beginning of a step. The largest eigenvalue of the system over its diagonal was
-    /// at most 3.5 in a study, for which 0.57 is the limit of the map alone; with conjugate directions 0.65 and 0.8 also
-    /// converged, in a seventh fewer iterations than 0.5.
-    pub const RELAXATION: f32 = 0.6;
-
-    /// The state at the beginning of a step.
-    pub fn new(is_stopped: bool) -> Self {
+    /// The state at the beginning of a step, with the relaxation of the Jacobi map.
+    pub fn new(is_stopped: bool, relaxation: f32) -> Self {
         Self {
             stopped: u32::from(is_stopped),
             iteration: 0,
             beta: 0.0,
-            relaxation: Self::RELAXATION,
+            relaxation,
             change: 0.0,
             best: f32::MAX,
             warm_start: 1.0,

@@ -360,12 +360,20 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
 fn begin(name: &str, run_count: u32) -> Case {
     let state = StepState { run_count, ..super::world::state(1500) };
     let mut solve = Output::new("solve", Data::Solve(solving()).poison());
-    let expected = Data::Solve(SolveState::new(run_count == 0));
+    let params = Params { relaxation: 0.3, ..params(2.5) };
+    let expected = Data::Solve(SolveState::new(run_count == 0, params.relaxation));
     wide(expected.floats()).into_iter().for_each(|value| solve.push(value, 0.0));
-    case("implicit.begin".into(), name, 1, vec![Data::State(state)], vec![solve], |input| {
-        let Data::State(state) = &mut input[0] else { panic!("no state") };
-        state.run_count = 1500 - state.run_count;
-    })
+    case(
+        "implicit.begin".into(),
+        name,
+        1,
+        vec![Data::Params(params), Data::State(state)],
+        vec![solve],
+        |input| {
+            let Data::State(state) = &mut input[1] else { panic!("no state") };
+            state.run_count = 1500 - state.run_count;
+        },
+    )
 }
 
 fn decide(name: &str, before: SolveState, scale: f32, motion: [f32; 2]) -> Case {

@@ -18,11 +18,11 @@
 //!
 //! # The solver
 //! Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe & Erleben 2010) on the projected Jacobi map
-//! k <- max(k + 0.6 r / a, 0), where a is the diagonal, started with a running mean of the old pressures:
+//! k <- max(k + w r / a, 0), where a is the diagonal and w the relaxation, started with a running mean of the old pressures:
 //!
 //! ```text
 //! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k
-//! residual   p = beta p + g;  r = (delta - 1) + dt D u;  k_J = max(k + 0.6 r / a, 0);  g = k_J - k
+//! residual   p = beta p + g;  r = (delta - 1) + dt D u;  k_J = max(k + w r / a, 0);  g = k_J - k
 //! decide     stop if mean |r| <= tolerance, where r counts if it is positive or k is;
 //!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
 //! ```

@@ -1,4 +1,4 @@
-#import sph/state
+#import sph/params
 #import sph/solve
 
 #bindings
@@ -8,7 +8,7 @@ fn implicit_begin() {
     solve.stopped = select(0u, 1u, state.run_count == 0u);
     solve.iteration = 0u;
     solve.beta = 0.0;
-    solve.relaxation = 0.6;
+    solve.relaxation = params.relaxation;
     solve.change = 0.0;
     solve.best = 3.4028234e38;
     solve.warm_start = 1.0;
