@@ -104,6 +104,23 @@ gpu_struct! {
 }
 
 impl Params {
+    /// The length of a step, of which `stable` is the limit, with this time until the end of the frame.
+    ///
+    /// With an implicit pressure the remaining time is split evenly: a step of another length than the last disturbs the
+    /// pressure. A step that exceeds its limit by the rounding of the quotient is not split. Explicit steps are as long as
+    /// possible, and the last two are equal, so that none is tiny.
+    pub fn step_length(&self, stable: f32, remaining: f32) -> f32 {
+        if self.is_implicit == 1 {
+            remaining / (0.9999 * remaining / stable).ceil().max(1.0)
+        } else if remaining >= 2.0 * stable {
+            stable
+        } else if remaining <= stable {
+            remaining
+        } else {
+            0.5 * remaining
+        }
+    }
+
     /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
     #[inline(always)]
     pub fn pressure_at(&self, density: f32) -> f32 {

@@ -62,6 +62,17 @@ fn pressure_at(density: f32) -> f32 {
     return select(p, max(p, 0.0), params.clamp_pressure == 1u);
 }
 
+// The length of a step; see Params::step_length.
+fn step_length(stable: f32, remaining: f32) -> f32 {
+    if (params.is_implicit == 1u) {
+        return remaining / max(ceil(0.9999 * remaining / stable), 1.0);
+    }
+    if (remaining >= 2.0 * stable) {
+        return stable;
+    }
+    return select(0.5 * remaining, remaining, remaining <= stable);
+}
+
 fn body_acceleration(time: f32) -> vec3<f32> {
     return params.gravity + params.oscillation * sin(params.oscillation_rate * time);
 }

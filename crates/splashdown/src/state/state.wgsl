@@ -22,11 +22,6 @@ struct StepState {
     unused: u32,
 }
 
-// The length of a step; see StepState::step_length.
-fn step_length(stable: f32, remaining: f32) -> f32 {
-    return remaining / max(ceil(0.9999 * remaining / stable), 1.0);
-}
-
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.
 fn is_last_step(dt: f32, remaining: f32) -> bool {
     return dt >= remaining;

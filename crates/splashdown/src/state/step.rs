@@ -55,13 +55,6 @@ gpu_struct! {
 }
 
 impl StepState {
-    /// The length of a step. The remaining time is split evenly, because with an implicit pressure a step of another
-    /// length than the last disturbs the pressure. The steps are as many as the stable length needs; one that is too long
-    /// by the rounding of the quotient is not split.
-    pub fn step_length(stable: f32, remaining: f32) -> f32 {
-        remaining / (0.9999 * remaining / stable).ceil().max(1.0)
-    }
-
     /// True if the step completes its frame. Both numbers are stored, so that all passes agree.
     pub fn is_last_step(&self) -> bool {
         self.dt >= self.remaining

@@ -107,7 +107,7 @@ fn end_step_cases() -> Vec<Case> {
     let calm = [0.5, 10.0, 0.002, 0.0];
     let implicit = Params { is_implicit: 1, implicit_viscosity: 0.0, ..params(2.0) };
     let viscous = Params { implicit_viscosity: 0.02, ..implicit };
-    let ways: [(&str, StepState, [f32; 4], Params); 12] = [
+    let ways: [(&str, StepState, [f32; 4], Params); 14] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
         ("limited by sound", state, calm, params(2.0)),
         ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
@@ -117,6 +117,13 @@ fn end_step_cases() -> Vec<Case> {
         ("implicit, grown by half", state, [0.5, 1e6, 0.0, 4.0], implicit),
         ("implicit, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], implicit),
         ("implicit and viscous, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], viscous),
+        (
+            "implicit, five even steps",
+            StepState { remaining: 3.3e-3, ..state },
+            [0.5, 1e6, 0.0, 4.0],
+            implicit,
+        ),
+        ("implicit, the last", StepState { remaining: 6e-4, ..state }, [0.5, 1e6, 0.0, 4.0], implicit),
         ("two steps before the last", StepState { remaining: 1.3e-3, ..state }, calm, params(2.0)),
         ("before the last", StepState { remaining: 7e-4, ..state }, calm, params(2.0)),
         ("the last", StepState { remaining: 4e-4, ..state }, calm, params(2.0)),
@@ -206,6 +213,10 @@ pub fn next_state(
     let remaining = if complete { 0.0 } else { state.remaining - state.dt };
     let dt = match p(remaining) {
         _ if complete => p(state.dt),
+        // As few equal steps as the limit allows.
+        left if params.is_implicit == 1 => {
+            (1..).map(|n| left / f64::from(n)).find(|dt| *dt <= 1.0001 * stable).unwrap()
+        }
         left if left <= stable => left,
         left if left < 2.0 * stable => 0.5 * left,
         _ => stable,

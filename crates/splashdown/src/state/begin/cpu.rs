@@ -1,12 +1,11 @@
 use super::BeginBindings;
-use crate::state::StepState;
 
 pub(super) fn begin(buffers: BeginBindings<'_>) {
     let BeginBindings { params, duration, state } = buffers;
     let length = duration[0];
     state.frame_duration = length;
     state.remaining = length;
-    state.dt = StepState::step_length(state.stable_dt, length);
+    state.dt = params.step_length(state.stable_dt, length);
     state.done = 0;
     state.run_count = params.particle_count;
     state.steps = 0;

@@ -49,7 +49,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
         state.run_count = 0;
     } else {
         state.remaining -= state.dt;
-        state.dt = StepState::step_length(stable, state.remaining);
+        state.dt = params.step_length(stable, state.remaining);
     }
 }
 
