@@ -52,6 +52,14 @@ pub(super) fn relaxation(support_ratio: f32) -> f32 {
     0.6 / (wider * wider)
 }
 
+/// The relative excess of density that the pressure leaves over k = p rho0 / rho^2, in s^2/m^2: the fluid has five times the
+/// sound speed of `wcsph`, and water at rest is compressed by 0.01 % at its floor. In a sealed space that is overfull no
+/// pressure reaches the rest density. Without this limit the pressure would grow with every iteration, the step would
+/// become shorter, and the pressure of a shorter step is larger.
+pub(super) fn compressibility(sound_speed: f32) -> f32 {
+    (5.0 * sound_speed).powi(-2)
+}
+
 /// The mechanical pressure of a lattice over that in the forces: the sum of -V r dW/dr / 3 over the lattice, where V is
 /// the volume for which it has the rest density. With Wendland C2 and a support of two spacings it is 0.95: the sum
 /// underestimates the gradient of a linear pressure by this factor, so the solution is larger.

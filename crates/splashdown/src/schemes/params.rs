@@ -122,7 +122,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         weakest_normal: WEAKEST_NORMAL,
         wetting: 2.0 * wetting_cosine(solver) / support_radius,
         relaxation: dfsph::relaxation(solver.support_ratio),
-        unused_2: 0.0,
-        unused_3: 0.0,
+        compressibility: dfsph::compressibility(derived.sound_speed),
+        unused: 0.0,
     }
 }

@@ -96,10 +96,10 @@ gpu_struct! {
         wetting: f32,
         /// Relaxation of the Jacobi map of the implicit pressure at the beginning of a step.
         relaxation: f32,
+        /// Relative excess of density that the implicit pressure leaves, over k, in s^2/m^2.
+        compressibility: f32,
         /// Padding.
-        unused_2: f32,
-        /// Padding.
-        unused_3: f32,
+        unused: f32,
     }
 }
 

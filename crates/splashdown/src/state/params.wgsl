@@ -43,8 +43,8 @@ struct Params {
     weakest_normal: f32,
     wetting: f32,
     relaxation: f32,
-    unused_2: f32,
-    unused_3: f32,
+    compressibility: f32,
+    unused: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

@@ -319,9 +319,11 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
             size += b.length() * u.length() + f64::from(solid[i].w).abs();
             gradient += b;
         }
-        let r = excess + c.dt * rate;
+        let compressibility = f64::from(world.params.compressibility);
+        let r = excess + c.dt * rate - compressibility * k;
         let r_size = 1.0 + c.dt * size;
-        let diagonal = c.dt * c.dt * (gradient.length_squared() + f64::from(stiffness[i].w));
+        let diagonal =
+            c.dt * c.dt * (gradient.length_squared() + f64::from(stiffness[i].w)) + compressibility;
         let next = (k + 0.5 * r / diagonal).max(0.0);
         let step_size = k + 0.5 * r_size / diagonal;
         iterates.push(next, step_size);
@@ -421,7 +423,9 @@ fn decide_with(
     let strictness = (5.0 / deep).powi(2).max(0.1 * f64::from(moved) / (deep * 0.001)).clamp(0.02, 1.0);
     if error <= 0.001 * strictness || solve.iteration == 5 {
         solve.stopped = 1;
-        solve.scale = ((1.0 + total[3] / impulse) as f32).clamp(0.5, 1.1);
+        let squares: f64 = impulses.iter().map(|v| f64::from(v.z)).sum();
+        let work = impulse + f64::from(world.params.compressibility) * squares;
+        solve.scale = ((1.0 + total[3] / work) as f32).clamp(0.5, 1.1);
         counters[StepCounters::MAX_PRESSURE] = (solve.scale * layer * 2.0 * depth).to_bits();
         let moved = state.max_speed * state.dt / world.params.particle_spacing;
         let late = strictness as f32 * (solve.iteration as f32 - 3.0) / 8.0;

@@ -55,6 +55,7 @@ pub fn params(support_ratio: f32) -> Params {
         approach_damping_factor: 1.0,
         tolerance: 0.001,
         max_iterations: 5,
+        compressibility: 2e-5,
         longest_motion: 0.5,
         pressure_factor: 0.9,
         implicit_viscosity: 0.02,

@@ -8,13 +8,14 @@
 //! (D u)_i  = sum_j g_ij . (u_i - u_j) + b_i . (u_i - u_body)      rate of the density
 //! (D' k)_i = sum_j (k_i + k_j) g_ij + k_i b_i                      minus the acceleration by pressure
 //! u        = v* - dt D' k                                          v*: the velocity by all other forces
-//! r        = (delta - 1) + dt D u                                  the excess of density at the end of the step
+//! r        = (delta - 1) + dt D u - k / c^2                        the excess of density at the end of the step
 //! ```
 //!
 //! The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
-//! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' is symmetric and
-//! positive semi-definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
-//! the one that the pressure gives it.
+//! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' + 1 / c^2 is symmetric
+//! and positive definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
+//! the one that the pressure gives it. The compressibility 1 / c^2 is too small to matter except in a sealed space that is
+//! overfull, where it bounds the pressure.
 //!
 //! # The solver
 //! Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe & Erleben 2010) on the projected Jacobi map
@@ -22,7 +23,7 @@
 //!
 //! ```text
 //! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k
-//! residual   p = beta p + g;  r = (delta - 1) + dt D u;  k_J = max(k + w r / a, 0);  g = k_J - k
+//! residual   p = beta p + g;  r = (delta - 1) + dt D u - k / c^2;  k_J = max(k + w r / a, 0);  g = k_J - k
 //! decide     stop if mean |r| <= tolerance, where r counts if it is positive or k is;
 //!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
 //! ```

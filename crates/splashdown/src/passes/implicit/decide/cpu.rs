@@ -27,7 +27,8 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     let is_enough = error <= params.tolerance * strictness;
     if has_converged && is_enough || solve.iteration >= params.max_iterations {
         solve.stopped = 1;
-        let scale = 1.0 + total.w / impulse.x.max(1e-30);
+        let work = impulse.x + params.compressibility * impulse.z;
+        let scale = 1.0 + total.w / work.max(1e-30);
         solve.scale = scale.clamp(0.5, 1.1);
         counters[StepCounters::MAX_PRESSURE] = (solve.scale * pressure).to_bits();
         let moved = state.max_speed * state.dt / params.particle_spacing;

@@ -39,7 +39,8 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
     let is_enough = error <= params.tolerance * part;
     if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
         solve.stopped = 1u;
-        solve.scale = clamp(1.0 + total.w / max(impulse.x, 1e-30), 0.5, 1.1);
+        let work = impulse.x + params.compressibility * impulse.z;
+        solve.scale = clamp(1.0 + total.w / max(work, 1e-30), 0.5, 1.1);
         counters[COUNTER_MAX_PRESSURE] = bitcast<u32>(solve.scale * impulse.y);
         let moved = state.max_speed * state.dt / params.particle_spacing;
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;

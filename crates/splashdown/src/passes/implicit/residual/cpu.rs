@@ -54,9 +54,9 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
             rate += solid.xyz().dot(u) - solid.w;
             gradient += solid.xyz();
         }
-        let residual = excess + state.dt * rate;
+        let residual = excess + state.dt * rate - params.compressibility * k;
         let diagonal = (gradient.length_squared() + stiffness[i].w).max(1e-6 * scale * scale);
-        let diagonal = state.dt * state.dt * diagonal;
+        let diagonal = state.dt * state.dt * diagonal + params.compressibility;
         let next = (k + solve.relaxation * residual / diagonal).max(0.0);
         let change = next - k;
         let direction = solve.beta * iterate.y + iterate.z;

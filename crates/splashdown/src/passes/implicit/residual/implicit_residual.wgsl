@@ -51,9 +51,10 @@ fn update(i: u32) -> vec4<f32> {
         rate += dot(solid.xyz, u) - solid.w;
         gradient += solid.xyz;
     }
-    let residual = excess + state.dt * rate;
+    let residual = excess + state.dt * rate - params.compressibility * k;
     let scale = 1.0 / params.support_radius;
-    let diagonal = state.dt * state.dt * max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
+    let squares = max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
+    let diagonal = state.dt * state.dt * squares + params.compressibility;
     let next = max(k + solve.relaxation * residual / diagonal, 0.0);
     let change = next - k;
     let direction = solve.beta * iterates[i].y + iterates[i].z;
