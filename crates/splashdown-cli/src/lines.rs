@@ -20,7 +20,7 @@ pub struct Line {
     pub time: Option<f64>,
     /// Steps since the start.
     pub steps: Option<u64>,
-    /// The last time step in s.
+    /// The largest stable time step in s.
     pub dt: Option<f32>,
     /// Particles inside the domain.
     pub particles: Option<u32>,

@@ -34,7 +34,7 @@ pub struct Progress {
     /// >>> all(0 < now.steps <= stats.steps for now in seen)
     /// True
     pub steps: u64,
-    /// The last time step in s.
+    /// The largest stable time step in s.
     ///
     /// >>> seen = []
     /// >>> stats = simulation.advance(0.1, progress=seen.append)

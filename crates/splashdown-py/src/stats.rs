@@ -59,7 +59,7 @@ stats! {
     /// >>> simulation.advance(0.01).steps_in_frame > 0
     /// True
     steps_in_frame: u32,
-    /// The last time step in s.
+    /// The largest stable time step in s.
     ///
     /// >>> bool(0 < simulation.advance(0.01).dt <= 0.05)  # s
     /// True

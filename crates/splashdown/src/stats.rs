@@ -10,7 +10,7 @@ pub struct Stats {
     pub steps: u64,
     /// Steps of this call.
     pub steps_in_frame: u32,
-    /// The last time step in seconds.
+    /// The largest stable time step in seconds; with an implicit pressure the steps of a frame are equal and shorter.
     pub dt: f32,
     /// Particles inside the domain.
     pub particles: u32,

@@ -170,7 +170,7 @@ pub struct Progress {
     pub duration: f64,
     /// Steps since the start.
     pub steps: u64,
-    /// The last time step in seconds.
+    /// The largest stable time step in seconds.
     pub dt: f32,
     /// Wall time since the start.
     pub wall: Duration,

@@ -52,12 +52,18 @@ pub(super) fn relaxation(support_ratio: f32) -> f32 {
     0.6 / (wider * wider)
 }
 
-/// The relative excess of density that the pressure leaves over k = p rho0 / rho^2, in s^2/m^2: the fluid has five times the
-/// sound speed of `wcsph`, and water at rest is compressed by 0.01 % at its floor. In a sealed space that is overfull no
-/// pressure reaches the rest density. Without this limit the pressure would grow with every iteration, the step would
-/// become shorter, and the pressure of a shorter step is larger.
-pub(super) fn compressibility(sound_speed: f32) -> f32 {
-    (5.0 * sound_speed).powi(-2)
+/// Square of the sound speed of the implicit pressure, over the acceleration by gravity and shaking times the diagonal of the
+/// domain.
+const STIFFNESS: f32 = 2e4;
+/// Below this acceleration in m/s^2 the fluid has no compressibility: the weight is no measure of the pressure then.
+const WEAKEST_GRAVITY: f32 = 0.1;
+
+/// The relative excess of density that remains per unit of k = p rho0 / rho^2, in s^2/m^2. Water at rest that fills the domain
+/// is compressed by less than 0.005 % at its floor. No pressure gives the rest density to a sealed space that is overfull:
+/// without a compressibility the pressure grows with every iteration, which shortens the step, and a shorter step needs a
+/// larger pressure.
+pub(super) fn compressibility(acceleration: f32, diagonal: f32) -> f32 {
+    if acceleration < WEAKEST_GRAVITY { 0.0 } else { 1.0 / (STIFFNESS * acceleration * diagonal) }
 }
 
 /// The mechanical pressure of a lattice over that in the forces: the sum of -V r dW/dr / 3 over the lattice, where V is
@@ -92,6 +98,19 @@ pub(super) fn pressure_factor(kernel: KernelKind, ratio: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// At the weight of a column as high as the domain, of 8 m in this case.
+    #[test]
+    fn the_compressibility_is_small_and_vanishes_without_gravity() {
+        let compression = compressibility(9.81, 8.0) * 9.81 * 8.0;
+        assert!((compression - 5e-5).abs() < 1e-9, "{compression}");
+        assert_eq!(compressibility(0.0, 8.0), 0.0);
+    }
+
+    #[test]
+    fn the_relaxation_decreases_with_the_support() {
+        assert_eq!([1.5, 2.0, 4.0].map(relaxation), [0.6, 0.6, 0.15]);
+    }
 
     /// Values computed independently.
     #[test]

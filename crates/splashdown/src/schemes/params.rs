@@ -122,7 +122,10 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         weakest_normal: WEAKEST_NORMAL,
         wetting: 2.0 * wetting_cosine(solver) / support_radius,
         relaxation: dfsph::relaxation(solver.support_ratio),
-        compressibility: dfsph::compressibility(derived.sound_speed),
+        compressibility: dfsph::compressibility(
+            scene.gravity.length() + oscillation.length(),
+            (scene.domain.max - scene.domain.min).length(),
+        ),
         unused: 0.0,
     }
 }

@@ -96,7 +96,7 @@ gpu_struct! {
         wetting: f32,
         /// Relaxation of the Jacobi map of the implicit pressure at the beginning of a step.
         relaxation: f32,
-        /// Relative excess of density that the implicit pressure leaves, over k, in s^2/m^2.
+        /// Relative excess of density that remains per unit of the implicit k, in s^2/m^2.
         compressibility: f32,
         /// Padding.
         unused: f32,
@@ -104,14 +104,15 @@ gpu_struct! {
 }
 
 impl Params {
-    /// The length of a step, of which `stable` is the limit, with this time until the end of the frame.
+    /// The length of the next step, for the largest stable step and the remaining time of the frame.
     ///
-    /// With an implicit pressure the remaining time is split evenly: a step of another length than the last disturbs the
-    /// pressure. A step that exceeds its limit by the rounding of the quotient is not split. Explicit steps are as long as
-    /// possible, and the last two are equal, so that none is tiny.
-    pub fn step_length(&self, stable: f32, remaining: f32) -> f32 {
+    /// With an implicit pressure the remaining time is divided evenly, because a step of another length than the last
+    /// disturbs the pressure. Within a frame (`is_first` is false) a limit that falls by up to 5 % does not change the
+    /// length. Explicit steps are as long as possible, and the last two are equal, so that none is tiny.
+    pub fn step_length(&self, stable: f32, remaining: f32, is_first: bool) -> f32 {
         if self.is_implicit == 1 {
-            remaining / (0.9999 * remaining / stable).ceil().max(1.0)
+            let steps = (remaining / (if is_first { 1.0 } else { 1.05 } * stable)).ceil();
+            if steps <= 1.0 { remaining } else { remaining / steps }
         } else if remaining >= 2.0 * stable {
             stable
         } else if remaining <= stable {

@@ -62,10 +62,11 @@ fn pressure_at(density: f32) -> f32 {
     return select(p, max(p, 0.0), params.clamp_pressure == 1u);
 }
 
-// The length of a step; see Params::step_length.
-fn step_length(stable: f32, remaining: f32) -> f32 {
+// The length of the next step; see Params::step_length.
+fn step_length(stable: f32, remaining: f32, is_first: bool) -> f32 {
     if (params.is_implicit == 1u) {
-        return remaining / max(ceil(0.9999 * remaining / stable), 1.0);
+        let steps = ceil(remaining / (select(1.05, 1.0, is_first) * stable));
+        return select(remaining / steps, remaining, steps <= 1.0);
     }
     if (remaining >= 2.0 * stable) {
         return stable;

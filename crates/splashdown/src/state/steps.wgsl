@@ -29,7 +29,7 @@ fn finish_step() {
     counters[COUNTER_MAX_PRESSURE] = 0u;
     var stable = params.max_dt;
     if (params.is_implicit == 1u) {
-        stable = min(stable, select(1.5, 0.7, is_slow) * state.stable_dt);
+        stable = min(stable, select(1.5 * state.stable_dt, 0.7 * min(state.stable_dt, state.dt), is_slow));
         stable = min(stable, c * params.particle_spacing / max(speed, 1e-20));
         stable = min(stable, pressure_limit(pressure));
     } else {
@@ -56,6 +56,6 @@ fn finish_step() {
         state.run_count = 0u;
     } else {
         state.remaining -= state.dt;
-        state.dt = step_length(stable, state.remaining);
+        state.dt = step_length(stable, state.remaining, false);
     }
 }

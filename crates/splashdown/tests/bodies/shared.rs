@@ -47,7 +47,9 @@ fn water_flows_around_every_shared_mesh() {
             assert_eq!((stats.wall_corrections, stats.non_finite), (0, 0), "{name}: {stats:?}");
             pushed = pushed.max(simulation.body_states().unwrap()[0].force.length());
         }
-        // Control: the water reached the obstacle.
-        assert!(pushed > 1.0, "{name}: {pushed} N");
+        // Control: the water reached the obstacle. A thin plane along the flow is pushed by 0.2 N, the others by more than 1 N.
+        assert!(pushed > 0.1, "{name}: {pushed} N");
+        let beyond = simulation.particles().unwrap().positions.iter().filter(|x| x[0] > place.x).count();
+        assert!(beyond > 50, "{name}: {beyond} particles beyond the middle of the obstacle");
     }
 }

@@ -56,6 +56,7 @@ pub fn params(support_ratio: f32) -> Params {
         tolerance: 0.001,
         max_iterations: 5,
         compressibility: 2e-5,
+        relaxation: 0.5,
         longest_motion: 0.5,
         pressure_factor: 0.9,
         implicit_viscosity: 0.02,

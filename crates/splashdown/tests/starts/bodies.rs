@@ -42,7 +42,7 @@ fn is_tested(form: &str) -> bool {
 
 /// Cases that miss the gate of the speed, 1 % of sqrt(g depth): case, form and boundary.
 const MISSED: [(&str, &str, BoundaryKind); 3] = [
-    // 1.1 %: the particles leave their lattice, which moves them at up to 1.7 % after 1.5 s and 0.4 % after four.
+    // 1.1 %: the lattice rearranges; speeds reach 1.7 % after 1.5 s and fall to 0.4 % after 4 s.
     ("none", "dfsph", BoundaryKind::Map),
     ("tub", "dfsph", BoundaryKind::Particles),
     // 1.5 %: the map of the corners of the tub is not the sum of its three planes.

@@ -8,7 +8,7 @@
 //! (D u)_i  = sum_j g_ij . (u_i - u_j) + b_i . (u_i - u_body)      rate of the density
 //! (D' k)_i = sum_j (k_i + k_j) g_ij + k_i b_i                      minus the acceleration by pressure
 //! u        = v* - dt D' k                                          v*: the velocity by all other forces
-//! r        = (delta - 1) + dt D u - k / c^2                        the excess of density at the end of the step
+//! r        = (delta - 1) + dt D u - k / c^2       the excess of density at the end of the step, less the compression
 //! ```
 //!
 //! The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
@@ -37,7 +37,7 @@
 //! quiet, so that no divergence solve is needed:
 //!
 //! * the accepted pressure is scaled by theta = 1 + k.r / k.A k, so that k.r = 0: the residual then does no work. k.A k is
-//!   the sum of (dt D' k)^2, and scaling k scales dt D' k, so this needs no visit of the neighbours;
+//!   the sum of (dt D' k)^2 + k^2 / c^2, and scaling k scales dt D' k, so this needs no visit of the neighbours;
 //! * the next step starts with a running mean of the pressures. The part of the new one is |v|max dt / spacing, at least
 //!   0.02, and more if the iterations were many for the residual. With an implicit viscosity it is the whole: viscosity damps
 //!   the noise, and a pressure of many steps ago pushes the slow fluid apart, which then does not close its voids.

@@ -7,7 +7,7 @@ fn begin() {
     let length = duration[0];
     state.frame_duration = length;
     state.remaining = length;
-    state.dt = step_length(state.stable_dt, length);
+    state.dt = step_length(state.stable_dt, length, true);
     state.done = 0u;
     state.run_count = params.particle_count;
     state.steps = 0u;

@@ -5,7 +5,7 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
     let length = duration[0];
     state.frame_duration = length;
     state.remaining = length;
-    state.dt = params.step_length(state.stable_dt, length);
+    state.dt = params.step_length(state.stable_dt, length, true);
     state.done = 0;
     state.run_count = params.particle_count;
     state.steps = 0;

@@ -20,7 +20,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
     let is_slow = std::mem::take(&mut counters[StepCounters::SHORTEN]) != 0;
     let pressure = f32::from_bits(std::mem::take(&mut counters[StepCounters::MAX_PRESSURE]));
     let mut stable = if params.is_implicit == 1 {
-        let most = (if is_slow { 0.7 } else { 1.5 }) * state.stable_dt;
+        let most = if is_slow { 0.7 * state.stable_dt.min(state.dt) } else { 1.5 * state.stable_dt };
         most.min(params.max_dt)
             .min(c * params.particle_spacing / speed.max(1e-20))
             .min(pressure_limit(params, pressure))
@@ -49,7 +49,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
         state.run_count = 0;
     } else {
         state.remaining -= state.dt;
-        state.dt = params.step_length(stable, state.remaining);
+        state.dt = params.step_length(stable, state.remaining, false);
     }
 }
 

@@ -3,6 +3,7 @@
 //! With h = H / 2: dt = min(C h / (c0 + |v|max), C sqrt(h / |a|max), 0.4 spacing C / |v|max, 0.125 h^2 / nu,
 //! 0.17 h / (delta c0), max_dt) (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last. The maxima
 //! are those of the step that ends, so the time step lags by one step; velocities are limited for this reason.
+//! [`Params::step_length`] divides the remaining time of the frame.
 //!
 //! With implicit pressure neither sound nor accelerations limit the step:
 //! dt = min(C spacing / |v|max, spacing / 2 sqrt(rho0 / p max), 0.125 h^2 / nu, max_dt), at most half more than the last,

@@ -45,7 +45,7 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         return;
     }
     if !is_valid || error > 4.0 * solve.best {
-        solve.relaxation = (0.5 * solve.relaxation).max(0.05);
+        solve.relaxation = (0.5 * solve.relaxation).max(params.relaxation / 12.0);
         solve.beta = 0.0;
         solve.best = error;
     } else {

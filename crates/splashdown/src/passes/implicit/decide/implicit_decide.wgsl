@@ -56,7 +56,7 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
         return;
     }
     if (!is_valid || error > 4.0 * solve.best) {
-        solve.relaxation = max(0.5 * solve.relaxation, 0.05);
+        solve.relaxation = max(0.5 * solve.relaxation, params.relaxation / 12.0);
         solve.beta = 0.0;
         solve.best = error;
     } else {
