@@ -1,6 +1,6 @@
 //! `dfsph`: a block that collapses in a closed box, and a tank at rest.
 
-use splashdown::{Simulation, Stats};
+use splashdown::{Simulation, SimulationError, Stats, sample};
 use splashdown_gpu::{CpuExecutor, Executor};
 
 use super::cases::{Case, Variant};
@@ -183,4 +183,30 @@ fn a_tank_rests_at_hydrostatic_pressure() {
         .sum::<f64>();
     figures.measure("pressure against a deeper tank", (deeper / size2).sqrt());
     figures.close();
+}
+
+/// A vortex in a closed cube that is full of water, with this acceleration downwards.
+fn sealed_vortex(gravity: f32) -> Result<Stats, SimulationError> {
+    let scene = scene(&format!(
+        "[scene]\nname = \"sealed\"\nduration = 1.0\ngravity = [0, -{gravity}, 0]\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 0.3]\n\
+         [fluid]\nparticle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, 0.3]\n\
+         [solver]\nmethod = \"dfsph\"\n"
+    ));
+    let mut particles = sample::particles(&scene).unwrap();
+    let pi = std::f32::consts::PI;
+    for ([x, y, _], v) in particles.positions.iter().zip(&mut particles.velocities) {
+        *v = [(pi * x).sin() * (pi * y).cos(), -(pi * x).cos() * (pi * y).sin(), 0.0];
+    }
+    Simulation::with_particles(&scene, cpu(), &particles)?.advance(1.0)
+}
+
+/// A lattice that is sheared has a larger sum of the kernel, and no room to expand.
+#[test]
+fn the_pressure_in_a_sealed_space_is_bounded() {
+    let stats = sealed_vortex(9.81).unwrap();
+    assert!(stats.max_speed < 3.0, "{stats:?}");
+    assert!(stats.steps < 2000, "{stats:?}");
+    // Control: without gravity there is no compressibility.
+    let result = sealed_vortex(0.0);
+    assert!(matches!(result, Err(SimulationError::StepTooSmall { .. })), "{result:?}");
 }
