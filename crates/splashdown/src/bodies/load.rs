@@ -243,9 +243,13 @@ fn load_one(
     let report = |part: f32| {
         let mut complete = complete.lock().unwrap_or_else(PoisonError::into_inner);
         *complete += part;
-        progress(&task, f32::min(*complete, 1.0));
+        // The parts add up to one with rounding errors.
+        progress(&task, f32::min(*complete, 0.999));
     };
     let solid = Solid::build_within(&mesh, &settings, surroundings.as_ref(), &report).map_err(solid_error)?;
+    if complete.into_inner().unwrap_or_else(PoisonError::into_inner) > 0.0 {
+        progress(&task, 1.0);
+    }
     let mut state = Body {
         position: body.mesh.position,
         orientation: Vec4::from(body.mesh.rotation),

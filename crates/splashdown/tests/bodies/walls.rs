@@ -1,6 +1,9 @@
+use std::sync::Mutex;
+
 use glam::Vec3;
 use splashdown::scene::{Body, BoundaryKind, Motion, Scene};
 use splashdown::{Device, Simulation};
+use splashdown_gpu::{CpuExecutor, Executor};
 
 use crate::{body, tank};
 
@@ -92,4 +95,20 @@ fn a_dam_break_against_a_rotated_block_does_not_leak() {
     }
     // Control: the wave reached the block.
     assert!(pushed > 5.0, "{pushed} N");
+}
+
+/// The window shows a distance field as unfinished until the last part is 1.
+#[test]
+fn the_progress_of_a_distance_field_ends_at_one() {
+    let mut scene = tank(0.03, [0.6, 0.4, 0.4], 0.1);
+    // A size that no cached distance field has.
+    let size = 0.1 + 1e-6 * (std::process::id() % 10_000) as f32;
+    scene.bodies.push(body("block", "cube", size, Vec3::new(0.3, 0.2, 0.2), Motion::Static));
+    let parts = Mutex::new(Vec::new());
+    let executor = Executor::from(CpuExecutor::new());
+    Simulation::prepare(&scene, executor, &|_, part| parts.lock().unwrap().push(part)).unwrap();
+    let parts = parts.into_inner().unwrap();
+    assert_eq!(parts.last(), Some(&1.0));
+    // Control: there are several parts, and only the last is complete.
+    assert!(parts.len() > 2 && parts[..parts.len() - 1].iter().all(|part| *part < 1.0), "{parts:?}");
 }
