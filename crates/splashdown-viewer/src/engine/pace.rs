@@ -54,7 +54,8 @@ impl Pace {
         // If drawing is slow, the simulation still gets half of the time.
         let longest_tick = self.between.max(MAX_TICK);
         let affordable = if self.cost > 0.0 { longest_tick / self.cost } else { shortest };
-        let tick = self.due.min(affordable).max(dt);
+        // Whole steps: an implicit pressure is disturbed by a step of another length than the last.
+        let tick = (self.due.min(affordable).max(dt) / dt).floor() * dt;
         self.due -= tick;
         Some(tick)
     }
@@ -95,6 +96,18 @@ mod tests {
             }
         }
         (simulated, longest)
+    }
+
+    #[test]
+    fn a_tick_is_a_whole_number_of_steps() {
+        let (mut pace, start, dt) = (Pace::new(), Instant::now(), 0.0031);
+        pace.record(dt, Duration::from_micros(100), Duration::ZERO);
+        let ticks: Vec<f64> =
+            (0..60).filter_map(|k| pace.tick(start + Duration::from_millis(16 * k), dt)).collect();
+        assert!(ticks.iter().all(|tick| (tick / dt - (tick / dt).round()).abs() < 1e-9), "{ticks:?}");
+        // Nothing is lost: what is left of a tick is due in the next one.
+        let simulated: f64 = ticks.iter().sum();
+        assert!((simulated - 59.0 * 0.016).abs() < dt, "{simulated}");
     }
 
     #[test]

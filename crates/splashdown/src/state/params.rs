@@ -111,7 +111,9 @@ impl Params {
     /// length. Explicit steps are as long as possible, and the last two are equal, so that none is tiny.
     pub fn step_length(&self, stable: f32, remaining: f32, is_first: bool) -> f32 {
         if self.is_implicit == 1 {
-            let steps = (remaining / (if is_first { 1.0 } else { 1.05 } * stable)).ceil();
+            // At the start of a frame the limit may be exceeded by rounding only.
+            let allowed = if is_first { 1.0001 } else { 1.05 };
+            let steps = (remaining / (allowed * stable)).ceil();
             if steps <= 1.0 { remaining } else { remaining / steps }
         } else if remaining >= 2.0 * stable {
             stable

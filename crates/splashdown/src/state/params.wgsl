@@ -65,7 +65,7 @@ fn pressure_at(density: f32) -> f32 {
 // The length of the next step; see Params::step_length.
 fn step_length(stable: f32, remaining: f32, is_first: bool) -> f32 {
     if (params.is_implicit == 1u) {
-        let steps = ceil(remaining / (select(1.05, 1.0, is_first) * stable));
+        let steps = ceil(remaining / (select(1.05, 1.0001, is_first) * stable));
         return select(remaining / steps, remaining, steps <= 1.0);
     }
     if (remaining >= 2.0 * stable) {
