@@ -17,7 +17,7 @@ pub fn numbers(summary: &Summary) -> String {
     let mut rows = vec![
         ("simulated", format!("{:.4} s in {}", stats.time, human::counted(summary.frames.into(), "frame"))),
         ("wall time", human::duration(summary.wall)),
-        ("steps", format!("{}, the last with dt = {:.3e} s", human::count(stats.steps), stats.dt)),
+        ("steps", format!("{}, at the end at most {:.3e} s long", human::count(stats.steps), stats.dt)),
         (
             "speed",
             format!("{} simulated seconds per second", human::three_digits(summary.simulated_per_wall)),

@@ -1,7 +1,7 @@
 //! The pressure of an iteration, and the velocity that it leads to: u = v* - dt D' k (see the [module](super)).
 //!
-//! Also computes, over each 64 particles, the sum of the squares of dt D' k, the largest k, and the
-//! sums of the squares of k and u.
+//! Also computes, over each 64 particles, the sum of the squares of dt D' k, the largest k, and the sums of the squares of
+//! k and u.
 //!
 //! k = max(k_J + beta p, 0) of a neighbour is computed where it is used. Where a nozzle determines the motion there is no
 //! pressure, which the result marks with -1.
