@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::Sorted;
 use super::columns::Columns;
-use super::vector::{difference, dot, reflected_point};
+use super::vector::reflected_point;
 use crate::boundary::Reflection;
 use crate::simd::{BLOCK, Register, sum};
 
@@ -117,38 +117,6 @@ impl<const F: usize> Candidates<F> {
             mark(&reflection, &mut self.columns[F - 1][begin..count]);
         }
         self.pad(count);
-    }
-
-    /// Packs those of some particles and of some images that are within the support radius of a point. Returns the number of
-    /// particles, which come first, and that of both.
-    #[inline(always)]
-    pub fn pack_near<V: Register>(&mut self, x: [V; 3], support: f32, from: [&Self; 2]) -> [usize; 2] {
-        self.reserve(from[0].count + from[1].count);
-        let reach2 = V::splat(support * support);
-        let (mut count, mut ends) = (0, [0; 2]);
-        // Not `map`: the compiler calls it, which passes registers in memory.
-        for (candidates, end) in from.into_iter().zip(&mut ends) {
-            let columns = candidates.columns();
-            assert!(count + candidates.count + BLOCK <= self.columns[0].len());
-            let to: [*mut f32; F] = std::array::from_fn(|f| self.columns[f].as_mut_ptr());
-            for k in (0..candidates.count).step_by(V::WIDTH) {
-                // SAFETY: the length is a multiple of the block, and the width divides the block.
-                let load = |f: usize| unsafe { V::load(columns[f].as_ptr().add(k)) };
-                let d = difference(x, [load(0), load(1), load(2)]);
-                let near = dot(d, d).less_bits(reach2);
-                if near == 0 {
-                    continue;
-                }
-                for (f, to) in to.iter().enumerate() {
-                    // SAFETY: at most the candidates were appended, and there is a block after them.
-                    unsafe { load(f).compress(near).store(to.add(count)) };
-                }
-                count += near.count_ones() as usize;
-            }
-            *end = count;
-        }
-        self.pad(count);
-        ends
     }
 
     /// Packs the particles in the region and those of their images that are, from all cells within the support radius of
@@ -281,10 +249,27 @@ impl<const F: usize> Candidates<F> {
         std::array::from_fn(|f| &self.columns[f][..self.count])
     }
 
-    /// The columns, with padding of at least a block.
+    /// Number of candidates, with the padding.
     #[inline(always)]
-    pub fn columns_and_block(&self) -> [&[f32]; F] {
-        std::array::from_fn(|f| &self.columns[f][..self.count + BLOCK])
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Visits all registers in order, with the part of a block that they are.
+    #[inline(always)]
+    pub fn visit<V: Register>(&self, mut visit: impl FnMut(usize, [V; F])) {
+        let columns = self.columns();
+        for block in (0..self.count).step_by(BLOCK) {
+            for part in 0..BLOCK / V::WIDTH {
+                // Not `map`: for many columns the compiler calls it, which passes registers in memory.
+                let mut values = [V::splat(0.0); F];
+                for (value, column) in values.iter_mut().zip(&columns) {
+                    // SAFETY: the count is a multiple of the block, and the width divides the block.
+                    *value = unsafe { V::load(column.as_ptr().add(block + part * V::WIDTH)) };
+                }
+                visit(part, values);
+            }
+        }
     }
 
     /// The sums of one target.
@@ -313,6 +298,49 @@ impl<const F: usize> Candidates<F> {
                 unsafe { sums.store(lanes.as_mut_ptr().add(part)) };
             }
         }
-        lanes.map(sum)
+        sums_of(&lanes)
+    }
+}
+
+/// The sum of every block. Not `map`: the compiler calls it, in code for other registers, which takes a fifth of a pass.
+#[inline(always)]
+fn sums_of<const S: usize>(lanes: &[[f32; BLOCK]; S]) -> [f32; S] {
+    let mut totals = [0.0; S];
+    for (total, lanes) in totals.iter_mut().zip(lanes) {
+        *total = sum(*lanes);
+    }
+    totals
+}
+
+/// Sums in the lanes of a block, for [`Candidates::visit`].
+pub(super) struct Sums<V, const S: usize>([[V; S]; PARTS]);
+
+/// The most registers of a block.
+const PARTS: usize = BLOCK / 4;
+
+impl<V: Register, const S: usize> Sums<V, S> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self([[V::splat(0.0); S]; PARTS])
+    }
+
+    #[inline(always)]
+    pub fn add(&mut self, part: usize, contributions: [V; S]) {
+        for (sum, contribution) in self.0[part].iter_mut().zip(contributions) {
+            *sum = *sum + contribution;
+        }
+    }
+
+    /// The sums over all lanes.
+    #[inline(always)]
+    pub fn totals(&self) -> [f32; S] {
+        let mut lanes = [[0.0; BLOCK]; S];
+        for (part, sums) in self.0.iter().take(BLOCK / V::WIDTH).enumerate() {
+            for (lanes, sum) in lanes.iter_mut().zip(sums) {
+                // SAFETY: the width divides the block.
+                unsafe { sum.store(lanes.as_mut_ptr().add(part * V::WIDTH)) };
+            }
+        }
+        sums_of(&lanes)
     }
 }

@@ -14,11 +14,11 @@ use glam::{Mat4, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::Sorted;
-use super::candidates::{Candidates, Region};
+use super::candidates::{Candidates, Region, Sums};
 use super::columns::Columns;
 use super::near::{Link, Near, NearImages};
-use super::particles::{Outputs, PairSum, pieces};
-use super::vector::{difference, dot, scaled, splat};
+use super::particles::{Outputs, pieces};
+use super::vector::{difference, dot, reflected_point, scaled, splat};
 use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::simd::{BLOCK, Lanes, Leaf, Register, Simd, run_with};
@@ -106,7 +106,8 @@ impl<R: Radial> NeighbourLists<R> {
     pub(super) fn of_with(&mut self, simd: Simd, sorted: Sorted<'_>) -> &Self {
         let positions = &sorted.positions[..sorted.active_count()];
         if self.made_for != Some(conditions(sorted)) || !are_same(&self.positions, positions) {
-            self.make_with(simd, sorted, Nothing, &NoSum { positions });
+            let pass = NoSum::<R> { positions, scale: 1.0 / sorted.support_radius, factor: PhantomData };
+            self.make_with(simd, sorted, Nothing, &pass);
         }
         self
     }
@@ -135,13 +136,12 @@ impl<R: Radial> NeighbourLists<R> {
         // Lists that are not needed now keep their memory.
         self.lists.resize_with(self.lists.len().max(pieces.len()), List::default);
         self.lists.par_iter_mut().zip(pieces).with_max_len(1).for_each_init(
-            || [Candidates::new(), Candidates::new(), Candidates::new()],
+            || [Candidates::new(), Candidates::new()],
             |candidates, (list, (cells, outputs))| {
                 list.ends.clear();
                 list.neighbours.clear();
                 list.images.clear();
-                let factor = PhantomData::<R>;
-                run_with(simd, Cells { sorted, columns, candidates, cells, list, outputs, pass, factor });
+                run_with(simd, Cells { sorted, columns, candidates, cells, list, outputs, pass });
             },
         );
         self.positions.clear();
@@ -178,15 +178,45 @@ fn least(sorted: Sorted<'_>) -> usize {
     (sorted.active_count() / LISTS).max(1)
 }
 
-/// A pass that runs while lists are made. The last column must be the [place](Link::place_bits) of the particle.
-pub(crate) trait ListedSum<const F: usize, const S: usize>: PairSum<F, S> {}
+/// A pass that runs while lists are made: a [`PairSum`](super::PairSum) whose last column is the
+/// [place](Link::place_bits) of the particle, and whose pairs have the factor of the list.
+pub(crate) trait ListedSum<const F: usize, const S: usize>: Sync {
+    /// The result of a particle.
+    type Output: Send;
 
-/// No sums.
-struct NoSum<'a> {
-    positions: &'a [Vec4],
+    /// The values of particle `j` in the columns.
+    fn load(&self, j: usize) -> [f32; F];
+
+    /// A register of neighbours of particle `i`.
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; F]) -> ListedPair<V, S>;
+
+    /// The columns of the images of a register of neighbours behind a wall.
+    fn reflect<V: Register>(&self, reflection: &Reflection, values: [V; F]) -> [V; F];
+
+    /// The result of particle `i` for its sums.
+    fn finish(&self, i: usize, sums: [f32; S]) -> Self::Output;
 }
 
-impl PairSum<4, 0> for NoSum<'_> {
+/// What a list and a pass need of a register of pairs.
+pub(crate) struct ListedPair<V, const S: usize> {
+    /// The difference of the positions, x_i - x_j.
+    pub d: [V; 3],
+    /// Its square.
+    pub r2: V,
+    /// The factor in the list.
+    pub factor: V,
+    /// The contributions to the sums; zero beyond the support radius.
+    pub sums: [V; S],
+}
+
+/// No sums.
+struct NoSum<'a, R> {
+    positions: &'a [Vec4],
+    scale: f32,
+    factor: PhantomData<R>,
+}
+
+impl<R: Radial> ListedSum<4, 0> for NoSum<'_, R> {
     type Output = ();
 
     #[inline(always)]
@@ -196,16 +226,25 @@ impl PairSum<4, 0> for NoSum<'_> {
     }
 
     #[inline(always)]
-    fn pair<V: Register>(&self, _: usize) -> impl Fn([V; 4]) -> [V; 0] {
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 4]) -> ListedPair<V, 0> {
+        let x = splat::<V>(self.positions[i]);
         #[inline(always)]
-        |_| []
+        move |[x_j, y_j, z_j, _]| {
+            let d = difference(x, [x_j, y_j, z_j]);
+            let r2 = dot(d, d);
+            ListedPair { d, r2, factor: R::factor(r2.sqrt() * self.scale), sums: [] }
+        }
+    }
+
+    #[inline(always)]
+    fn reflect<V: Register>(&self, by: &Reflection, [x, y, z, place]: [V; 4]) -> [V; 4] {
+        let [x, y, z] = reflected_point(by, [x, y, z]);
+        [x, y, z, place]
     }
 
     #[inline(always)]
     fn finish(&self, _: usize, _: [f32; 0]) {}
 }
-
-impl ListedSum<4, 0> for NoSum<'_> {}
 
 /// No results.
 struct Nothing;
@@ -219,26 +258,26 @@ impl Outputs<()> for Nothing {
 }
 
 /// The cells of a list.
-struct Cells<'a, R, const F: usize, const S: usize, P, O> {
+struct Cells<'a, const F: usize, const S: usize, P, O> {
     sorted: Sorted<'a>,
     columns: &'a Columns<F>,
-    /// Particles and images near a cell, and those near a particle.
-    candidates: &'a mut [Candidates<F>; 3],
+    /// Particles and images near a cell.
+    candidates: &'a mut [Candidates<F>; 2],
     cells: Range<usize>,
     list: &'a mut List,
     outputs: O,
     pass: &'a P,
-    factor: PhantomData<R>,
 }
 
-impl<R: Radial, const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P::Output>> Leaf
-    for Cells<'_, R, F, S, P, O>
+impl<const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P::Output>> Leaf
+    for Cells<'_, F, S, P, O>
 {
     #[inline(always)]
     fn run<V: Register>(self) {
-        let Self { sorted, columns, candidates, cells, list, mut outputs, pass, .. } = self;
-        let [particles_near, images_near, near] = candidates;
+        let Self { sorted, columns, candidates, cells, list, mut outputs, pass } = self;
+        let [particles_near, images_near] = candidates;
         let support = sorted.support_radius;
+        let reach2 = V::splat(support * support);
         let first = sorted.cell_start[cells.start] as usize;
         for cell in cells {
             let particles = sorted.run(cell, 1);
@@ -253,18 +292,32 @@ impl<R: Radial, const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P
             let reflect = |by: &Reflection, values| pass.reflect(by, values);
             images_near.pack_only_images::<V>(columns, &runs, &region, reflections, reflect, mark);
             for i in particles {
-                let x = splat::<V>(sorted.positions[i]);
-                let [middle, end] = near.pack_near(x, support, [&*particles_near, &*images_near]);
-                let all = near.columns_and_block();
-                let position_and_place = [all[0], all[1], all[2], all[F - 1]];
-                append_links::<R, V>(x, support, position_and_place, 0..middle, &mut list.neighbours);
-                append_vectors::<R, V>(x, support, position_and_place, middle..end, &mut list.images);
+                let pair = pass.pair::<V>(i);
+                let mut sums = Sums::<V, S>::new();
+                list.neighbours.reserve(particles_near.len() + BLOCK);
+                particles_near.visit::<V>(|part, values| {
+                    let pair = pair(values);
+                    sums.add(part, pair.sums);
+                    append_link(near(pair.r2, reach2), pair.factor, values[F - 1], &mut list.neighbours);
+                });
+                list.images.reserve(images_near.len() + BLOCK);
+                images_near.visit::<V>(|part, values| {
+                    let pair = pair(values);
+                    sums.add(part, pair.sums);
+                    let vector = scaled(pair.factor, pair.d);
+                    append_vector(near(pair.r2, reach2), vector, values[F - 1], &mut list.images);
+                });
                 list.ends.push([list.neighbours.len(), list.images.len()]);
-                let sums = if S == 0 { [0.0; S] } else { near.sum::<V, S>(pass.pair::<V>(i)) };
-                outputs.put(i - first, pass.finish(i, sums));
+                outputs.put(i - first, pass.finish(i, sums.totals()));
             }
         }
     }
+}
+
+/// The bits of the other particles within the support radius.
+#[inline(always)]
+fn near<V: Register>(r2: V, reach2: V) -> u32 {
+    r2.less_bits(reach2) & V::splat(0.0).less_bits(r2)
 }
 
 /// Replaces the places of particles by the bits of their images.
@@ -273,33 +326,6 @@ fn mark(by: &Reflection, places: &mut [f32]) {
     for place in places {
         let index = place.to_bits() / 2;
         *place = f32::from_bits(NORMAL | index | axes << INDEX_BITS);
-    }
-}
-
-/// Visits registers of particles near a point: with the bits of those that are not at the point, the factors, the differences
-/// of the positions, and the fourth column. The columns must extend a block beyond the range.
-#[inline(always)]
-fn visit<R: Radial, V: Register>(
-    x: [V; 3],
-    support: f32,
-    from: [&[f32]; 4],
-    range: Range<usize>,
-    mut found: impl FnMut(u32, V, [V; 3], V),
-) {
-    let inverse = 1.0 / support;
-    for k in range.clone().step_by(V::WIDTH) {
-        assert!(from.iter().all(|column| k + V::WIDTH <= column.len()));
-        let mut values = [V::splat(0.0); 4];
-        for (value, column) in values.iter_mut().zip(&from) {
-            // SAFETY: the column is long enough, as just tested.
-            *value = unsafe { V::load(column.as_ptr().add(k)) };
-        }
-        let [x_j, y_j, z_j, place] = values;
-        let d = difference(x, [x_j, y_j, z_j]);
-        let r2 = dot(d, d);
-        let in_range = u32::MAX >> (32 - V::WIDTH.min(range.end - k));
-        let others = V::splat(0.0).less_bits(r2) & in_range;
-        found(others, R::factor(r2.sqrt() * inverse), d, place);
     }
 }
 
@@ -314,52 +340,39 @@ fn compressed<V: Register, const N: usize>(values: [V; N], bits: u32) -> [[Vec4;
     columns
 }
 
-/// Appends the particles in a range of columns, without one at the point itself.
+/// Appends the particles whose bit is set. There must be room for a block.
 #[inline(always)]
-fn append_links<R: Radial, V: Register>(
-    x: [V; 3],
-    support: f32,
-    from: [&[f32]; 4],
-    range: Range<usize>,
-    links: &mut Vec<Link>,
-) {
-    links.reserve(range.len() + BLOCK);
-    visit::<R, V>(x, support, from, range, |near, factor, _, index| {
-        let (count, begin) = (near.count_ones() as usize, links.len());
-        assert!(begin + BLOCK <= links.capacity());
-        let [factors, indices] = compressed([factor, index], near);
-        for quad in 0..count.div_ceil(4) {
-            let (f, i) = (factors[quad], indices[quad]);
-            let rows = [Vec4::new(f.x, i.x, f.y, i.y), Vec4::new(f.z, i.z, f.w, i.w)];
-            // SAFETY: there is room for a block, as tested above. Four links have the size of the rows.
-            unsafe { links.as_mut_ptr().add(begin + 4 * quad).cast::<[Vec4; 2]>().write_unaligned(rows) };
-        }
-        // SAFETY: this many have been written.
-        unsafe { links.set_len(begin + count) };
-    });
+fn append_link<V: Register>(near: u32, factor: V, place: V, links: &mut Vec<Link>) {
+    if near == 0 {
+        return;
+    }
+    let (count, begin) = (near.count_ones() as usize, links.len());
+    assert!(begin + BLOCK <= links.capacity());
+    let [factors, places] = compressed([factor, place], near);
+    for quad in 0..count.div_ceil(4) {
+        let (f, p) = (factors[quad], places[quad]);
+        let rows = [Vec4::new(f.x, p.x, f.y, p.y), Vec4::new(f.z, p.z, f.w, p.w)];
+        // SAFETY: there is room for a block, as tested above. Four links have the size of the rows.
+        unsafe { links.as_mut_ptr().add(begin + 4 * quad).cast::<[Vec4; 2]>().write_unaligned(rows) };
+    }
+    // SAFETY: this many have been written.
+    unsafe { links.set_len(begin + count) };
 }
 
-/// As [`append_links`], with the vectors.
+/// As [`append_link`], with vectors instead of factors.
 #[inline(always)]
-fn append_vectors<R: Radial, V: Register>(
-    x: [V; 3],
-    support: f32,
-    from: [&[f32]; 4],
-    range: Range<usize>,
-    vectors: &mut Vec<Vec4>,
-) {
-    vectors.reserve(range.len() + BLOCK);
-    visit::<R, V>(x, support, from, range, |near, factor, d, index| {
-        let (count, begin) = (near.count_ones() as usize, vectors.len());
-        assert!(begin + BLOCK <= vectors.capacity());
-        let [sx, sy, sz] = scaled(factor, d);
-        let [sx, sy, sz, index] = compressed([sx, sy, sz, index], near);
-        for quad in 0..count.div_ceil(4) {
-            let rows = Mat4::from_cols(sx[quad], sy[quad], sz[quad], index[quad]).transpose();
-            // SAFETY: there is room for a block, as tested above.
-            unsafe { vectors.as_mut_ptr().add(begin + 4 * quad).cast::<Mat4>().write(rows) };
-        }
-        // SAFETY: this many have been written.
-        unsafe { vectors.set_len(begin + count) };
-    });
+fn append_vector<V: Register>(near: u32, [x, y, z]: [V; 3], image: V, vectors: &mut Vec<Vec4>) {
+    if near == 0 {
+        return;
+    }
+    let (count, begin) = (near.count_ones() as usize, vectors.len());
+    assert!(begin + BLOCK <= vectors.capacity());
+    let [x, y, z, image] = compressed([x, y, z, image], near);
+    for quad in 0..count.div_ceil(4) {
+        let rows = Mat4::from_cols(x[quad], y[quad], z[quad], image[quad]).transpose();
+        // SAFETY: there is room for a block, as tested above.
+        unsafe { vectors.as_mut_ptr().add(begin + 4 * quad).cast::<Mat4>().write(rows) };
+    }
+    // SAFETY: this many have been written.
+    unsafe { vectors.set_len(begin + count) };
 }

@@ -7,7 +7,7 @@ use super::SystemBindings;
 use crate::boundary::{Images, Reflection, WallKernel, wall_friction};
 use crate::kernel::Kernel;
 use crate::pairs::{
-    Link, ListedSum, NeighbourLists, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled,
+    Link, ListedPair, ListedSum, NeighbourLists, Sorted, difference, dot, reflected, reflected_point, scaled,
     splat,
 };
 use crate::simd::Register;
@@ -68,7 +68,7 @@ struct System<'a, K> {
 }
 
 /// The sums: kernel, gradient, squares of the gradients, viscous acceleration.
-impl<K: Kernel + WallKernel> PairSum<7, 8> for System<'_, K> {
+impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {
     type Output = ((Vec2, Vec4), (Vec4, Vec4));
 
     #[inline(always)]
@@ -78,7 +78,7 @@ impl<K: Kernel + WallKernel> PairSum<7, 8> for System<'_, K> {
     }
 
     #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 7]) -> [V; 8] {
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 7]) -> ListedPair<V, 8> {
         let (x, v) = (splat::<V>(self.positions[i]), splat::<V>(self.velocities[i]));
         let (zero, separating, approaching) =
             (V::splat(0.0), V::splat(self.separating), V::splat(self.approaching));
@@ -87,10 +87,12 @@ impl<K: Kernel + WallKernel> PairSum<7, 8> for System<'_, K> {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
             let q = r2.sqrt() * self.scale;
-            let g = scaled(K::g(q), d);
+            let factor = K::g(q);
+            let g = scaled(factor, d);
             let vx = dot(difference(v, [u_j, v_j, w_j]), d);
             let a = scaled(vx * vx.if_less(zero, approaching, separating) / (r2 + self.soft), g);
-            [K::w(q), g[0], g[1], g[2], dot(g, g), a[0], a[1], a[2]]
+            let sums = [K::w(q), g[0], g[1], g[2], dot(g, g), a[0], a[1], a[2]];
+            ListedPair { d, r2, factor, sums }
         }
     }
 
@@ -117,5 +119,3 @@ impl<K: Kernel + WallKernel> PairSum<7, 8> for System<'_, K> {
         ((density, acceleration.extend(0.0)), (stiffness, start))
     }
 }
-
-impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {}
