@@ -36,6 +36,11 @@ pub(crate) trait BoxPass<const F: usize>: Sync {
     /// The lower and upper corner of box `i`, in metres.
     fn corners(&self, i: usize) -> [Vec3; 2];
 
+    /// Writes the result of a box that needs no visit, and returns whether it has.
+    fn shortcut(&self, _i: usize, _out: &mut Self::Output) -> bool {
+        false
+    }
+
     /// Computes the result of box `i`. The columns in `near` have equal lengths, a multiple of
     /// [`BLOCK`](crate::simd::BLOCK). The padding at the end is far away, with zeros after the
     /// position.
@@ -76,6 +81,9 @@ impl<const F: usize, P: BoxPass<F>> Leaf for OneBox<'_, F, P> {
     #[inline(always)]
     fn run<V: Register>(self) {
         let Self { sorted, columns, candidates, i, out, pass } = self;
+        if pass.shortcut(i, out) {
+            return;
+        }
         let corners = pass.corners(i);
         let region = Region::around(corners, sorted.support_radius).with_own_reach2(P::REACH2);
         let reflect = |by: &Reflection, values| pass.reflect(by, values);

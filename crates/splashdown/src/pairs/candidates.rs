@@ -130,21 +130,8 @@ impl<const F: usize> Candidates<F> {
         region: &Region,
         reflect: impl Fn(&Reflection, [V; F]) -> [V; F],
     ) {
-        let grid = sorted.grid;
-        let size = [grid.size_x, grid.size_y, grid.size_z];
         let reach = MARGIN * sorted.support_radius;
-        let inverse = 1.0 / grid.cell_size;
-        // Casts to integers saturate, so that cells outside the grid become its border cells.
-        let cell = |x: Vec3| ((x - grid.origin) * inverse).to_array().map(|x| x.floor() as u32);
-        let (first, last) = (cell(low - reach), cell(high + reach));
-        let [x, y, z] = std::array::from_fn(|axis| {
-            let end = last[axis].min(size[axis] - 1) as usize + 1;
-            (first[axis] as usize).min(end)..end
-        });
-        let runs = z.flat_map(|z| y.clone().map(move |y| z * size[1] as usize + y)).map(|row| {
-            let first = row * size[0] as usize + x.start;
-            sorted.run(first, x.len())
-        });
+        let runs = sorted.rows_near([low - reach, high + reach]);
         let reflections = sorted.images.near(low, high, sorted.support_radius);
         let particles: usize = runs.clone().map(|run| run.len()).sum();
         self.reserve(particles * (1 + reflections.clone().count()));

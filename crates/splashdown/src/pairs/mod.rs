@@ -39,7 +39,7 @@ mod vectors;
 
 use std::ops::Range;
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use crate::boundary::Images;
 use crate::cells::Grid;
@@ -87,6 +87,25 @@ impl<'a> Sorted<'a> {
     #[inline(always)]
     fn run(&self, first_cell: usize, cells: usize) -> Range<usize> {
         self.cell_start[first_cell] as usize..self.cell_start[first_cell + cells] as usize
+    }
+
+    /// The particles of all cells that intersect a box, one run per row of cells.
+    #[inline(always)]
+    pub fn rows_near(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = Range<usize>> + Clone + 'a {
+        let (sorted, grid) = (*self, self.grid);
+        let size = [grid.size_x, grid.size_y, grid.size_z];
+        let inverse = 1.0 / grid.cell_size;
+        // Casts to integers saturate, so that cells outside the grid become its border cells.
+        let cell = |x: Vec3| ((x - grid.origin) * inverse).to_array().map(|x| x.floor() as u32);
+        let (first, last) = (cell(low), cell(high));
+        let [x, y, z] = std::array::from_fn(|axis| {
+            let end = last[axis].min(size[axis] - 1) as usize + 1;
+            (first[axis] as usize).min(end)..end
+        });
+        z.flat_map(move |z| y.clone().map(move |y| z * size[1] as usize + y)).map(move |row| {
+            let first = row * size[0] as usize + x.start;
+            sorted.run(first, x.len())
+        })
     }
 
     /// The particles of a cell and its 26 neighbours: nine rows of three cells each.

@@ -30,6 +30,14 @@ fn cloud() -> Vec<Vec3> {
     points
 }
 
+/// A jittered block that is thick enough for blocks of the surface that no particle at its surface reaches.
+fn thick() -> Vec<Vec3> {
+    let unit = |i: u32| testing::noise(i) as f32 / u32::MAX as f32 - 0.5;
+    let place = |i: u32| Vec3::new((i % 16) as f32, (i / 16 % 16) as f32, (i / 256) as f32) - 7.5;
+    let jitter = |i: u32| 0.2 * Vec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2));
+    (0..16 * 16 * 16).map(|i| SPACING * (place(i) + jitter(i))).collect()
+}
+
 /// The first index at which two columns differ by more than `tolerance`. Equal bits are equal, even
 /// for NaN.
 fn difference(what: &str, cpu: &[f32], gpu: &[f32], tolerance: f32) -> Option<String> {
@@ -115,19 +123,24 @@ fn compare(buffers: [&Buffers; 2], iso: f32, cpu: &mut Executor, gpu: &mut Execu
     wrong
 }
 
-fn prepare(executor: &mut Executor, params: SurfaceParams, capacity: Option<u32>) -> Surface {
+fn prepare(
+    executor: &mut Executor,
+    points: &[Vec3],
+    params: SurfaceParams,
+    capacity: Option<u32>,
+) -> Surface {
     executor.poison();
-    let input = reconstruct::upload(executor, &cloud(), &params).unwrap();
+    let input = reconstruct::upload(executor, points, &params).unwrap();
     match capacity {
         None => Surface::new(executor, params, input).unwrap(),
         Some(few) => Surface::with_capacity(executor, params, input, few, 8 * few, 12 * few).unwrap(),
     }
 }
 
-fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Option<u32>) {
+fn command_by_command(gpu: &mut Executor, points: &[Vec3], params: SurfaceParams, capacity: Option<u32>) {
     let mut cpu = Executor::from(CpuExecutor::new());
-    let surface = prepare(&mut cpu, params, capacity);
-    let twin = prepare(gpu, params, capacity);
+    let surface = prepare(&mut cpu, points, params, capacity);
+    let twin = prepare(gpu, points, params, capacity);
     let buffers = [&surface.b, &twin.b];
     assert_eq!(surface.recording.commands.len(), twin.recording.commands.len());
     for (command, other) in surface.recording.commands.iter().zip(&twin.recording.commands) {
@@ -150,7 +163,7 @@ fn command_by_command(gpu: &mut Executor, params: SurfaceParams, capacity: Optio
     assert_eq!(status.overflowed(), capacity.is_some(), "{status:?}");
     if capacity.is_none() {
         let topology = surface.mesh(&mut cpu).unwrap().topology().unwrap();
-        let components = if params.separates() { 1 } else { 3 };
+        let components = if params.separates() || points.len() == thick().len() { 1 } else { 3 };
         assert!(topology.is_watertight() && topology.components == components, "{topology}");
     }
 }
@@ -167,11 +180,29 @@ fn every_pass_agrees_with_its_cpu_counterpart() {
         for walls in [Walls::NONE, walls] {
             let params =
                 SurfaceParams { smoothing_iterations, kernels, walls, ..SurfaceParams::new(SPACING) };
-            command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, None);
+            command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), &cloud(), params, None);
             let separated = SurfaceParams { min_blob: 3, min_neighbours: 2, ..params };
-            command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), separated, None);
+            command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), &cloud(), separated, None);
         }
     }
+}
+
+/// A thick block between walls has blocks that no particle at the surface reaches. Their field is exactly one, on both
+/// executors.
+#[test]
+fn the_interior_of_a_thick_block_agrees_with_its_cpu_counterpart() {
+    let walls = Walls::new([-8.0 * SPACING; 3], [8.0 * SPACING; 3], [[true, true], [true, false], [true; 2]]);
+    let params = SurfaceParams { kernels: SurfaceKernels::Anisotropic, walls, ..SurfaceParams::new(SPACING) };
+    let mut cpu = Executor::from(CpuExecutor::new());
+    let surface = prepare(&mut cpu, &thick(), params, None);
+    cpu.run(&surface.recording).unwrap();
+    let ones = cpu.read(surface.b.field_values).unwrap().iter().filter(|value| **value == 1.0).count();
+    assert!(ones > 20 * 512, "{ones} nodes inside");
+    let Some(gpu) = testing::gpu_or_skip("the_interior_of_a_thick_block_agrees_with_its_cpu_counterpart")
+    else {
+        return;
+    };
+    command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), &thick(), params, None);
 }
 
 /// With capacities that are too small, neither side writes out of range, and both omit the same
@@ -185,7 +216,7 @@ fn every_pass_agrees_with_its_cpu_counterpart_with_exceeded_capacities() {
     };
     let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
     for few in [5, 70] {
-        command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), params, Some(few));
+        command_by_command(&mut GpuExecutor::new(gpu.clone()).into(), &cloud(), params, Some(few));
     }
 }
 
@@ -194,8 +225,8 @@ fn every_pass_agrees_with_its_cpu_counterpart_with_exceeded_capacities() {
 fn the_comparison_detects_a_wrong_bit_and_a_wrong_digit() {
     let params = SurfaceParams { smoothing_iterations: 2, ..SurfaceParams::new(SPACING) };
     let (mut a, mut b) = (Executor::from(CpuExecutor::new()), Executor::from(CpuExecutor::new()));
-    let surface = prepare(&mut a, params, None);
-    let twin = prepare(&mut b, params, None);
+    let surface = prepare(&mut a, &cloud(), params, None);
+    let twin = prepare(&mut b, &cloud(), params, None);
     let buffers = [&surface.b, &twin.b];
     a.run(&surface.recording).unwrap();
     copy_all(buffers, &mut a, &mut b);

@@ -17,8 +17,14 @@ pub(super) fn squared([xx, xy, xz, yy, yz, zz]: [f32; 6]) -> [f32; 6] {
 #[inline(always)]
 pub(super) fn inverted([xx, xy, xz, yy, yz, zz]: [f32; 6]) -> [f32; 6] {
     let [a, b, c] = [yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy];
-    let inverse = 1.0 / (xx * a + xy * b + xz * c);
+    let inverse = 1.0 / determinant([xx, xy, xz, yy, yz, zz]);
     [a, b, c, xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy].map(|element| inverse * element)
+}
+
+/// The determinant.
+#[inline(always)]
+pub(super) fn determinant([xx, xy, xz, yy, yz, zz]: [f32; 6]) -> f32 {
+    xx * (yy * zz - yz * yz) + xy * (xz * yz - xy * zz) + xz * (xy * yz - xz * yy)
 }
 
 /// Adds a multiple of the unit matrix.
@@ -42,6 +48,7 @@ mod tests {
     fn squares_and_inverses_are_those_of_the_full_matrix() {
         assert!(full(squared(M)).abs_diff_eq(full(M) * full(M), 1e-6));
         assert!((full(inverted(M)) * full(M)).abs_diff_eq(Mat3::IDENTITY, 1e-6));
+        assert!((determinant(M) - full(M).determinant()).abs() < 1e-6);
         assert!(full(plus(M, 3.0)).abs_diff_eq(full(M) + 3.0 * Mat3::IDENTITY, 1e-6));
         // Control: elements in another order are another matrix.
         let [xx, xy, xz, yy, yz, zz] = M;

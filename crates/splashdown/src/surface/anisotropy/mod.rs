@@ -24,8 +24,9 @@
 //! With fewer than about four neighbours a kernel gradually becomes a ball. A lone particle is a ball whose mesh has the
 //! particle's volume at an iso level of 0.6 (`bulk`).
 //!
-//! A particle inside the fluid, with nearly as many neighbours as in the bulk and nearly no offset, has the ball and the weight
-//! of the isotropic field. Passes 2 and 3 visit the neighbours of the others only.
+//! A particle inside the fluid, with nearly as many neighbours as in the bulk, nearly no offset, and a covariance that is not
+//! flat, has the ball and the weight of the isotropic field. Passes 2 and 3 visit the neighbours of the others only, and the
+//! field is not evaluated in blocks that only particles inside the fluid can reach.
 //!
 //! # Why not the other way
 //!

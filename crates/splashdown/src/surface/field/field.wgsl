@@ -26,6 +26,29 @@ fn contribution(i: u32, by: WallReflection, nodes: RowNodes) -> RowValues {
     );
 }
 
+fn evaluate_row(slot: u32, row: u32) {
+    let nodes = row_nodes(first_node(slot, row));
+    let near_end = vec3<f32>(nodes.first_x, nodes.yz);
+    let far_end = vec3<f32>(nodes.last_x, nodes.yz);
+    let cells = cell_range(near_end - lattice.search_reach, far_end + lattice.search_reach);
+    var values = RowValues(vec4<f32>(0.0), vec4<f32>(0.0));
+    for (var left = wall_reflections(near_end, far_end); left != 0u; left &= left - 1u) {
+        let by = wall_reflection(firstTrailingBit(left));
+        for (var z = cells.first.z; z < cells.last.z; z++) {
+            for (var y = cells.first.y; y < cells.last.y; y++) {
+                let cell_row = (z * grid.size_y + y) * grid.size_x;
+                let end = cell_start[cell_row + cells.last.x];
+                for (var i = cell_start[cell_row + cells.first.x]; i < end; i++) {
+                    let more = contribution(i, by, nodes);
+                    values.low += more.low;
+                    values.high += more.high;
+                }
+            }
+        }
+    }
+    write_row(slot, row, values);
+}
+
 @compute @workgroup_size(64)
 fn field(
     @builtin(workgroup_id) group: vec3<u32>,

@@ -6,7 +6,7 @@ use crate::pairs::{
     self, PairSum, Sorted, difference, dot, reflected, reflected_matrix, reflected_point, splat,
 };
 use crate::simd::Register;
-use crate::surface::anisotropy::matrix::{inverted, plus, squared};
+use crate::surface::anisotropy::matrix::{determinant, inverted, plus, squared};
 use crate::surface::anisotropy::{MAX_SHIFT, MAX_SIZE};
 
 /// Part of the deviation from the neighbours' offset that is removed.
@@ -21,10 +21,11 @@ const FLATTEST: f32 = 0.35;
 const SATURATION: f32 = 0.25;
 /// Number of neighbours, relative to that in the bulk, above which a kernel is not a ball at all.
 const FEW: f32 = 0.18;
-/// A particle with more neighbours, relative to the number in the bulk, and with a smaller square of the offset is inside the
-/// fluid: its kernel is a ball.
+/// A particle with more neighbours, relative to the number in the bulk, a smaller square of the offset, and a larger determinant
+/// of the covariance, relative to the bulk, is inside the fluid: its kernel is a ball. The last one excludes dense sheets.
 const INTERIOR_NUMBER: f32 = 0.93;
 const INTERIOR_OFFSET2: f32 = 0.0025;
+const INTERIOR_DETERMINANT: f32 = 0.5 * BULK_VARIANCE * BULK_VARIANCE * BULK_VARIANCE;
 
 pub(super) fn shapes(buffers: ShapesBindings<'_>) {
     let ShapesBindings {
@@ -97,8 +98,11 @@ impl PairSum<13, 11> for Shapes<'_> {
 
     #[inline(always)]
     fn wants(&self, i: usize) -> bool {
-        let mean = self.moments[i][0];
-        mean.w < INTERIOR_NUMBER * self.bulk_number || mean.xyz().length_squared() > INTERIOR_OFFSET2
+        let [mean, first, second] = self.moments[i];
+        let [xx, xy, xz, yy] = first.to_array();
+        mean.w < INTERIOR_NUMBER * self.bulk_number
+            || mean.xyz().length_squared() > INTERIOR_OFFSET2
+            || determinant([xx, xy, xz, yy, second.x, second.y]) < INTERIOR_DETERMINANT
     }
 
     #[inline(always)]

@@ -16,6 +16,7 @@ const MAX_SIZE: f32 = 1.4;
 const FEW: f32 = 0.18;
 const INTERIOR_NUMBER: f32 = 0.93;
 const INTERIOR_OFFSET2: f32 = 0.0025;
+const INTERIOR_DETERMINANT: f32 = 0.5 * BULK_VARIANCE * BULK_VARIANCE * BULK_VARIANCE;
 const MAX_SHIFT: f32 = 0.125;
 
 // The centre and the matrix of particle i for the means over its neighbours: offset, number, and the elements xx, yy, zz and
@@ -48,6 +49,15 @@ fn store_shape(i: u32, offset: vec3<f32>, number: f32, squares: vec3<f32>, produ
     kernel_matrices[2u * i + 1u] = vec4<f32>(m.z, d.z, 1.0 / scale, 0.0);
 }
 
+fn is_interior(i: u32) -> bool {
+    let mean = neighbour_moments[3u * i];
+    let a = neighbour_moments[3u * i + 1u];
+    let b = neighbour_moments[3u * i + 2u];
+    let determinant = a.x * (a.w * b.y - b.x * b.x) + a.y * (a.z * b.x - a.y * b.y) + a.z * (a.y * b.x - a.z * a.w);
+    return mean.w >= INTERIOR_NUMBER * lattice.bulk_number && dot(mean.xyz, mean.xyz) <= INTERIOR_OFFSET2
+        && determinant >= INTERIOR_DETERMINANT;
+}
+
 @compute @workgroup_size(64)
 fn shapes(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
@@ -55,10 +65,9 @@ fn shapes(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups
         return;
     }
     let p = sorted_positions[i].xyz;
-    let own_mean = neighbour_moments[3u * i];
-    let own = own_mean.xyz;
+    let own = neighbour_moments[3u * i].xyz;
     let inverse2 = lattice.inverse_support * lattice.inverse_support;
-    if own_mean.w >= INTERIOR_NUMBER * lattice.bulk_number && dot(own, own) <= INTERIOR_OFFSET2 {
+    if is_interior(i) {
         kernel_centres[i] = vec4<f32>(p, neighbour_moments[3u * i + 2u].z);
         kernel_matrices[2u * i] = vec4<f32>(inverse2, 0.0, 0.0, inverse2);
         let radius2 = lattice.support_radius * lattice.support_radius;

@@ -74,6 +74,6 @@ impl PairSum<12, 1> for Weights<'_> {
     #[inline(always)]
     fn finish(&self, i: usize, [sum]: [f32; 1]) -> Vec4 {
         let centre = self.centres[i];
-        if self.wants(i) { centre.xyz().extend(1.0 / sum) } else { centre }
+        centre.xyz().extend(if self.wants(i) { 1.0 / sum } else { -centre.w })
     }
 }

@@ -1,5 +1,8 @@
 //! The weight of each particle: 1 / sum_j u P_j(c_i), the reciprocal of the sum of all kernels at the centre of its own.
 //!
+//! The weight of a particle inside the fluid is stored with a negative sign, by which the [field](crate::surface::field)
+//! knows that its kernel is a ball.
+//!
 //! The sum includes the neighbours within the support radius; u fades from 1 to 0 at its end, between 0.87 and 1.
 
 mod cpu;

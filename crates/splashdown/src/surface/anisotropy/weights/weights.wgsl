@@ -17,7 +17,7 @@ fn weights(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     let own = kernel_centres[i];
     if own.w != 0.0 {
         // Inside the fluid.
-        samples[i] = own;
+        samples[i] = vec4<f32>(own.xyz, -own.w);
         return;
     }
     let centre = own.xyz;

@@ -34,7 +34,7 @@ impl PointSum<5, 2> for Density<'_> {
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 5] {
         let [x, y, z, volume] = self.samples[j].to_array();
-        [x, y, z, volume, self.local_density[j]]
+        [x, y, z, volume.abs(), self.local_density[j]]
     }
 
     #[inline(always)]

@@ -19,7 +19,7 @@ fn smoothing_weight(p: vec3<f32>, cells: CellRange) -> f32 {
                 let d = sample.xyz - p;
                 let r2 = dot(d, d);
                 if r2 < support2 {
-                    let weight = sample.w * kernel_w(sqrt(r2) * lattice.inverse_support);
+                    let weight = abs(sample.w) * kernel_w(sqrt(r2) * lattice.inverse_support);
                     sum += weight * local_density[i];
                     total += weight;
                 }
