@@ -34,7 +34,8 @@ pub struct Stats {
     /// Particles inside a body at the end of a frame of a [`Run`](crate::Run), by a separate test on the host. Zero
     /// in a sound run.
     pub inside_bodies: u32,
-    /// Total number of times a velocity was limited: to half a spacing per step, with `dfsph` to `2 cfl_factor` spacings.
+    /// Total number of times a velocity was limited: to half a spacing per step, with `dfsph` to `2 cfl_factor` spacings and at most
+    /// the support radius less 0.7 spacings.
     /// Zero in a sound run.
     pub speed_limits: u32,
     /// The largest relative excess of the solver's density over the rest density in this call: max(0, rho/rho0 - 1). In the

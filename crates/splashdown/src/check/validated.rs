@@ -72,7 +72,7 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
                 Solver::Continuity => "period -0.9 %, 0.5 % of the height lost per period",
                 Solver::Engineering => "period 0.1 %, 0.9 % of the height lost per period",
                 Solver::Summation => "period -12.1 %, 9.3 % of the height lost per period",
-                Solver::Dfsph => "period -12.3 %, 6.2 % of the height lost per period",
+                Solver::Dfsph => "period -12.2 %, 6.2 % of the height lost per period",
             },
             here: depth,
         });

@@ -40,7 +40,7 @@ pub enum Watched {
     InsideBodies,
     /// Particles that became NaN or infinite.
     NonFinite,
-    /// Velocities limited to half a spacing per step since the last frame.
+    /// Velocities limited to the largest motion per step since the last frame.
     SpeedLimits,
 }
 

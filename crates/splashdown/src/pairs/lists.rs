@@ -2,7 +2,7 @@
 //! that visit the same neighbours many times in a step.
 //!
 //! A visit of the candidates tests four times as many particles as there are neighbours, and computes a square root for
-//! each. To make a list costs as much as two of these visits, and a visit of a list costs less than half of one. A
+//! each. A list is made in one such visit, which also computes sums; a visit of a list costs less than half as much. A
 //! neighbour takes 8 bytes: the factor and its index. Reading the list is what a visit waits for, so that subtracting the
 //! positions again costs less than reading their difference. Images behind walls are few and take 16 bytes: the vector, and
 //! bits for index and reflection.
@@ -178,8 +178,8 @@ fn least(sorted: Sorted<'_>) -> usize {
     (sorted.active_count() / LISTS).max(1)
 }
 
-/// A pass that runs while lists are made: a [`PairSum`](super::PairSum) whose last column is the
-/// [place](Link::place_bits) of the particle, and whose pairs have the factor of the list.
+/// A pass that runs while lists are made. As [`PairSum`](super::PairSum), but the last column must be the
+/// [place](Link::place_bits) of the particle, and pairs contain the factor of the list.
 pub(crate) trait ListedSum<const F: usize, const S: usize>: Sync {
     /// The result of a particle.
     type Output: Send;

@@ -127,7 +127,7 @@ impl Solver {
         // The continuity form damps impacts by a limited dissipation, and its time step is bounded by the stability of
         // sound waves alone. The walls of the summation form are damped per step, so that longer steps are noisier.
         let (negative_pressure, artificial_viscosity, cfl_factor) = match (method, density) {
-            (Method::Dfsph, _) => (NegativePressure::Clamp, 0.01, 0.5),
+            (Method::Dfsph, _) => (NegativePressure::Clamp, 0.01, 0.7),
             (_, DensityMode::Summation) => (NegativePressure::Clamp, 0.05, 0.3),
             (_, DensityMode::Continuity) => (NegativePressure::Keep, 0.0, 0.8),
         };

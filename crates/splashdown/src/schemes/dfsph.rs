@@ -36,10 +36,14 @@ pub(super) fn most_viscous_iterations(max_iterations: u32) -> u32 {
     5 * max_iterations
 }
 
-/// The largest distance that a particle may move in a step, in spacings, for a CFL factor. The time step follows from the
-/// speeds of the step before.
-pub(super) fn longest_motion(cfl_factor: f32) -> f32 {
-    (2.0 * cfl_factor).max(0.5)
+/// The distance in spacings within which an emitter searches for particles (`flow/emit`).
+const EMISSION_CLEARANCE: f32 = 0.7;
+
+/// The largest distance that a particle may move in a step, in spacings, for a CFL factor and a support radius in spacings.
+/// The time step follows from the speeds of the step before. Emitters search for particles in the cells, which are as wide as
+/// the support, after they have moved.
+pub(super) fn longest_motion(cfl_factor: f32, support_ratio: f32) -> f32 {
+    (2.0 * cfl_factor).min(support_ratio - EMISSION_CLEARANCE).max(0.5)
 }
 
 /// Relaxation of the Jacobi map at the beginning of a step, for a support radius in spacings. With a support of two spacings
@@ -105,6 +109,17 @@ mod tests {
         let compression = compressibility(9.81, 8.0) * 9.81 * 8.0;
         assert!((compression - 5e-5).abs() < 1e-9, "{compression}");
         assert_eq!(compressibility(0.0, 8.0), 0.0);
+    }
+
+    #[test]
+    fn motions_leave_the_search_of_emitters_within_neighbouring_cells() {
+        for (cfl_factor, support_ratio, expected) in
+            [(0.1, 2.0, 0.5), (0.5, 2.0, 1.0), (0.7, 2.0, 1.3), (1.0, 3.0, 2.0)]
+        {
+            let motion = longest_motion(cfl_factor, support_ratio);
+            assert!((motion - expected).abs() < 1e-6, "{motion}");
+            assert!(motion + EMISSION_CLEARANCE <= support_ratio + 1e-6);
+        }
     }
 
     #[test]

@@ -103,7 +103,11 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         is_implicit: u32::from(scheme.is_implicit()),
         tolerance: solver.tolerance,
         max_iterations: solver.max_iterations,
-        longest_motion: if scheme.is_implicit() { dfsph::longest_motion(solver.cfl_factor) } else { 0.5 },
+        longest_motion: if scheme.is_implicit() {
+            dfsph::longest_motion(solver.cfl_factor, solver.support_ratio)
+        } else {
+            0.5
+        },
         pressure_factor: dfsph::pressure_factor(solver.kernel, f64::from(solver.support_ratio)),
         implicit_viscosity,
         viscous_factor: implicit_viscosity * volume * viscous::pair::factor(support_radius)

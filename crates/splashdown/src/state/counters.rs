@@ -19,7 +19,7 @@ impl StepCounters {
     pub const NON_FINITE: usize = 1;
     /// Particles moved back from behind a closed wall.
     pub const CORRECTIONS: usize = 2;
-    /// Velocities limited to half a spacing per step.
+    /// Velocities limited to the largest motion per step ([`Params::longest_motion`](super::Params)).
     pub const LIMITED: usize = 3;
     /// Largest speed.
     pub const MAX_SPEED: usize = 4;
@@ -35,7 +35,7 @@ impl StepCounters {
     pub const UNCONVERGED: usize = 9;
     /// 1 if the pressure or the viscosity of the present step did not converge, so that the next step is shorter.
     pub const SHORTEN: usize = 10;
-    /// Largest pressure over the rest density, with implicit pressure.
+    /// Largest pressure over the rest density that limits the next step, with implicit pressure: a mean over the steps.
     pub const MAX_PRESSURE: usize = 11;
     /// Steps whose viscosity did not converge.
     pub const VISCOUS_UNCONVERGED: usize = 12;

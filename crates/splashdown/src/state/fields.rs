@@ -82,8 +82,8 @@ pub struct Fields {
     pub solid_gradients: Buffer<Vec4>,
     /// Sums over 64 particles: residual, squared change, relative excess of density, pressure times residual.
     pub residuals: Buffer<Vec4>,
-    /// Over 64 particles: the sum of the squared change of the velocity in m^2/s^2, by pressure or by all forces but
-    /// viscosity; the largest pressure over the rest density in m^2/s^2; the sums of its square and of that of the velocity.
+    /// Sums over 64 particles: of the squared change of the velocity in m^2/s^2, by pressure or by all forces but
+    /// viscosity; of the squared pressure over the rest density in m^4/s^4; of the squared velocity in m^2/s^2.
     pub impulses: Buffer<Vec4>,
     /// The state of the implicit viscosity; one entry.
     pub viscous: Buffer<ViscousState>,

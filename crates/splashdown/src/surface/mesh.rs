@@ -50,7 +50,7 @@ pub struct SurfaceStats {
     pub vertices: u32,
     /// Number of triangles.
     pub triangles: u32,
-    /// Number of blocks of 8x8x8 nodes at which the field was evaluated.
+    /// Number of blocks of 8x8x8 nodes near particles.
     pub blocks: u32,
     /// Number of repetitions of the extraction because the capacity was too small.
     pub retries: u32,

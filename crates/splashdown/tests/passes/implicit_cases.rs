@@ -41,7 +41,9 @@ pub fn cases() -> Vec<Case> {
         decide("the last iteration", SolveState { iteration: 4, ..solving() }, 1.0, [25.0, 0.01]),
         decide_with(0.02, "converged in a viscous fluid", solving(), 0.1, [5.0, 0.01]),
     ]);
-    cases.push(finish());
+    cases.push(finish("a violent step", 0.3, 0.0));
+    cases.push(finish("a calm step", 0.02, 0.0));
+    cases.push(finish("a larger pressure before", 0.8, 5.0));
     cases
 }
 
@@ -220,7 +222,6 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     let groups = world.active().div_ceil(64);
     let mut impulses = Output::new("impulses", Data::Vec4(vec![Vec4::ZERO; groups]).poison());
     let mut squares = vec![(0.0, 0.0); groups];
-    let mut largest = vec![0.0_f64; groups];
     let mut pressures = vec![0.0_f64; groups];
     let mut speeds = vec![(0.0, 0.0); groups];
     for i in 0..world.active() {
@@ -247,7 +248,6 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
         let u = v - c.dt * q;
         (0..3).for_each(|k| predicted.push(u[k], v.length() + 0.1 + c.dt * size));
         predicted.push(pressure(i), 1.0);
-        largest[i / 64] = largest[i / 64].max(pressure(i));
         pressures[i / 64] += pressure(i).powi(2);
         speeds[i / 64].0 += u.length_squared();
         speeds[i / 64].1 += 2.0 * u.length() * (v.length() + 0.1 + c.dt * size);
@@ -257,9 +257,9 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     }
     for group in 0..groups {
         impulses.push(squares[group].0, squares[group].1);
-        impulses.push(largest[group], 1.0);
         impulses.push(pressures[group], pressures[group]);
         impulses.push(speeds[group].0, speeds[group].1);
+        impulses.push(0.0, 0.0);
     }
     let mut input = base(&world);
     input.extend([
@@ -399,13 +399,8 @@ fn decide_with(
     let impulses: Vec<Vec4> = (0..groups)
         .map(|i| {
             let share = n / groups as f32;
-            let largest = layer * if i == 3 { 2.0 * depth } else { signed(i, 9).abs() };
-            Vec4::new(
-                40.0 * signed(i, 8).abs(),
-                largest,
-                share * (layer * depth).powi(2) / 3.0,
-                share * speed * speed,
-            )
+            let pressure2 = share * (layer * depth).powi(2) / 3.0;
+            Vec4::new(40.0 * signed(i, 8).abs(), pressure2, share * speed * speed, 0.0)
         })
         .collect();
     let impulse: f64 = impulses.iter().map(|v| f64::from(v.x)).sum();
@@ -423,10 +418,9 @@ fn decide_with(
     let strictness = (5.0 / deep).powi(2).max(0.1 * f64::from(moved) / (deep * 0.001)).clamp(0.02, 1.0);
     if error <= 0.001 * strictness || solve.iteration == 5 {
         solve.stopped = 1;
-        let squares: f64 = impulses.iter().map(|v| f64::from(v.z)).sum();
+        let squares: f64 = impulses.iter().map(|v| f64::from(v.y)).sum();
         let work = impulse + f64::from(world.params.compressibility) * squares;
         solve.scale = ((1.0 + total[3] / work) as f32).clamp(0.5, 1.1);
-        counters[StepCounters::MAX_PRESSURE] = (solve.scale * layer * 2.0 * depth).to_bits();
         let moved = state.max_speed * state.dt / world.params.particle_spacing;
         let late = strictness as f32 * (solve.iteration as f32 - 3.0) / 8.0;
         solve.renewal = if implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
@@ -468,10 +462,11 @@ fn decide_with(
     })
 }
 
-fn finish() -> Case {
+/// With the part of the new pressure in the mean, and the largest pressure that was found before.
+fn finish(name: &str, renewal: f32, before: f32) -> Case {
     let world = world(params(2.0));
     let (n, dt) = (world.len(), f64::from(world.state.dt));
-    let solve = SolveState { warm_start: 0.5, scale: 0.9, renewal: 0.3, stopped: 1, ..solving() };
+    let solve = SolveState { warm_start: 0.5, scale: 0.9, renewal, stopped: 1, ..solving() };
     let old: Vec<f32> = (0..n).map(|i| signed(i, 12)).collect();
     let predicted: Vec<Vec4> = vectors(n, 0)
         .iter()
@@ -483,6 +478,10 @@ fn finish() -> Case {
     let mut accelerations = Output::new("accelerations", Data::Vec4(other.clone()));
     let mut densities = Output::new("densities", Data::Vec2(world.densities.clone()));
     let mut pressures = Output::new("pressures", Data::F32(vec![0.0; n]).poison());
+    let mut words = vec![0; StepCounters::WORDS];
+    words[StepCounters::MAX_PRESSURE] = before.to_bits();
+    let mut counters = Output::new("counters", Data::U32(words));
+    let mut largest = f64::from(before);
     for i in 0..n {
         if i >= world.active() {
             pressures.push(0.0, 0.0);
@@ -503,7 +502,12 @@ fn finish() -> Case {
         densities.push(rho, 0.0);
         densities.push(f64::from(0.9_f32) * k * rho * rho / 1000.0, k * 1000.0);
         let old = f64::from(old[i].max(0.0));
-        pressures.push(0.5 * (old + f64::from(0.3_f32) * (k - old)), 1.0);
+        pressures.push(0.5 * (old + f64::from(renewal) * (k - old)), 1.0);
+        largest = largest.max(old + f64::from(renewal.max(1.0 - renewal)) * (k - old));
+    }
+    for word in 0..StepCounters::WORDS {
+        let is_largest = word == StepCounters::MAX_PRESSURE;
+        counters.push(if is_largest { largest } else { 0.0 }, if is_largest { 1.0 } else { 0.0 });
     }
     let mut input = base(&world);
     input.extend([
@@ -514,10 +518,10 @@ fn finish() -> Case {
     ]);
     case(
         "implicit.finish".into(),
-        "a step",
+        name,
         n,
         input,
-        vec![after, accelerations, densities, pressures],
+        vec![after, accelerations, densities, pressures, counters],
         |input| {
             let Data::Solve(solve) = &mut input[3] else { panic!("no state of the solver") };
             solve.warm_start = 0.501;

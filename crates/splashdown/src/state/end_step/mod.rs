@@ -6,9 +6,9 @@
 //! [`Params::step_length`] divides the remaining time of the frame.
 //!
 //! With implicit pressure neither sound nor accelerations limit the step:
-//! dt = min(C spacing / |v|max, spacing / 2 sqrt(rho0 / p max), 0.125 h^2 / nu, max_dt), at most half more than the last,
-//! and 0.7 times the last if the pressure or the viscosity did not converge. The limit by the pressure keeps the step
-//! stable: the pressure forces of a step have the directions at its start, and the force on a particle that is displaced
+//! dt = min(C spacing / |v|max, spacing / 2 sqrt(rho0 / p), 0.125 h^2 / nu, max_dt), at most half more than the last,
+//! and 0.7 times the last if the pressure or the viscosity did not converge. p is the largest mean of the pressure over the
+//! steps ([`finish`](crate::passes::implicit::finish)). The limit by the pressure keeps the step stable: the pressure forces of a step have the directions at its start, and the force on a particle that is displaced
 //! across its neighbours grows with the pressure and with the displacement. In trials in two dimensions a factor of 0.6
 //! was stable at depths of 20 to 80 spacings, and 0.8 was not.
 //!

@@ -35,7 +35,7 @@ use super::params::{Lattice, Status};
 use crate::cells::Grid;
 use crate::kernel::{self, CubicSpline, Kernel};
 
-/// The loop over the particles near a row of nodes, which both fields share.
+/// The nodes, values and signs of a row, which both fields share.
 const FIELD_ROW: WgslModule =
     WgslModule { name: "surface/field_row", source: include_str!("field_row.wgsl") };
 

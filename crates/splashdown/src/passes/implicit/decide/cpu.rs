@@ -13,7 +13,6 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     let total: Vec4 = residuals[..n.div_ceil(GROUP)].iter().sum();
     let impulses = &impulses[..n.div_ceil(GROUP)];
     let impulse: Vec4 = impulses.iter().sum();
-    let pressure = impulses.iter().map(|sum| sum.y).fold(0.0, f32::max);
     let n = (n as f32).max(1.0);
     let error = total.x / n;
     if solve.iteration == 0 {
@@ -23,14 +22,13 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     // False for NaN.
     let is_valid = error < 1e30;
     let has_converged = is_valid && error <= params.tolerance;
-    let strictness = strictness(params, state.dt, impulse.z / n, impulse.w / n);
+    let strictness = strictness(params, state.dt, impulse.y / n, impulse.z / n);
     let is_enough = error <= params.tolerance * strictness;
     if has_converged && is_enough || solve.iteration >= params.max_iterations {
         solve.stopped = 1;
-        let work = impulse.x + params.compressibility * impulse.z;
+        let work = impulse.x + params.compressibility * impulse.y;
         let scale = 1.0 + total.w / work.max(1e-30);
         solve.scale = scale.clamp(0.5, 1.1);
-        counters[StepCounters::MAX_PRESSURE] = (solve.scale * pressure).to_bits();
         let moved = state.max_speed * state.dt / params.particle_spacing;
         let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
         solve.renewal = if params.implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };

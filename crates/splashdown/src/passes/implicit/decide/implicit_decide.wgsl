@@ -21,11 +21,6 @@ fn strictness(pressure2: f32, speed2: f32) -> f32 {
     return clamp(max(shallow * shallow, 100.0 * moved / depth), 0.02, 1.0);
 }
 
-// Adds two groups; the second component is the largest pressure.
-fn joined(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-    return vec4(a.x + b.x, max(a.y, b.y), a.zw + b.zw);
-}
-
 fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
     let error = total.x / n;
     if (solve.iteration == 0u) {
@@ -35,13 +30,12 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
     // False for NaN.
     let is_valid = error < 1e30;
     let has_converged = is_valid && error <= params.tolerance;
-    let part = strictness(impulse.z / n, impulse.w / n);
+    let part = strictness(impulse.y / n, impulse.z / n);
     let is_enough = error <= params.tolerance * part;
     if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
         solve.stopped = 1u;
-        let work = impulse.x + params.compressibility * impulse.z;
+        let work = impulse.x + params.compressibility * impulse.y;
         solve.scale = clamp(1.0 + total.w / max(work, 1e-30), 0.5, 1.1);
-        counters[COUNTER_MAX_PRESSURE] = bitcast<u32>(solve.scale * impulse.y);
         let moved = state.max_speed * state.dt / params.particle_spacing;
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;
         solve.renewal = select(clamp(max(moved, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
@@ -74,7 +68,7 @@ fn implicit_decide(@builtin(local_invocation_index) local: u32) {
     var impulse = vec4(0.0);
     for (var g = local; g < (n + 63u) / 64u; g += 256u) {
         own += residuals[g];
-        impulse = joined(impulse, impulses[g]);
+        impulse += impulses[g];
     }
     sums[local] = own;
     impulse_sums[local] = impulse;
@@ -82,7 +76,7 @@ fn implicit_decide(@builtin(local_invocation_index) local: u32) {
     for (var half = 128u; half > 0u; half /= 2u) {
         if (local < half) {
             sums[local] += sums[local + half];
-            impulse_sums[local] = joined(impulse_sums[local], impulse_sums[local + half]);
+            impulse_sums[local] += impulse_sums[local + half];
         }
         workgroupBarrier();
     }

@@ -2,6 +2,7 @@ use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::FinishBindings;
+use crate::state::StepCounters;
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -19,16 +20,18 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
         accelerations,
         densities,
         pressures,
+        counters,
     } = buffers;
     let active = (cell_start[grid.cell_count as usize].min(state.run_count)) as usize;
     pressures[active..state.run_count.max(active as u32) as usize].fill(0.0);
-    accelerations[..active]
+    let largest = accelerations[..active]
         .par_chunks_mut(CHUNK)
         .zip(densities[..active].par_chunks_mut(CHUNK))
         .zip(pressures[..active].par_chunks_mut(CHUNK))
         .zip(predicted[..active].par_chunks_mut(CHUNK))
         .enumerate()
-        .for_each(|(chunk, (((accelerations, densities), pressures), predicted))| {
+        .map(|(chunk, (((accelerations, densities), pressures), predicted))| {
+            let mut largest = 0.0_f32;
             for (k, a) in accelerations.iter_mut().enumerate() {
                 let i = chunk * CHUNK + k;
                 let before = velocities[i].xyz();
@@ -41,6 +44,10 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
                 densities[k].y = params.pressure_factor * pressure * rho * rho / params.rest_density;
                 let old = sorted_pressures[i].max(0.0);
                 pressures[k] = solve.warm_start * (old + solve.renewal * (pressure - old));
+                largest = largest.max(old + solve.renewal.max(1.0 - solve.renewal) * (pressure - old));
             }
-        });
+            largest
+        })
+        .reduce(|| 0.0, f32::max);
+    counters[StepCounters::MAX_PRESSURE] = counters[StepCounters::MAX_PRESSURE].max(largest.to_bits());
 }

@@ -72,9 +72,8 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
             for (i, predicted) in predicted.iter().enumerate() {
                 let (u, k) = (predicted.xyz(), predicted.w.max(0.0));
                 sum.x += (pass.without_pressure(first + i) - u).length_squared();
-                sum.y = sum.y.max(k);
-                sum.z += k * k;
-                sum.w += u.length_squared();
+                sum.y += k * k;
+                sum.z += u.length_squared();
             }
         }
     });

@@ -5,6 +5,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/images
+#import sph/group_sum
 
 #bindings
 
@@ -14,21 +15,14 @@ fn pressure_of(j: u32) -> f32 {
     return max(iterates[j].x + solve.beta * iterates[j].y, 0.0);
 }
 
-var<workgroup> sums: array<vec4<f32>, 64>;
-
-// Adds two groups; the second component is the largest pressure.
-fn joined(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-    return vec4(a.x + b.x, max(a.y, b.y), a.zw + b.zw);
-}
-
-// Writes the velocity of a particle by the present pressure, and returns the square of its change, the pressure and its
-// square, and the square of the velocity.
+// Writes the velocity of a particle by the present pressure, and returns the squares of its change, of the pressure and of
+// the velocity.
 fn update(i: u32) -> vec4<f32> {
     let other = accelerations[i];
     let v = sorted_velocities[i].xyz + state.dt * other.xyz;
     if (other.w == 1.0) {
         predicted[i] = vec4(v, -1.0);
-        return vec4(0.0, 0.0, 0.0, dot(v, v));
+        return vec4(0.0, 0.0, dot(v, v), 0.0);
     }
     let x = sorted_positions[i].xyz;
     let k = pressure_of(i);
@@ -59,7 +53,7 @@ fn update(i: u32) -> vec4<f32> {
     }
     let u = v - state.dt * q;
     predicted[i] = vec4(u, k);
-    return vec4(state.dt * state.dt * dot(q, q), k, k * k, dot(u, u));
+    return vec4(state.dt * state.dt * dot(q, q), k * k, dot(u, u), 0.0);
 }
 
 @compute @workgroup_size(64)
@@ -77,16 +71,9 @@ fn implicit_predict(
     if (i < active_count()) {
         own = update(i);
     }
-    sums[local] = own;
-    workgroupBarrier();
-    for (var half = 32u; half > 0u; half /= 2u) {
-        if (local < half) {
-            sums[local] = joined(sums[local], sums[local + half]);
-        }
-        workgroupBarrier();
-    }
+    let sum = sum_of_group(local, own);
     let g = linear_group(group, groups);
     if (local == 0u && g < arrayLength(&impulses)) {
-        impulses[g] = sums[0];
+        impulses[g] = sum;
     }
 }

@@ -1,7 +1,6 @@
 //! The pressure of an iteration, and the velocity that it leads to: u = v* - dt D' k (see the [module](super)).
 //!
-//! Also computes, over each 64 particles, the sum of the squares of dt D' k, the largest k, and the sums of the squares of
-//! k and u.
+//! Also computes, over each 64 particles, the sums of the squares of dt D' k, k and u.
 //!
 //! k = max(k_J + beta p, 0) of a neighbour is computed where it is used. Where a nozzle determines the motion there is no
 //! pressure, which the result marks with -1.
@@ -14,10 +13,11 @@ use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
+use crate::passes::group_sum;
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
 
 const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, SOLVE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES];
+    &[wgsl::INDEX, STATE, SOLVE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES, group_sum::WGSL];
 
 bindings! {
     /// The buffers of `implicit_predict.wgsl`.

@@ -42,9 +42,10 @@ struct Field<'a> {
     matrices: &'a [[Vec4; 2]],
 }
 
-/// Above this iso level a block is evaluated in any case: inside the fluid the field is about 1, and 0.68 at the place of a
-/// single missing particle.
-const INTERIOR_ISO: f32 = 0.65;
+/// Above this iso level, the default, a block is evaluated in any case. Inside the fluid the field is about 1. It is 0.68 at the
+/// place of a missing particle, and at least 0.61 between two, where their neighbours still count as inside because the lattice
+/// is too dense.
+const INTERIOR_ISO: f32 = 0.6;
 
 impl Field<'_> {
     /// True if all particles in the cells that a block can reach are inside the fluid.

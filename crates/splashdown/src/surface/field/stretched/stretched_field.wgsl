@@ -9,12 +9,12 @@
 #bindings
 
 // Above this iso level a block is evaluated in any case; see cpu.rs.
-const INTERIOR_ISO: f32 = 0.65;
+const INTERIOR_ISO: f32 = 0.6;
 const INSIDE: RowValues = RowValues(vec4<f32>(1.0), vec4<f32>(1.0));
 // Factor on the support radius against rounding.
 const NEAR: f32 = 1.0001;
 // The most rows of cells that a block distinguishes.
-const ROWS: u32 = 256u;
+const CELL_ROWS: u32 = 256u;
 
 // The rows of cells that the block can reach which contain particles at the surface of the fluid, one bit each, and whether
 // there are any particles, and any at the surface.
@@ -37,7 +37,7 @@ fn cells_near_block(slot: u32) -> CellRange {
     return cell_range(low - lattice.search_reach, high + lattice.search_reach);
 }
 
-// Searches every 32nd row of cells for particles at the surface, whose weights are positive.
+// Searches every 32nd row of cells for particles at the surface, whose weights are not negative.
 fn search_rows(first: u32) {
     let size = block_cells.last - block_cells.first;
     for (var k = first; k < size.y * size.z; k += 32u) {
@@ -49,8 +49,8 @@ fn search_rows(first: u32) {
             atomicOr(&has_particles, 1u);
         }
         for (var i = start; i < end; i++) {
-            if samples[i].w > 0.0 {
-                atomicOr(&surface_rows[k % ROWS / 32u], 1u << (k % 32u));
+            if !(samples[i].w < 0.0) {
+                atomicOr(&surface_rows[k % CELL_ROWS / 32u], 1u << (k % 32u));
                 atomicOr(&has_surface, 1u);
                 break;
             }
@@ -61,7 +61,7 @@ fn search_rows(first: u32) {
 // Without particles at the surface, whose kernels can be stretched, a row is visited within the support radius only.
 fn cells_of_row(row: vec2<u32>, cells: CellRange, near: CellRange) -> vec2<u32> {
     let place = row - block_cells.first.yz;
-    let k = (place.y * (block_cells.last.y - block_cells.first.y) + place.x) % ROWS;
+    let k = (place.y * (block_cells.last.y - block_cells.first.y) + place.x) % CELL_ROWS;
     if ((atomicLoad(&surface_rows[k / 32u]) >> (k % 32u)) & 1u) == 1u {
         return vec2<u32>(cells.first.x, cells.last.x);
     }
