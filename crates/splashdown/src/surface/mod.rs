@@ -45,6 +45,7 @@
 
 mod anisotropy;
 mod blocks;
+mod buffers;
 mod components;
 mod droplets;
 mod error;
@@ -65,6 +66,7 @@ mod walls;
 
 #[doc(hidden)]
 pub use crate::bodies::Solids;
+pub(crate) use buffers::{forecast, largest_per_particle};
 pub use components::{remove_small_components, retain_components, take_small_components};
 #[doc(hidden)]
 pub use droplets::Droplet;
@@ -74,7 +76,6 @@ pub use interpolate::interpolate;
 #[doc(hidden)]
 pub use mesh::SurfaceInput;
 pub use mesh::{Surface, SurfaceStats};
-pub(crate) use mesh::{forecast, largest_per_particle};
 #[doc(hidden)]
 pub use params::Status;
 pub use params::SurfaceParams;

@@ -8,7 +8,7 @@ use glam::{UVec2, Vec3, Vec4};
 use splashdown_gpu::{Command, CpuExecutor, Executor, GpuExecutor, Recording, testing};
 use splashdown_io::Mesh;
 
-use super::mesh::Buffers;
+use super::buffers::Buffers;
 use super::params::SurfaceParams;
 use super::{Surface, Walls, reconstruct};
 use crate::scene::SurfaceKernels;
