@@ -2,7 +2,8 @@
 //!
 //! As the [gravity wave](super::waves), it starts as a level surface with the velocities of the potential. A tank of
 //! half a wave length in a slab six spacings thick contains the first mode, which shifts the centre of mass along the tank.
-//! The pressure under a trough is negative, so that `dfsph`, which has none, cannot show such a wave.
+//! The pressure under a trough is negative, so that `dfsph`, which has none, cannot show such a wave: the water opens voids,
+//! whose films contract and throw drops against the lid.
 
 use std::f64::consts::TAU;
 
@@ -51,7 +52,7 @@ impl Wave {
         let omega = (TENSION * k.powi(3) * (k * depth).tanh() / DENSITY).sqrt();
         let scene = scene(&format!(
             "[scene]\nname = \"ripple\"\nduration = 10\ngravity = [0, 0, 0]\n[domain]\nmin = [0, 0, 0]\n\
-             max = [{wide}, {}, {thick}]\nopen = [\"y_max\"]\n[fluid]\nparticle_spacing = {SPACING}\nviscosity = 1e-6\n\
+             max = [{wide}, {}, {thick}]\n[fluid]\nparticle_spacing = {SPACING}\nviscosity = 1e-6\n\
              surface_tension = {tension}\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{wide}, {depth}, {thick}]\n\
              [solver]\n{keys}\nsurface_tension = \"csf\"\n",
             2.0 * depth

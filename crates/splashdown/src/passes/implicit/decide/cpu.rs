@@ -1,6 +1,6 @@
 use glam::Vec4;
 
-use super::super::GROUP;
+use super::super::{GROUP, LOCAL};
 use super::DecideBindings;
 use crate::state::{Params, StepCounters};
 
@@ -10,7 +10,9 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         return;
     }
     let n = cell_start[grid.cell_count as usize] as usize;
-    let total: Vec4 = residuals[..n.div_ceil(GROUP)].iter().sum();
+    let residuals = &residuals[..n.div_ceil(GROUP)];
+    let total: Vec4 = residuals.iter().sum();
+    let worst = residuals.iter().map(|sum| sum.x).fold(0.0, f32::max) / GROUP as f32;
     let impulses = &impulses[..n.div_ceil(GROUP)];
     let impulse: Vec4 = impulses.iter().sum();
     let n = (n as f32).max(1.0);
@@ -21,8 +23,8 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     solve.iteration += 1;
     // False for NaN.
     let is_valid = error < 1e30;
-    let has_converged = is_valid && error <= params.tolerance;
-    let strictness = strictness(params, state.dt, impulse.y / n, impulse.z / n);
+    let has_converged = is_valid && error <= params.tolerance && worst <= LOCAL * params.tolerance;
+    let strictness = strictness(params, state.dt, n, impulse / n);
     let is_enough = error <= params.tolerance * strictness;
     if has_converged && is_enough || solve.iteration >= params.max_iterations {
         solve.stopped = 1;
@@ -56,14 +58,13 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
 
 /// The part of the tolerance that deep water needs. A residual of one sign moves the surface by the depth times the
 /// residual in a step: with the default tolerance of 0.1 %, at most by a tenth of the root mean square of the motions.
-/// `pressure2` is the mean square of the pressure over the rest density, of which the depth follows as if the fluid were at
-/// rest; `speed2` that of the speed.
-fn strictness(params: &Params, dt: f32, pressure2: f32, speed2: f32) -> f32 {
+/// The depth of `n` particles follows from the mean square of the pressure, as if the fluid were at rest. Without gravity
+/// it is the edge of a cube of them.
+fn strictness(params: &Params, dt: f32, n: f32, impulse: Vec4) -> f32 {
+    let (pressure2, speed2) = (impulse.y, impulse.z);
     let layer = params.gravity.length() * params.particle_spacing;
-    if layer == 0.0 {
-        return 1.0;
-    }
-    let depth = ((3.0 * pressure2).sqrt() / layer).max(5.0);
+    let depth = if layer > 0.0 { (3.0 * pressure2).sqrt() / layer } else { n.cbrt() };
+    let depth = depth.max(5.0);
     let moved = speed2.sqrt() * dt / params.particle_spacing;
     let shallow = 5.0 / depth;
     (shallow * shallow).max(100.0 * moved / depth).clamp(0.02, 1.0)

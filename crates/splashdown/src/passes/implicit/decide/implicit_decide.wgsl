@@ -6,22 +6,27 @@
 
 #bindings
 
+const GROUP: f32 = 64.0; // particles per sum
+const LOCAL: f32 = 5.0; // the mean residual of a group may be this many times the tolerance
+
 var<workgroup> sums: array<vec4<f32>, 256>;
 var<workgroup> impulse_sums: array<vec4<f32>, 256>;
+var<workgroup> worst_sums: array<f32, 256>;
 
 // The part of the tolerance that deep water needs; see decide/cpu.rs.
-fn strictness(pressure2: f32, speed2: f32) -> f32 {
+fn strictness(n: f32, pressure2: f32, speed2: f32) -> f32 {
     let layer = length(params.gravity) * params.particle_spacing;
-    if (layer == 0.0) {
-        return 1.0;
+    var depth = pow(n, 1.0 / 3.0);
+    if (layer > 0.0) {
+        depth = sqrt(3.0 * pressure2) / layer;
     }
-    let depth = max(sqrt(3.0 * pressure2) / layer, 5.0);
+    depth = max(depth, 5.0);
     let moved = sqrt(speed2) * state.dt / params.particle_spacing;
     let shallow = 5.0 / depth;
     return clamp(max(shallow * shallow, 100.0 * moved / depth), 0.02, 1.0);
 }
 
-fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
+fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
     let error = total.x / n;
     if (solve.iteration == 0u) {
         state.compression += total.z / n;
@@ -29,8 +34,8 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, n: f32) {
     solve.iteration += 1u;
     // False for NaN.
     let is_valid = error < 1e30;
-    let has_converged = is_valid && error <= params.tolerance;
-    let part = strictness(impulse.y / n, impulse.z / n);
+    let has_converged = is_valid && error <= params.tolerance && worst <= LOCAL * params.tolerance;
+    let part = strictness(n, impulse.y / n, impulse.z / n);
     let is_enough = error <= params.tolerance * part;
     if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
         solve.stopped = 1u;
@@ -66,21 +71,25 @@ fn implicit_decide(@builtin(local_invocation_index) local: u32) {
     let n = active_count();
     var own = vec4(0.0);
     var impulse = vec4(0.0);
+    var worst = 0.0;
     for (var g = local; g < (n + 63u) / 64u; g += 256u) {
         own += residuals[g];
+        worst = max(worst, residuals[g].x);
         impulse += impulses[g];
     }
     sums[local] = own;
     impulse_sums[local] = impulse;
+    worst_sums[local] = worst;
     workgroupBarrier();
     for (var half = 128u; half > 0u; half /= 2u) {
         if (local < half) {
             sums[local] += sums[local + half];
             impulse_sums[local] += impulse_sums[local + half];
+            worst_sums[local] = max(worst_sums[local], worst_sums[local + half]);
         }
         workgroupBarrier();
     }
     if (local == 0u && solve.stopped == 0u && state.run_count != 0u) {
-        next_iteration(sums[0], impulse_sums[0], max(f32(n), 1.0));
+        next_iteration(sums[0], impulse_sums[0], worst_sums[0] / GROUP, max(f32(n), 1.0));
     }
 }
