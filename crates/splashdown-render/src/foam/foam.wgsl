@@ -21,9 +21,10 @@ const FLATTEST = 0.35;
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the outline; turned by a random angle
-    @location(1) @interpolate(flat) appearance: vec3f,    // opacity, brightness, kind
+    @location(1) @interpolate(flat) appearance: vec3f,    // opacity, variation, kind
     // Opacity of a member of a group, and one over the square of its radius in radii of the group.
     @location(2) @interpolate(flat) members: vec2f,
+    @location(3) @interpolate(flat) colour: vec3f,
 }
 
 // Pseudo-random number in [0, 1) from a particle's tag.
@@ -87,7 +88,9 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     out.across = vec2f(dot(turn, corner.across), turn.x * corner.across.y - turn.y * corner.across.x);
     let drawn = max(member, MIN_RADIUS * pixel / radius);
     out.members = vec2f(opaque * member * member, 1.0) / (drawn * drawn);
-    out.appearance = vec3f(opacity, 0.88 + 0.12 * variation, f32(kind));
+    out.appearance = vec3f(opacity, variation, f32(kind));
+    let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
+    out.colour = present((0.88 + 0.12 * variation) * light);
     return out;
 }
 
@@ -122,8 +125,7 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
         // A bright rim.
         cover = in.members.x * smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
     } else {
-        cover = group(in.across, in.members, (in.appearance.y - 0.88) / 0.12);
+        cover = group(in.across, in.members, in.appearance.y);
     }
-    let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
-    return vec4f(present(in.appearance.y * light), in.appearance.x * cover);
+    return vec4f(in.colour, in.appearance.x * cover);
 }

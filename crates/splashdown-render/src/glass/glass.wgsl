@@ -3,6 +3,13 @@
 
 // 1: the panes behind the liquid. 0: those in front of it.
 override BEHIND: u32 = 0u;
+// The faces of the panes that are drawn.
+override PART: u32 = 0u;
+// The large faces below the eye, where they mirror the floor, and above it, where they mirror the sky; and the narrow
+// faces. With one shader for all, each pixel of a pane took the time of two reflections on a software driver.
+const MIRRORS_FLOOR = 0u;
+const MIRRORS_SKY = 1u;
+const NARROW = 2u;
 
 // Absorption of clear glass with little iron, 1/m.
 const ABSORPTION = vec3f(2.0, 0.8, 1.2);
@@ -11,12 +18,14 @@ struct Varying {
     @builtin(position) position: vec4f,
     @location(0) world: vec3f,
     @location(1) @interpolate(flat) normal: vec3f,
-    @location(2) @interpolate(flat) is_edge: u32,
 }
 
 fn is_glass(axis: u32, upper: u32) -> bool {
     return globals.glass[axis] != 0u && ((globals.glass[axis] >> upper) & 1u) == 1u;
 }
+
+// Angular width of reflected rays over that of a pixel.
+const SPREAD = 4.0;
 
 // Smallest drawn thickness of a pane in pixels. Thinner panes are enlarged and made fainter, because narrow faces would
 // be drawn as dashes.
@@ -47,6 +56,18 @@ fn slab_corner(axis: u32, upper: u32, corner: vec3u) -> vec3f {
     return select(low, high, corner == vec3u(1u));
 }
 
+// The part of a face that is drawn: below or above the eye.
+fn drawn_height(y: f32) -> f32 {
+    let horizon = select(globals.floor_height, max(globals.eye.y, globals.floor_height), has_floor());
+    if PART == MIRRORS_FLOOR {
+        return min(y, horizon);
+    }
+    if PART == MIRRORS_SKY {
+        return max(y, horizon);
+    }
+    return y;
+}
+
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) pane: u32) -> Varying {
     let axis = 2u * (pane >> 1u);
@@ -62,14 +83,15 @@ fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) pane:
     place[(along + 2u) % 3u] = corner >> 1u;
     var out: Varying;
     out.world = slab_corner(axis, upper, place);
+    out.world.y = drawn_height(out.world.y);
     out.normal = vec3f(0.0);
     out.normal[along] = select(-1.0, 1.0, side == 1u);
-    out.is_edge = select(0u, 1u, along != axis);
     out.position = globals.clip_from_world * vec4f(out.world, 1.0);
     // A pane is behind the liquid if the eye is on its inner side.
     let inner = select(globals.eye[axis] > globals.box_min[axis], globals.eye[axis] < globals.box_max[axis], upper == 1u);
+    let is_part = (PART == NARROW) == (along != axis);
     let faces_eye = dot(globals.eye - out.world, out.normal) > 0.0;
-    if !is_glass(axis, upper) || !faces_eye || inner != (BEHIND == 1u) {
+    if !is_glass(axis, upper) || !is_part || !faces_eye || inner != (BEHIND == 1u) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     }
     return out;
@@ -82,7 +104,7 @@ fn guided_light(world: vec3f, from_eye: vec3f, normal: vec3f, cosine: f32) -> ve
         - vec3f(globals.box_min.x, globals.floor_height, globals.box_min.z);
     let across = dot(abs(normal), size);
     let bent = sqrt(1.0 - (1.0 - cosine * cosine) / (GLASS_INDEX * GLASS_INDEX));
-    let light = environment(world - across * normal, from_eye, 4.0 * globals.pixel_angle);
+    let light = environment(world - across * normal, from_eye, SPREAD * globals.pixel_angle);
     return light * exp(-ABSORPTION * (across / bent));
 }
 
@@ -90,12 +112,21 @@ fn guided_light(world: vec3f, from_eye: vec3f, normal: vec3f, cosine: f32) -> ve
 fn fragment_main(in: Varying) -> @location(0) vec4f {
     let from_eye = normalize(in.world - globals.eye);
     let cosine = max(-dot(from_eye, in.normal), 0.0);
-    let one = reflectance(cosine, 1.0 / GLASS_INDEX);
-    let reflection = environment(in.world, reflect(from_eye, in.normal), 4.0 * globals.pixel_angle);
-    if in.is_edge == 1u {
+    let back = reflect(from_eye, in.normal);
+    if PART == NARROW {
+        let reflection = environment(in.world, back, SPREAD * globals.pixel_angle);
+        let one = reflectance(cosine, 1.0 / GLASS_INDEX);
         let guided = guided_light(in.world, from_eye, in.normal, cosine);
         let opacity = globals.glass_thickness / drawn_thickness();
         return vec4f(present(mix(guided, reflection, one)) * opacity, opacity);
+    }
+    var reflection: vec3f;
+    if PART == MIRRORS_FLOOR {
+        let down = min(back.y, -1e-5);
+        let distance = (in.world.y - globals.floor_height) / -down;
+        reflection = floor_colour(in.world, vec3f(back.x, down, back.z), distance, SPREAD * globals.pixel_angle);
+    } else {
+        reflection = sky(back);
     }
     // Both faces of the pane reflect.
     let mirrored = 1.0 - through_pane(cosine);

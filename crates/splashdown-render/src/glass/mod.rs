@@ -22,8 +22,9 @@ pub(crate) const SHADER: Shader =
 
 #[derive(Debug)]
 pub(crate) struct Glass {
-    /// In front of the liquid, and behind it.
-    pipelines: [RenderPipeline; 2],
+    /// In front of the liquid, and behind it: each for the large faces below the eye, those above it, and the narrow
+    /// faces.
+    pipelines: [[RenderPipeline; 3]; 2],
 }
 
 /// The panes that a pass draws.
@@ -40,8 +41,8 @@ impl Glass {
         format: TextureFormat,
         samples: u32,
     ) -> Glass {
-        let pipelines = [0.0, 1.0].map(|behind| {
-            let constants = [("BEHIND", behind)];
+        let pipeline = |behind, part| {
+            let constants = [("BEHIND", behind), ("PART", part)];
             let desc = PipelineDesc {
                 samples,
                 depth: Some(Depth::Test),
@@ -50,15 +51,18 @@ impl Glass {
                 ..PipelineDesc::new(SHADER, &layouts, format)
             };
             desc.build(device)
-        });
+        };
+        let pipelines = [0.0, 1.0].map(|behind| [0.0, 1.0, 2.0].map(|part| pipeline(behind, part)));
         Glass { pipelines }
     }
 
     /// Draws some of the panes. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, panes: Panes) {
-        pass.set_pipeline(&self.pipelines[panes as usize]);
-        // Four panes with six faces of six vertices.
-        pass.draw(0..36, 0..4);
+        for pipeline in &self.pipelines[panes as usize] {
+            pass.set_pipeline(pipeline);
+            // Four panes with six faces of six vertices.
+            pass.draw(0..36, 0..4);
+        }
     }
 }
 
