@@ -32,6 +32,9 @@ use crate::scene::{Derived, Motion, Scene};
 use crate::state::Params;
 use crate::{BodyMesh, BodyState, Stats};
 
+/// A larger excess of density at the start means that particles overlap. It is that of a sound initial packing.
+const DENSE_START: f32 = 0.02;
+
 /// A quantity that has risen to a new level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -193,6 +196,9 @@ impl Monitor {
         let energy = self.account.add(time, particles, work(bodies));
         let distance = |x: Vec3| nearest(x).map(|(distance, _)| distance);
         let density = density::density_error(&self.params, &particles.positions, stats.steps, &distance);
+        if stats.steps == 0 {
+            self.context.starts_dense = density.largest > DENSE_START;
+        }
         for (state, reach) in bodies.iter().zip(&self.reaches) {
             if let Some(reach) = reach {
                 let speed = state.velocity.length() + reach * state.angular_velocity.length();

@@ -148,3 +148,30 @@ fn a_later_rise_within_a_level_is_reported_again() {
     assert_eq!(observe(10.2), []);
     assert_eq!(observe(f32::NAN), [] as [(Level, Watched); 0], "already at the highest level");
 }
+
+#[test]
+fn overlapping_particles_are_named_as_the_cause_only_if_they_overlap() {
+    let scene = Scene::builder("box", 1.0)
+        .domain([0.0; 3], [0.8, 0.8, 0.4])
+        .particle_spacing(0.05)
+        .block([0.0; 3], [0.4, 0.4, 0.4])
+        .build()
+        .unwrap();
+    let message = |scale: f32| {
+        let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
+        let mut particles = simulation.particles().unwrap();
+        particles.positions.iter_mut().flatten().for_each(|x| *x *= scale);
+        let mut monitor = simulation.monitor();
+        let mut observe = |steps, speed: f32, particles: &mut Particles| {
+            particles.velocities.fill([0.0, speed, 0.0]);
+            let stats = Stats { steps, ..Stats::default() };
+            let time = 1e-4 * steps as f64;
+            monitor.observe(Observed { time, stats: &stats, particles, bodies: &[], nearest: &|_| None })
+        };
+        observe(0, 0.0, &mut particles);
+        let found = observe(1, 50.0, &mut particles);
+        found.alarms.into_iter().find(|alarm| alarm.watched == Watched::Speed).unwrap().message
+    };
+    assert!(message(0.9).contains("overlap at the start"), "{}", message(0.9));
+    assert!(!message(1.0).contains("overlap at the start"), "{}", message(1.0));
+}
