@@ -4,7 +4,8 @@
 //! Each of the four upright walls that is closed is a slab outside the box. Only faces towards the
 //! eye are drawn. The large faces reflect the environment (Fresnel equations, both faces of the
 //! pane); the narrow ones show the light that the pane guides from its opposite end, green and dark
-//! from absorption on the way. Panes behind the
+//! from absorption on the way. A large face mirrors the floor below the height of the eye and the sky
+//! above it; each part has its own pipeline. Panes behind the
 //! liquid are drawn before it, the others after it. There is no lid: a pane that reflects the sky
 //! would hide the liquid in most views. The floor of the tank is that of the scene.
 //!
@@ -22,8 +23,7 @@ pub(crate) const SHADER: Shader =
 
 #[derive(Debug)]
 pub(crate) struct Glass {
-    /// In front of the liquid, and behind it: each for the large faces below the eye, those above it, and the narrow
-    /// faces.
+    /// In front of the liquid, and behind it: each for the parts `MIRRORS_FLOOR`, `MIRRORS_SKY` and `NARROW` of `glass.wgsl`.
     pipelines: [[RenderPipeline; 3]; 2],
 }
 

@@ -32,7 +32,7 @@ use crate::scene::{Derived, Motion, Scene};
 use crate::state::Params;
 use crate::{BodyMesh, BodyState, Stats};
 
-/// A larger excess of density at the start means that particles overlap. It is that of a sound initial packing.
+/// Particles overlap at the start if the largest excess of density is above this, the tolerance of the initial packing.
 const DENSE_START: f32 = 0.02;
 
 /// A quantity that has risen to a new level.
@@ -197,7 +197,7 @@ impl Monitor {
         let distance = |x: Vec3| nearest(x).map(|(distance, _)| distance);
         let density = density::density_error(&self.params, &particles.positions, stats.steps, &distance);
         if stats.steps == 0 {
-            self.context.starts_dense = density.largest > DENSE_START;
+            self.context.starts_dense = Some(density.largest > DENSE_START);
         }
         for (state, reach) in bodies.iter().zip(&self.reaches) {
             if let Some(reach) = reach {

@@ -20,8 +20,8 @@ pub(super) struct Context {
     is_implicit: bool,
     /// The time in s in which the initial arrangement of particles expands.
     early: f64,
-    /// Whether particles overlap at the start.
-    pub starts_dense: bool,
+    /// Whether particles overlap at the start; `None` if the first frame was not examined.
+    pub starts_dense: Option<bool>,
     /// In m/s.
     sound_speed: f32,
 }
@@ -43,7 +43,7 @@ impl Context {
             is_implicit: scene.solver.method == Method::Dfsph,
             // A few tens of spacings at the speed of sound.
             early: f64::from(50.0 * spacing / sound_speed.max(10.0 * reference_speed)),
-            starts_dense: false,
+            starts_dense: None,
             sound_speed,
         }
     }
@@ -151,7 +151,8 @@ impl Context {
                 self.sound_speed
             );
         }
-        if self.starts_dense && time < self.early && !matches!(watched, Watched::InsideBodies) {
+        if self.starts_dense != Some(false) && time < self.early && !matches!(watched, Watched::InsideBodies)
+        {
             return "Likely cause: the particles overlap at the start. Move pieces of fluid, bodies and emitters apart by a \
                     multiple of particle_spacing, and check imported particles with `splashdown check`"
                 .to_owned();

@@ -105,7 +105,7 @@ pub struct Solver {
     /// The algorithm that sorts particles into cells.
     pub sort: Sort,
     /// Largest mean error of the density that the implicit pressure of `dfsph` may have, as a part of the rest density.
-    /// The mean over any 64 particles near one another may be five times as large.
+    /// The mean over each group of 64 particles in the order of the cells may be five times as large.
     pub tolerance: f32,
     /// Largest number of iterations of the implicit pressure in a step.
     pub max_iterations: u32,

@@ -186,7 +186,7 @@ fn excess_of_an_impact(keys: &str) -> f64 {
 fn a_small_impact_in_a_wide_pool_does_not_compress_the_water() {
     let mut figures = Figures::new(&IMPACT, "dfsph", 5);
     figures.measure("largest excess of density", excess_of_an_impact(""));
-    // Control: what the mean allows without a limit for the drop.
+    // Control: a larger tolerance is detected.
     figures.measure("the same with a tolerance of 0.005", excess_of_an_impact("tolerance = 0.005"));
     figures.close();
 }

@@ -24,7 +24,7 @@
 //! ```text
 //! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k
 //! residual   p = beta p + g;  r = (delta - 1) + dt D u - k / c^2;  k_J = max(k + w r / a, 0);  g = k_J - k
-//! decide     stop if mean |r| <= tolerance, and 5 times it for any 64 particles, where r counts if it is positive or k is;
+//! decide     stop if mean |r| <= tolerance, and <= 5 tolerance in each group, where r counts if it is positive or k is;
 //!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
 //! ```
 //!
@@ -32,9 +32,10 @@
 //! energy would grow. The residual that is tested belongs to the velocity u of the same iteration, so that no further visit
 //! of the neighbours follows.
 //!
-//! The mean alone would not see the impact of a drop on a lake: particles that overlap by half, one in a thousand, have
-//! a mean of less than 0.1 %. The residual of 64 particles that follow one another in the order of the cells, which are near
-//! one another, is therefore limited as well. In violent flows nine of ten steps meet this limit without further iterations.
+//! The mean alone would not see the impact of a drop on a lake: if one particle in a thousand has 1.5 times the rest density,
+//! the mean is 0.05 %. The mean of each group of 64 particles that follow one another in the order of the cells is therefore
+//! limited as well. A step whose groups do not meet this limit is accepted and not repeated with a shorter one, as long as
+//! the mean of all does: a small pocket that is overfull must not end the run.
 //!
 //! A mean residual of 0.1 % allows a column of water to rise or fall by 0.1 % of its height in a step. The whole old
 //! pressure alone would repeat the correction of one step in the next, and heat a tank at rest. Two corrections keep it
@@ -47,10 +48,10 @@
 //!   the noise, and a pressure of many steps ago pushes the slow fluid apart, which then does not close its voids.
 //!
 //! In water deeper than five spacings the mean residual must be smaller: a residual of one sign lifts or lowers the
-//! surface by the depth times the residual in every step. For a depth of N spacings, which follows from the mean square of
-//! the pressure, or without gravity from the number of particles, it may be 100 times the root mean square of the motions over N times the tolerance, or (5 / N)^2 times it if
-//! that is more; at least 0.02 times the tolerance and at most the tolerance. With the default tolerance, 0.1 %, the first
-//! is a tenth of the motions over N.
+//! surface by the depth times the residual in every step. The depth of N spacings follows from the mean square of the
+//! pressure; without gravity N is the cube root of the number of particles. The residual may be 100 times the root mean square
+//! of the motions over N times the tolerance, or (5 / N)^2 times it if that is more; at least 0.02 times the tolerance and at
+//! most the tolerance. With the default tolerance, 0.1 %, the first is a tenth of the motions over N.
 //!
 //! If the residual exceeds four times the best, the relaxation is halved and the directions restart. At the largest number
 //! of iterations the pressure is accepted, the next step is shorter and starts with half of the pressure.
@@ -67,7 +68,7 @@ use splashdown_gpu::PassDesc;
 /// Particles per sum.
 const GROUP: usize = 64;
 /// The mean residual of a group may be this many times the tolerance.
-const LOCAL: f32 = 5.0;
+const LARGEST_IN_GROUP: f32 = 5.0;
 /// Sums per task on the CPU.
 const GROUPS: usize = 64;
 

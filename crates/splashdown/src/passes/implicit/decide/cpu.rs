@@ -1,6 +1,6 @@
 use glam::Vec4;
 
-use super::super::{GROUP, LOCAL};
+use super::super::{GROUP, LARGEST_IN_GROUP};
 use super::DecideBindings;
 use crate::state::{Params, StepCounters};
 
@@ -23,9 +23,10 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     solve.iteration += 1;
     // False for NaN.
     let is_valid = error < 1e30;
-    let has_converged = is_valid && error <= params.tolerance && worst <= LOCAL * params.tolerance;
+    let has_converged = is_valid && error <= params.tolerance;
     let strictness = strictness(params, state.dt, n, impulse / n);
-    let is_enough = error <= params.tolerance * strictness;
+    let is_even = worst <= LARGEST_IN_GROUP * params.tolerance;
+    let is_enough = is_even && error <= params.tolerance * strictness;
     if has_converged && is_enough || solve.iteration >= params.max_iterations {
         solve.stopped = 1;
         let work = impulse.x + params.compressibility * impulse.y;
@@ -58,12 +59,13 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
 
 /// The part of the tolerance that deep water needs. A residual of one sign moves the surface by the depth times the
 /// residual in a step: with the default tolerance of 0.1 %, at most by a tenth of the root mean square of the motions.
-/// The depth of `n` particles follows from the mean square of the pressure, as if the fluid were at rest. Without gravity
-/// it is the edge of a cube of them.
+/// With gravity the depth follows from the mean square of the pressure, as if the fluid were at rest; without, it is the
+/// cube root of the number of particles, `n`, which is the size of a compact fluid.
 fn strictness(params: &Params, dt: f32, n: f32, impulse: Vec4) -> f32 {
     let (pressure2, speed2) = (impulse.y, impulse.z);
     let layer = params.gravity.length() * params.particle_spacing;
-    let depth = if layer > 0.0 { (3.0 * pressure2).sqrt() / layer } else { n.cbrt() };
+    let has_weight = layer > 0.0 && params.compressibility > 0.0;
+    let depth = if has_weight { (3.0 * pressure2).sqrt() / layer } else { n.cbrt() };
     let depth = depth.max(5.0);
     let moved = speed2.sqrt() * dt / params.particle_spacing;
     let shallow = 5.0 / depth;

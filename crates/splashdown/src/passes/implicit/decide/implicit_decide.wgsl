@@ -7,7 +7,7 @@
 #bindings
 
 const GROUP: f32 = 64.0; // particles per sum
-const LOCAL: f32 = 5.0; // the mean residual of a group may be this many times the tolerance
+const LARGEST_IN_GROUP: f32 = 5.0; // the mean residual of a group may be this many times the tolerance
 
 var<workgroup> sums: array<vec4<f32>, 256>;
 var<workgroup> impulse_sums: array<vec4<f32>, 256>;
@@ -17,7 +17,7 @@ var<workgroup> worst_sums: array<f32, 256>;
 fn strictness(n: f32, pressure2: f32, speed2: f32) -> f32 {
     let layer = length(params.gravity) * params.particle_spacing;
     var depth = pow(n, 1.0 / 3.0);
-    if (layer > 0.0) {
+    if (layer > 0.0 && params.compressibility > 0.0) {
         depth = sqrt(3.0 * pressure2) / layer;
     }
     depth = max(depth, 5.0);
@@ -34,9 +34,10 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
     solve.iteration += 1u;
     // False for NaN.
     let is_valid = error < 1e30;
-    let has_converged = is_valid && error <= params.tolerance && worst <= LOCAL * params.tolerance;
+    let has_converged = is_valid && error <= params.tolerance;
     let part = strictness(n, impulse.y / n, impulse.z / n);
-    let is_enough = error <= params.tolerance * part;
+    let is_even = worst <= LARGEST_IN_GROUP * params.tolerance;
+    let is_enough = is_even && error <= params.tolerance * part;
     if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
         solve.stopped = 1u;
         let work = impulse.x + params.compressibility * impulse.y;
