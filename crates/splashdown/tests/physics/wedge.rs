@@ -8,7 +8,8 @@
 //! The tank is 2.8 m wide and 0.7 m deep. One of half the size increased the force by 10 % at the end.
 //!
 //! The slope of the force over time does not depend on the moment of the first contact. A slab four spacings thick represents
-//! two dimensions. The slope is sensitive to the noise of the force, the impulse is not. The resolution is the number of spacings of the final depth of the apex.
+//! two dimensions; the resolution is the number of spacings of the final depth of the apex. The slope is sensitive to the noise
+//! of the force, the impulse is not.
 
 use glam::Vec3;
 use splashdown::Simulation;
