@@ -6,7 +6,8 @@ override BEHIND: u32 = 0u;
 // The faces of the panes that are drawn.
 override PART: u32 = 0u;
 // The parts of the large faces below the height of the eye, where they mirror the floor, and above it, where they mirror
-// the sky; and the narrow faces. With one shader for all, each pixel of a pane took the time of two reflections on a software driver.
+// the sky; and the narrow faces. With one shader for all, each pixel of a pane took the time of two reflections on a
+// software driver.
 const MIRRORS_FLOOR = 0u;
 const MIRRORS_SKY = 1u;
 const NARROW = 2u;
