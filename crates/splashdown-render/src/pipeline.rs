@@ -37,6 +37,8 @@ pub(crate) enum Depth {
     Write,
     TestAndWrite,
     Test,
+    /// Neither tests nor writes, in a pass with a depth buffer.
+    Ignore,
 }
 
 impl<'a> PipelineDesc<'a> {
@@ -106,11 +108,10 @@ impl<'a> PipelineDesc<'a> {
             },
             depth_stencil: self.depth.map(|depth| wgpu::DepthStencilState {
                 format: DEPTH,
-                depth_write_enabled: Some(depth != Depth::Test),
-                depth_compare: Some(if depth == Depth::Write {
-                    CompareFunction::Always
-                } else {
-                    CompareFunction::GreaterEqual
+                depth_write_enabled: Some(matches!(depth, Depth::Write | Depth::TestAndWrite)),
+                depth_compare: Some(match depth {
+                    Depth::Write | Depth::Ignore => CompareFunction::Always,
+                    Depth::TestAndWrite | Depth::Test => CompareFunction::GreaterEqual,
                 }),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),

@@ -21,11 +21,15 @@ pub(crate) enum Start {
     Load,
 }
 
-/// Whether the samples and depths are stored for a later pass.
+/// What happens to the samples and depths at the end of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
+    /// The samples are resolved; samples and depths are discarded.
+    Resolve,
+    /// Samples and depths are stored for a later pass.
     Store,
-    Discard,
+    /// The samples are resolved; samples and depths are stored.
+    ResolveAndStore,
 }
 
 impl<'a> Recorder<'a> {
@@ -44,7 +48,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// A pass into `result`; with several samples per pixel, they are resolved into it.
+    /// A pass into `result`; with several samples per pixel, into the samples, which may be resolved into it.
     pub fn picture(
         &mut self,
         label: &'static str,
@@ -53,9 +57,9 @@ impl<'a> Recorder<'a> {
         start: Start,
         end: End,
     ) -> RenderPass<'_> {
-        let store_samples = if end == End::Store { StoreOp::Store } else { StoreOp::Discard };
+        let store_samples = if end == End::Resolve { StoreOp::Discard } else { StoreOp::Store };
         let (view, resolve_target, store) = match &targets.samples {
-            Some(samples) => (samples, Some(result), store_samples),
+            Some(samples) => (samples, (end != End::Store).then_some(result), store_samples),
             None => (result, None, StoreOp::Store),
         };
         let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::BLACK) };
@@ -108,6 +112,12 @@ impl<'a> Recorder<'a> {
         self.begin(label, None, Some((depth, operations)))
     }
 
+    /// A pass that writes depths only.
+    pub fn depths(&mut self, label: &'static str, depths: &TextureView) -> RenderPass<'_> {
+        let operations = Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store };
+        self.begin(label, None, Some((depths, operations)))
+    }
+
     /// A pass over the existing contents of a texture, at marked pixels.
     pub fn over_marks(
         &mut self,
@@ -119,8 +129,8 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, LoadOp::Load), Some((depth, operations)))
     }
 
-    /// A pass of light with one sample per pixel and a depth buffer, both stored.
-    pub fn light(
+    /// A pass with one sample per pixel and a depth buffer, both stored.
+    pub fn one_sample(
         &mut self,
         label: &'static str,
         view: &TextureView,

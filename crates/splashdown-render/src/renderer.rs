@@ -5,7 +5,7 @@ use crate::bodies::Bodies;
 use crate::colour_map::ColourTextures;
 use crate::droplets::Droplets;
 use crate::edges::Edges;
-use crate::foam::{Foam, Kinds};
+use crate::foam::{Foam, FoamLayer, Kinds};
 use crate::glass::{Glass, Panes};
 use crate::overlay::Overlay;
 use crate::particles::Particles;
@@ -16,7 +16,7 @@ use crate::screen_space::{ScreenSpace, margin};
 use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
-use crate::targets::{MeshTargets, Targets};
+use crate::targets::{FoamTargets, MeshTargets, Targets};
 use crate::trace::TracedPicture;
 use crate::{Frame, RenderError, SurfaceStyle};
 use splashdown_gpu::PassTimer;
@@ -27,8 +27,7 @@ use wgpu::{
     TextureFormat, TextureView,
 };
 
-/// The largest number of passes of a picture that are measured. A picture has less than half as
-/// many.
+/// The largest number of passes of a picture that are measured. A picture has at most 24.
 const MEASURED_PASSES: u32 = 32;
 /// The largest number of pictures whose times have not been read back. Further pictures are not
 /// measured.
@@ -49,14 +48,16 @@ pub struct PassTime {
 ///
 /// 1. the shadow of the fluid on the floor (256 x 256, blurred);
 /// 2. the sums of a slice;
-/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid also bubbles,
-///    and the result is resolved to a texture that the liquid refracts;
-/// 4. with a liquid and one sample per pixel, a copy of that texture in the target;
+/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid, the result is resolved
+///    to a texture that the liquid refracts;
+/// 4. with a liquid: if there is one sample per pixel, a copy of that texture in the target; then bubbles in the
+///    texture, at depths with one sample per pixel;
 /// 5. with a liquid, its thickness; then for a mesh its normals, the pixels that it covers, and the
 ///    shading of these pixels; for a liquid of particles, their distances and smoothing;
-/// 6. the picture: the shading of smoothed distances, wireframe, droplets, foam and spray, the near
-///    panes and edges; all samples are resolved into the target;
-/// 7. colour bar and caption.
+/// 6. the picture: the shading of smoothed distances, wireframe and droplets;
+/// 7. the same depths of the picture; foam and spray in a layer with one sample per pixel, drawn over the picture;
+/// 8. the near panes and edges; all samples are resolved into the target;
+/// 9. colour bar and caption.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
@@ -72,6 +73,7 @@ pub struct Renderer {
     slice: Slice,
     droplets: Droplets,
     foam: Foam,
+    foam_layer: FoamLayer,
     glass: Glass,
     surface: Surface,
     scene_copy: SceneCopy,
@@ -112,7 +114,8 @@ impl Renderer {
             particles: Particles::new(device, layouts, format, sample_count, colours.clone()),
             slice: Slice::new(device, layouts, format, sample_count, colours),
             droplets: Droplets::new(device, &layouts, format, sample_count),
-            foam: Foam::new(device, layouts, format, sample_count),
+            foam: Foam::new(device, layouts, format),
+            foam_layer: FoamLayer::new(device, format, sample_count),
             glass: Glass::new(device, layouts, format, sample_count),
             surface: Surface::new(device, layouts, format, sample_count),
             scene_copy: SceneCopy::new(device, format),
@@ -198,6 +201,12 @@ impl Renderer {
         {
             targets.mesh = Some(MeshTargets::new(&self.device, size, self.format, self.sample_count));
         }
+        if let Some(targets) = &mut self.targets
+            && frame.foam.is_some_and(|drawn| drawn.buffers.count > 0)
+            && targets.foam.is_none()
+        {
+            targets.foam = Some(FoamTargets::new(&self.device, size, self.sample_count));
+        }
         self.overlay.prepare(&self.device, &self.queue, size, frame)?;
         // Collects the times read back so far, so that the timer can measure this picture.
         self.pass_times();
@@ -235,12 +244,15 @@ impl Renderer {
             if let Some(group) = &slice {
                 self.slice.record(pass, group);
             }
-            if has_liquid {
-                self.foam.record(pass, &foam, Kinds::UnderWater);
-            }
         };
         if has_liquid {
-            scene(&mut recorder.picture("scene", targets, &targets.scene, Start::Clear, End::Store));
+            scene(&mut recorder.picture(
+                "scene",
+                targets,
+                &targets.scene,
+                Start::Clear,
+                End::ResolveAndStore,
+            ));
             // Larger than any distance, and representable as a 16-bit float.
             let no_body = Color { r: 60_000.0, ..Color::TRANSPARENT };
             let mut pass = recorder.cleared("distance of bodies", &targets.solid, no_body);
@@ -252,6 +264,14 @@ impl Renderer {
         if has_liquid && targets.samples.is_none() {
             let mut pass = recorder.cleared("scene copy", target, Color::BLACK);
             self.scene_copy.record(&self.device, &mut pass, targets);
+        }
+        let layer = targets.foam.as_ref().filter(|_| !foam.is_empty());
+        if has_liquid && let Some(layer) = layer {
+            let depths = self.foam_layer.depths(&self.device, &mut recorder, targets, layer);
+            let mut pass = recorder.one_sample("bubbles", &targets.scene, depths, Start::Load);
+            pass.set_bind_group(0, &globals, &[]);
+            pass.set_bind_group(1, &self.shadow.environment, &[]);
+            self.foam.record(&mut pass, &foam, Kinds::UnderWater);
         }
         if let Some(drawn) = &surface {
             let groups = [&globals, &self.shadow.environment];
@@ -269,9 +289,20 @@ impl Renderer {
         } else {
             None
         };
+        let in_front = |pass: &mut RenderPass<'_>| {
+            pass.set_bind_group(0, &globals, &[]);
+            pass.set_bind_group(1, &self.shadow.environment, &[]);
+            if has_panes {
+                self.glass.record(pass, Panes::InFront);
+            }
+            if has_edges {
+                self.edges.record(pass, behind..12);
+            }
+        };
         {
             let start = if has_liquid { Start::Load } else { Start::Clear };
-            let mut pass = recorder.picture("picture", targets, target, start, End::Discard);
+            let end = if layer.is_some() { End::Store } else { End::Resolve };
+            let mut pass = recorder.picture("picture", targets, target, start, end);
             if !has_liquid {
                 scene(&mut pass);
             }
@@ -284,14 +315,22 @@ impl Renderer {
                 self.surface.record_lines(&self.device, &mut pass, drawn);
             }
             self.droplets.record(&mut pass, &droplets);
-            let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
-            self.foam.record(&mut pass, &foam, kinds);
-            if has_panes {
-                self.glass.record(&mut pass, Panes::InFront);
+            if layer.is_none() {
+                in_front(&mut pass);
             }
-            if has_edges {
-                self.edges.record(&mut pass, behind..12);
+        }
+        if let Some(layer) = layer {
+            let depths = self.foam_layer.depths(&self.device, &mut recorder, targets, layer);
+            {
+                let mut pass = recorder.over_depth("foam", &layer.colours, depths);
+                pass.set_bind_group(0, &globals, &[]);
+                pass.set_bind_group(1, &self.shadow.environment, &[]);
+                let kinds = if has_liquid { Kinds::OverWater } else { Kinds::All };
+                self.foam.record(&mut pass, &foam, kinds);
             }
+            let mut pass = recorder.picture("foam over picture", targets, target, Start::Load, End::Resolve);
+            self.foam_layer.record(&self.device, &mut pass, layer);
+            in_front(&mut pass);
         }
         self.overlay.record(&mut recorder, target);
         recorder.finish();

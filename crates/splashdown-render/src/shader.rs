@@ -41,7 +41,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 38] = [
+    const ALL: [Shader; 40] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -69,6 +69,8 @@ mod tests {
         crate::overlay::SHADER,
         crate::shadow::ABSORB,
         crate::foam::SHADER,
+        crate::foam::DEPTHS,
+        crate::foam::OVER,
         crate::droplets::SHADER,
         crate::droplets::TRACED,
         crate::glass::SHADER,

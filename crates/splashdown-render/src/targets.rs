@@ -6,6 +6,8 @@ use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView, TextureV
 pub(crate) const THICKNESS_FORMAT: TextureFormat = TextureFormat::R16Float;
 /// Two integers per normal: see `surface/normal_code.wgsl`.
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rg16Uint;
+/// With eight bits, many faint particles would add up to the wrong opacity.
+pub(crate) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 #[derive(Debug)]
 pub(crate) struct Targets {
@@ -21,6 +23,8 @@ pub(crate) struct Targets {
     pub solid: TextureView,
     /// Created with the first mesh.
     pub mesh: Option<MeshTargets>,
+    /// Created with the first foam.
+    pub foam: Option<FoamTargets>,
 }
 
 /// What a mesh of the liquid needs.
@@ -32,6 +36,15 @@ pub(crate) struct MeshTargets {
     pub covered: TextureView,
     /// The shaded liquid, with one sample per pixel; absent if the picture has only one sample too.
     pub liquid: Option<TextureView>,
+}
+
+/// What foam needs.
+#[derive(Debug)]
+pub(crate) struct FoamTargets {
+    /// The foam with one sample per pixel: colours times opacity, and the opacity.
+    pub colours: TextureView,
+    /// The depths of the picture with one sample per pixel; absent if the picture has only one.
+    pub depths: Option<TextureView>,
 }
 
 impl Targets {
@@ -48,6 +61,7 @@ impl Targets {
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
             solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
             mesh: None,
+            foam: None,
         }
     }
 }
@@ -61,6 +75,18 @@ impl MeshTargets {
             normals: texture(device, "normals", size, NORMAL_FORMAT, sample_count, read),
             covered: texture(device, "covered", size, DEPTH, 1, drawn),
             liquid: (sample_count > 1).then(shaded),
+        }
+    }
+}
+
+impl FoamTargets {
+    pub fn new(device: &Device, size: [u32; 2], sample_count: u32) -> FoamTargets {
+        let drawn = TextureUsages::RENDER_ATTACHMENT;
+        let read = drawn | TextureUsages::TEXTURE_BINDING;
+        let depths = || texture(device, "depths of foam", size, DEPTH, 1, drawn);
+        FoamTargets {
+            colours: texture(device, "foam", size, LAYER_FORMAT, 1, read),
+            depths: (sample_count > 1).then(depths),
         }
     }
 }

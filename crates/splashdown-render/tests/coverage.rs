@@ -220,6 +220,39 @@ fn one_sample_and_unencoded_targets_show_the_same_picture() {
     assert!(difference.mean < 1.5 && difference.fraction < 0.03, "{difference:?}");
 }
 
+#[test]
+fn one_sample_and_unencoded_targets_show_the_same_foam() {
+    let Some(mut harness) = common::harness() else { return };
+    // Spray before the liquid, foam beside it, a bubble in it, and spray behind it; each many times, which fills its disc.
+    let places = [[-0.3, 0.3, 1.2], [-1.4, 0.0, 0.0], [0.3, 0.1, 0.5], [0.0, 0.0, -1.5]].repeat(40);
+    let foam =
+        UploadedFoam::new(&harness.device, &places, &[3.0; 160], &[], &[0, 1, 2, 0].repeat(40)).unwrap();
+    let foam = DrawnFoam::new(foam.buffers(), 0.3);
+    let mesh = sample::ball([0.0; 3], 0.8, 48);
+    let ball = UploadedSurface::new(&harness.device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let cloud: Vec<[f32; 3]> = mesh.vertices.iter().step_by(2).map(|p| p.map(|x| 0.9 * x)).collect();
+    let cloud = UploadedParticles::new(&harness.device, &cloud, &[], &[], &[]).unwrap();
+    // White foam has little contrast against the horizon.
+    let behind = UploadedParticles::new(&harness.device, &[[0.0, 0.0, -8.0]], &[], &[], &[]).unwrap();
+    let without = level_frame(6.0).with_particles(DrawnParticles::new(behind.buffers(), 4.0, red()));
+    let surface = without.with_surface(DrawnSurface::new(ball.buffers(), Liquid::water()));
+    let particles = DrawnLiquidParticles::new(cloud.buffers(), 0.1, Liquid::water());
+    for without in [without, surface, without.with_liquid_particles(particles)] {
+        harness.renderer = Renderer::new(&harness.device, &harness.queue, Offscreen::FORMAT, 4).unwrap();
+        let frame = without.with_foam(foam);
+        // The textures of another size are not used again.
+        harness.draw([SIZE[0] / 2, SIZE[1] / 2], &frame);
+        let four = harness.draw(SIZE, &frame);
+        let foamless = four.difference(&harness.draw(SIZE, &without));
+        assert!(foamless.mean > 2.0, "control: foam changes the picture: {foamless:?}");
+        let plain = draw_into(&harness, wgpu::TextureFormat::Rgba8Unorm, &frame).difference(&four);
+        harness.renderer = Renderer::new(&harness.device, &harness.queue, Offscreen::FORMAT, 1).unwrap();
+        let one = harness.draw(SIZE, &frame).difference(&four);
+        assert!(one.mean < 1.5 && one.fraction < 0.06, "{one:?}");
+        assert!(plain.mean < 1.5 && plain.fraction < 0.06, "{plain:?}");
+    }
+}
+
 /// Draws into a texture of any 8-bit format and returns its bytes unchanged.
 fn draw_into(harness: &Harness, format: wgpu::TextureFormat, frame: &Frame<'_>) -> Picture {
     let Harness { device, queue, .. } = harness;

@@ -92,14 +92,16 @@ fn fragment_main(in: Varying) -> Output {
     let last = min(streak, in.across.x + chord);
     let edge = clamp((1.0 - abs(in.across.y)) / pixel + 0.5, 0.0, 1.0);
     let coverage = clamp((last - first) / (2.0 * streak), 0.0, 1.0) * edge * in.size.z;
-    if coverage <= 0.004 || (coverage >= WHOLE) != (OPAQUE == 1u) {
+    let is_drawn = coverage > 0.004 && (coverage >= WHOLE) == (OPAQUE == 1u);
+    if !is_drawn {
         discard;
     }
     let radius = in.size.x;
     let axis = in.centre.xyz / in.centre.w;
     let beside = cross(in.along.xyz, axis);
     let towards = normalize(in.ray);
-    let times = select(1, TIMES, last - first > 0.5);
+    // No turn where nothing is drawn: software drivers shade discarded pixels too.
+    let times = select(0, select(1, TIMES, last - first > 0.5), is_drawn);
     var light = vec3f(0.0);
     var nearest = 0.0;
     for (var i = 0; i < times; i++) {

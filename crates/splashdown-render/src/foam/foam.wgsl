@@ -35,10 +35,10 @@ fn random(tag: u32) -> f32 {
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
-    var particle = bitcast<vec4f>(diffuse[2u * (index / 6u)]);
-    let velocity = bitcast<vec3f>(diffuse[2u * (index / 6u) + 1u].xyz);
+    var particle = bitcast<vec4f>(diffuse[2u * (index / 3u)]);
+    let velocity = bitcast<vec3f>(diffuse[2u * (index / 3u) + 1u].xyz);
     particle += vec4f(velocity * globals.shutter_time, 0.0);
-    let tag = diffuse[2u * (index / 6u) + 1u].w;
+    let tag = diffuse[2u * (index / 3u) + 1u].w;
     let kind = tag & 3u;
     let variation = random(tag);
     // In particle radii.
@@ -66,7 +66,8 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let own_radius = size * (0.6 + 0.8 * variation) * globals.foam_radius;
     let radius = max(own_radius, MIN_BILLBOARD * pixel);
     let fainter = own_radius * own_radius / (radius * radius);
-    let opacity = fainter * clamp(particle.w / FADE_TIME, 0.0, 1.0);
+    // Also zero for NaN, which would remain in a layer of floats.
+    let opacity = select(0.0, fainter * clamp(particle.w / FADE_TIME, 0.0, 1.0), particle.w > 0.0);
     var corner = sphere_corner(vec4f(particle.xyz, 0.0), radius, index);
     if kind == FOAM && corner.centre.w > 0.0 {
         let axis = corner.centre.xyz / corner.centre.w;
@@ -113,6 +114,7 @@ fn group(across: vec2f, members: vec2f, variation: f32) -> f32 {
     return 1.0 - past;
 }
 
+// The colour times the opacity, and the opacity.
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {
     let inside = 1.0 - dot(in.across, in.across);
@@ -127,5 +129,6 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     } else {
         cover = group(in.across, in.members, in.appearance.y);
     }
-    return vec4f(in.colour, in.appearance.x * cover);
+    let opacity = in.appearance.x * cover;
+    return vec4f(in.colour * opacity, opacity);
 }

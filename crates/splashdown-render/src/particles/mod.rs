@@ -1,8 +1,8 @@
 //! Particles as spheres.
 //!
 //! # How it works
-//! Every particle is a quad: six vertices that load their particle from the storage buffers. The
-//! quad faces the eye, in the plane through the centre of the sphere. With the centre at distance
+//! Every particle is a triangle: three vertices that load their particle from the storage buffers. The
+//! triangle faces the eye, in the plane through the centre of the sphere. With the centre at distance
 //! d, the cone tangent to the sphere of radius r intersects this plane in a circle of radius R, R^2
 //! = d^2 r^2 / (d^2 - r^2). The vertex shader outputs q, the position in the plane in units of R.
 //! The ray D to that position intersects the sphere at s D with |s D - c| = r. Because D = c + R q
@@ -21,11 +21,12 @@
 //! of 256 colours, which the colour bar also uses.
 //!
 //! Measured with lavapipe (Mesa 22.3.6) on two cores at 1280 x 720 with four samples, background
-//! and shadow: 64,000 spheres with a diameter of about five pixels in 0.19 s, a third of it in the
-//! vertex shader; 105,000 in 0.27 s.
+//! and shadow: 66,560 spheres in 0.23 s.
 //!
 //! # Why not the other way
-//! * Instanced quads: software drivers treat each instance as a separate draw, and four vertices do
+//! * Squares instead of triangles around the outline: 0.8 times the pixels, twice the vertices and triangles. They took
+//!   0.25 s in the same case, and the smaller billboards of foam 1.3 times as long.
+//! * Instances: software drivers treat each instance as a separate draw, and three vertices do
 //!   not fill a vector register.
 //! * Alpha to coverage: lavapipe (Mesa 22.3) writes the depth of samples that are not covered, so
 //!   that the floor shows through every outline; the mask also cannot select individual samples.
@@ -34,8 +35,7 @@
 //!   size.
 //!
 //! # Things we might try
-//! Ambient occlusion from the cells of the neighbour search; a triangle instead of the quad (half
-//! the vertices, 1.3 times the pixels).
+//! Ambient occlusion from the cells of the neighbour search.
 
 use crate::chunks::{Chunk, bind_chunks};
 use crate::colour_map::ColourTextures;
@@ -122,7 +122,7 @@ impl Particles {
     pub fn record(&self, pass: &mut RenderPass<'_>, chunks: &[Chunk]) {
         pass.set_pipeline(&self.pipeline);
         for chunk in chunks {
-            chunk.draw(pass, 2, 6);
+            chunk.draw(pass, 2, 3);
         }
     }
 }

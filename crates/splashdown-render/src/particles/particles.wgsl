@@ -1,4 +1,4 @@
-// Sphere impostors: a quad around the outline, with the intersection computed per pixel. Needs
+// Sphere impostors: a triangle around the outline, with the intersection computed per pixel. Needs
 // globals.wgsl, sphere.wgsl, quantity.wgsl.
 
 @group(2) @binding(0) var<storage, read> positions: array<vec4f>;   // xyz; w is 0 for active particles
@@ -11,14 +11,14 @@ override SAMPLES: u32 = 4u;
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the sphere's outline
-    @location(1) ray: vec3f,           // from the eye to a point of the quad
+    @location(1) ray: vec3f,           // from the eye to a point of the triangle
     @location(2) @interpolate(flat) centre: vec4f,  // xyz: centre relative to the eye, w: distance
     @location(3) @interpolate(flat) base: vec3f,    // colour
 }
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
-    let particle = index / 6u;
+    let particle = index / 3u;
     let corner = sphere_corner(positions[particle], globals.particle_radius, index);
     var out: Varying;
     out.position = corner.position;

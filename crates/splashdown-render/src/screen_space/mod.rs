@@ -195,7 +195,7 @@ impl ScreenSpace {
         pass.set_pipeline(&self.thickness);
         pass.set_bind_group(1, &solid, &[]);
         for chunk in chunks {
-            chunk.draw(pass, 2, 6);
+            chunk.draw(pass, 2, 3);
         }
     }
 
@@ -222,7 +222,7 @@ impl ScreenSpace {
             pass.set_pipeline(&self.splat);
             pass.set_bind_group(0, globals, &[]);
             for chunk in chunks {
-                chunk.draw(&mut pass, 1, 6);
+                chunk.draw(&mut pass, 1, 3);
             }
         }
         let filters = self.smooth.iter().map(|filter| ("smooth", filter)).chain([("cleanup", &self.cleanup)]);

@@ -12,7 +12,7 @@ struct Varying {
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
-    let corner = sphere_corner(positions[index / 6u], globals.thickness_radius, index);
+    let corner = sphere_corner(positions[index / 3u], globals.thickness_radius, index);
     return Varying(corner.position, corner.across, corner.centre.w);
 }
 

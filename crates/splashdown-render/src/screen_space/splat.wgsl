@@ -6,13 +6,13 @@
 struct Varying {
     @builtin(position) position: vec4f,
     @location(0) across: vec2f,        // length 1 on the sphere's outline
-    @location(1) ray: vec3f,           // from the eye to a point of the quad
+    @location(1) ray: vec3f,           // from the eye to a point of the triangle
     @location(2) @interpolate(flat) distance: f32,  // from the eye to the centre
 }
 
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
-    let corner = sphere_corner(positions[index / 6u], globals.splat_radius, index);
+    let corner = sphere_corner(positions[index / 3u], globals.splat_radius, index);
     // The texture extends beyond the picture by a margin, so that smoothing has data outside the
     // border.
     let shrink = globals.picture_size / (globals.picture_size + 2.0 * globals.splat_margin);

@@ -1,19 +1,20 @@
-// Sphere impostors: the corners of a quad around the outline, and the intersection of a ray with
+// Sphere impostors: the corners of a triangle around the outline, and the intersection of a ray with
 // the sphere. Derivation: particles/mod.rs. Needs globals.wgsl.
 
 struct SphereCorner {
     position: vec4f,        // in clip space; outside the clip volume if the particle is not drawn
     across: vec2f,          // length 1 on the sphere's outline
-    ray: vec3f,             // from the eye to the corner of the quad
+    ray: vec3f,             // from the eye to the corner of the triangle
     centre: vec4f,          // xyz: centre relative to the eye, w: distance from the eye
 }
 
-// `particle`: xyz is the position; w is 0 for active particles, and only these are drawn. Six
-// vertices make a quad.
+// `particle`: xyz is the position; w is 0 for active particles, and only these are drawn. Three
+// vertices make a triangle around the disc: it has 1.3 times the area of a square, but a square has twice the triangles,
+// and the pixels along its diagonal are drawn twice where they are drawn in blocks.
 fn sphere_corner(particle: vec4f, radius: f32, index: u32) -> SphereCorner {
-    // Two triangles, corners 0 1 2 and 2 1 3, packed two bits each.
-    let corner = (0xDA4u >> (2u * (index % 6u))) & 3u;
-    let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+    // The corners of the equilateral triangle around the unit circle.
+    let corner = index % 3u;
+    let side = vec2f(1.7320508 * (f32(corner) - 1.0), select(-1.0, 2.0, corner == 1u));
 
     let centre = particle.xyz - globals.eye;
     let distance_squared = dot(centre, centre);
@@ -30,7 +31,7 @@ fn sphere_corner(particle: vec4f, radius: f32, index: u32) -> SphereCorner {
     let outline = distance * radius * inverseSqrt(distance_squared - radius * radius);
     let u = normalize(cross(axis, globals.up + 0.001 * globals.right));
     let v = cross(u, axis);
-    // One extra pixel on every side, so that the quad covers partially covered pixels.
+    // One extra pixel on every side, so that the triangle covers partially covered pixels.
     let reach = 1.0 + distance * globals.pixel_angle / outline;
     out.across = side * reach;
     out.ray = centre + (u * side.x + v * side.y) * (outline * reach);

@@ -10,7 +10,7 @@ use crate::glass::{Glass, Panes};
 use crate::pipeline::{ADD, Bind, Depth, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::{Recorder, Start};
 use crate::shadow::FloorLight;
-use crate::targets::texture;
+use crate::targets::{LAYER_FORMAT, texture};
 use crate::{DrawnSurface, Frame, TracedMeshes};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Color, ColorWrites, Device, Face, RenderPipeline,
@@ -18,7 +18,7 @@ use wgpu::{
 };
 
 /// Format of light without tone mapping.
-const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
+const LIGHT: TextureFormat = LAYER_FORMAT;
 
 #[derive(Debug)]
 pub(crate) struct TracedPicture {
@@ -85,7 +85,7 @@ impl TracedPicture {
             depth: depth.build(device),
             liquid: liquid.build(device),
             droplets: Droplets::new(device, &traced, LIGHT, 1),
-            foam: Foam::new(device, plain, LIGHT, 1),
+            foam: Foam::new(device, plain, LIGHT),
             glass: Glass::new(device, plain, LIGHT, 1),
             edges: Edges::new(device, [globals], LIGHT, 1),
             accumulate: accumulate.build(device),
@@ -154,7 +154,7 @@ impl TracedPicture {
         let foam = frame.foam.map(|drawn| self.foam.bind(device, &drawn)).unwrap_or_default();
         let droplets = frame.droplets.map(|drawn| self.droplets.bind(device, &drawn)).unwrap_or_default();
         {
-            let mut pass = recorder.light("scene", &targets.sample, &targets.depth, Start::Clear);
+            let mut pass = recorder.one_sample("scene", &targets.sample, &targets.depth, Start::Clear);
             pass.set_bind_group(0, globals, &[]);
             pass.set_bind_group(1, &self.floor.environment, &[]);
             self.background.record(&mut pass);
@@ -172,7 +172,7 @@ impl TracedPicture {
             surface.buffers.draw(&mut pass);
         }
         {
-            let mut pass = recorder.light("traced liquid", &targets.sample, &targets.depth, Start::Load);
+            let mut pass = recorder.one_sample("traced liquid", &targets.sample, &targets.depth, Start::Load);
             pass.set_bind_group(0, globals, &[]);
             pass.set_bind_group(1, &self.floor.environment, &[]);
             pass.set_bind_group(2, trees, &[]);
@@ -181,7 +181,7 @@ impl TracedPicture {
             surface.buffers.draw(&mut pass);
             self.droplets.record(&mut pass, &droplets);
         }
-        let mut pass = recorder.light("foam and glass", &targets.sample, &targets.depth, Start::Load);
+        let mut pass = recorder.one_sample("foam and glass", &targets.sample, &targets.depth, Start::Load);
         pass.set_bind_group(0, globals, &[]);
         pass.set_bind_group(1, &self.floor.environment, &[]);
         self.foam.record(&mut pass, &foam, Kinds::OverWater);
