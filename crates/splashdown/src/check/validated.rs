@@ -58,9 +58,9 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
             across: "width",
             spacings: 20,
             error: match solver {
-                Solver::Continuity | Solver::Engineering => "front 3.0 %, height 3.2 %",
+                Solver::Continuity | Solver::Engineering => "front 2.9 %, height 1.2 %",
                 Solver::Summation => "front 3.0 %, height 2.0 %",
-                Solver::Dfsph => "front 2.9 %, height 1.7 %",
+                Solver::Dfsph => "front 2.7 %, height 2.0 %",
             },
             here: None,
         });
@@ -72,7 +72,7 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
                 Solver::Continuity => "period -0.9 %, 0.5 % of the height lost per period",
                 Solver::Engineering => "period 0.1 %, 0.9 % of the height lost per period",
                 Solver::Summation => "period -12.1 %, 9.3 % of the height lost per period",
-                Solver::Dfsph => "period -12.2 %, 6.2 % of the height lost per period",
+                Solver::Dfsph => "period -12.6 %, 2.4 % of the height lost per period",
             },
             here: depth,
         });

@@ -130,6 +130,10 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
             scene.gravity.length() + oscillation.length(),
             (scene.domain.max - scene.domain.min).length(),
         ),
-        unused: 0.0,
+        // The pressure under a curved surface with tension does not vanish at the surface: the addition would do work.
+        surface_completion: match solver.surface_tension {
+            SurfaceTension::None => dfsph::surface_completion(solver.kernel, f64::from(solver.support_ratio)),
+            _ => 0.0,
+        },
     }
 }

@@ -98,8 +98,9 @@ gpu_struct! {
         relaxation: f32,
         /// Relative excess of density that remains per unit of the implicit k, in s^2/m^2.
         compressibility: f32,
-        /// Padding.
-        unused: f32,
+        /// Factor of the density that the implicit pressure adds at the free surface; see
+        /// [`residual`](crate::passes::implicit::residual).
+        surface_completion: f32,
     }
 }
 

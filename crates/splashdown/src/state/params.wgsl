@@ -44,7 +44,7 @@ struct Params {
     wetting: f32,
     relaxation: f32,
     compressibility: f32,
-    unused: f32,
+    surface_completion: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

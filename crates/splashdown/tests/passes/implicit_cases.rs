@@ -295,9 +295,9 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         .enumerate()
         .map(|(i, v)| v.with_w(if i % 13 == 0 { -1.0 } else { (2.0 * v.w).max(0.0) }))
         .collect();
-    let stiffness: Vec<Vec4> =
-        vectors(n, 4).iter().map(|v| (20.0 * *v).with_w(400.0 * (1.1 + v.w))).collect();
-    let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 20.0 * *v).collect();
+    // Some of the gradients times the support are below the threshold of the free surface, some above.
+    let stiffness: Vec<Vec4> = vectors(n, 4).iter().map(|v| (6.0 * *v).with_w(400.0 * (1.1 + v.w))).collect();
+    let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 6.0 * *v).collect();
     let before = vectors(n, 12);
     let mut iterates = Output::new("iterates", Data::Vec4(before.clone()));
     let mut residuals = Output::new("residuals", poisoned(n.div_ceil(64)));
@@ -320,14 +320,19 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
             size += g.length() * (u.length() + other.length());
         });
         let mut gradient = stiffness[i].xyz().as_dvec3();
+        let mut normal = gradient;
         if bodies {
             let b = solid[i].xyz().as_dvec3();
             rate += b.dot(u) - f64::from(solid[i].w);
             size += b.length() * u.length() + f64::from(solid[i].w).abs();
             gradient += b;
+            normal += b / 2.0;
         }
+        let steepness = (c.support * normal.length() - 0.3).max(0.0);
+        let missing = f64::from(world.params.surface_completion) * steepness.powf(1.5);
+        let complete = excess.max((excess + missing).min(0.02));
         let compressibility = f64::from(world.params.compressibility);
-        let r = excess + c.dt * rate - compressibility * k;
+        let r = complete + c.dt * rate - compressibility * k;
         let r_size = 1.0 + c.dt * size;
         let diagonal =
             c.dt * c.dt * (gradient.length_squared() + f64::from(stiffness[i].w)) + compressibility;
@@ -363,7 +368,10 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         other => other,
     };
     let label = format!("implicit.residual.{word}{}", suffix(bodies));
-    case(label, name, n, input, vec![iterates, residuals], heavier)
+    case(label, name, n, input, vec![iterates, residuals], |input| {
+        let Data::Params(params) = &mut input[0] else { panic!("no constants") };
+        params.surface_completion *= 1.1;
+    })
 }
 
 fn begin(name: &str, run_count: u32) -> Case {

@@ -1,12 +1,13 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use splashdown_gpu::Scratch;
 
 use super::super::{GROUP, GROUPS};
-use super::ResidualBindings;
+use super::{LARGEST_COMPLETED, ResidualBindings, SMALLEST_SURFACE_GRADIENT};
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{NeighbourLists, Outputs, Sorted};
+use crate::state::Params;
 
 pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: ResidualBindings<'_>) {
     let ResidualBindings {
@@ -48,13 +49,15 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
             *iterate = Vec4::ZERO;
             return Vec4::new(0.0, 0.0, excess.max(0.0), 0.0);
         }
-        let (mut rate, mut gradient) = (iterate.w, stiffness[i].xyz());
+        let (mut rate, mut gradient, mut normal) = (iterate.w, stiffness[i].xyz(), stiffness[i].xyz());
         if BODIES {
             let solid = solid_gradients[i];
             rate += solid.xyz().dot(u) - solid.w;
             gradient += solid.xyz();
+            normal += 0.5 * solid.xyz();
         }
-        let residual = excess + state.dt * rate - params.compressibility * k;
+        let complete = excess + missing_density(params, normal).min((LARGEST_COMPLETED - excess).max(0.0));
+        let residual = complete + state.dt * rate - params.compressibility * k;
         let diagonal = (gradient.length_squared() + stiffness[i].w).max(1e-6 * scale * scale);
         let diagonal = state.dt * state.dt * diagonal + params.compressibility;
         let next = (k + solve.relaxation * residual / diagonal).max(0.0);
@@ -74,6 +77,13 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
             }
         }
     });
+}
+
+/// What a particle at the free surface lacks of the rest density, for the gradient of the sum of V W over fluid and bodies.
+#[inline(always)]
+fn missing_density(params: &Params, gradient: Vec3) -> f32 {
+    let beyond = (params.support_radius * gradient.length() - SMALLEST_SURFACE_GRADIENT).max(0.0);
+    params.surface_completion * beyond * beyond.sqrt()
 }
 
 /// Stores a result as the fourth component of a vector.

@@ -11,6 +11,10 @@
 
 override BODIES: u32 = 0u; // 1: bodies contribute to the density
 
+// See the module.
+const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
+const LARGEST_COMPLETED: f32 = 0.02;
+
 // The sum over the neighbours in the rate of the density.
 fn rate_of(x: vec3<f32>, u: vec3<f32>) -> f32 {
     let cell = cell_of(x);
@@ -35,6 +39,12 @@ fn rate_of(x: vec3<f32>, u: vec3<f32>) -> f32 {
     return params.summed_mass / params.rest_density * scale * scale * scale * scale * scale * sum;
 }
 
+// What a particle at the free surface lacks of the rest density, for the gradient of the sum of V W over fluid and bodies.
+fn missing_density(gradient: vec3<f32>) -> f32 {
+    let beyond = max(params.support_radius * length(gradient) - SMALLEST_SURFACE_GRADIENT, 0.0);
+    return params.surface_completion * beyond * sqrt(beyond);
+}
+
 // Updates the iterate of a particle, and returns its contributions to the sums.
 fn update(i: u32) -> vec4<f32> {
     let excess = densities[i].x / params.rest_density - 1.0;
@@ -46,12 +56,15 @@ fn update(i: u32) -> vec4<f32> {
     }
     var rate = rate_of(sorted_positions[i].xyz, u);
     var gradient = stiffness[i].xyz;
+    var normal = gradient;
     if (BODIES == 1u) {
         let solid = solid_gradients[i];
         rate += dot(solid.xyz, u) - solid.w;
         gradient += solid.xyz;
+        normal += 0.5 * solid.xyz;
     }
-    let residual = excess + state.dt * rate - params.compressibility * k;
+    let complete = excess + min(missing_density(normal), max(LARGEST_COMPLETED - excess, 0.0));
+    let residual = complete + state.dt * rate - params.compressibility * k;
     let scale = 1.0 / params.support_radius;
     let squares = max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
     let diagonal = state.dt * state.dt * squares + params.compressibility;
