@@ -2,13 +2,13 @@
 
     python3 published_figures.py REPOSITORY
 
-REPOSITORY is a checkout of Splashdown. Its picture of the collapsing column and its copy of the measurements of Martin and
-Moyce are read. All other input is in this file, copied from public repositories; the origin is beside each list. Python 3.8
+REPOSITORY is a checkout of Splashdown. Its record of the collapsing column is read, with the measurements of Martin and
+Moyce. All other input is in this file, copied from public repositories; the origin is beside each list. Python 3.8
 or newer, no packages.
 """
 
+import json
 import math
-import re
 import sys
 from pathlib import Path
 
@@ -127,14 +127,14 @@ def collapsing_column(repository):
         print(f"  {name:13s} rms {100 * error:.1f} % at shift {shift:+.2f} ({n} points), speed {ratio:.3f}; "
               f"without shift rms {100 * raw:.1f} %, mean {100 * mean:.1f} %")
 
-    svg = (Path(repository) / "docs/pictures/validation/collapsing-column-1.svg").read_text()
-    lines = re.findall(r'stroke-width="2" points="([^"]+)"/>\s*<text[^>]*>\s*(\w+)\s*</text>', svg)
-    rows = (Path(repository) / "crates/splashdown/tests/data/martin_moyce_1952.csv").read_text().splitlines()
-    table = [tuple(map(float, r.split(",")[1:3])) for r in rows if r.startswith("front,")]
-    print("Collapsing column, Splashdown at 16 spacings across, read from the picture (one pixel is 0.014 of Z)")
-    for points, name in lines:
-        pixels = [tuple(map(float, p.split(","))) for p in points.split()]
-        curve = [((x - 93.0) / 169.1, 1.0 + (300.0 - y) / 70.3) for x, y in pixels]
+    runs = json.loads((Path(repository) / "docs/validation/collapsing-column.json").read_text())
+    print("Collapsing column, Splashdown at 20 spacings across")
+    for run in runs:
+        if run["spacings"] != 20 or not run["plots"]:
+            continue
+        front = next(plot for plot in run["plots"] if plot["axes"][1] == "front over width")
+        name, table = run["variant"], [tuple(point) for point in front["measured"]]
+        curve = [tuple(point) for point in front["simulated"]]
         error, shift, ratio, raw, mean, n = front_figures(curve, table, 0.2, 1.4)
         print(f"  {name:11s} Martin and Moyce n^2 = 2: rms {100 * error:.1f} % at shift {shift:+.2f}, speed {ratio:.3f}; "
               f"without shift rms {100 * raw:.1f} %, mean {100 * mean:.1f} %")
