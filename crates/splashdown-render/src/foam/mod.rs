@@ -10,9 +10,9 @@
 //! layer and its depths take 12 bytes per pixel, and 8 if the picture has one sample per pixel. Traced
 //! pictures have one sample per pixel and draw foam and spray directly.
 //!
-//! Measured with lavapipe on two cores at 1280 x 720, the last frames of `dam-break`: bubbles 40 ms,
-//! foam and spray 50, depths and drawing the layer over the picture 15. With four samples per pixel and
-//! squares instead of triangles, bubbles took 105 ms, and foam and spray more than 75.
+//! Measured with lavapipe on two cores: the last 20 frames of `dam-break` take 8.1 s to draw again, with
+//! reading and encoding; with four samples per pixel, and squares instead of triangles, they took 11.1 s
+//! (docs/performance.md, The demo).
 //!
 //! A particle of spray stands for a cloud of drops, and one of foam for a patch of bubbles: the
 //! billboard shows a group of five, turned by a random angle. Single discs look like gravel. Foam
@@ -22,7 +22,7 @@
 //!
 //! # Why not the other way
 //! Four samples per pixel show no difference in the foam itself. Where a body or the liquid hides
-//! foam, its outline is as sharp as that of a pixel: the depth is that of the first sample.
+//! foam, the outline is not smoothed: the depth is that of the first sample.
 //!
 //! Bubbles drawn into the picture too are visible where no liquid is in front of them, which is when the
 //! eye is inside the liquid. The cost is that of bubbles with four samples.

@@ -11,7 +11,9 @@
 //! r        = (delta - 1) + s + dt D u - k / c^2   the excess of density at the end of the step, less the compression
 //! ```
 //!
-//! s completes the density at the free surface ([`residual`]); forces and diagonal do not contain its derivative. The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
+//! s completes the density at the free surface ([`residual`]); forces and diagonal do not contain its derivative.
+//!
+//! The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
 //! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' + 1 / c^2 is symmetric
 //! and positive definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
 //! the one that the pressure gives it. The compressibility 1 / c^2 is too small to matter except in a sealed space that is
