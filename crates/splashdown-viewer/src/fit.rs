@@ -1,7 +1,7 @@
 //! Whether a scene fits the device on which the page would simulate it.
 
 use splashdown::scene::{Derived, Scene};
-use splashdown::{check_particles, memory_forecast};
+use splashdown::{check_particles, memory_forecast, neighbour_lists_forecast};
 
 /// The memory in bytes that the page may take if the browser does not tell that of the device.
 const UNKNOWN: u64 = 4_000_000_000;
@@ -14,7 +14,7 @@ const UNKNOWN: u64 = 4_000_000_000;
 pub(crate) fn check(scene: &Scene, largest_buffer: u64, memory: u64) -> Result<(), String> {
     let particles = Derived::new(scene).particles;
     let allowed = if memory == 0 { UNKNOWN } else { memory / 2 };
-    let needed = memory_forecast(scene);
+    let needed = forecast(scene);
     if needed > allowed {
         let advice = fitting_spacing(scene, allowed).map_or_else(
             || "Use a larger fluid.particle_spacing or a smaller domain".to_owned(),
@@ -32,11 +32,17 @@ pub(crate) fn check(scene: &Scene, largest_buffer: u64, memory: u64) -> Result<(
     check_particles(particles, largest_buffer, scene).map_err(|error| error.to_string())
 }
 
+/// The memory of its simulation in bytes.
+fn forecast(scene: &Scene) -> u64 {
+    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, true);
+    memory_forecast(scene).saturating_add(lists)
+}
+
 /// A spacing in m, with two digits, at which the memory suffices. `None` if the grid of the domain alone does not fit.
 fn fitting_spacing(scene: &Scene, allowed: u64) -> Option<f32> {
     let mut coarser = scene.clone();
     for _ in 0..16 {
-        let needed = memory_forecast(&coarser);
+        let needed = forecast(&coarser);
         if needed <= allowed {
             return Some(coarser.fluid.particle_spacing);
         }

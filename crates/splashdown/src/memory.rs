@@ -1,6 +1,8 @@
 //! Forecasts the memory of a simulation.
 
-use crate::cells::Grid;
+use glam::UVec4;
+
+use crate::cells::{Grid, neighbours};
 use crate::check::Built;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort};
@@ -22,9 +24,9 @@ const NORMAL: u64 = 16;
 const CORRECTION: u64 = 32 + 16;
 const BOUNDARY_MATRIX: u64 = 32;
 const PAIR: u64 = 8;
-/// Of the implicit pressure: three vectors, a part of the sums of 64 particles, the carried pressure; and the gradient of
+/// Of the implicit pressure: four vectors, a part of the sums of 64 particles, the carried pressure; and the gradient of
 /// bodies.
-const IMPLICIT: u64 = 3 * 16 + 8;
+const IMPLICIT: u64 = 4 * 16 + 8;
 const SOLID_GRADIENT: u64 = 16;
 /// Of the implicit viscosity: four vectors.
 const VISCOUS: u64 = 4 * 16;
@@ -90,15 +92,21 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
     forecast(scene, inventory.particles)
 }
 
-/// The bytes that the CPU takes in addition to the buffers for the lists of neighbours of `dfsph`, for a number of
-/// particles: 8 per neighbour, of which a sphere of the support radius contains 33 at a support ratio of two. An implicit
-/// viscosity has lists of its own. Other solvers and GPUs have none.
-pub fn neighbour_lists_forecast(scene: &Scene, particles: u64) -> u64 {
+/// The bytes that the lists of neighbours of `dfsph` take in addition to [`memory_forecast`], for a number of particles. Other
+/// solvers have none.
+///
+/// On the CPU a neighbour takes 8 bytes, and a sphere of the support radius contains 33 at a support ratio of two. An
+/// implicit viscosity has lists of its own. On a GPU a neighbour takes 4 bytes, and the lists have room for more.
+pub fn neighbour_lists_forecast(scene: &Scene, particles: u64, on_gpu: bool) -> u64 {
     let extras = Scheme::new(scene).extras(false);
     // With those that emitters add.
     let particles = Built::of(scene).flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
-    let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
     let ratio = scene.solver.support_radius(scene.fluid.particle_spacing) / scene.fluid.particle_spacing;
+    if on_gpu {
+        let layers = if extras.neighbours { neighbours::layers_on_gpu(ratio) } else { 0 };
+        return particles.saturating_mul((size_of::<UVec4>() * layers) as u64);
+    }
+    let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
     let neighbours = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);
     // The positions are kept to compare them, and with the pressures; the ends of the lists.
     lists.saturating_mul(particles).saturating_mul(8 * neighbours as u64 + 48)

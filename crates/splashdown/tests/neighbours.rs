@@ -199,7 +199,7 @@ fn clouds() -> Vec<(String, Vec<Vec3>)> {
     let (grid, params) = (grid(), params(0));
     // On cell borders, on the domain's faces, edges and corners, and where rounding may go either way.
     let border =
-        |i: u32, j: u32, k: u32| grid.origin + grid.cell_size * Vec3::new(i as f32, j as f32, k as f32);
+        |i: u32, j: u32, k: u32| grid.origin + grid.cell_size() * Vec3::new(i as f32, j as f32, k as f32);
     let mut borders = Vec::new();
     for i in 0..=grid.size_x {
         for j in 0..=grid.size_y {

@@ -79,8 +79,10 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let resolution = resolution(&scene).map_err(|error| Failure::new(Exit::Scene, error.to_string()))?;
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
-    let largest = arguments.device.device.executor()?.largest_buffer();
-    let fits = check_particles(inventory.particles, largest, &scene);
+    let executor = arguments.device.device.executor()?;
+    let lists = neighbour_lists_forecast(&scene, inventory.particles, executor.gpu().is_some());
+    let fits = check_particles(inventory.particles, executor.largest_buffer(), &scene);
+    drop(executor);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
     if arguments.json {
         console::print_json(&Report {
@@ -104,7 +106,10 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         console::note(format!("{warning}\n"));
     }
     let file = arguments.scene.display();
-    console::print(format!("{file}: valid\n{}", describe(&scene, &derived, &inventory, memory, &speed)));
+    console::print(format!(
+        "{file}: valid\n{}",
+        describe(&scene, &derived, &inventory, [memory, lists], &speed)
+    ));
     if let Some(packing) = &packing {
         print_packing(packing);
     }
@@ -119,13 +124,23 @@ fn prepare(scene: &Scene, progress: &ProgressFn) -> Result<(Inventory, Option<Pa
     Ok((splashdown::inventory(scene, &progress)?, splashdown::initial_packing(scene, &progress)?))
 }
 
-/// The memory of the buffers, and what the CPU takes in addition, in bytes.
-fn describe_memory(buffers: u64, on_cpu: u64) -> String {
+/// The memory of the buffers, and of the lists of neighbours in addition, in bytes.
+fn describe_memory(buffers: u64, lists: u64) -> String {
     let buffers = format!("about {}", human::bytes(buffers));
-    if on_cpu == 0 { buffers } else { format!("{buffers}, on the CPU {} more", human::bytes(on_cpu)) }
+    if lists == 0 {
+        buffers
+    } else {
+        format!("{buffers}, and {} for lists of neighbours", human::bytes(lists))
+    }
 }
 
-fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64, speed: &Speed) -> String {
+fn describe(
+    scene: &Scene,
+    derived: &Derived,
+    inventory: &Inventory,
+    [buffers, lists]: [u64; 2],
+    speed: &Speed,
+) -> String {
     let fluid = &scene.fluid;
     let size = scene.domain.size();
     let mut rows = vec![
@@ -157,7 +172,7 @@ fn describe(scene: &Scene, derived: &Derived, inventory: &Inventory, memory: u64
                 scene.duration
             ),
         ),
-        ("memory", describe_memory(memory, neighbour_lists_forecast(scene, inventory.particles))),
+        ("memory", describe_memory(buffers, lists)),
         (
             "expected time",
             format!(

@@ -12,8 +12,9 @@ gpu_struct! {
     pub struct Grid {
         /// Lower corner of the first ghost cell in metres.
         origin: Vec3,
-        /// Edge of a cell in metres, slightly larger than the support radius.
-        cell_size: f32,
+        /// Cells per metre. Devices may round a quotient in different ways, but a product in one: all of them find the same
+        /// cell for a point at a border.
+        cells_per_metre: f32,
         /// Cells along x, ghosts included.
         size_x: u32,
         /// Cells along y, ghosts included.
@@ -37,7 +38,7 @@ impl Grid {
         let count = cells.x * cells.y * cells.z;
         (count < f64::from(1_u32 << 31)).then_some(Self {
             origin: min - cell_size,
-            cell_size,
+            cells_per_metre: 1.0 / cell_size,
             size_x: cells.x as u32,
             size_y: cells.y as u32,
             size_z: cells.z as u32,
@@ -45,10 +46,15 @@ impl Grid {
         })
     }
 
+    /// Edge of a cell in metres, slightly larger than the support radius.
+    pub fn cell_size(&self) -> f32 {
+        1.0 / self.cells_per_metre
+    }
+
     /// The cell of a point; for points outside, the nearest cell that is not a ghost.
     #[inline]
     pub fn cell_of(&self, x: Vec3) -> u32 {
-        let at = (x - self.origin) / self.cell_size;
+        let at = (x - self.origin) * self.cells_per_metre;
         let clamp = |value: f32, size: u32| (value as i32).clamp(1, size as i32 - 2) as u32;
         let [i, j, k] = [clamp(at.x, self.size_x), clamp(at.y, self.size_y), clamp(at.z, self.size_z)];
         (k * self.size_y + j) * self.size_x + i

@@ -15,6 +15,7 @@ pub(crate) mod cell_counts;
 mod count;
 pub(crate) mod grid;
 mod keys;
+pub(crate) mod neighbours;
 mod reorder;
 mod reorder_carried;
 mod scatter;
@@ -22,6 +23,7 @@ mod store_carried;
 
 pub use cell_counts::WGSL as CELL_COUNTS;
 pub use grid::{Grid, WGSL as GRID};
+pub(crate) use neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 
 use glam::UVec2;
 use splashdown_gpu::scan::Scan;
@@ -34,6 +36,10 @@ use crate::state::{CarriedArrays, Fields, Reordered, Update, end_step};
 
 /// `row_range`: traversal of neighbours on the GPU.
 pub const ROWS: WgslModule = WgslModule { name: "sph/rows", source: include_str!("rows.wgsl") };
+
+/// `neighbour_bits`: the candidates of a row that are neighbours.
+pub const CANDIDATES: WgslModule =
+    WgslModule { name: "sph/candidates", source: include_str!("candidates.wgsl") };
 
 /// `sorted_index`: the index of a particle after the sort.
 pub(crate) const PLACE: WgslModule = WgslModule { name: "sph/place", source: include_str!("place.wgsl") };
@@ -59,6 +65,7 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &count::COUNT,
         &keys::KEYS,
         &scatter::SCATTER,
+        &neighbours::LIST_NEIGHBOURS,
     ]
 }
 

@@ -94,9 +94,8 @@ impl<'a> Sorted<'a> {
     pub fn rows_near(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = Range<usize>> + Clone + 'a {
         let (sorted, grid) = (*self, self.grid);
         let size = [grid.size_x, grid.size_y, grid.size_z];
-        let inverse = 1.0 / grid.cell_size;
         // Casts to integers saturate, so that cells outside the grid become its border cells.
-        let cell = |x: Vec3| ((x - grid.origin) * inverse).to_array().map(|x| x.floor() as u32);
+        let cell = |x: Vec3| ((x - grid.origin) * grid.cells_per_metre).to_array().map(|x| x.floor() as u32);
         let (first, last) = (cell(low), cell(high));
         let [x, y, z] = std::array::from_fn(|axis| {
             let end = last[axis].min(size[axis] - 1) as usize + 1;

@@ -1,5 +1,5 @@
 // The part FORCES of the acceleration of a particle by its neighbours, the walls and body forces; see
-// passes/acceleration. Needs `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
+// passes/acceleration. Needs sph/candidates, `params`, `grid`, `state`, `cell_start`, `sorted_positions`, `sorted_velocities`,
 // `densities`; a constant `HAS_TENSION`; and a function `tension_between`: the acceleration of particle i by surface
 // tension with the image of particle j that has the reflection `sign`, where d is the distance from the image.
 fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f32> {
@@ -12,8 +12,7 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     let support = params.support_radius;
     let scale = 1.0 / support;
     let scale5 = scale * scale * scale * scale * scale;
-    let reach = support * support;
-    let soft = 0.01 * reach;
+    let soft = 0.01 * support * support;
     let mass = params.summed_mass;
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
@@ -31,25 +30,25 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
         a *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let p = sorted_positions[j].xyz;
-                let d = own_x - p;
-                let r2 = dot(d, d);
-                if (r2 >= reach) {
-                    continue;
-                }
-                let q = sqrt(r2) * scale;
-                let g = kernel_g(q) * scale5;
-                let other = densities[j];
-                let vx = dot(own_v - sorted_velocities[j].xyz, d);
-                let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
-                let own = other.y / (other.x * other.x);
-                let more = offset + dot(slope, p);
-                let pressure_sum = mass * (specific + extrapolated(own, more));
-                a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
-                    - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
-                if (tension) {
-                    a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
+            for (var first = range.x; first < range.y; first += CANDIDATES) {
+                for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
+                    let j = first + firstTrailingBit(bits);
+                    let p = sorted_positions[j].xyz;
+                    let d = own_x - p;
+                    let r2 = dot(d, d);
+                    let q = sqrt(r2) * scale;
+                    let g = kernel_g(q) * scale5;
+                    let other = densities[j];
+                    let vx = dot(own_v - sorted_velocities[j].xyz, d);
+                    let viscous = vx / (r2 + soft) * (laminar + select(0.0, artificial, vx < 0.0));
+                    let own = other.y / (other.x * other.x);
+                    let more = offset + dot(slope, p);
+                    let pressure_sum = mass * (specific + extrapolated(own, more));
+                    a += (g * (select(0.0, viscous, (FORCES & OTHER_FORCES) != 0u)
+                        - select(0.0, pressure_sum, (FORCES & PRESSURE_FORCE) != 0u))) * d;
+                    if (tension) {
+                        a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
+                    }
                 }
             }
         }

@@ -7,9 +7,10 @@ use crate::coupling::Stage;
 use crate::passes::implicit::residual::SMALLEST_SURFACE_GRADIENT;
 use crate::scene::KernelKind;
 
-/// One step: sort, the system, all other forces, viscosity, the pressure that keeps the density, integration.
+/// One step: sort, lists of neighbours, the system, all other forces, viscosity, the pressure that keeps the density, integration.
 pub(super) fn dfsph(step: &mut Step<'_>) {
     step.sort();
+    step.list_neighbours();
     step.couple(Stage::BoundaryLookup);
     step.implicit_system();
     step.couple(Stage::BoundaryDensity);

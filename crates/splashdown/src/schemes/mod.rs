@@ -38,6 +38,7 @@ pub(crate) const REPEATABLE: &[&str] = &[
     "scan.",
     "sort.",
     "cells.reorder",
+    "cells.neighbours",
     "density.",
     "normals.",
     "smooth_normals.",
@@ -89,6 +90,7 @@ impl Scheme {
             corrections: self.is_density_integrated,
             boundary_matrices: self.is_density_integrated && bodies,
             implicit: self.is_implicit(),
+            neighbours: self.is_implicit(),
             solid_gradients: self.is_implicit() && bodies,
             viscous: self.has_implicit_viscosity,
         }

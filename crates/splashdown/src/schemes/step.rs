@@ -7,7 +7,7 @@ use splashdown_gpu::{DispatchSize, Flag, PassDesc, Recording, Rounds};
 use super::Scheme;
 use crate::bodies::Bodies;
 use crate::boundary::part::Part;
-use crate::cells::Cells;
+use crate::cells::{Cells, neighbours};
 use crate::coupling::{Coupling, Stage, StepRecorder, ViscousStage};
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
@@ -104,6 +104,11 @@ impl<'a> Step<'a> {
     pub(super) fn sort(&mut self) {
         let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
         cells.record_sort(recording, fields, fields.ids);
+    }
+
+    /// Lists of the neighbours in the sorted arrays.
+    pub(super) fn list_neighbours(&mut self) {
+        self.recorder.dispatch_particles(&neighbours::LIST_NEIGHBOURS);
     }
 
     /// The passes of all couplings that act in this stage.
@@ -245,7 +250,7 @@ impl<'a> Step<'a> {
                 self.by_kernel(&implicit::residual::WENDLAND_C2, &implicit::residual::CUBIC_SPLINE),
             ]
         };
-        self.recorder.dispatch(&implicit::begin::BEGIN, DispatchSize::Groups(1));
+        self.recorder.dispatch_particles(&implicit::begin::BEGIN);
         let step = std::mem::replace(&mut self.recorder.recording, Recording::new("pressure"));
         self.recorder.dispatch_particles(predict);
         self.couple(Stage::PressureIteration);

@@ -1,8 +1,10 @@
 //! The buffers of a simulation.
 
 use bytemuck::Zeroable;
-use glam::{Vec2, Vec4};
+use glam::{UVec4, Vec2, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
+
+use crate::cells::neighbours;
 
 use super::{
     Array, CARRIED, Carried, CarriedArrays, Params, SolveState, StepCounters, StepState, ViscousState,
@@ -21,6 +23,8 @@ pub struct Extras {
     pub boundary_matrices: bool,
     /// The arrays of the implicit pressure.
     pub implicit: bool,
+    /// Lists of neighbours on a GPU.
+    pub neighbours: bool,
     /// The contributions of bodies to the system of the implicit pressure.
     pub solid_gradients: bool,
     /// The arrays of the implicit viscosity.
@@ -67,13 +71,18 @@ pub struct Fields {
     pub shifts: Buffer<Vec4>,
     /// The contributions of bodies to the matrices, two vectors per particle. A single entry without bodies.
     pub boundary_matrices: Buffer<Vec4>,
+    /// Lists of neighbours on a GPU, as `cells::neighbours` describes. A single entry on the CPU and where none are used.
+    pub neighbours: Buffer<UVec4>,
     /// The state of the implicit pressure; one entry.
     pub solve: Buffer<SolveState>,
     /// The sum of the gradients in 1/m, and the sum of their squares in 1/m^2: the diagonal of the implicit pressure. Order
     /// as `densities`. A single entry if the pressure is explicit, as all of the following.
     pub stiffness: Buffer<Vec4>,
-    /// An iteration of the implicit pressure: its result in m^2/s^2, the previous direction, the change, the residual.
+    /// An iteration of the implicit pressure: its result in m^2/s^2, the previous direction, the change; and the relative
+    /// excess of density of the present positions.
     pub iterates: Buffer<Vec4>,
+    /// Velocity in m/s at the end of the step by all forces but the pressure; the fourth component is that of `accelerations`.
+    pub free_velocities: Buffer<Vec4>,
     /// Velocity in m/s at the end of the step by the present pressure, and this pressure over the rest density in m^2/s^2;
     /// -1 where a nozzle determines the motion.
     pub predicted: Buffer<Vec4>,
@@ -122,6 +131,7 @@ impl Fields {
     ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
         let some = |needed: bool, entries: usize| if needed { entries } else { 1 };
+        let lists = if extras.neighbours { neighbours::layers(executor, params, n) } else { 0 };
         let carried = CarriedArrays::create(executor, table, n)?;
         let [
             CarriedArrays {
@@ -159,9 +169,11 @@ impl Fields {
             corrections: executor.create("corrections", some(extras.corrections, 2 * n))?,
             shifts: executor.create("shifts", some(extras.corrections, n))?,
             boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
+            neighbours: executor.create("neighbours", some(lists > 0, lists * n))?,
             solve: executor.create_small("solve", &[SolveState::new(true, 0.0)])?,
             stiffness: executor.create("stiffness", some(extras.implicit, n))?,
             iterates: executor.create("iterates", some(extras.implicit, n))?,
+            free_velocities: executor.create("free_velocities", some(extras.implicit, n))?,
             predicted: executor.create("predicted", some(extras.implicit, n))?,
             solid_gradients: executor.create("solid_gradients", some(extras.solid_gradients, n))?,
             residuals: executor.create("residuals", some(extras.implicit, n.div_ceil(64)))?,
@@ -187,7 +199,7 @@ impl Fields {
         let mut set = buffer_set!(self =>
             params, state, duration, counters, positions, velocities, ids, sorted_positions,
             sorted_velocities, sorted_ids, densities, accelerations, normals, smooth_normals, corrections, shifts,
-            boundary_matrices, solve, stiffness, iterates, predicted, solid_gradients, residuals, impulses,
+            boundary_matrices, solve, stiffness, iterates, free_velocities, predicted, neighbours, solid_gradients, residuals, impulses,
             viscous, viscous_residuals, viscous_products, viscous_directions, viscous_images,
         );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));

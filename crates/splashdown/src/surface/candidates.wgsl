@@ -6,9 +6,8 @@ struct CellRange {
 
 fn cell_range(low: vec3<f32>, high: vec3<f32>) -> CellRange {
     let size = vec3<f32>(vec3<u32>(grid.size_x, grid.size_y, grid.size_z));
-    let inverse = 1.0 / grid.cell_size;
-    let first = floor((low - grid.origin) * inverse);
-    let last = floor((high - grid.origin) * inverse) + 1.0;
+    let first = floor((low - grid.origin) * grid.cells_per_metre);
+    let last = floor((high - grid.origin) * grid.cells_per_metre) + 1.0;
     // The range is empty if the box is outside the grid.
     let zero = vec3<f32>(0.0);
     return CellRange(vec3<u32>(clamp(first, zero, size)), vec3<u32>(clamp(last, zero, size)));

@@ -1,6 +1,6 @@
 //! Runs one pass with given buffers on an executor, and compares its output.
 
-use glam::{UVec2, Vec2, Vec4};
+use glam::{UVec2, UVec4, Vec2, Vec4};
 use splashdown::MouseForce;
 use splashdown::bodies::Body;
 use splashdown::cells::Grid;
@@ -20,6 +20,7 @@ pub enum Data {
     Vec2(Vec<Vec2>),
     Vec4(Vec<Vec4>),
     UVec2(Vec<UVec2>),
+    UVec4(Vec<UVec4>),
     Params(Params),
     Grid(Grid),
     State(StepState),
@@ -44,6 +45,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice(v),
             Self::Vec4(v) => bytemuck::cast_slice(v),
             Self::UVec2(v) => bytemuck::cast_slice(v),
+            Self::UVec4(v) => bytemuck::cast_slice(v),
             Self::MouseForce(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Foam(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::FoamState(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
@@ -79,6 +81,7 @@ impl Data {
             Self::Vec2(v) => bytemuck::cast_slice_mut(v),
             Self::Vec4(v) => bytemuck::cast_slice_mut(v),
             Self::UVec2(v) => bytemuck::cast_slice_mut(v),
+            Self::UVec4(v) => bytemuck::cast_slice_mut(v),
             Self::MouseForce(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Foam(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::FoamState(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
@@ -174,6 +177,7 @@ fn upload(
         Data::Vec2(v) => target.array(v, Data::Vec2),
         Data::Vec4(v) => target.array(v, Data::Vec4),
         Data::UVec2(v) => target.array(v, Data::UVec2),
+        Data::UVec4(v) => target.array(v, Data::UVec4),
         Data::Nozzles(v) => target.array(v, Data::Nozzles),
         Data::Drains(v) => target.array(v, Data::Drains),
         Data::Probes(v) => target.array(v, Data::Probes),

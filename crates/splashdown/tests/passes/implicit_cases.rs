@@ -1,10 +1,11 @@
 //! The passes of the implicit pressure, on random clouds.
 
 use glam::{DVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
-use splashdown::state::{Params, SolveState, StepCounters, StepState};
+use splashdown::state::{Params, SolveState, StepCounters};
 use splashdown_gpu::{DispatchSize, testing};
 
 use super::harness::{Case, Data, close, wide};
+use super::neighbour_lists;
 use super::oracle::{self, Kernel, Parts, constants, neighbours, speed};
 use super::sort_cases::pass;
 use super::world::{World, params};
@@ -150,6 +151,12 @@ pub(super) fn base(world: &World) -> Vec<Data> {
     vec![Data::Params(world.params), Data::Grid(world.grid), Data::State(world.state)]
 }
 
+/// The lists of neighbours. With wide supports those of most particles contain the rows of candidates.
+pub(super) fn lists(world: &World) -> Data {
+    let layers = if world.params.support_radius > 2.2 * world.params.particle_spacing { 12 } else { 60 };
+    Data::UVec4(neighbour_lists::lists(world, layers))
+}
+
 pub(super) fn poisoned(n: usize) -> Data {
     Data::Vec4(vec![Vec4::ZERO; n]).poison()
 }
@@ -172,11 +179,9 @@ fn sides_near(params: &Params, x: Vec3) -> u32 {
 fn system(name: &str, kernel: Kernel, word: &str, params: Params) -> Case {
     let world = world(params);
     let (n, c) = (world.len(), constants(&world));
-    let pressures: Vec<f32> = (0..n).map(|i| 3.0 * signed(i, 0)).collect();
     let mut densities = Output::new("densities", Data::Vec2(vec![Vec2::ZERO; n]).poison());
     let mut accelerations = Output::new("accelerations", poisoned(n));
     let mut stiffness = Output::new("stiffness", poisoned(n));
-    let mut iterates = Output::new("iterates", poisoned(n));
     let volume = c.mass / c.rest;
     let forces = oracle::acceleration(&world, kernel, Parts { pressure: false, other: true });
     for (i, rho) in oracle::density(&world, kernel).into_iter().enumerate() {
@@ -194,17 +199,15 @@ fn system(name: &str, kernel: Kernel, word: &str, params: Params) -> Case {
         (0..3).for_each(|k| stiffness.push(sum[k], size));
         let factor = 1.0 + f64::from(sides_near(&world.params, world.positions[i].xyz())) / 3.0;
         stiffness.push(factor * squares, factor * squares);
-        iterates.push(pressures[i].max(0.0).into(), 0.0);
-        (0..3).for_each(|_| iterates.push(0.0, 0.0));
     }
     let mut input = base(&world);
     input.extend([
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
+        lists(&world),
         Data::Vec4(world.velocities.clone()),
-        Data::F32(pressures),
     ]);
-    let outputs = vec![densities, accelerations, stiffness, iterates];
+    let outputs = vec![densities, accelerations, stiffness];
     case(format!("implicit.system.{word}"), name, n, input, outputs, heavier)
 }
 
@@ -217,10 +220,10 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     let (n, c) = (world.len(), constants(&world));
     let solve = solving();
     let iterates: Vec<Vec4> = vectors(n, 0).iter().map(|v| v.with_x(2.0 * v.x.abs())).collect();
-    let accelerations: Vec<Vec4> = vectors(n, 4)
+    let free_velocities: Vec<Vec4> = vectors(n, 4)
         .iter()
         .enumerate()
-        .map(|(i, v)| (50.0 * *v).with_w(if i % 11 == 0 { 1.0 } else { 0.0 }))
+        .map(|(i, v)| v.with_w(if i % 11 == 0 { 1.0 } else { 0.0 }))
         .collect();
     let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 20.0 * *v).collect();
     let pressure =
@@ -232,9 +235,8 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     let mut pressures = vec![0.0_f64; groups];
     let mut speeds = vec![(0.0, 0.0); groups];
     for i in 0..world.active() {
-        let other = accelerations[i].xyz().as_dvec3();
-        let v = speed(&world, i) + c.dt * other;
-        if accelerations[i].w == 1.0 {
+        let v = free_velocities[i].xyz().as_dvec3();
+        if free_velocities[i].w == 1.0 {
             (0..3).for_each(|k| predicted.push(v[k], 1.0));
             predicted.push(-1.0, 0.0);
             speeds[i / 64].0 += v.length_squared();
@@ -273,8 +275,8 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
         Data::Solve(solve),
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
-        Data::Vec4(world.velocities.clone()),
-        Data::Vec4(accelerations.clone()),
+        lists(&world),
+        Data::Vec4(free_velocities.clone()),
         Data::Vec4(if bodies { solid.clone() } else { vec![Vec4::NAN] }),
         Data::Vec4(iterates.clone()),
     ]);
@@ -298,18 +300,20 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
     // Some of the gradients times the support are below the threshold of the free surface, some above.
     let stiffness: Vec<Vec4> = vectors(n, 4).iter().map(|v| (6.0 * *v).with_w(400.0 * (1.1 + v.w))).collect();
     let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 6.0 * *v).collect();
-    let before = vectors(n, 12);
+    // With an excess of density as the fourth component.
+    let before: Vec<Vec4> = vectors(n, 12).iter().map(|v| v.with_w(0.1 * v.w)).collect();
     let mut iterates = Output::new("iterates", Data::Vec4(before.clone()));
     let mut residuals = Output::new("residuals", poisoned(n.div_ceil(64)));
     let mut sums = vec![([0.0; 4], [0.0; 4]); n.div_ceil(64)];
     for i in 0..world.active() {
-        let excess = f64::from(world.densities[i].x) / c.rest - 1.0;
+        let excess = f64::from(before[i].w);
         let (u, k) = (predicted[i].xyz().as_dvec3(), f64::from(predicted[i].w));
         let (values, sizes) = &mut sums[i / 64];
         values[2] += excess.max(0.0);
         sizes[2] += 1.0;
         if k < 0.0 {
-            (0..4).for_each(|_| iterates.push(0.0, 0.0));
+            (0..3).for_each(|_| iterates.push(0.0, 0.0));
+            iterates.push(excess, 0.0);
             continue;
         }
         let (mut rate, mut size) = (0.0, 0.0);
@@ -341,7 +345,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         iterates.push(next, step_size);
         iterates.push(f64::from(0.7_f32) * f64::from(before[i].y) + f64::from(before[i].z), 2.0);
         iterates.push(next - k, step_size);
-        iterates.push(r, r_size);
+        iterates.push(excess, 0.0);
         values[0] += if k > 0.0 { r.abs() } else { r.max(0.0) };
         sizes[0] += r_size;
         values[3] += k * r;
@@ -357,7 +361,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         Data::Solve(solve),
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
-        Data::Vec2(world.densities.clone()),
+        lists(&world),
         Data::Vec4(stiffness),
         Data::Vec4(if bodies { solid } else { vec![Vec4::NAN] }),
         Data::Vec4(predicted),
@@ -375,22 +379,36 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
 }
 
 fn begin(name: &str, run_count: u32) -> Case {
-    let state = StepState { run_count, ..super::world::state(1500) };
+    let mut world = world(params(2.5));
+    (world.state.run_count, world.params.relaxation) = (run_count, 0.3);
+    let (n, c) = (world.len(), constants(&world));
+    let pressures: Vec<f32> = (0..n).map(|i| 3.0 * signed(i, 0)).collect();
+    let other = vectors(n, 4);
     let mut solve = Output::new("solve", Data::Solve(solving()).poison());
-    let params = Params { relaxation: 0.3, ..params(2.5) };
-    let expected = Data::Solve(SolveState::new(run_count == 0, params.relaxation));
+    let mut iterates = Output::new("iterates", poisoned(n));
+    let mut free_velocities = Output::new("free_velocities", poisoned(n));
+    let expected = Data::Solve(SolveState::new(run_count == 0, 0.3));
     wide(expected.floats()).into_iter().for_each(|value| solve.push(value, 0.0));
-    case(
-        "implicit.begin".into(),
-        name,
-        1,
-        vec![Data::Params(params), Data::State(state)],
-        vec![solve],
-        |input| {
-            let Data::State(state) = &mut input[1] else { panic!("no state") };
-            state.run_count = 1500 - state.run_count;
-        },
-    )
+    for i in 0..world.active() {
+        iterates.push(pressures[i].max(0.0).into(), 0.0);
+        (0..2).for_each(|_| iterates.push(0.0, 0.0));
+        iterates.push(f64::from(world.densities[i].x) / c.rest - 1.0, 1.0);
+        let v = speed(&world, i) + c.dt * other[i].xyz().as_dvec3();
+        (0..3).for_each(|k| free_velocities.push(v[k], 1.0));
+        free_velocities.push(other[i].w.into(), 0.0);
+    }
+    let mut input = base(&world);
+    input.extend([
+        Data::U32(world.cell_start.clone()),
+        Data::Vec4(world.velocities.clone()),
+        Data::F32(pressures),
+        Data::Vec4(other),
+        Data::Vec2(world.densities.clone()),
+    ]);
+    case("implicit.begin".into(), name, n, input, vec![solve, iterates, free_velocities], |input| {
+        let Data::State(state) = &mut input[2] else { panic!("no state") };
+        state.dt *= 2.0;
+    })
 }
 
 fn decide(name: &str, before: SolveState, scale: f32, motion: [f32; 2]) -> Case {

@@ -13,6 +13,7 @@ mod harness;
 mod implicit_cases;
 mod mouse_force_cases;
 mod neighbour_cases;
+mod neighbour_lists;
 mod oracle;
 mod probe_cases;
 mod sort_cases;
@@ -33,6 +34,7 @@ fn all_cases() -> Vec<Case> {
         sort_cases::cases(),
         carried_cases::cases(),
         cases::cases(),
+        neighbour_lists::cases(),
         neighbour_cases::cases(),
         tension_force_cases::cases(),
         implicit_cases::cases(),

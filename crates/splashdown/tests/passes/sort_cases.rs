@@ -69,7 +69,7 @@ pub fn cases() -> Vec<Case> {
 
 /// The cell of a point by definition, in f64.
 pub fn cell(grid: &Grid, x: glam::Vec3) -> u32 {
-    let at = (x.as_dvec3() - grid.origin.as_dvec3()) / f64::from(grid.cell_size);
+    let at = (x.as_dvec3() - grid.origin.as_dvec3()) * f64::from(grid.cells_per_metre);
     let index = |axis: usize, size: u32| (at[axis].floor().max(1.0) as u32).min(size - 2);
     let [i, j, k] = [index(0, grid.size_x), index(1, grid.size_y), index(2, grid.size_z)];
     (k * grid.size_y + j) * grid.size_x + i

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec4, Vec4Swizzles};
 use splashdown::state::{Params, StepCounters, StepState, ViscousState};
 
 use super::harness::{Case, Data, wide};
-use super::implicit_cases::{Output, base, case, poisoned, signed, vectors, world};
+use super::implicit_cases::{Output, base, case, lists, poisoned, signed, vectors, world};
 use super::oracle::{Kernel, constants, neighbours, speed};
 use super::world::{World, params};
 
@@ -217,6 +217,7 @@ fn product(name: &str, params: Params, bodies: bool) -> Case {
         Data::Viscous(solving()),
         Data::U32(world.cell_start.clone()),
         Data::Vec4(world.positions.clone()),
+        lists(&world),
         Data::Vec4(given),
     ]);
     let label = format!("viscous.product{}", suffix(bodies));

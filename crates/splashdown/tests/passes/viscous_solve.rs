@@ -6,6 +6,7 @@ use splashdown::state::{Params, StepCounters, ViscousState};
 use splashdown_gpu::{BufferSet, DispatchSize, Executor, Flag, Recording, Rounds, testing};
 
 use super::implicit_cases::vectors;
+use super::neighbour_lists;
 use super::oracle::{place, speed};
 use super::viscous_cases::{force, strength};
 use super::world::{World, params};
@@ -42,6 +43,8 @@ fn solve(executor: &mut Executor, world: &World, other: &[Vec4]) -> (Vec<DVec3>,
     set.add("state", executor.create_small("state", &[world.state]).unwrap());
     set.add("cell_start", executor.create_from("cell_start", &world.cell_start).unwrap());
     set.add("sorted_positions", executor.create_from("sorted_positions", &world.positions).unwrap());
+    let lists = neighbour_lists::lists(world, 20);
+    set.add("neighbours", executor.create_from("neighbours", &lists).unwrap());
     set.add("sorted_velocities", executor.create_from("sorted_velocities", &world.velocities).unwrap());
     set.add("solid_gradients", executor.create_from("solid_gradients", &[Vec4::NAN]).unwrap());
     set.add("iterates", executor.create_from("iterates", &vec![Vec4::ZERO; n]).unwrap());

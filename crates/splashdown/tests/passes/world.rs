@@ -151,7 +151,7 @@ impl World {
         };
         let densities = |i: usize| Vec2::new(1000.0 + 100.0 * signed(i, 4), 2e4 * (signed(i, 5) + 0.7));
         Self {
-            params,
+            params: Params { particle_count: n as u32, ..params },
             grid,
             state: state(n),
             cell_start: starts.collect(),

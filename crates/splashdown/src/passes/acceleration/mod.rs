@@ -18,7 +18,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{FORCES, TENSION};
 use crate::boundary::{self, KernelPair, part};
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
@@ -49,6 +49,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::IMAGES,
+        CANDIDATES,
         boundary::PLANES,
         boundary::LAW,
         boundary::WALL_FRICTION,

@@ -4,6 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/images
+#import sph/candidates
 #import sph/correction
 
 #bindings
@@ -23,8 +24,7 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     let support = params.support_radius;
     let scale = 1.0 / support;
     let factor = params.summed_mass * scale * scale * scale * scale * scale;
-    let reach = support * support;
-    let soft = 0.01 * reach;
+    let soft = 0.01 * support * support;
     let hydrostatic = params.rest_density / (params.sound_speed * params.sound_speed) * body_acceleration(state.time);
 
     var moment: Symmetric; // -M
@@ -39,11 +39,12 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
         strain.others *= mixed;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let p = sorted_positions[j].xyz;
-                let d = own_x - p;
-                let r2 = dot(d, d);
-                if (r2 < reach) {
+            for (var first = range.x; first < range.y; first += CANDIDATES) {
+                for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
+                    let j = first + firstTrailingBit(bits);
+                    let p = sorted_positions[j].xyz;
+                    let d = own_x - p;
+                    let r2 = dot(d, d);
                     let other = sorted_velocities[j];
                     let u = own_v - other.xyz;
                     // The density of an image continues hydrostatically.

@@ -31,7 +31,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::correction;
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
@@ -62,6 +62,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::IMAGES,
+        CANDIDATES,
         SYMMETRIC,
         correction::WGSL,
     ],

@@ -4,6 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/images
+#import sph/candidates
 #import sph/wall_friction
 #import sph/correction
 #import sph/tension
@@ -35,8 +36,7 @@ fn corrected_acceleration(
     let support = params.support_radius;
     let scale = 1.0 / support;
     let scale5 = scale * scale * scale * scale * scale;
-    let reach = support * support;
-    let soft = 0.01 * reach;
+    let soft = 0.01 * support * support;
     let mass = params.summed_mass;
     let volume = mass / params.rest_density;
     let laminar = 10.0 * params.viscosity * volume;
@@ -57,32 +57,32 @@ fn corrected_acceleration(
         concentration *= by.sign;
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let p = sorted_positions[j].xyz;
-                let d = own_x - p;
-                let r2 = dot(d, d);
-                if (r2 >= reach) {
-                    continue;
-                }
-                let r = sqrt(r2);
-                let q = r * scale;
-                let g = kernel_g(q) * scale5;
-                let other = densities[j];
-                let vx = dot(own_v - sorted_velocities[j].xyz, d);
-                let approach = min(-3.0 * vx * r / (r2 + soft), params.sound_speed);
-                let speed = select(0.0, approach + artificial_speed, vx < 0.0);
-                let viscous = vx * (laminar + artificial * speed) / (r2 + soft);
-                let more = offset + dot(slope, p);
-                let pressure = extrapolated(other.y / (other.x * other.x), more);
-                let stress = Symmetric(
-                    own_stress.diagonal + pressure * corrections[2u * j].xyz,
-                    own_stress.others + pressure * corrections[2u * j + 1u].xyz,
-                );
-                a += g * (viscous * d - mass * applied(stress, d));
-                let near = kernel_w(q) * params.inverse_kernel_at_spacing;
-                concentration += g * (1.0 + 0.2 * near * near * near * near) * d;
-                if (has_tension) {
-                    a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
+            for (var first = range.x; first < range.y; first += CANDIDATES) {
+                for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
+                    let j = first + firstTrailingBit(bits);
+                    let p = sorted_positions[j].xyz;
+                    let d = own_x - p;
+                    let r2 = dot(d, d);
+                    let r = sqrt(r2);
+                    let q = r * scale;
+                    let g = kernel_g(q) * scale5;
+                    let other = densities[j];
+                    let vx = dot(own_v - sorted_velocities[j].xyz, d);
+                    let approach = min(-3.0 * vx * r / (r2 + soft), params.sound_speed);
+                    let speed = select(0.0, approach + artificial_speed, vx < 0.0);
+                    let viscous = vx * (laminar + artificial * speed) / (r2 + soft);
+                    let more = offset + dot(slope, p);
+                    let pressure = extrapolated(other.y / (other.x * other.x), more);
+                    let stress = Symmetric(
+                        own_stress.diagonal + pressure * corrections[2u * j].xyz,
+                        own_stress.others + pressure * corrections[2u * j + 1u].xyz,
+                    );
+                    a += g * (viscous * d - mass * applied(stress, d));
+                    let near = kernel_w(q) * params.inverse_kernel_at_spacing;
+                    concentration += g * (1.0 + 0.2 * near * near * near * near) * d;
+                    if (has_tension) {
+                        a += by.sign * tension_between(i, j, by.sign, by.sign * d, q, rho, other.x);
+                    }
                 }
             }
         }

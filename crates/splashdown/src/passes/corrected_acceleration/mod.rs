@@ -25,7 +25,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{TENSION, correction};
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
@@ -58,6 +58,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::IMAGES,
+        CANDIDATES,
         boundary::PLANES,
         boundary::LAW,
         boundary::WALL_FRICTION,

@@ -4,6 +4,7 @@
 #import sph/rows
 #import sph/kernel
 #import sph/images
+#import sph/candidates
 #import sph/wall_friction
 #import sph/forces
 #import sph/advance

@@ -12,7 +12,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::{ADVANCE, FORCES};
 use crate::boundary::{self, KernelPair};
-use crate::cells::{CELL_COUNTS, GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, CELL_COUNTS, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
@@ -45,6 +45,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         ROWS,
         kernel::WGSL,
         boundary::IMAGES,
+        CANDIDATES,
         boundary::PLANES,
         boundary::LAW,
         boundary::WALL_FRICTION,

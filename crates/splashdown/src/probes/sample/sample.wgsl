@@ -15,7 +15,7 @@ var<workgroup> offsets: array<vec3<f32>, 64>;
 var<workgroup> drives: array<vec3<f32>, 64>;
 
 fn inner_cell(x: vec3<f32>) -> vec3<u32> {
-    let at = vec3<i32>((x - grid.origin) / grid.cell_size);
+    let at = vec3<i32>((x - grid.origin) * grid.cells_per_metre);
     return vec3<u32>(clamp(at, vec3(1), vec3(i32(grid.size_x), i32(grid.size_y), i32(grid.size_z)) - 2));
 }
 

@@ -1,10 +1,12 @@
+#import gpu/index
 #import sph/params
 #import sph/solve
+#import sph/grid
+#import sph/rows
 
 #bindings
 
-@compute @workgroup_size(1)
-fn implicit_begin() {
+fn reset() {
     solve.stopped = select(0u, 1u, state.run_count == 0u);
     solve.iteration = 0u;
     solve.beta = 0.0;
@@ -17,4 +19,19 @@ fn implicit_begin() {
     solve.unused = 0.0;
     solve.unused_2 = 0.0;
     solve.unused_3 = 0.0;
+}
+
+@compute @workgroup_size(64)
+fn implicit_begin(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    if (i == 0u) {
+        reset();
+    }
+    if (i >= active_count()) {
+        return;
+    }
+    let excess = densities[i].x / params.rest_density - 1.0;
+    iterates[i] = vec4(max(sorted_pressures[i], 0.0), 0.0, 0.0, excess);
+    let other = accelerations[i];
+    free_velocities[i] = vec4(sorted_velocities[i].xyz + state.dt * other.xyz, other.w);
 }

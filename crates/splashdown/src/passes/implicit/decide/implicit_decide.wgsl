@@ -12,6 +12,7 @@ const LARGEST_IN_GROUP: f32 = 5.0; // the mean residual of a group may be this m
 var<workgroup> sums: array<vec4<f32>, 256>;
 var<workgroup> impulse_sums: array<vec4<f32>, 256>;
 var<workgroup> worst_sums: array<f32, 256>;
+var<workgroup> has_stopped: u32;
 
 // The part of the tolerance that deep water needs; see decide/cpu.rs.
 fn strictness(n: f32, pressure2: f32, speed2: f32) -> f32 {
@@ -69,14 +70,31 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
 
 @compute @workgroup_size(256)
 fn implicit_decide(@builtin(local_invocation_index) local: u32) {
+    if (local == 0u) {
+        has_stopped = solve.stopped;
+    }
+    if (workgroupUniformLoad(&has_stopped) != 0u) {
+        return;
+    }
     let n = active_count();
+    let groups = (n + 63u) / 64u;
     var own = vec4(0.0);
     var impulse = vec4(0.0);
     var worst = 0.0;
-    for (var g = local; g < (n + 63u) / 64u; g += 256u) {
-        own += residuals[g];
-        worst = max(worst, residuals[g].x);
-        impulse += impulses[g];
+    for (var g = local; g < groups; g += 1024u) {
+        // Four at a time, so that they are loaded together. A group behind the last counts as zero.
+        let there = vec4(g + 256u, g + 512u, g + 768u, g) < vec4(groups);
+        let next = min(vec4(g + 256u, g + 512u, g + 768u, g), vec4(groups - 1u));
+        let a = residuals[next.w];
+        let b = select(vec4(0.0), residuals[next.x], there.x);
+        let c = select(vec4(0.0), residuals[next.y], there.y);
+        let d = select(vec4(0.0), residuals[next.z], there.z);
+        own += (a + b) + (c + d);
+        worst = max(worst, max(max(a.x, b.x), max(c.x, d.x)));
+        impulse += impulses[next.w];
+        impulse += select(vec4(0.0), impulses[next.x], there.x);
+        impulse += select(vec4(0.0), impulses[next.y], there.y);
+        impulse += select(vec4(0.0), impulses[next.z], there.z);
     }
     sums[local] = own;
     impulse_sums[local] = impulse;
@@ -90,7 +108,7 @@ fn implicit_decide(@builtin(local_invocation_index) local: u32) {
         }
         workgroupBarrier();
     }
-    if (local == 0u && solve.stopped == 0u && state.run_count != 0u) {
+    if (local == 0u && state.run_count != 0u) {
         next_iteration(sums[0], impulse_sums[0], worst_sums[0] / GROUP, max(f32(n), 1.0));
     }
 }

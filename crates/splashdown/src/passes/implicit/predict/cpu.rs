@@ -23,12 +23,12 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
         solve,
         cell_start,
         sorted_positions: positions,
-        sorted_velocities: velocities,
-        accelerations,
+        free_velocities,
         solid_gradients,
         iterates,
         predicted,
         impulses,
+        ..
     } = buffers;
     if solve.stopped != 0 {
         return;
@@ -38,8 +38,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     let pass = Predict::<BODIES> {
         dt: state.dt,
         beta: solve.beta,
-        velocities,
-        accelerations,
+        free_velocities,
         solid_gradients,
         iterates,
         factor: volume * (scale * scale) * (scale * scale) * scale,
@@ -71,7 +70,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
             *sum = Vec4::ZERO;
             for (i, predicted) in predicted.iter().enumerate() {
                 let (u, k) = (predicted.xyz(), predicted.w.max(0.0));
-                sum.x += (pass.without_pressure(first + i) - u).length_squared();
+                sum.x += (pass.free_velocities[first + i].xyz() - u).length_squared();
                 sum.y += k * k;
                 sum.z += u.length_squared();
             }
@@ -82,8 +81,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
 struct Predict<'a, const BODIES: bool> {
     dt: f32,
     beta: f32,
-    velocities: &'a [Vec4],
-    accelerations: &'a [Vec4],
+    free_velocities: &'a [Vec4],
     solid_gradients: &'a [Vec4],
     iterates: &'a [Vec4],
     /// Factor of the sums.
@@ -96,22 +94,16 @@ impl<const BODIES: bool> Predict<'_, BODIES> {
         (self.iterates[j].x + self.beta * self.iterates[j].y).max(0.0)
     }
 
-    /// The velocity by all other forces.
-    #[inline(always)]
-    fn without_pressure(&self, i: usize) -> Vec3 {
-        self.velocities[i].xyz() + self.dt * self.accelerations[i].xyz()
-    }
-
     /// True where a nozzle determines the motion.
     #[inline(always)]
     fn is_driven(&self, i: usize) -> bool {
-        self.accelerations[i].w == 1.0
+        self.free_velocities[i].w == 1.0
     }
 
     /// The velocity of a particle with the pressure `k`, from the sum of D' k over its neighbours.
     #[inline(always)]
     fn finish(&self, i: usize, k: f32, sum: Vec3) -> Vec4 {
-        let v = self.without_pressure(i);
+        let v = self.free_velocities[i].xyz();
         if self.is_driven(i) {
             return v.extend(-1.0);
         }

@@ -3,51 +3,63 @@
 #import sph/solve
 #import sph/grid
 #import sph/rows
-#import sph/kernel
 #import sph/images
+#import sph/neighbours
+#import sph/kernel
 #import sph/group_sum
 
 #bindings
 
 override BODIES: u32 = 0u; // 1: bodies act on the fluid
 
-fn pressure_of(j: u32) -> f32 {
-    return max(iterates[j].x + solve.beta * iterates[j].y, 0.0);
+// The pressure for a result and the previous direction.
+fn pressure_of(iterate: vec2<f32>) -> f32 {
+    return max(iterate.x + solve.beta * iterate.y, 0.0);
+}
+
+// A term of the sum over the neighbours; k is the sum of both pressures.
+fn term_of(entry: u32, x: vec3<f32>, position: vec3<f32>, k: f32) -> vec3<f32> {
+    let d = neighbour_of(entry, x, position).d;
+    return (k * kernel_g(length(d) / params.support_radius)) * d;
+}
+
+fn pressure_sum(i: u32, x: vec3<f32>, k: f32) -> vec3<f32> {
+    var sum = vec3(0.0);
+    var visit = visit_of(i, x);
+    while (visit.left != 0u) {
+        let four = next_four(&visit, i, x);
+        // All loads precede the terms, so that they overlap.
+        let j = four & vec4(INDEX);
+        let a = sorted_positions[j.x].xyz;
+        let b = sorted_positions[j.y].xyz;
+        let c = sorted_positions[j.z].xyz;
+        let d = sorted_positions[j.w].xyz;
+        let k_a = iterates[j.x].xy;
+        let k_b = iterates[j.y].xy;
+        let k_c = iterates[j.z].xy;
+        let k_d = iterates[j.w].xy;
+        let both = vec4(k) + vec4(pressure_of(k_a), pressure_of(k_b), pressure_of(k_c), pressure_of(k_d));
+        sum += term_of(four.x, x, a, both.x);
+        sum += term_of(four.y, x, b, both.y);
+        sum += term_of(four.z, x, c, both.z);
+        sum += term_of(four.w, x, d, both.w);
+    }
+    return sum;
 }
 
 // Writes the velocity of a particle by the present pressure, and returns the squares of its change, of the pressure and of
 // the velocity.
 fn update(i: u32) -> vec4<f32> {
-    let other = accelerations[i];
-    let v = sorted_velocities[i].xyz + state.dt * other.xyz;
-    if (other.w == 1.0) {
+    let v = free_velocities[i].xyz;
+    if (free_velocities[i].w == 1.0) {
         predicted[i] = vec4(v, -1.0);
         return vec4(0.0, 0.0, dot(v, v), 0.0);
     }
     let x = sorted_positions[i].xyz;
-    let k = pressure_of(i);
-    let cell = cell_of(x);
+    let k = pressure_of(iterates[i].xy);
     let scale = 1.0 / params.support_radius;
-    let reach = params.support_radius * params.support_radius;
-    var sum = vec3(0.0);
-    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
-        let by = reflection(firstTrailingBit(left));
-        let own = reflected_point(by, x);
-        sum *= by.sign;
-        for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let d = own - sorted_positions[j].xyz;
-                let r2 = dot(d, d);
-                if (r2 < reach) {
-                    sum += ((k + pressure_of(j)) * kernel_g(sqrt(r2) * scale)) * d;
-                }
-            }
-        }
-        sum *= by.sign;
-    }
     let factor = params.summed_mass / params.rest_density * scale * scale * scale * scale * scale;
-    var q = factor * sum;
+    var q = factor * pressure_sum(i, x, k);
     if (BODIES == 1u) {
         q += k * solid_gradients[i].xyz;
     }

@@ -7,17 +7,28 @@
 
 mod cpu;
 
-use glam::Vec4;
+use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::passes::group_sum;
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
 
-const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, SOLVE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES, group_sum::WGSL];
+const IMPORTS: &[WgslModule] = &[
+    wgsl::INDEX,
+    STATE,
+    SOLVE,
+    PARAMS,
+    GRID,
+    ROWS,
+    boundary::IMAGES,
+    NEIGHBOURS,
+    NEIGHBOUR_ENTRIES,
+    kernel::WGSL,
+    group_sum::WGSL,
+];
 
 bindings! {
     /// The buffers of `implicit_predict.wgsl`.
@@ -28,8 +39,8 @@ bindings! {
         solve: uniform SolveState,
         cell_start: read [u32],
         sorted_positions: read [Vec4],
-        sorted_velocities: read [Vec4],
-        accelerations: read [Vec4],
+        neighbours: read [UVec4],
+        free_velocities: read [Vec4],
         solid_gradients: read [Vec4],
         iterates: read [Vec4],
         predicted: write [Vec4],

@@ -17,12 +17,12 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
         solve,
         cell_start,
         sorted_positions: positions,
-        densities,
         stiffness,
         solid_gradients,
         predicted,
         iterates,
         residuals,
+        ..
     } = buffers;
     if solve.stopped != 0 {
         return;
@@ -34,7 +34,7 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
     let n = sorted.active_count();
     let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
     let factor = volume * (scale * scale) * (scale * scale) * scale;
-    lists.for_each(sorted, Last(&mut *iterates), |i, near, images| {
+    lists.for_each(sorted, First(&mut *iterates), |i, near, images| {
         let u = predicted[i];
         let of_image = |(gradient, sign, j): (Vec4, Vec4, usize)| gradient * (u - sign * predicted[j]);
         let of_images: Vec4 = images.iter().map(of_image).sum();
@@ -43,13 +43,13 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
     });
 
     let update = |i: usize, iterate: &mut Vec4| {
-        let excess = densities[i].x / params.rest_density - 1.0;
+        let excess = iterate.w;
         let (u, k) = (predicted[i].xyz(), predicted[i].w);
         if k < 0.0 {
-            *iterate = Vec4::ZERO;
+            *iterate = Vec3::ZERO.extend(excess);
             return Vec4::new(0.0, 0.0, excess.max(0.0), 0.0);
         }
-        let (mut rate, mut gradient, mut normal) = (iterate.w, stiffness[i].xyz(), stiffness[i].xyz());
+        let (mut rate, mut gradient, mut normal) = (iterate.x, stiffness[i].xyz(), stiffness[i].xyz());
         if BODIES {
             let solid = solid_gradients[i];
             rate += solid.xyz().dot(u) - solid.w;
@@ -63,7 +63,7 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
         let next = (k + solve.relaxation * residual / diagonal).max(0.0);
         let change = next - k;
         let direction = solve.beta * iterate.y + iterate.z;
-        *iterate = Vec4::new(next, direction, change, residual);
+        *iterate = Vec4::new(next, direction, change, excess);
         let error = if k > 0.0 { residual.abs() } else { residual.max(0.0) };
         Vec4::new(error, diagonal * change * change, excess.max(0.0), k * residual)
     };
@@ -86,10 +86,10 @@ fn missing_density(params: &Params, gradient: Vec3) -> f32 {
     params.surface_completion * beyond * beyond.sqrt()
 }
 
-/// Stores a result as the fourth component of a vector.
-struct Last<'a>(&'a mut [Vec4]);
+/// Stores a result as the first component of a vector: the update does not need the old pressure.
+struct First<'a>(&'a mut [Vec4]);
 
-impl Outputs<f32> for Last<'_> {
+impl Outputs<f32> for First<'_> {
     fn split_at(self, middle: usize) -> (Self, Self) {
         let (first, second) = self.0.split_at_mut(middle);
         (Self(first), Self(second))
@@ -97,6 +97,6 @@ impl Outputs<f32> for Last<'_> {
 
     #[inline(always)]
     fn put(&mut self, i: usize, value: f32) {
-        self.0[i].w = value;
+        self.0[i].x = value;
     }
 }

@@ -3,8 +3,9 @@
 #import sph/solve
 #import sph/grid
 #import sph/rows
-#import sph/kernel
 #import sph/images
+#import sph/neighbours
+#import sph/kernel
 #import sph/group_sum
 
 #bindings
@@ -15,27 +16,34 @@ override BODIES: u32 = 0u; // 1: bodies contribute to the density
 const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
 const LARGEST_COMPLETED: f32 = 0.02;
 
+// A term of the sum over the neighbours, for the velocities of the particle and of its neighbour.
+fn term_of(entry: u32, x: vec3<f32>, position: vec3<f32>, u: vec3<f32>, other: vec3<f32>) -> f32 {
+    let near = neighbour_of(entry, x, position);
+    return kernel_g(length(near.d) / params.support_radius) * dot(near.d, u - near.sign * other);
+}
+
 // The sum over the neighbours in the rate of the density.
-fn rate_of(x: vec3<f32>, u: vec3<f32>) -> f32 {
-    let cell = cell_of(x);
-    let scale = 1.0 / params.support_radius;
-    let reach = params.support_radius * params.support_radius;
+fn rate_of(i: u32, x: vec3<f32>, u: vec3<f32>) -> f32 {
     var sum = 0.0;
-    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
-        let by = reflection(firstTrailingBit(left));
-        let own = reflected_point(by, x);
-        let own_u = by.sign * u;
-        for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let d = own - sorted_positions[j].xyz;
-                let r2 = dot(d, d);
-                if (r2 < reach) {
-                    sum += kernel_g(sqrt(r2) * scale) * dot(d, own_u - predicted[j].xyz);
-                }
-            }
-        }
+    var visit = visit_of(i, x);
+    while (visit.left != 0u) {
+        let four = next_four(&visit, i, x);
+        // All loads precede the terms, so that they overlap.
+        let j = four & vec4(INDEX);
+        let a = sorted_positions[j.x].xyz;
+        let b = sorted_positions[j.y].xyz;
+        let c = sorted_positions[j.z].xyz;
+        let d = sorted_positions[j.w].xyz;
+        let u_a = predicted[j.x].xyz;
+        let u_b = predicted[j.y].xyz;
+        let u_c = predicted[j.z].xyz;
+        let u_d = predicted[j.w].xyz;
+        sum += term_of(four.x, x, a, u, u_a);
+        sum += term_of(four.y, x, b, u, u_b);
+        sum += term_of(four.z, x, c, u, u_c);
+        sum += term_of(four.w, x, d, u, u_d);
     }
+    let scale = 1.0 / params.support_radius;
     return params.summed_mass / params.rest_density * scale * scale * scale * scale * scale * sum;
 }
 
@@ -47,14 +55,14 @@ fn missing_density(gradient: vec3<f32>) -> f32 {
 
 // Updates the iterate of a particle, and returns its contributions to the sums.
 fn update(i: u32) -> vec4<f32> {
-    let excess = densities[i].x / params.rest_density - 1.0;
+    let excess = iterates[i].w;
     let u = predicted[i].xyz;
     let k = predicted[i].w;
     if (k < 0.0) {
-        iterates[i] = vec4(0.0);
+        iterates[i] = vec4(vec3(0.0), excess);
         return vec4(0.0, 0.0, max(excess, 0.0), 0.0);
     }
-    var rate = rate_of(sorted_positions[i].xyz, u);
+    var rate = rate_of(i, sorted_positions[i].xyz, u);
     var gradient = stiffness[i].xyz;
     var normal = gradient;
     if (BODIES == 1u) {
@@ -71,7 +79,7 @@ fn update(i: u32) -> vec4<f32> {
     let next = max(k + solve.relaxation * residual / diagonal, 0.0);
     let change = next - k;
     let direction = solve.beta * iterates[i].y + iterates[i].z;
-    iterates[i] = vec4(next, direction, change, residual);
+    iterates[i] = vec4(next, direction, change, excess);
     let error = select(max(residual, 0.0), abs(residual), k > 0.0);
     return vec4(error, diagonal * change * change, max(excess, 0.0), k * residual);
 }

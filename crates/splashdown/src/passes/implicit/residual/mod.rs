@@ -25,17 +25,28 @@
 
 mod cpu;
 
-use glam::{Vec2, Vec4};
+use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::passes::group_sum;
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
 
-const IMPORTS: &[WgslModule] =
-    &[wgsl::INDEX, STATE, SOLVE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES, group_sum::WGSL];
+const IMPORTS: &[WgslModule] = &[
+    wgsl::INDEX,
+    STATE,
+    SOLVE,
+    PARAMS,
+    GRID,
+    ROWS,
+    boundary::IMAGES,
+    NEIGHBOURS,
+    NEIGHBOUR_ENTRIES,
+    kernel::WGSL,
+    group_sum::WGSL,
+];
 
 /// Particles with a smaller gradient of the sum of V W, times the support radius, are not at the free surface.
 pub(crate) const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
@@ -51,7 +62,7 @@ bindings! {
         solve: uniform SolveState,
         cell_start: read [u32],
         sorted_positions: read [Vec4],
-        densities: read [Vec2],
+        neighbours: read [UVec4],
         stiffness: read [Vec4],
         solid_gradients: read [Vec4],
         predicted: read [Vec4],

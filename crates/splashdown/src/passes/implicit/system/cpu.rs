@@ -21,11 +21,10 @@ pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: Sys
         cell_start,
         sorted_positions: positions,
         sorted_velocities: velocities,
-        sorted_pressures: pressures,
         densities,
         accelerations,
         stiffness,
-        iterates,
+        ..
     } = buffers;
     let (support, scale) = (params.support_radius, 1.0 / params.support_radius);
     let volume = params.summed_mass / params.rest_density;
@@ -37,7 +36,6 @@ pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: Sys
         images,
         positions,
         velocities,
-        pressures,
         scale,
         scale5: (scale * scale) * (scale * scale) * scale,
         soft: 0.01 * support * support,
@@ -46,7 +44,7 @@ pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: Sys
         kernel: PhantomData,
     };
     let sorted = Sorted::new(support, grid, cell_start, positions).with_images(images);
-    let outputs = ((densities, accelerations), (stiffness, iterates));
+    let outputs = ((densities, accelerations), stiffness);
     // The iterations use the lists.
     scratch.get::<NeighbourLists<K>>().make(sorted, outputs, &pass);
 }
@@ -57,7 +55,6 @@ struct System<'a, K> {
     images: Images,
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
-    pressures: &'a [f32],
     scale: f32,
     scale5: f32,
     soft: f32,
@@ -69,7 +66,7 @@ struct System<'a, K> {
 
 /// The sums: kernel, gradient, squares of the gradients, viscous acceleration.
 impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {
-    type Output = ((Vec2, Vec4), (Vec4, Vec4));
+    type Output = ((Vec2, Vec4), Vec4);
 
     #[inline(always)]
     fn load(&self, j: usize) -> [f32; 7] {
@@ -115,7 +112,6 @@ impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {
         let other = params.body_acceleration(state.time) + wall_friction(params, K::WALLS, x, v, state.dt);
         let acceleration = scale5 * Vec3::new(ax, ay, az) + other;
         let stiffness = (factor * Vec3::new(gx, gy, gz)).extend(images * factor * factor * squares);
-        let start = Vec4::new(self.pressures[i].max(0.0), 0.0, 0.0, 0.0);
-        ((density, acceleration.extend(0.0)), (stiffness, start))
+        ((density, acceleration.extend(0.0)), stiffness)
     }
 }

@@ -8,11 +8,11 @@
 
 mod cpu;
 
-use glam::{Vec2, Vec4};
+use glam::{UVec4, Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
@@ -24,12 +24,11 @@ bindings! {
         state: uniform StepState,
         cell_start: read [u32],
         sorted_positions: read [Vec4],
+        neighbours: read [UVec4],
         sorted_velocities: read [Vec4],
-        sorted_pressures: read [f32],
         densities: write [Vec2],
         accelerations: write [Vec4],
         stiffness: write [Vec4],
-        iterates: write [Vec4],
     }
 }
 
@@ -43,8 +42,10 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         PARAMS,
         GRID,
         ROWS,
-        kernel::WGSL,
         boundary::IMAGES,
+        NEIGHBOURS,
+        NEIGHBOUR_ENTRIES,
+        kernel::WGSL,
         boundary::PLANES,
         boundary::LAW,
         boundary::WALL_FRICTION,

@@ -19,6 +19,7 @@ pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: Produc
         viscous_residuals,
         viscous_products,
         residuals,
+        ..
     } = buffers;
     if viscous.stopped != 0 {
         return;

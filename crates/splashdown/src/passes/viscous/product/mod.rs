@@ -4,12 +4,12 @@
 
 mod cpu;
 
-use glam::Vec4;
+use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::pair;
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
 use crate::passes::group_sum;
 use crate::state::{PARAMS, Params, STATE, StepState, VISCOUS, ViscousState};
 
@@ -22,6 +22,7 @@ bindings! {
         viscous: uniform ViscousState,
         cell_start: read [u32],
         sorted_positions: read [Vec4],
+        neighbours: read [UVec4],
         viscous_residuals: read [Vec4],
         viscous_products: write [Vec4],
         residuals: write [Vec4],
@@ -40,6 +41,8 @@ pub static PRODUCT: PassDesc = PassDesc {
         GRID,
         ROWS,
         boundary::IMAGES,
+        NEIGHBOURS,
+        NEIGHBOUR_ENTRIES,
         pair::WGSL,
         group_sum::WGSL,
     ],

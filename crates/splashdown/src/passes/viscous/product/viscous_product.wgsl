@@ -4,6 +4,7 @@
 #import sph/grid
 #import sph/rows
 #import sph/images
+#import sph/neighbours
 #import sph/viscous_pair
 #import sph/group_sum
 
@@ -11,9 +12,33 @@
 
 override BODIES: u32 = 0u; // 1: the products contain the friction of bodies
 
-// The preconditioned residual of a particle.
-fn preconditioned(j: u32) -> vec3<f32> {
-    return viscous_residuals[j].w * viscous_residuals[j].xyz;
+// A term of the sum over the neighbours, for the preconditioned residuals of the particle and of its neighbour.
+fn term_of(entry: u32, x: vec3<f32>, position: vec3<f32>, z: vec3<f32>, residual: vec4<f32>) -> vec3<f32> {
+    let near = neighbour_of(entry, x, position);
+    return viscous_weight(dot(near.d, near.d)) * viscous_pair(z, residual.w * residual.xyz, near.d, near.sign);
+}
+
+fn sum_of(i: u32, x: vec3<f32>, z: vec3<f32>) -> vec3<f32> {
+    var sum = vec3(0.0);
+    var visit = visit_of(i, x);
+    while (visit.left != 0u) {
+        let four = next_four(&visit, i, x);
+        // All loads precede the terms, so that they overlap.
+        let j = four & vec4(INDEX);
+        let a = sorted_positions[j.x].xyz;
+        let b = sorted_positions[j.y].xyz;
+        let c = sorted_positions[j.z].xyz;
+        let d = sorted_positions[j.w].xyz;
+        let r_a = viscous_residuals[j.x];
+        let r_b = viscous_residuals[j.y];
+        let r_c = viscous_residuals[j.z];
+        let r_d = viscous_residuals[j.w];
+        sum += term_of(four.x, x, a, z, r_a);
+        sum += term_of(four.y, x, b, z, r_b);
+        sum += term_of(four.z, x, c, z, r_c);
+        sum += term_of(four.w, x, d, z, r_d);
+    }
+    return sum;
 }
 
 // Writes the product of the matrix with the preconditioned residual, and returns the contributions to the sums.
@@ -23,24 +48,8 @@ fn product(i: u32) -> vec4<f32> {
         return vec4(0.0);
     }
     let x = sorted_positions[i].xyz;
-    let z = preconditioned(i);
-    let cell = cell_of(x);
-    let reach = params.support_radius * params.support_radius;
-    var sum = vec3(0.0);
-    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
-        let by = reflection(firstTrailingBit(left));
-        for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
-            for (var j = range.x; j < range.y; j++) {
-                let d = x - reflected_point(by, sorted_positions[j].xyz);
-                let r2 = dot(d, d);
-                if (r2 < reach) {
-                    sum += viscous_weight(r2) * viscous_pair(z, preconditioned(j), d, by.sign);
-                }
-            }
-        }
-    }
-    var w = z + state.dt * params.viscous_factor * sum;
+    let z = viscous_residuals[i].w * viscous_residuals[i].xyz;
+    var w = z + state.dt * params.viscous_factor * sum_of(i, x, z);
     if (BODIES == 1u) {
         w += viscous_products[i].xyz;
     }

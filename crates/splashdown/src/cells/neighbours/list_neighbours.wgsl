@@ -1,0 +1,71 @@
+#import gpu/index
+#import sph/params
+#import sph/grid
+#import sph/rows
+#import sph/images
+#import sph/candidates
+#import sph/neighbour_entries
+
+#bindings
+
+const FEWEST_LAYERS: u32 = 5u;
+
+// A list while words are appended. Every four of them are stored.
+struct List {
+    words: u32,
+    last: vec4<u32>,
+}
+
+// Values instead of pointers keep the list in registers.
+fn append(list: List, i: u32, layers: u32, word: u32) -> List {
+    let last = vec4(list.last.yzw, word);
+    let words = list.words + 1u;
+    if (words % 4u == 0u && words <= 4u * layers) {
+        neighbours[(words / 4u - 1u) * params.particle_count + i] = last;
+    }
+    return List(words, last);
+}
+
+fn end_list(list: List, i: u32, layers: u32, header: u32) {
+    var filled = list;
+    while (filled.words % 4u != 0u) {
+        filled = append(filled, i, layers, no_neighbour(i));
+    }
+    neighbours[i].x = header;
+}
+
+@compute @workgroup_size(64)
+fn list_neighbours(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(gid, groups, 64u);
+    let layers = arrayLength(&neighbours) / params.particle_count;
+    if (i >= active_count() || layers < FEWEST_LAYERS) {
+        return;
+    }
+    let x = sorted_positions[i].xyz;
+    let cell = cell_of(x);
+    // The first word is the header.
+    var list = List(1u, vec4(0u));
+    for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
+        let image = firstTrailingBit(left);
+        let own = reflected_point(reflection(image), x);
+        for (var row = 0u; row < 9u; row++) {
+            let range = row_range(cell, row);
+            for (var first = range.x; first < range.y; first += CANDIDATES) {
+                for (var bits = neighbour_bits(own, first, range.y); bits != 0u; bits &= bits - 1u) {
+                    list = append(list, i, layers, entry_of(first + firstTrailingBit(bits), image));
+                }
+            }
+        }
+    }
+    if (list.words <= 4u * layers) {
+        end_list(list, i, layers, list.words - 1u);
+        return;
+    }
+    var rows = List(1u, vec4(0u));
+    for (var row = 0u; row < 9u; row++) {
+        let range = row_range(cell, row);
+        rows = append(rows, i, layers, range.x);
+        rows = append(rows, i, layers, range.y);
+    }
+    end_list(rows, i, layers, BY_ROWS);
+}

@@ -1,0 +1,78 @@
+//! Lists of neighbours on a GPU, for passes that visit the same neighbours again in a step.
+//!
+//! A particle has 216 candidates in its 27 cells, of which about 30 are neighbours. On a GPU a pass over the candidates
+//! waits for one after the other, and a warp executes the formula of a pair for nearly each of them, because one of its
+//! particles is near. A pass over a list visits the neighbours only, and loads four at a time.
+//!
+//! # Layout
+//! A list has words in layers of four: layer k of particle i is `neighbours[k * particle_count + i]`, so that consecutive
+//! particles read consecutive memory. The first word is the number of neighbours, among them the particle itself. The others are entries:
+//! the sorted index of a neighbour, and in the upper five bits the number of its reflection (see
+//! [`boundary`](crate::boundary)). Their order is that of the rows of cells, so that sums are bit-identical when repeated. The last
+//! layer is filled with entries without a neighbour, whose index is that of the particle.
+//!
+//! Where there are more neighbours than words, the list contains the nine rows of candidates instead, and a visit searches
+//! them. This is as slow as without lists, but complete.
+//!
+//! The CPU has lists of another kind ([`pairs`](crate::pairs)). It allocates no layers here, and the pass does nothing.
+
+mod cpu;
+
+use glam::{UVec4, Vec4};
+use splashdown_gpu::{Executor, PassDesc, WgslModule, bindings, wgsl};
+
+use super::{CANDIDATES, GRID, Grid, ROWS};
+use crate::boundary;
+use crate::state::{PARAMS, Params, STATE};
+
+/// The visit of the neighbours in a list.
+pub const NEIGHBOURS: WgslModule =
+    WgslModule { name: "sph/neighbours", source: include_str!("neighbours.wgsl") };
+
+/// The encoding of an entry.
+pub const NEIGHBOUR_ENTRIES: WgslModule =
+    WgslModule { name: "sph/neighbour_entries", source: include_str!("neighbour_entries.wgsl") };
+
+/// The fewest layers of a list: the rows of candidates take 19 words.
+const FEWEST_LAYERS: usize = 5;
+/// The words of a list over the particles at the rest density in the support. Compressed fluid has more neighbours.
+const MARGIN: f32 = 1.3;
+
+/// The layers of the lists of a number of particles. None on the CPU; fewer
+/// than usual if a buffer of the device holds no more.
+pub(crate) fn layers(executor: &Executor, params: &Params, particles: usize) -> usize {
+    if executor.gpu().is_none() {
+        return 0;
+    }
+    let fit = executor.largest_buffer() / (size_of::<UVec4>() * particles.max(1)) as u64;
+    layers_on_gpu(params.support_radius / params.particle_spacing).min(fit as usize).max(FEWEST_LAYERS)
+}
+
+/// [`layers`] on a GPU without a limit to its buffers, for a support radius of this many spacings.
+pub(crate) fn layers_on_gpu(support_ratio: f32) -> usize {
+    let neighbours = 4.0 / 3.0 * std::f32::consts::PI * support_ratio.powi(3);
+    (((1.0 + MARGIN * neighbours) / 4.0).ceil() as usize).max(FEWEST_LAYERS)
+}
+
+bindings! {
+    /// The buffers of `list_neighbours.wgsl`.
+    pub(super) struct ListBindings {
+        params: uniform Params,
+        grid: uniform Grid,
+        cell_start: read [u32],
+        sorted_positions: read [Vec4],
+        neighbours: write [UVec4],
+    }
+}
+
+/// See the module.
+pub static LIST_NEIGHBOURS: PassDesc = PassDesc {
+    label: "cells.neighbours",
+    wgsl: include_str!("list_neighbours.wgsl"),
+    imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, boundary::IMAGES, CANDIDATES, NEIGHBOUR_ENTRIES],
+    entry: "list_neighbours",
+    workgroup_size: [64, 1, 1],
+    constants: &[],
+    bindings: ListBindings::LIST,
+    cpu: |_, slots| cpu::list_neighbours(slots.into()),
+};

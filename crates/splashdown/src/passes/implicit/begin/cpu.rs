@@ -1,0 +1,37 @@
+use glam::{Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+
+use super::BeginBindings;
+use crate::state::SolveState;
+
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+pub(super) fn begin(buffers: BeginBindings<'_>) {
+    let BeginBindings {
+        params,
+        grid,
+        state,
+        cell_start,
+        sorted_velocities: velocities,
+        sorted_pressures: pressures,
+        accelerations,
+        densities,
+        solve,
+        iterates,
+        free_velocities,
+    } = buffers;
+    *solve = SolveState::new(state.run_count == 0, params.relaxation);
+    let active = cell_start[grid.cell_count as usize] as usize;
+    let chunks =
+        iterates[..active].par_chunks_mut(CHUNK).zip(free_velocities[..active].par_chunks_mut(CHUNK));
+    chunks.enumerate().for_each(|(chunk, (iterates, free_velocities))| {
+        for (k, (iterate, free)) in iterates.iter_mut().zip(free_velocities).enumerate() {
+            let i = chunk * CHUNK + k;
+            let excess = densities[i].x / params.rest_density - 1.0;
+            *iterate = Vec4::new(pressures[i].max(0.0), 0.0, 0.0, excess);
+            let other = accelerations[i];
+            *free = (velocities[i].xyz() + state.dt * other.xyz()).extend(other.w);
+        }
+    });
+}
