@@ -212,7 +212,7 @@ impl<'a> Step<'a> {
             let start = self.by_kernel(&viscous::start::WENDLAND_C2, &viscous::start::CUBIC_SPLINE);
             (start, &viscous::product::PRODUCT)
         };
-        self.recorder.dispatch(&viscous::begin::BEGIN, DispatchSize::Groups(1));
+        self.recorder.dispatch_particles(&viscous::begin::BEGIN);
         self.recorder.dispatch_particles(start);
         self.couple(Stage::Viscosity(ViscousStage::Start));
         let step = std::mem::replace(&mut self.recorder.recording, Recording::new("viscosity"));

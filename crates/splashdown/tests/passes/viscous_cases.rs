@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec4, Vec4Swizzles};
-use splashdown::state::{Params, StepCounters, StepState, ViscousState};
+use splashdown::state::{Params, StepCounters, ViscousState};
 
 use super::harness::{Case, Data, wide};
 use super::implicit_cases::{Output, base, case, lists, poisoned, signed, vectors, world};
@@ -225,12 +225,22 @@ fn product(name: &str, params: Params, bodies: bool) -> Case {
 }
 
 fn begin(name: &str, run_count: u32) -> Case {
-    let state = StepState { run_count, ..super::world::state(1500) };
+    let mut world = world(params(2.0));
+    world.state.run_count = run_count;
+    let n = world.len();
+    let pressures: Vec<f32> = (0..n).map(|i| 3.0 * signed(i, 0)).collect();
     let mut viscous = Output::new("viscous", Data::Viscous(solving()).poison());
+    let mut iterates = Output::new("iterates", poisoned(n));
     let expected = Data::Viscous(ViscousState::new(run_count == 0));
     wide(expected.floats()).into_iter().for_each(|value| viscous.push(value, 0.0));
-    case("viscous.begin".into(), name, 1, vec![Data::State(state)], vec![viscous], |input| {
-        let Data::State(state) = &mut input[0] else { panic!("no state") };
+    for &pressure in &pressures[..world.active()] {
+        iterates.push(pressure.max(0.0).into(), 0.0);
+        (0..3).for_each(|_| iterates.push(0.0, 0.0));
+    }
+    let mut input = vec![Data::Grid(world.grid), Data::State(world.state)];
+    input.extend([Data::U32(world.cell_start.clone()), Data::F32(pressures)]);
+    case("viscous.begin".into(), name, n, input, vec![viscous, iterates], |input| {
+        let Data::State(state) = &mut input[1] else { panic!("no state") };
         state.run_count = 1500 - state.run_count;
     })
 }

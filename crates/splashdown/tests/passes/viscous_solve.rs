@@ -47,7 +47,8 @@ fn solve(executor: &mut Executor, world: &World, other: &[Vec4]) -> (Vec<DVec3>,
     set.add("neighbours", executor.create_from("neighbours", &lists).unwrap());
     set.add("sorted_velocities", executor.create_from("sorted_velocities", &world.velocities).unwrap());
     set.add("solid_gradients", executor.create_from("solid_gradients", &[Vec4::NAN]).unwrap());
-    set.add("iterates", executor.create_from("iterates", &vec![Vec4::ZERO; n]).unwrap());
+    set.add("iterates", executor.create::<Vec4>("iterates", n).unwrap());
+    set.add("sorted_pressures", executor.create_from("sorted_pressures", &vec![0.0_f32; n]).unwrap());
     set.add("counters", executor.create_from("counters", &[0_u32; StepCounters::WORDS]).unwrap());
     for label in
         ["viscous_residuals", "viscous_products", "viscous_directions", "viscous_images", "predicted"]
@@ -67,7 +68,7 @@ fn solve(executor: &mut Executor, world: &World, other: &[Vec4]) -> (Vec<DVec3>,
     iteration.dispatch(&viscous::decide::DECIDE, DispatchSize::Groups(1), &set);
     iteration.dispatch(&viscous::update::UPDATE, particles, &set);
     let mut recording = Recording::new("viscosity");
-    recording.dispatch(&viscous::begin::BEGIN, DispatchSize::Groups(1), &set);
+    recording.dispatch(&viscous::begin::BEGIN, particles, &set);
     recording.dispatch(&viscous::start::WENDLAND_C2, particles, &set);
     let stopped = Flag::new(state, std::mem::offset_of!(ViscousState, stopped));
     recording.repeat(&iteration, &Rounds::new(world.params.most_viscous_iterations), stopped);
