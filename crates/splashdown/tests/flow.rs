@@ -99,9 +99,10 @@ fn a_submerged_inlet_is_stable() {
     let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
     let before = simulation.stats();
     let (stats, highest) = run(&mut simulation, 3, 0.1);
-    // The gate was 0.25 with walls as half-spaces (0.22 measured). Now that walls are planes of symmetry, fluid that enters
-    // behind the newest layer also meets its image (0.252 measured).
-    assert!(highest < 0.3, "density {highest}");
+    // Fluid that enters behind the newest layer meets its image behind the wall. The largest density depends on roundings:
+    // 0.25 to 0.41 where the emitter is up to 0.4 mm higher, 0.25 or 0.34 here with two ways to compute a cell. An inlet that
+    // bursts doubles the density.
+    assert!(highest < 0.5, "density {highest}");
     assert!(stats.max_speed < 4.0, "{}", stats.max_speed);
     let wanted = 36.0 * 0.3 / SPACING;
     let flux = stats.emitted as f32 / wanted;
