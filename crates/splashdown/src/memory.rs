@@ -2,12 +2,12 @@
 
 use glam::UVec4;
 
-use crate::cells::{Grid, neighbours};
+use crate::cells::Grid;
 use crate::check::Built;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort};
 use crate::schemes::Scheme;
-use crate::state::{CARRIED, bytes_per_particle};
+use crate::state::{CARRIED, bytes_per_particle, list_layers_on_gpu};
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
@@ -103,7 +103,7 @@ pub fn neighbour_lists_forecast(scene: &Scene, particles: u64, on_gpu: bool) -> 
     let particles = Built::of(scene).flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
     let ratio = scene.solver.support_radius(scene.fluid.particle_spacing) / scene.fluid.particle_spacing;
     if on_gpu {
-        let layers = if extras.neighbours { neighbours::layers_on_gpu(ratio) } else { 0 };
+        let layers = if extras.neighbours { list_layers_on_gpu(ratio) } else { 0 };
         return particles.saturating_mul((size_of::<UVec4>() * layers) as u64);
     }
     let lists = u64::from(extras.implicit) + u64::from(extras.viscous);

@@ -15,7 +15,6 @@ pub(crate) mod cell_counts;
 mod count;
 pub(crate) mod grid;
 mod keys;
-pub(crate) mod neighbours;
 mod reorder;
 mod reorder_carried;
 mod scatter;
@@ -23,7 +22,6 @@ mod store_carried;
 
 pub use cell_counts::WGSL as CELL_COUNTS;
 pub use grid::{Grid, WGSL as GRID};
-pub(crate) use neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 
 use glam::UVec2;
 use splashdown_gpu::scan::Scan;
@@ -65,7 +63,6 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &count::COUNT,
         &keys::KEYS,
         &scatter::SCATTER,
-        &neighbours::LIST_NEIGHBOURS,
     ]
 }
 

@@ -14,6 +14,7 @@ pub mod force_integrate;
 pub mod implicit;
 pub mod integrate;
 pub mod mueller;
+pub mod neighbours;
 pub mod normals;
 pub mod shifted_integrate;
 pub mod smooth_normals;
@@ -37,6 +38,7 @@ pub const FORCES: WgslModule = WgslModule { name: "sph/forces", source: include_
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
     let explicit = [
+        &neighbours::LIST_NEIGHBOURS,
         &continuity::WENDLAND_C2,
         &continuity::CUBIC_SPLINE,
         &continuity::WENDLAND_C2_BODIES,

@@ -38,7 +38,7 @@ pub(crate) const REPEATABLE: &[&str] = &[
     "scan.",
     "sort.",
     "cells.reorder",
-    "cells.neighbours",
+    "neighbours",
     "density.",
     "normals.",
     "smooth_normals.",

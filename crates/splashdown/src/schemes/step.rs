@@ -7,13 +7,13 @@ use splashdown_gpu::{DispatchSize, Flag, PassDesc, Recording, Rounds};
 use super::Scheme;
 use crate::bodies::Bodies;
 use crate::boundary::part::Part;
-use crate::cells::{Cells, neighbours};
+use crate::cells::Cells;
 use crate::coupling::{Coupling, Stage, StepRecorder, ViscousStage};
 use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
     acceleration, continuity, corrected_acceleration, density, force_integrate, implicit, integrate, mueller,
-    normals, shifted_integrate, smooth_normals, state_equation, tension_force, viscous,
+    neighbours, normals, shifted_integrate, smooth_normals, state_equation, tension_force, viscous,
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method, SurfaceTension};

@@ -4,8 +4,7 @@ use bytemuck::Zeroable;
 use glam::{UVec4, Vec2, Vec4};
 use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
-use crate::cells::neighbours;
-
+use super::list_layers::list_layers;
 use super::{
     Array, CARRIED, Carried, CarriedArrays, Params, SolveState, StepCounters, StepState, ViscousState,
 };
@@ -71,7 +70,7 @@ pub struct Fields {
     pub shifts: Buffer<Vec4>,
     /// The contributions of bodies to the matrices, two vectors per particle. A single entry without bodies.
     pub boundary_matrices: Buffer<Vec4>,
-    /// Lists of neighbours on a GPU, as `cells::neighbours` describes. A single entry on the CPU and where none are used.
+    /// Lists of neighbours on a GPU, as `passes::neighbours` describes. A single entry on the CPU and where none are used.
     pub neighbours: Buffer<UVec4>,
     /// The state of the implicit pressure; one entry.
     pub solve: Buffer<SolveState>,
@@ -131,7 +130,7 @@ impl Fields {
     ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
         let some = |needed: bool, entries: usize| if needed { entries } else { 1 };
-        let lists = if extras.neighbours { neighbours::layers(executor, params, n) } else { 0 };
+        let lists = if extras.neighbours { list_layers(executor, params, n) } else { 0 };
         let carried = CarriedArrays::create(executor, table, n)?;
         let [
             CarriedArrays {

@@ -8,6 +8,7 @@ mod carried;
 mod counters;
 pub mod end_step;
 mod fields;
+mod list_layers;
 mod params;
 mod solve;
 mod step;
@@ -26,6 +27,7 @@ pub use counters::{
 };
 pub(crate) use end_step::finish_step;
 pub use fields::{Extras, Fields};
+pub(crate) use list_layers::{FEWEST_LAYERS, list_layers_on_gpu};
 pub use params::{Params, WGSL as PARAMS};
 pub use solve::{SolveState, WGSL as SOLVE};
 pub use step::{STEPS, StepState, WGSL as STATE};

@@ -107,7 +107,7 @@ fn list(name: &str, world: World, layers: usize) -> Case {
     };
     let same = exact.clone();
     Case {
-        pass: pass("cells.neighbours"),
+        pass: pass("neighbours"),
         name: name.into(),
         size: items,
         input,

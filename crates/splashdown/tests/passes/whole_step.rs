@@ -90,7 +90,7 @@ impl Rig {
 
     /// Makes the lists of neighbours, which exist on a GPU only.
     fn list_neighbours(&mut self) {
-        let is_list = |command: &&Command| matches!(command, Command::Dispatch { pass, .. } if pass.label == "cells.neighbours");
+        let is_list = |command: &&Command| matches!(command, Command::Dispatch { pass, .. } if pass.label == "neighbours");
         let lists: Vec<Command> = self.step.commands.iter().filter(is_list).cloned().collect();
         self.run(&lists);
     }
@@ -234,7 +234,7 @@ fn the_gpu_can_continue_from_any_pass() {
             // The contribution of the normals in a first step is too small. The CPU has lists of another kind, and a new
             // simulation has no pressures to reorder. The tests of the passes cover them.
             let small = |command: &Command| match command {
-                Command::Dispatch { pass, .. } => ["normals", "cells.neighbours", "cells.reorder_carried"]
+                Command::Dispatch { pass, .. } => ["normals", "neighbours", "cells.reorder_carried"]
                     .iter()
                     .any(|prefix| pass.label.starts_with(prefix)),
                 _ => true,

@@ -12,8 +12,9 @@ use glam::{UVec4, Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
+use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
 bindings! {

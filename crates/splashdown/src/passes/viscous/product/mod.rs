@@ -9,8 +9,9 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::pair;
 use crate::boundary;
-use crate::cells::{GRID, Grid, NEIGHBOUR_ENTRIES, NEIGHBOURS, ROWS};
+use crate::cells::{GRID, Grid, ROWS};
 use crate::passes::group_sum;
+use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, STATE, StepState, VISCOUS, ViscousState};
 
 bindings! {

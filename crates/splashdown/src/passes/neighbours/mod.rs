@@ -19,10 +19,10 @@
 mod cpu;
 
 use glam::{UVec4, Vec4};
-use splashdown_gpu::{Executor, PassDesc, WgslModule, bindings, wgsl};
+use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
-use super::{CANDIDATES, GRID, Grid, ROWS};
 use crate::boundary;
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::state::{PARAMS, Params, STATE};
 
 /// The visit of the neighbours in a list.
@@ -32,27 +32,6 @@ pub const NEIGHBOURS: WgslModule =
 /// The encoding of an entry.
 pub const NEIGHBOUR_ENTRIES: WgslModule =
     WgslModule { name: "sph/neighbour_entries", source: include_str!("neighbour_entries.wgsl") };
-
-/// The fewest layers of a list: the rows of candidates take 19 words.
-const FEWEST_LAYERS: usize = 5;
-/// The words of a list over the particles at the rest density in the support. Compressed fluid has more neighbours.
-const MARGIN: f32 = 1.3;
-
-/// The layers of the lists of a number of particles. None on the CPU; fewer
-/// than usual if a buffer of the device holds no more.
-pub(crate) fn layers(executor: &Executor, params: &Params, particles: usize) -> usize {
-    if executor.gpu().is_none() {
-        return 0;
-    }
-    let fit = executor.largest_buffer() / (size_of::<UVec4>() * particles.max(1)) as u64;
-    layers_on_gpu(params.support_radius / params.particle_spacing).min(fit as usize).max(FEWEST_LAYERS)
-}
-
-/// [`layers`] on a GPU without a limit to its buffers, for a support radius of this many spacings.
-pub(crate) fn layers_on_gpu(support_ratio: f32) -> usize {
-    let neighbours = 4.0 / 3.0 * std::f32::consts::PI * support_ratio.powi(3);
-    (((1.0 + MARGIN * neighbours) / 4.0).ceil() as usize).max(FEWEST_LAYERS)
-}
 
 bindings! {
     /// The buffers of `list_neighbours.wgsl`.
@@ -67,7 +46,7 @@ bindings! {
 
 /// See the module.
 pub static LIST_NEIGHBOURS: PassDesc = PassDesc {
-    label: "cells.neighbours",
+    label: "neighbours",
     wgsl: include_str!("list_neighbours.wgsl"),
     imports: &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, boundary::IMAGES, CANDIDATES, NEIGHBOUR_ENTRIES],
     entry: "list_neighbours",

@@ -1,4 +1,4 @@
-// Lists of neighbours; see cells/neighbours. Needs `params`, `neighbours`, `sorted_positions`, and sph/images.
+// Lists of neighbours; see passes/neighbours. Needs `params`, `neighbours`, `sorted_positions`, and sph/images.
 #import sph/neighbour_entries
 
 // A visit of the neighbours of a particle, four at a time.

@@ -1,9 +1,10 @@
 use glam::{UVec4, Vec3, Vec4Swizzles};
 use rayon::prelude::*;
 
-use super::{FEWEST_LAYERS, ListBindings};
+use super::ListBindings;
 use crate::boundary::{Images, Reflection};
 use crate::pairs::Sorted;
+use crate::state::FEWEST_LAYERS;
 
 /// As in `neighbour_entries.wgsl`.
 const INDEX_BITS: u32 = 27;
