@@ -54,11 +54,11 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// Instructions of one invocation. Every candidate counts as a neighbour, since the lanes of a wave wait for one
-    /// another.
-    pub fn executed(&self) -> f64 {
+    /// Instructions of one invocation, whose longest inner loop tests this many candidates per round.
+    pub fn executed(&self, candidates_per_round: f64) -> f64 {
         let Program { straight, outer, inner } = self.program;
-        f64::from(straight) + ROWS * f64::from(outer) + CANDIDATES * f64::from(inner)
+        let rounds = CANDIDATES / candidates_per_round;
+        f64::from(straight) + ROWS * f64::from(outer) + rounds * f64::from(inner)
     }
 }
 
@@ -68,10 +68,21 @@ pub fn bytes(pass: &PassDesc) -> f64 {
     arrays.map(|binding| binding.size as f64).sum()
 }
 
+/// The candidates that a round of the loop over neighbours tests.
+fn candidates_per_round(pass: &PassDesc) -> f64 {
+    if pass.imports.iter().any(|module| module.name == "sph/candidates") {
+        8.0
+    } else if pass.wgsl.contains("j += 4u") {
+        4.0
+    } else {
+        1.0
+    }
+}
+
 impl Chip {
     /// The predicted seconds of a pass for this number of particles.
     pub fn seconds(&self, pass: &PassDesc, compiled: &Compiled, particles: f64) -> f64 {
-        let issue = particles * compiled.executed() / self.lanes;
+        let issue = particles * compiled.executed(candidates_per_round(pass)) / self.lanes;
         let memory = particles * bytes(pass) / self.bandwidth;
         DISPATCH + issue.max(memory)
     }

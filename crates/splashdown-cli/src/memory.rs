@@ -12,7 +12,7 @@ use crate::human;
 /// # Errors
 /// [`Exit::Device`], with the required and the available memory.
 pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
-    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, false);
+    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, None);
     let needed = memory_forecast(scene).saturating_add(lists);
     let Some(available) = available().filter(|&available| needed > available) else { return Ok(()) };
     let on_cpu = match device {

@@ -14,9 +14,9 @@ const UNKNOWN: u64 = 4_000_000_000;
 pub(crate) fn check(scene: &Scene, largest_buffer: u64, memory: u64) -> Result<(), String> {
     let particles = Derived::new(scene).particles;
     let allowed = if memory == 0 { UNKNOWN } else { memory / 2 };
-    let needed = forecast(scene);
+    let needed = forecast(scene, largest_buffer);
     if needed > allowed {
-        let advice = fitting_spacing(scene, allowed).map_or_else(
+        let advice = fitting_spacing(scene, largest_buffer, allowed).map_or_else(
             || "Use a larger fluid.particle_spacing or a smaller domain".to_owned(),
             |spacing| format!("Use a fluid.particle_spacing of {spacing} m or more"),
         );
@@ -33,16 +33,16 @@ pub(crate) fn check(scene: &Scene, largest_buffer: u64, memory: u64) -> Result<(
 }
 
 /// The memory of its simulation in bytes.
-fn forecast(scene: &Scene) -> u64 {
-    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, true);
+fn forecast(scene: &Scene, largest_buffer: u64) -> u64 {
+    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, Some(largest_buffer));
     memory_forecast(scene).saturating_add(lists)
 }
 
 /// A spacing in m, with two digits, at which the memory suffices. `None` if the grid of the domain alone does not fit.
-fn fitting_spacing(scene: &Scene, allowed: u64) -> Option<f32> {
+fn fitting_spacing(scene: &Scene, largest_buffer: u64, allowed: u64) -> Option<f32> {
     let mut coarser = scene.clone();
     for _ in 0..16 {
-        let needed = forecast(&coarser);
+        let needed = forecast(&coarser, largest_buffer);
         if needed <= allowed {
             return Some(coarser.fluid.particle_spacing);
         }

@@ -7,7 +7,7 @@ use crate::check::Built;
 use crate::sample::{self, Inventory};
 use crate::scene::{Scene, Sort};
 use crate::schemes::Scheme;
-use crate::state::{CARRIED, bytes_per_particle, list_layers_on_gpu};
+use crate::state::{CARRIED, bytes_per_particle, list_layers};
 use crate::surface::{self, SurfaceParams};
 use crate::{SimulationError, bodies, foam};
 
@@ -95,16 +95,17 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
 /// The bytes that the lists of neighbours of `dfsph` take in addition to [`memory_forecast`], for a number of particles. Other
 /// solvers have none.
 ///
-/// On the CPU a neighbour takes 8 bytes, and a sphere of the support radius contains 33 at a support ratio of two. An
-/// implicit viscosity has lists of its own. On a GPU a neighbour takes 4 bytes, and the lists have room for more.
-pub fn neighbour_lists_forecast(scene: &Scene, particles: u64, on_gpu: bool) -> u64 {
+/// On the CPU, where `gpu_buffer` is `None`, a neighbour takes 8 bytes, and a sphere of the support radius contains 33
+/// at a support ratio of two. An implicit viscosity has lists of its own. On a GPU, whose largest buffer has
+/// `gpu_buffer` bytes, a neighbour takes 4 bytes, and the lists have room for more.
+pub fn neighbour_lists_forecast(scene: &Scene, particles: u64, gpu_buffer: Option<u64>) -> u64 {
     let extras = Scheme::new(scene).extras(false);
     // With those that emitters add.
     let particles = Built::of(scene).flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
     let ratio = scene.solver.support_radius(scene.fluid.particle_spacing) / scene.fluid.particle_spacing;
-    if on_gpu {
-        let layers = if extras.neighbours { list_layers_on_gpu(ratio) } else { 0 };
-        return particles.saturating_mul((size_of::<UVec4>() * layers) as u64);
+    if let Some(largest) = gpu_buffer {
+        let layers = if extras.implicit { list_layers(ratio, particles, largest) } else { 0 };
+        return particles.saturating_mul(size_of::<UVec4>() as u64 * layers);
     }
     let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
     let neighbours = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);

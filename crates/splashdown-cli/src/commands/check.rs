@@ -80,7 +80,8 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let executor = arguments.device.device.executor()?;
-    let lists = neighbour_lists_forecast(&scene, inventory.particles, executor.gpu().is_some());
+    let lists =
+        neighbour_lists_forecast(&scene, inventory.particles, executor.gpu().map(|gpu| gpu.largest_buffer()));
     let fits = check_particles(inventory.particles, executor.largest_buffer(), &scene);
     drop(executor);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
@@ -94,7 +95,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             derived: &derived,
             removed: inventory.removed,
             initial_packing: packing.as_ref(),
-            memory_forecast: memory,
+            memory_forecast: memory.saturating_add(lists),
             speed: &speed,
             meshes: &meshes,
             resolution: &resolution,

@@ -12,8 +12,8 @@ gpu_struct! {
     pub struct Grid {
         /// Lower corner of the first ghost cell in metres.
         origin: Vec3,
-        /// Cells per metre. Devices may round a quotient in different ways, but a product in one: all of them find the same
-        /// cell for a point at a border.
+        /// Cells per metre. Devices round quotients in different ways. Those that round a difference and a product as IEEE
+        /// 754 does find the same cell for a point at a border.
         cells_per_metre: f32,
         /// Cells along x, ghosts included.
         size_x: u32,

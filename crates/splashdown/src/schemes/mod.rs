@@ -90,7 +90,6 @@ impl Scheme {
             corrections: self.is_density_integrated,
             boundary_matrices: self.is_density_integrated && bodies,
             implicit: self.is_implicit(),
-            neighbours: self.is_implicit(),
             solid_gradients: self.is_implicit() && bodies,
             viscous: self.has_implicit_viscosity,
         }

@@ -22,8 +22,6 @@ pub struct Extras {
     pub boundary_matrices: bool,
     /// The arrays of the implicit pressure.
     pub implicit: bool,
-    /// Lists of neighbours on a GPU.
-    pub neighbours: bool,
     /// The contributions of bodies to the system of the implicit pressure.
     pub solid_gradients: bool,
     /// The arrays of the implicit viscosity.
@@ -70,7 +68,8 @@ pub struct Fields {
     pub shifts: Buffer<Vec4>,
     /// The contributions of bodies to the matrices, two vectors per particle. A single entry without bodies.
     pub boundary_matrices: Buffer<Vec4>,
-    /// Lists of neighbours on a GPU, as `passes::neighbours` describes. A single entry on the CPU and where none are used.
+    /// Lists of neighbours on a GPU, as `passes::neighbours` describes. A single entry on the CPU, where
+    /// none are used, and where a buffer cannot hold a layer.
     pub neighbours: Buffer<UVec4>,
     /// The state of the implicit pressure; one entry.
     pub solve: Buffer<SolveState>,
@@ -130,7 +129,13 @@ impl Fields {
     ) -> Result<Self, GpuError> {
         let n = params.particle_count as usize;
         let some = |needed: bool, entries: usize| if needed { entries } else { 1 };
-        let lists = if extras.neighbours { list_layers(executor, params, n) } else { 0 };
+        // The CPU has lists of another kind.
+        let lists = if extras.implicit && executor.gpu().is_some() {
+            let support_ratio = params.support_radius / params.particle_spacing;
+            list_layers(support_ratio, n as u64, executor.largest_buffer()) as usize
+        } else {
+            0
+        };
         let carried = CarriedArrays::create(executor, table, n)?;
         let [
             CarriedArrays {

@@ -27,7 +27,7 @@ pub use counters::{
 };
 pub(crate) use end_step::finish_step;
 pub use fields::{Extras, Fields};
-pub(crate) use list_layers::{FEWEST_LAYERS, list_layers_on_gpu};
+pub(crate) use list_layers::list_layers;
 pub use params::{Params, WGSL as PARAMS};
 pub use solve::{SolveState, WGSL as SOLVE};
 pub use step::{STEPS, StepState, WGSL as STATE};

@@ -5,11 +5,11 @@ use splashdown::state::Params;
 use splashdown_gpu::DispatchSize;
 
 use super::harness::{Case, Data, exact};
-use super::sort_cases::{cell, pass};
+use super::sort_cases::pass;
 use super::walls::{self, Reflection};
 use super::world::{World, params};
 
-/// Instead of the number of neighbours: the list contains the rows of candidates.
+/// Instead of the number of neighbours: there is no list, and a visit searches the candidates.
 const BY_ROWS: u32 = 1 << 31;
 /// Instead of a reflection: there is no neighbour.
 const NO_NEIGHBOUR: u32 = 31;
@@ -42,13 +42,7 @@ fn words(world: &World, i: usize, layers: usize) -> Vec<u32> {
     }
     words[0] = words.len() as u32 - 1;
     if words.len() > 4 * layers {
-        words = vec![BY_ROWS];
-        let middle = cell(&world.grid, world.positions[i].xyz()) as usize;
-        let (width, plane) = (world.grid.size_x as usize, (world.grid.size_x * world.grid.size_y) as usize);
-        for (dz, dy) in (0..3).flat_map(|dz| (0..3).map(move |dy| (dz, dy))) {
-            let first = middle + dz * plane + dy * width - plane - width - 1;
-            words.extend([world.cell_start[first], world.cell_start[first + 3]]);
-        }
+        return vec![BY_ROWS, u32::MAX, u32::MAX, u32::MAX];
     }
     words.resize(words.len().next_multiple_of(4), entry(i, NO_NEIGHBOUR));
     words
@@ -66,7 +60,7 @@ pub fn lists(world: &World, layers: usize) -> Vec<UVec4> {
     lists
 }
 
-/// How many particles have all neighbours in their list, and how many have rows.
+/// How many particles have a list, and how many have none.
 pub fn kinds(world: &World, layers: usize) -> [usize; 2] {
     let rows = (0..world.active()).filter(|&i| words(world, i, layers)[0] == BY_ROWS).count();
     [world.active() - rows, rows]
@@ -76,12 +70,13 @@ pub fn kinds(world: &World, layers: usize) -> [usize; 2] {
 fn meaningful(world: &World, data: &Data) -> Vec<UVec4> {
     let Data::UVec4(lists) = data else { panic!("no lists") };
     let n = world.len();
-    let layers = |i: usize| match lists[i].x {
-        _ if i >= world.active() => 0,
-        BY_ROWS => 5,
-        count => count as usize / 4 + 1,
+    let of_list = |k: usize| match lists[k % n].x {
+        _ if k % n >= world.active() => UVec4::MAX,
+        BY_ROWS if k < n => UVec4::new(BY_ROWS, u32::MAX, u32::MAX, u32::MAX),
+        BY_ROWS => UVec4::MAX,
+        count if k / n <= count as usize / 4 => lists[k],
+        _ => UVec4::MAX,
     };
-    let of_list = |k: usize| if k / n < layers(k % n) { lists[k] } else { UVec4::MAX };
     (0..lists.len()).map(of_list).collect()
 }
 

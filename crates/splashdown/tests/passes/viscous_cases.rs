@@ -353,11 +353,8 @@ fn finish(name: &str, viscous: ViscousState) -> Case {
         .enumerate()
         .map(|(i, v)| v.with_w(if i % 7 == 0 { 1.0 } else { 0.0 }))
         .collect();
-    let mut after = Output::new("iterates", Data::Vec4(iterates.clone()));
     let mut accelerations = Output::new("accelerations", Data::Vec4(other.clone()));
     for i in 0..world.active() {
-        after.push(iterates[i].x.into(), 0.0);
-        (0..3).for_each(|_| after.push(0.0, 0.0));
         let before = speed(&world, i);
         let solution = if viscous.updates == 0 { before } else { predicted[i].xyz().as_dvec3() };
         let pressure = DVec3::new(iterates[i].y.into(), iterates[i].z.into(), iterates[i].w.into());
@@ -376,8 +373,9 @@ fn finish(name: &str, viscous: ViscousState) -> Case {
         Data::Vec4(world.velocities.clone()),
         Data::Vec4(residuals),
         Data::Vec4(predicted),
+        Data::Vec4(iterates),
     ];
-    case("viscous.finish".into(), name, n, input, vec![after, accelerations], |input| {
+    case("viscous.finish".into(), name, n, input, vec![accelerations], |input| {
         let Data::State(state) = &mut input[1] else { panic!("no state") };
         state.dt *= 1.001;
     })

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use super::ListBindings;
 use crate::boundary::{Images, Reflection};
 use crate::pairs::Sorted;
-use crate::state::FEWEST_LAYERS;
 
 /// As in `neighbour_entries.wgsl`.
 const INDEX_BITS: u32 = 27;
@@ -16,7 +15,7 @@ pub(super) fn list_neighbours(buffers: ListBindings<'_>) {
     let ListBindings { params, grid, cell_start, sorted_positions: positions, neighbours } = buffers;
     let n = params.particle_count as usize;
     let layers = neighbours.len() / n.max(1);
-    if layers < FEWEST_LAYERS {
+    if layers == 0 {
         return;
     }
     let images = Images::new(params);
@@ -39,14 +38,16 @@ pub(super) fn list_neighbours(buffers: ListBindings<'_>) {
         }
         words[0] = words.len() as u32 - 1;
         if words.len() > 4 * layers {
-            words = vec![BY_ROWS];
-            words.extend(runs.iter().flat_map(|run| [run.start as u32, run.end as u32]));
+            return vec![BY_ROWS];
         }
         words.resize(words.len().next_multiple_of(4), NO_NEIGHBOUR << INDEX_BITS | i as u32);
         words
     };
     let lists: Vec<Vec<u32>> = (0..sorted.active_count()).into_par_iter().map(words_of).collect();
     for (i, words) in lists.iter().enumerate() {
+        if let [BY_ROWS] = words[..] {
+            neighbours[i].x = BY_ROWS;
+        }
         for (layer, four) in words.chunks_exact(4).enumerate() {
             neighbours[layer * n + i] = UVec4::from_slice(four);
         }

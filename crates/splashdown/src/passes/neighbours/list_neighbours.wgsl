@@ -8,8 +8,6 @@
 
 #bindings
 
-const FEWEST_LAYERS: u32 = 5u;
-
 // A list while words are appended. Every four of them are stored.
 struct List {
     words: u32,
@@ -26,19 +24,11 @@ fn append(list: List, i: u32, layers: u32, word: u32) -> List {
     return List(words, last);
 }
 
-fn end_list(list: List, i: u32, layers: u32, header: u32) {
-    var filled = list;
-    while (filled.words % 4u != 0u) {
-        filled = append(filled, i, layers, no_neighbour(i));
-    }
-    neighbours[i].x = header;
-}
-
 @compute @workgroup_size(64)
 fn list_neighbours(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
     let layers = arrayLength(&neighbours) / params.particle_count;
-    if (i >= active_count() || layers < FEWEST_LAYERS) {
+    if (i >= active_count() || layers == 0u) {
         return;
     }
     let x = sorted_positions[i].xyz;
@@ -57,15 +47,13 @@ fn list_neighbours(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
             }
         }
     }
-    if (list.words <= 4u * layers) {
-        end_list(list, i, layers, list.words - 1u);
+    if (list.words > 4u * layers) {
+        neighbours[i].x = BY_ROWS;
         return;
     }
-    var rows = List(1u, vec4(0u));
-    for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
-        rows = append(rows, i, layers, range.x);
-        rows = append(rows, i, layers, range.y);
+    let count = list.words - 1u;
+    while (list.words % 4u != 0u) {
+        list = append(list, i, layers, no_neighbour(i));
     }
-    end_list(rows, i, layers, BY_ROWS);
+    neighbours[i].x = count;
 }

@@ -1,20 +1,24 @@
 //! Lists of neighbours on a GPU, for passes that visit the same neighbours again in a step.
 //!
-//! A particle has 216 candidates in its 27 cells, of which about 30 are neighbours. On a GPU a pass over the candidates
-//! waits for one after the other, and a warp executes the formula of a pair for nearly each of them, because one of its
-//! particles is near. A pass over a list visits the neighbours only, and loads four at a time.
+//! With cells two spacings wide a particle has 216 candidates in its 27 cells, of which about 30 are neighbours. On a GPU a
+//! pass over a list visits the neighbours only, and loads four at a time.
+//!
+//! The lists are for `dfsph`: the system, the iterations of the pressure, and those of the viscosity. Passes that visit
+//! the neighbours once in a step search them themselves.
 //!
 //! # Layout
-//! A list has words in layers of four: layer k of particle i is `neighbours[k * particle_count + i]`, so that consecutive
-//! particles read consecutive memory. The first word is the number of neighbours, among them the particle itself. The others are entries:
-//! the sorted index of a neighbour, and in the upper five bits the number of its reflection (see
-//! [`boundary`](crate::boundary)). Their order is that of the rows of cells, so that sums are bit-identical when repeated. The last
-//! layer is filled with entries without a neighbour, whose index is that of the particle.
+//! A list has words in layers of four: layer k of particle i is `neighbours[k * particle_count + i]`, so
+//! that consecutive particles read consecutive memory. The first word is the number of neighbours, among
+//! them the particle itself. The others are entries: the sorted index of a neighbour, and in the upper five
+//! bits the number of its reflection (see [`boundary`](crate::boundary)). They are ordered by reflection
+//! and index, so that sums are bit-identical when repeated. The last layer is filled with entries without a
+//! neighbour, whose index is that of the particle.
 //!
-//! Where there are more neighbours than words, the list contains the nine rows of candidates instead, and a visit searches
-//! them. This is as slow as without lists, but complete.
+//! Where there are more neighbours than words, or where a buffer of the device cannot hold a layer, a
+//! visit searches the candidates.
 //!
-//! The CPU has lists of another kind ([`pairs`](crate::pairs)). It allocates no layers here, and the pass does nothing.
+//! The CPU has lists of another kind ([`pairs`](crate::pairs)). It allocates no layers here, and the pass
+//! does nothing.
 
 mod cpu;
 

@@ -3,7 +3,7 @@ const INDEX_BITS: u32 = 27u;
 const INDEX: u32 = 0x7ffffffu;
 const NO_NEIGHBOUR: u32 = 31u; // instead of a reflection
 
-// Instead of the number of neighbours: the list contains the nine rows of candidates.
+// Instead of the number of neighbours: there is no list, and a visit searches the candidates.
 const BY_ROWS: u32 = 0x80000000u;
 
 fn entry_of(j: u32, image: u32) -> u32 {

@@ -1,23 +1,28 @@
-// Lists of neighbours; see passes/neighbours. Needs `params`, `neighbours`, `sorted_positions`, and sph/images.
+// Lists of neighbours; see passes/neighbours. Needs `params`, `grid`, `cell_start`, `sorted_positions`, `neighbours`, and
+// sph/rows, sph/images and sph/candidates.
 #import sph/neighbour_entries
 
 // A visit of the neighbours of a particle, four at a time.
 struct Visit {
     left: u32, // 0 at the end
     at: u32, // of the next four entries
-    // Where the list contains rows of candidates:
+    // Without a list, the candidates are searched:
     is_by_rows: bool,
-    images: u32,
-    row: u32,
-    j: u32,
-    end: u32,
+    cell: u32,
+    images: u32, // those to come, and the present one
+    row: u32, // the next
+    first: u32, // of the present candidates
+    end: u32, // of their row
+    bits: u32, // those of them that are neighbours, and not yet visited
 }
 
 fn visit_of(i: u32, x: vec3<f32>) -> Visit {
-    let count = neighbours[i].x;
-    var visit = Visit(count / 4u + 1u, i, false, 0u, 0u, 0u, 0u);
+    let has_list = arrayLength(&neighbours) >= params.particle_count;
+    let count = select(BY_ROWS, neighbours[i].x, has_list);
+    var visit = Visit(count / 4u + 1u, i, false, 0u, 0u, 0u, 0u, 0u, 0u);
     if (count == BY_ROWS) {
         visit.is_by_rows = true;
+        visit.cell = cell_of(x);
         visit.images = reflections_near(x);
     }
     return visit;
@@ -36,34 +41,42 @@ fn next_four(visit: ptr<function, Visit>, i: u32, x: vec3<f32>) -> vec4<u32> {
     return four;
 }
 
-fn word_of_list(i: u32, word: u32) -> u32 {
-    return neighbours[word / 4u * params.particle_count + i][word % 4u];
-}
-
 fn next_four_of_rows(visit: ptr<function, Visit>, i: u32, x: vec3<f32>) -> vec4<u32> {
-    let reach = params.support_radius * params.support_radius;
     var four = vec4(no_neighbour(i));
     var found = 0u;
     while (found < 4u && (*visit).left != 0u) {
-        if ((*visit).j < (*visit).end) {
-            let image = firstTrailingBit((*visit).images);
-            let d = reflected_point(reflection(image), x) - sorted_positions[(*visit).j].xyz;
-            if (dot(d, d) < reach) {
-                four = vec4(four.yzw, entry_of((*visit).j, image));
-                found += 1u;
-            }
-            (*visit).j += 1u;
-        } else if ((*visit).row < 9u) {
-            (*visit).j = word_of_list(i, 2u * (*visit).row + 1u);
-            (*visit).end = word_of_list(i, 2u * (*visit).row + 2u);
-            (*visit).row += 1u;
+        if ((*visit).bits != 0u) {
+            let j = (*visit).first + firstTrailingBit((*visit).bits);
+            four = vec4(four.yzw, entry_of(j, firstTrailingBit((*visit).images)));
+            (*visit).bits &= (*visit).bits - 1u;
+            found += 1u;
         } else {
-            (*visit).images &= (*visit).images - 1u;
-            (*visit).row = 0u;
-            (*visit).left = select(0u, 1u, (*visit).images != 0u);
+            find_candidates(visit, x);
         }
     }
     return four;
+}
+
+// The next candidates: of the same row, of the next row, or of the next image.
+fn find_candidates(visit: ptr<function, Visit>, x: vec3<f32>) {
+    if ((*visit).first + CANDIDATES < (*visit).end) {
+        (*visit).first += CANDIDATES;
+    } else if ((*visit).row < 9u) {
+        let range = row_range((*visit).cell, (*visit).row);
+        (*visit).first = range.x;
+        (*visit).end = range.y;
+        (*visit).row += 1u;
+    } else {
+        (*visit).images &= (*visit).images - 1u;
+        (*visit).left = select(0u, 1u, (*visit).images != 0u);
+        (*visit).row = 0u;
+        (*visit).first = 0u;
+        (*visit).end = 0u;
+    }
+    if ((*visit).first < (*visit).end) {
+        let own = reflected_point(reflection(firstTrailingBit((*visit).images)), x);
+        (*visit).bits = neighbour_bits(own, (*visit).first, (*visit).end);
+    }
 }
 
 // A neighbour, or its image.

@@ -4,6 +4,7 @@
 #import sph/grid
 #import sph/rows
 #import sph/images
+#import sph/candidates
 #import sph/neighbours
 #import sph/kernel
 #import sph/group_sum

@@ -29,7 +29,7 @@ use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::passes::group_sum;
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
@@ -43,6 +43,7 @@ const IMPORTS: &[WgslModule] = &[
     GRID,
     ROWS,
     boundary::IMAGES,
+    CANDIDATES,
     NEIGHBOURS,
     NEIGHBOUR_ENTRIES,
     kernel::WGSL,

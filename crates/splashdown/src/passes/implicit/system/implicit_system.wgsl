@@ -3,6 +3,7 @@
 #import sph/grid
 #import sph/rows
 #import sph/images
+#import sph/candidates
 #import sph/neighbours
 #import sph/kernel
 #import sph/wall_friction

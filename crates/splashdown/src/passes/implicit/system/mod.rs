@@ -12,7 +12,7 @@ use glam::{UVec4, Vec2, Vec4};
 use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::kernel::{self, CubicSpline, Kernel};
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, STATE, StepState};
@@ -44,6 +44,7 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
         GRID,
         ROWS,
         boundary::IMAGES,
+        CANDIDATES,
         NEIGHBOURS,
         NEIGHBOUR_ENTRIES,
         kernel::WGSL,

@@ -19,12 +19,10 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
         accelerations,
     } = buffers;
     let n = cell_start[grid.cell_count as usize].min(state.run_count) as usize;
-    let tasks = iterates[..n].par_chunks_mut(CHUNK).zip(accelerations[..n].par_chunks_mut(CHUNK));
-    tasks.enumerate().for_each(|(chunk, (iterates, accelerations))| {
-        for (k, (iterate, a)) in iterates.iter_mut().zip(accelerations).enumerate() {
+    accelerations[..n].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, accelerations)| {
+        for (k, a) in accelerations.iter_mut().enumerate() {
             let i = chunk * CHUNK + k;
-            let pressure = iterate.yzw();
-            *iterate = Vec4::new(iterate.x, 0.0, 0.0, 0.0);
+            let pressure = iterates[i].yzw();
             if a.w == 1.0 {
                 continue;
             }

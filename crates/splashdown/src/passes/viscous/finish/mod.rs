@@ -18,7 +18,7 @@ bindings! {
         sorted_velocities: read [Vec4],
         viscous_residuals: read [Vec4],
         predicted: read [Vec4],
-        iterates: write [Vec4],
+        iterates: read [Vec4],
         accelerations: write [Vec4],
     }
 }

@@ -13,7 +13,6 @@ fn viscous_finish(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
         return;
     }
     let pressure = iterates[i].yzw;
-    iterates[i] = vec4(iterates[i].x, 0.0, 0.0, 0.0);
     let other = accelerations[i].w;
     if (other == 1.0) {
         return;

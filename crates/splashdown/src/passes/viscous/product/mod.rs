@@ -9,7 +9,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use super::pair;
 use crate::boundary;
-use crate::cells::{GRID, Grid, ROWS};
+use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
 use crate::passes::group_sum;
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, STATE, StepState, VISCOUS, ViscousState};
@@ -42,6 +42,7 @@ pub static PRODUCT: PassDesc = PassDesc {
         GRID,
         ROWS,
         boundary::IMAGES,
+        CANDIDATES,
         NEIGHBOURS,
         NEIGHBOUR_ENTRIES,
         pair::WGSL,
