@@ -22,7 +22,7 @@ fn neighbour_bits(x: vec3<f32>, first: u32, end: u32) -> u32 {
         let high = bits_of(vec4(dot(e, e), dot(f, f), dot(g, g), dot(h, h)) < reach);
         // The particles behind the end are the last one again.
         let there = (1u << min(end - j, 8u)) - 1u;
-        bits |= ((low | high << 4u) & there) << (j - first);
+        bits |= ((low | (high << 4u)) & there) << (j - first);
     }
     return bits;
 }

@@ -17,7 +17,7 @@
 //! Where there are more neighbours than words, or where a buffer of the device cannot hold a layer, a
 //! visit searches the candidates.
 //!
-//! The CPU has lists of another kind ([`pairs`](crate::pairs)). It allocates no layers here, and the pass
+//! The CPU has lists of another kind (`pairs`). It allocates no layers here, and the pass
 //! does nothing.
 
 mod cpu;

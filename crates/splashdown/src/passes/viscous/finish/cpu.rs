@@ -1,4 +1,4 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::FinishBindings;
