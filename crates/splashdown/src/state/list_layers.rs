@@ -21,7 +21,7 @@ mod tests {
     fn lists_have_room_for_compressed_fluid_and_fit_a_buffer() {
         // A sphere of two spacings contains 33 particles; with the header 12 layers hold 47.
         assert_eq!(list_layers(2.0, 1000, 1 << 30), 12);
-        assert_eq!(list_layers(3.0, 1000, 1 << 30), 37);
+        assert_eq!(list_layers(3.0, 1000, 1 << 30), 38);
         assert_eq!(list_layers(2.0, 1 << 20, 128 << 20), 8);
         assert_eq!(list_layers(2.0, 10 << 20, 128 << 20), 0);
         assert_eq!(list_layers(2.0, 0, 128 << 20), 12);
