@@ -90,18 +90,18 @@ def grid_lines(x, y, half_line, width):
 
 def floor_albedo(x, z, floor, texel):
     """Reflectance of the floor at points; `texel` is the size of a texel in metres."""
-    tint = np.asarray(floor["colour"], F) / F(0.165)
+    tint = np.asarray(floor["colour"], F) / F(0.07)
     x, y, width = x / floor["tile_size"], z / floor["tile_size"], texel / floor["tile_size"]
     if floor["pattern"] == "plain":
-        return np.broadcast_to(tint * F(0.165), (*x.shape, 3))
+        return np.broadcast_to(tint * F(0.07), (*x.shape, 3))
     if floor["pattern"] == "checkerboard":
         dark = (np.floor(x) + np.floor(y)) % 2
-        return tint * (0.2475 + (0.0825 - 0.2475) * dark)[..., None]
+        return tint * (0.105 + (0.035 - 0.105) * dark)[..., None]
     slab = hashed(np.floor(x) + F(0.5), np.floor(y) + F(0.5))
     coarse = value_noise(2.3 * x, 2.3 * y) - 0.5
     medium = (value_noise(9 * x + 5, 9 * y + 5) - 0.5) * np.clip(1.6 - 9 * width, 0, 1)
     fine = (value_noise(47 * x + 11, 47 * y + 11) - 0.5) * np.clip(1.6 - 47 * width, 0, 1)
-    tone = 0.165 + 0.022 * (slab - 0.5) + 0.018 * coarse + 0.014 * medium + 0.018 * fine
+    tone = 0.07 + 0.011 * (slab - 0.5) + 0.009 * coarse + 0.007 * medium + 0.009 * fine
     joint = grid_lines(x, y, 0.010, max(width, 1e-4))
     return tint * (tone * (1 - 0.55 * joint))[..., None]
 

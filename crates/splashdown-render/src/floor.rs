@@ -9,7 +9,7 @@ use crate::globals::Globals;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FloorPattern {
-    /// Slabs of concrete with joints.
+    /// Slabs of slate with joints.
     Tiles,
     /// Light and dark squares.
     Checkerboard,
@@ -27,18 +27,18 @@ pub struct Floor {
 }
 
 /// Reflectance that environment.wgsl multiplies by the tint.
-const TONE: f32 = 0.165;
-/// Tint of concrete.
-const CONCRETE: [f32; 3] = [0.97, 0.98, 1.0];
+const TONE: f32 = 0.07;
+/// Tint of slate.
+const SLATE: [f32; 3] = [0.97, 0.98, 1.0];
 
 impl Default for Floor {
     fn default() -> Floor {
-        Floor { pattern: FloorPattern::Tiles, colour: CONCRETE.map(|tint| tint * TONE) }
+        Floor { pattern: FloorPattern::Tiles, colour: SLATE.map(|tint| tint * TONE) }
     }
 }
 
 impl Floor {
-    /// The reflectance as a multiple of that of concrete.
+    /// The reflectance as a multiple of that of slate.
     pub(crate) fn relative(&self) -> Vec3 {
         Vec3::from(self.colour) / Vec3::from(Floor::default().colour)
     }
@@ -52,8 +52,8 @@ impl Floor {
                 allowed: "three numbers from 0 to 1",
             });
         }
-        // Exactly the tint of concrete for its colour.
-        globals.floor_tint = (self.relative() * Vec3::from(CONCRETE)).into();
+        // Exactly the tint of slate for its colour.
+        globals.floor_tint = (self.relative() * Vec3::from(SLATE)).into();
         // As in environment.wgsl; 0 is no floor.
         globals.floor_pattern = match self.pattern {
             FloorPattern::Tiles => 1,
@@ -69,10 +69,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_is_concrete() {
+    fn the_default_is_slate() {
         let mut globals = Globals::default();
         Floor::default().fill(&mut globals).unwrap();
-        assert_eq!(globals.floor_tint, CONCRETE);
+        assert_eq!(globals.floor_tint, SLATE);
         assert_eq!(Floor::default().relative(), Vec3::ONE);
     }
 

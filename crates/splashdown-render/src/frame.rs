@@ -255,7 +255,7 @@ impl<'a> Frame<'a> {
 }
 
 /// Light from the default floor under the default sky and sun on surfaces that face it.
-const BOUNCED: Vec3 = Vec3::new(0.42, 0.41, 0.38);
+const BOUNCED: Vec3 = Vec3::new(0.178, 0.174, 0.161);
 
 fn check_sun(sun: [f32; 3]) -> Result<Vec3, RenderError> {
     match Vec3::from(sun).try_normalize() {

@@ -54,5 +54,5 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     if line.dashes > 0.0 {
         opacity *= select(0.0, 1.0, fract(in.along * line.dashes) < 0.5);
     }
-    return vec4f(encode(vec3f(0.055, 0.085, 0.125)), opacity);
+    return vec4f(encode(vec3f(0.012, 0.020, 0.030)), opacity);
 }

@@ -90,22 +90,22 @@ fn dark_squares(p: vec2f, width: f32) -> f32 {
     return 0.5 - 0.5 * sign_integral.x * sign_integral.y;
 }
 
-// Reflectance of the floor at a point. Tiles are slabs of concrete with joints. `width`: width of the
+// Reflectance of the floor at a point. Tiles are slabs of slate with joints. `width`: width of the
 // ray in tiles.
 fn floor_albedo(p: vec2f, width: f32) -> vec3f {
     let q = p / globals.tile_size;
     if globals.floor_pattern == 3u {
-        return globals.floor_tint * 0.165;
+        return globals.floor_tint * 0.07;
     }
     if globals.floor_pattern == 2u {
-        return globals.floor_tint * mix(0.2475, 0.0825, dark_squares(q, width));
+        return globals.floor_tint * mix(0.105, 0.035, dark_squares(q, width));
     }
     let slab = hash(floor(q) + vec2f(0.5, 0.5));
     // Octaves of noise, each fading before it aliases.
     let coarse = value_noise(2.3 * q) - 0.5;
     let medium = (value_noise(9.0 * q + 5.0) - 0.5) * clamp(1.6 - 9.0 * width, 0.0, 1.0);
     let fine = (value_noise(47.0 * q + 11.0) - 0.5) * clamp(1.6 - 47.0 * width, 0.0, 1.0);
-    let tone = 0.165 + 0.022 * (slab - 0.5) + 0.018 * coarse + 0.014 * medium + 0.018 * fine;
+    let tone = 0.07 + 0.011 * (slab - 0.5) + 0.009 * coarse + 0.007 * medium + 0.009 * fine;
     let joint = grid_lines(q, 0.010, width);
     return globals.floor_tint * tone * (1.0 - 0.55 * joint);
 }

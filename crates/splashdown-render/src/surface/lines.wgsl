@@ -41,5 +41,5 @@ fn fragment_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0
     if OVER_SURFACE == 0u && !front {
         opacity *= 0.3;
     }
-    return vec4f(encode(vec3f(0.008, 0.035, 0.075)), opacity);
+    return vec4f(encode(vec3f(0.001, 0.004, 0.010)), opacity);
 }

@@ -16,7 +16,7 @@ choices! {
     }
     /// The floor of the pictures.
     FloorKind {
-        /// Concrete with joints at a round distance.
+        /// Slate with joints at a round distance.
         Tiles = "tiles",
         /// Light and dark squares.
         Checkerboard = "checkerboard",

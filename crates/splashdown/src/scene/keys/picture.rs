@@ -43,7 +43,7 @@ pub(super) static PICTURE: Table = Table {
         key(
             "floor_colour",
             COLOUR,
-            "Mean reflectance of the floor: linear red, green, blue. Default: grey concrete.",
+            "Mean reflectance of the floor: linear red, green, blue. Default: grey slate.",
         )
         .also(&["floor_color", "ground_colour"]),
         key("tank", Kind::Word(words::<TankKind>), "How the domain is drawn.")
